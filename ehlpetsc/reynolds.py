@@ -1,0 +1,171 @@
+r"""Discrete Reynolds equation with mass-conserving cavitation and direct contact.
+
+.. math:: F \equiv \frac{\partial \rho h(1-\theta)}{\partial t}
+   + \frac{\partial}{\partial x}\Big[\rho u h(1-\theta) - \frac{\rho h^3 S}{12\eta}\frac{\partial p}{\partial x}\Big],
+   \qquad h\ge0,\quad F\ge0,\quad hF=0
+
+(Holmes et al. 2005, eq. (1), its sign turned; where h = 0 it is left out, eq. (11)). One unknown q a
+node carries pressure and cavitation: p = max(q, 0), void fraction = max(-q, 0). Lengths in x are in
+half widths, films in a^2/R, pressures in p0; F is divided by u times a film scale, so that the sum
+over nodes is the relative mass imbalance.
+
+Finite volumes, one node a cell. The Couette flux and the storage are second-order upwind (BDF2 in
+time), both by :func:`positive_extrapolation`: second order where the film is resolved, and never
+a negative outflow, so that no node is emptied by the scheme itself.
+"""
+import numpy as np
+
+from ehlpetsc import rheology
+
+STENCIL = 4  # nodes i-2 .. i+1 in row i
+
+
+def positive_extrapolation(m, behind, k):
+    r"""Extrapolate m from the values at `behind` and here, kept positive for m > 0.
+
+    :math:`y=m+k(m-m_b)` while that is at least m/2, else :math:`m^2/4k(m_b-m)`: continuous with its
+    derivatives, homogeneous of degree one. Plain extrapolation of a film that goes to zero is
+    negative, which empties the next cell and starts a cascade of false contacts.
+
+    Returns
+    -------
+    value, d_m, d_behind : ndarray
+    """
+    y = m + k * (m - behind)
+    limited = y < 0.5 * m
+    drop = np.where(limited, k * (behind - m), 1.0)
+    ratio = m / drop
+    value = np.where(limited, 0.25 * m * ratio, y)
+    d_m = np.where(limited, 0.5 * ratio + 0.25 * k * ratio**2, 1.0 + k)
+    d_behind = np.where(limited, -0.25 * k * ratio**2, -k)
+    return value, d_m, d_behind
+
+
+class Storage:
+    r"""Film contents of the previous time levels: what BDF2 needs of the past.
+
+    Parameters
+    ----------
+    m, m_older : ndarray, shape (nx,)
+        :math:`\rho h(1-\theta)` one and two steps ago.
+    dt, dt_older : float
+        Step in hand and last step, in units of a/u; `dt_older` None starts with backward Euler.
+    """
+
+    def __init__(self, m, m_older, dt, dt_older=None):
+        self.m, self.dt = m, dt
+        self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
+        self.w = m if dt_older is None else positive_extrapolation(m, m_older, self.k * dt / dt_older)[0]
+
+
+class Reynolds:
+    """Rows of the Reynolds equation for the nodes first .. last-1 of a mesh.
+
+    Parameters
+    ----------
+    fluid : case.Fluid
+    scales : scales.Scales
+    film_scale : float
+        What F is divided by, in a^2/R.
+    first, last : int
+        Nodes whose rows are evaluated here.
+    """
+
+    def __init__(self, fluid, scales, film_scale, first, last):
+        self.fluid, self.scales, self.film_scale = fluid, scales, film_scale
+        n = scales.nx
+        self.rows = np.arange(max(first, 1), last)
+        self.has_inlet = first == 0
+        self.dx = scales.x[1] - scales.x[0]
+        j = np.arange(self.rows[0] - 1, self.rows[-1] + 1)  # face j lies between nodes j and j+1
+        self.behind, self.left, self.right = np.maximum(j - 1, 0), j, np.minimum(j + 1, n - 1)
+        inner = j + 1 < n  # beyond the outlet: same film, no pressure
+        self.right_p, self.right_h = inner * 1.0, inner * 0.5
+        self.second_order = np.where(j >= 1, 0.5, 0.0)
+        self.sliding = scales.u1 - scales.u2
+        self.inlet = None if fluid.inlet_film is None else fluid.inlet_film / scales.h
+        self.columns = self._columns(n)
+
+    def _columns(self, n):
+        node = self.rows[:, None] + np.arange(-2, 2)
+        node = np.where((node < 0) | (node >= n), -1, node)
+        both = np.stack([np.where(node < 0, -1, 2 * node), np.where(node < 0, -1, 2 * node + 1)], axis=2)
+        return both.reshape(len(self.rows), 2 * STENCIL).astype(np.int32)
+
+    def mass(self, q, h):
+        r"""Film content :math:`\rho h(1-\theta)` and its derivatives with respect to q and h."""
+        full = q > 0.0
+        p = np.where(full, q, 0.0) * self.scales.p0
+        rho, drho = rheology.density(p, self.fluid)
+        left = np.where(full, 1.0, 1.0 + q)
+        return rho * left * h, np.where(full, drho * self.scales.p0, 1.0) * h, rho * left
+
+    def _faces(self, q, h, mass):
+        """Mass flux through each face and its derivatives: (q, h) x (behind, left, right)."""
+        s = self.scales
+        m, m_q, m_h = mass
+        b, le, r = self.behind, self.left, self.right
+        flux, by_left, by_behind = positive_extrapolation(m[le], m[b], self.second_order)
+        p, dp = np.maximum(q, 0.0), (q > 0.0) * 1.0
+        p_right = self.right_p * p[r]
+        ln_eta, dln_eta = rheology.viscosity(0.5 * s.p0 * (p[le] + p_right), self.fluid)
+        rho, drho = rheology.density(0.5 * s.p0 * (p[le] + p_right), self.fluid)
+        film = s.h * ((1 - self.right_h) * h[le] + self.right_h * h[r])
+        per_length = s.p0 / (s.a * self.dx)
+        slope = per_length * (p_right - p[le])
+        mob, mob_h, mob_slope, mob_eta = rheology.mobility(film, slope, ln_eta, self.fluid, self.sliding)
+        unit = 1.0 / (s.u * s.h)
+        flux = flux - unit * rho * mob * slope
+        by_slope = -unit * rho * (mob + mob_slope * slope) * per_length
+        by_p = -unit * slope * (drho * mob + rho * mob_eta * dln_eta) * 0.5 * s.p0
+        by_h = -unit * rho * mob_h * slope * s.h
+        return flux, (
+            by_behind * m_q[b], by_behind * m_h[b],
+            by_left * m_q[le] + (by_p - by_slope) * dp[le], by_left * m_h[le] + by_h * (1 - self.right_h),
+            (by_p + by_slope) * self.right_p * dp[r], by_h * self.right_h,
+        )
+
+    def evaluate(self, q, h, past):
+        """Residual of the local rows and its derivatives.
+
+        Parameters
+        ----------
+        q, h : ndarray, shape (nx,)
+        past : Storage or None
+            None: steady.
+
+        Returns
+        -------
+        residual : ndarray, shape (last-first,)
+        values : ndarray, shape (number of rows but the inlet's, 8)
+            Entries for ``columns``.
+        inlet : tuple of float or None
+            d(row 0)/dq and d/dh where node 0 is local.
+        """
+        mass = self.mass(q, h)
+        flux, d = self._faces(q, h, mass)
+        rows = self.rows
+        residual = np.diff(flux)
+        values = np.zeros((len(rows), 2 * STENCIL))
+        for side in (0, 1):  # q, then h
+            values[:, 0 + side] = -d[0 + side][:-1]
+            values[:, 2 + side] = d[0 + side][1:] - d[2 + side][:-1]
+            values[:, 4 + side] = d[2 + side][1:] - d[4 + side][:-1]
+            values[:, 6 + side] = d[4 + side][1:]
+        if past is not None:
+            stored, d_m, _ = positive_extrapolation(mass[0][rows], past.m[rows], past.k)
+            residual += (stored - past.w[rows]) * (self.dx / past.dt)
+            values[:, 4] += d_m * mass[1][rows] * (self.dx / past.dt)
+            values[:, 5] += d_m * mass[2][rows] * (self.dx / past.dt)
+        residual /= self.film_scale
+        values /= self.film_scale
+        if not self.has_inlet:
+            return residual, values, None
+        head, inlet = self._inlet(q[0], h[0])
+        return np.concatenate([[head], residual]), values, inlet
+
+    def _inlet(self, q, h):
+        """Row 0: ambient pressure where flooded, the given oil film where starved."""
+        if self.inlet is None or self.inlet >= h:
+            return q, (1.0, 0.0)
+        return q + 1.0 - self.inlet / h, (1.0, self.inlet / h**2)

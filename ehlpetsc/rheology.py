@@ -1,0 +1,161 @@
+r"""Lubricant laws: viscosity, density and the Eyring flow factor, each with its derivative.
+
+Every law is a pure function of arrays in SI units; complex arguments are carried through, so
+that the derivatives can be checked by complex step.
+"""
+import numpy as np
+
+SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
+
+
+def viscosity(p, fluid):
+    r"""Logarithm of the viscosity over its ambient value.
+
+    ``seed``: :math:`\ln(\eta/\eta_0) = \ln(\eta_0/\kappa)[(1+\chi p)^Z-1]`,
+    :math:`Z=\alpha/(\chi\ln(\eta_0/\kappa))`, Holmes et al. 2005, eq. (3);
+    ``barus``: :math:`\alpha p`; ``roelands``: :math:`(\alpha p_r/z)[(1+p/p_r)^z-1]`.
+
+    Parameters
+    ----------
+    p : ndarray
+        Pressure [Pa].
+    fluid : case.Fluid
+
+    Returns
+    -------
+    ln_eta, dln_eta_dp : ndarray
+        :math:`\ln(\eta/\eta_0)` [1] and its derivative [1/Pa], shape of `p`.
+    """
+    alpha = fluid.pressure_viscosity
+    if fluid.law == "barus":
+        return alpha * p, np.full_like(p, alpha)
+    if fluid.law == "roelands":
+        reference, z = fluid.roelands_pressure, fluid.roelands_z
+        factor = alpha * reference / z
+    else:
+        factor = np.log(fluid.viscosity / fluid.kappa)
+        reference, z = 1.0 / fluid.chi, alpha / (fluid.chi * factor)
+    base = 1.0 + p / reference
+    power = base**z
+    return factor * (power - 1.0), factor * z * power / (base * reference)
+
+
+def density(p, fluid):
+    r"""Density over its ambient value, :math:`(1+\gamma p)/(1+\lambda p)`, Holmes et al. 2005, eq. (4).
+
+    Returns
+    -------
+    rho, drho_dp : ndarray
+        Ratio [1] and derivative [1/Pa], shape of `p`; exactly 1 and 0 if incompressible.
+    """
+    if fluid.density == "incompressible":
+        return np.ones_like(p), np.zeros_like(p)
+    below = 1.0 + fluid.lambda_ * p
+    return (1.0 + fluid.gamma * p) / below, (fluid.gamma - fluid.lambda_) / below**2
+
+
+def poiseuille_factor(sigma):
+    r"""Eyring factor without sliding, :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3`, and its derivative.
+
+    Conry, Wang & Cusano 1987; series :math:`3\sum 2n\,\Sigma^{2n-2}/(2n+1)!` near zero.
+    """
+    small = np.abs(sigma.real) < SERIES_LIMIT
+    s = np.where(small, 1.0, sigma)
+    sinh, cosh = np.sinh(s), np.cosh(s)
+    value = 3.0 * (s * cosh - sinh) / s**3
+    slope = 3.0 * sinh / s**2 - 3.0 * value / s
+    t = sigma**2
+    series = 1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560)))
+    dseries = sigma * (1 / 5 + t * (1 / 70 + t * (1 / 2520 + t / 166320)))
+    return np.where(small, series, value), np.where(small, dseries, slope)
+
+
+def sliding_factor(sigma):
+    r"""Eyring factor of the sliding term, :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`, and its derivative."""
+    small = np.abs(sigma.real) < SERIES_LIMIT
+    s = np.where(small, 1.0, sigma)
+    tanh = np.tanh(s)
+    value = 3.0 * (s / tanh - 1.0) / s**2
+    slope = 3.0 * (1.0 / tanh - s * (1.0 / tanh**2 - 1.0)) / s**2 - 2.0 * value / s
+    t = sigma**2
+    series = 1.0 + t * (-1 / 15 + t * (2 / 315 + t * (-1 / 1575 + t * 2 / 31185)))
+    dseries = sigma * (-2 / 15 + t * (8 / 315 + t * (-6 / 1575 + t * 16 / 31185)))
+    return np.where(small, series, value), np.where(small, dseries, slope)
+
+
+def mobility(h, slope, ln_eta, fluid, sliding):
+    r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, as one quantity.
+
+    :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
+    :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987). It stays finite both for
+    :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`.
+    Without Eyring stress :math:`S=1`.
+
+    Parameters
+    ----------
+    h, slope, ln_eta : ndarray
+        Film [m], pressure gradient [Pa/m], :math:`\ln(\eta/\eta_0)` [1] at the same places.
+    fluid : case.Fluid
+    sliding : float
+        :math:`u_1-u_2` [m/s].
+
+    Returns
+    -------
+    value, d_h, d_slope, d_ln_eta : ndarray
+        M [m^3/(Pa s)] and its derivatives with respect to the three arguments.
+    """
+    fluidity = np.exp(-ln_eta) / fluid.viscosity
+    if fluid.eyring_stress is None:
+        value = h**3 * fluidity / 12.0
+        return value, h**2 * fluidity / 4.0, np.zeros_like(value), -value
+    tau0 = fluid.eyring_stress
+    sigma = h * slope / (2.0 * tau0)
+    s0, ds0 = poiseuille_factor(sigma)
+    newton = h**3 * fluidity
+    rolling = newton * s0
+    rolling_sigma = newton * ds0
+    if sliding == 0.0:
+        value, by_sigma, by_h, by_eta = rolling, rolling_sigma, 3.0 * h**2 * fluidity * s0, -rolling
+    else:
+        el, del_ = sliding_factor(sigma)
+        drag = abs(sliding) / tau0
+        slip = drag * h**2 * el
+        value = np.sqrt(rolling**2 + slip**2)
+        safe = np.where(value == 0.0, 1.0, value)
+        by_sigma = (rolling * rolling_sigma + slip * drag * h**2 * del_) / safe
+        by_h = (rolling * 3.0 * h**2 * fluidity * s0 + slip * 2.0 * drag * h * el) / safe
+        by_eta = -(rolling**2) / safe
+    d_h = by_h + by_sigma * slope / (2.0 * tau0)
+    d_slope = by_sigma * h / (2.0 * tau0)
+    return value / 12.0, d_h / 12.0, d_slope / 12.0, by_eta / 12.0
+
+
+def wall_shear(h, slope, ln_eta, fluid, sliding):
+    r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
+
+    :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
+    (Conry, Wang & Cusano 1987); Newtonian: :math:`\tau_m=\eta(u_1-u_2)/h`.
+
+    Returns
+    -------
+    lower, upper : ndarray
+        Shear stress [Pa] in the film at the lower (slow) and at the upper (fast) wall, at h > 0.
+    """
+    rate = sliding / h
+    half = h * slope / 2.0
+    if fluid.eyring_stress is None:
+        mean = fluid.viscosity * np.exp(ln_eta) * rate
+        return mean - half, mean + half
+    tau0 = fluid.eyring_stress
+    sigma = np.abs(half) / tau0
+    # ln(sinh(s)/s), so that neither a huge viscosity nor a steep gradient overflows
+    small = sigma < SERIES_LIMIT
+    s = np.where(small, 1.0, sigma)
+    spread = np.where(small, sigma**2 / 6 - sigma**4 / 180 + sigma**6 / 2835,
+                      s + np.log1p(-np.exp(-2 * s)) - np.log(2 * s))
+    with np.errstate(divide="ignore"):
+        ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - spread
+    large = ln_argument > 20.0
+    asinh = np.where(large, ln_argument + np.log(2.0), np.arcsinh(np.exp(np.minimum(ln_argument, 20.0))))
+    mean = tau0 * np.sign(sliding) * asinh
+    return mean - half, mean + half
