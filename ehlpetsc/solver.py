@@ -1,0 +1,198 @@
+r"""SNES set-up for one solve: bound-constrained Newton with the exact deflection in the operator.
+
+The default is ``vinewtonrsls``: at every iteration the nodes with h at its bound and F > 0 form the
+contact set, whose Reynolds rows and films leave the system. The operator is the near-field matrix
+plus the far field by FFT, applied matrix-free in GMRES; the matrix itself, factored, is the
+preconditioner, so that Newton converges as with the full Jacobian whatever the near field.
+
+Newton's steps are limited in the line search's pre-check to `STEP_LIMIT` p0 in any pressure, because the
+viscosity is exponential in p, and scaled as a whole, so that linear rows stay satisfied.
+"""
+import numpy as np
+from petsc4py import PETSc
+
+from ehlpetsc.contact import ContactProblem
+
+STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
+DEFAULTS = {
+    "snes_type": "vinewtonrsls",
+    "snes_linesearch_type": "bt",
+    "snes_linesearch_maxstep": "1e10",
+    "snes_max_it": "60",
+    "snes_atol": "1e-7",
+    "snes_rtol": "1e-14",
+    "snes_stol": "0",
+    "snes_max_funcs": "100000",
+    "ksp_type": "gmres",
+    "ksp_rtol": "1e-6",
+    "ksp_max_it": "60",
+    "pc_type": "lu",
+    "pc_factor_mat_ordering_type": "natural",
+}
+
+
+class NotConverged(Exception):
+    """A solve that failed; `reason` is SNES's name of why."""
+
+    def __init__(self, reason, iterations):
+        super().__init__(f"SNES {reason} after {iterations} iterations")
+        self.reason, self.iterations = reason, iterations
+
+
+def set_defaults(options, extra=()):
+    """Enter this program's, then the case's options wherever the user gave none."""
+    for table in (extra, DEFAULTS):
+        for name, value in dict(table).items():
+            if not options.hasName(name):
+                options[name] = value
+
+
+class _Operator:
+    """Matrix-free Jacobian: the near-field matrix and the far field by FFT."""
+
+    def __init__(self, solver):
+        self.solver = solver
+
+    def mult(self, mat, v, out):
+        s = self.solver
+        s.matrix.mult(v, out)
+        v_p = s.gather(v)[0] * s.slope
+        out.array[: 2 * s.local: 2] += s.problem.far_product(v_p) - s.leak * v.array_r[: 2 * s.local: 2]
+
+
+class Solver:
+    """Holds vectors, matrices and SNES of one scene on one communicator.
+
+    Parameters
+    ----------
+    case, scales, film_scale
+        As in :class:`ehlpetsc.contact.ContactProblem`.
+    comm : MPI communicator
+    """
+
+    def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
+        n = scales.nx
+        rank, size = comm.rank, comm.size
+        first, last = n * rank // size, n * (rank + 1) // size
+        self.n, self.local, self.first, self.comm = n, last - first, first, comm
+        self.problem = ContactProblem(case, scales, film_scale, first, last)
+        local = 2 * self.local + self.problem.load_is_local
+        self.x = PETSc.Vec().createMPI((local, 2 * n + 1), comm=comm)
+        self.f = self.x.duplicate()
+        self.to_all, self.all = PETSc.Scatter.toAll(self.x)
+        self._create_matrix(local)
+        self._create_bounds(case.contact.minimum_film / scales.h)
+        self._create_snes()
+
+    def _create_matrix(self, local):
+        p, sizes = self.problem, ((local, 2 * self.n + 1),) * 2
+        self.matrix = PETSc.Mat().createAIJ(sizes, comm=self.comm)
+        zeros = np.zeros(len(p.pattern_columns))
+        self.matrix.setPreallocationCSR((p.pattern_rows, p.pattern_columns, zeros))
+        self.matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_LOCATION_ERR, True)
+        self.operator = PETSc.Mat().createPython(sizes, _Operator(self), comm=self.comm)
+        self.operator.setUp()
+        self.cavitated = None
+
+    def _create_bounds(self, minimum_film):
+        self.lower, self.upper = self.x.duplicate(), self.x.duplicate()
+        self.lower.set(PETSc.NINFINITY)
+        self.upper.set(PETSc.INFINITY)
+        self.lower.array[1: 2 * self.local: 2] = minimum_film
+
+    def _create_snes(self):
+        self.snes = PETSc.SNES().create(self.comm)
+        self.snes.setFunction(self._function, self.f)
+        self.snes.setJacobian(self._jacobian, self.operator, self.matrix)
+        self.snes.setFromOptions()
+        self.snes.setVariableBounds(self.lower, self.upper)
+        self.snes.setLineSearchPreCheck(self._limit_step)
+
+    def gather(self, v):
+        """The whole vector on every rank, as q, h (shape (nx,)) and h00."""
+        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
+        whole = self.all.array_r
+        return whole[: 2 * self.n: 2].copy(), whole[1: 2 * self.n: 2].copy(), whole[2 * self.n]
+
+    def scatter(self, q, h, h00):
+        """Fill the local part of the unknowns from whole arrays."""
+        mine = slice(self.first, self.first + self.local)
+        x = self.x.array
+        x[: 2 * self.local: 2], x[1: 2 * self.local: 2] = q[mine], h[mine]
+        if self.problem.load_is_local:
+            x[-1] = h00
+
+    def _function(self, snes, x, f):
+        with np.errstate(over="ignore", invalid="ignore"):
+            f.array[:] = self.problem.residual(*self.gather(x))
+
+    def _jacobian(self, snes, x, operator, matrix):
+        p = self.problem
+        q, h, h00 = self.gather(x)
+        with np.errstate(over="ignore", invalid="ignore"):
+            p.residual(q, h, h00)
+        # a node in contact and cavitated at once would leave its deflection row blind
+        slope = np.where(h <= self.bound, 1.0, p.slope(q))
+        mine = slice(self.first, self.first + self.local)
+        if self.cavitated is None or not np.array_equal(slope, self.slope):
+            self.slope, self.cavitated = slope, slope == 0.0
+            from ehlpetsc.contact import LEAK
+            self.leak = np.where(slope[mine] > 0.0, 0.0, LEAK)
+            columns, values = p.deflection_rows(slope)
+            rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32)
+            set_rows(matrix, rows, columns, values)
+            if p.load_is_local:
+                matrix.setValues([2 * self.n], 2 * np.arange(self.n, dtype=np.int32), p.dx * slope)
+        if p.dry:
+            rows = np.arange(self.first, self.first + self.local, dtype=np.int32)
+            set_rows(matrix, 2 * rows + 1, 2 * rows[:, None], np.ones((self.local, 1)))
+        else:
+            set_rows(matrix, (2 * p.reynolds.rows + 1).astype(np.int32), p.reynolds.columns, p.flow_values)
+            if p.inlet_values is not None:
+                matrix.setValues([1], [0, 1], p.inlet_values)
+        matrix.assemble()
+        operator.assemble()
+
+    @property
+    def bound(self):
+        return 0.0
+
+    def _limit_step(self, x, y):
+        q, _, _ = self.gather(y)
+        largest = np.abs(q).max()
+        if largest > STEP_LIMIT:
+            y.scale(STEP_LIMIT / largest)
+            return True
+        return False
+
+    def solve(self, q, h, h00):
+        """Solve from the given start.
+
+        Returns
+        -------
+        q, h : ndarray, shape (nx,)
+        h00 : float
+        iterations : int
+
+        Raises
+        ------
+        NotConverged
+        """
+        self.scatter(q, h, h00)
+        self.snes.solve(None, self.x)
+        reason, iterations = self.snes.getConvergedReason(), self.snes.getIterationNumber()
+        q, h, h00 = self.gather(self.x)
+        if reason <= 0:
+            raise NotConverged(REASONS.get(reason, str(reason)), iterations)
+        if not np.isfinite([q.sum(), h.sum(), h00]).all():
+            raise NotConverged("NOT_FINITE", iterations)
+        return q, h, h00, iterations
+
+
+REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
+
+
+def set_rows(matrix, rows, columns, values):
+    """Insert a block of rows of equal width; negative columns are left out by PETSc."""
+    for_row = np.arange(len(rows) + 1, dtype=np.int32) * columns.shape[1]
+    matrix.setValuesIJV(for_row, columns.ravel(), values.ravel(), rowmap=rows)
