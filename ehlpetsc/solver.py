@@ -14,6 +14,7 @@ from petsc4py import PETSc
 from ehlpetsc.contact import ContactProblem
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
+REFILLED = 1e-9  # pressure in p0 that a cavity gets in the iteration that fills it
 DEFAULTS = {
     "snes_type": "vinewtonrsls",
     "snes_linesearch_type": "bt",
@@ -162,8 +163,12 @@ class Solver:
         largest = np.abs(q).max()
         if largest > STEP_LIMIT:
             y.scale(STEP_LIMIT / largest)
-            return True
-        return False
+        if self.problem.dry:
+            return largest > STEP_LIMIT
+        now, step = x.array_r[: 2 * self.local: 2], y.array[: 2 * self.local: 2]
+        refilled = (now < 0.0) & (now - step > REFILLED)
+        step[refilled] = now[refilled] - REFILLED
+        return True
 
     def solve(self, q, h, h00):
         """Solve from the given start.
