@@ -104,10 +104,11 @@ def members(case):
     list of (value, Case)
     """
     keys, data = case.series.key.split("."), tomllib.loads(case.text)
-    return [
-        (value, _made(case.path, _member(data, keys, value), _with_settings(case.text, [(keys, value)], "series")))
-        for value in data["series"]["values"]
-    ]
+    result = []
+    for value in data["series"]["values"]:
+        text = _with_settings(case.text, [(keys, value)], without="series")
+        result.append((value, _made(case.path, _member(data, keys, value), text)))
+    return result
 
 
 def _read(path):

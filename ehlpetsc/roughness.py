@@ -183,7 +183,7 @@ def mesh_warnings(case, scales):
             notes.append(
                 f"surface.{side}: the mesh is too coarse for the profile: {100 * share:.1f} % of its height "
                 f"variance lies in wavelengths under {SHORT} nodes ({SHORT * scales.dx * 1e6:.2f} um); "
-                f"points_per_half_width = {_needed(profile, scales)} would bring that under {100 * SHARE:.0f} %"
+                f"points_per_half_width = {_needed(profile, scales)} brings that under {100 * SHARE:.0f} %"
             )
     return notes
 
