@@ -1,0 +1,23 @@
+"""The ranks that mpirun started are one communicator, on a PETSc of real double precision."""
+import os
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.mpi
+
+
+def test_every_rank_of_mpirun_is_in_the_world():
+    from mpi4py import MPI
+
+    assert MPI.COMM_WORLD.size == int(os.environ["OMPI_COMM_WORLD_SIZE"])
+    assert MPI.COMM_WORLD.allreduce(MPI.COMM_WORLD.rank) == sum(range(MPI.COMM_WORLD.size))
+
+
+def test_petsc_computes_in_real_double_precision():
+    from petsc4py import PETSc
+
+    assert np.dtype(PETSc.ScalarType) == np.float64
+    vector = PETSc.Vec().createMPI(7)
+    vector.set(1.0 + 2.0**-50)
+    assert vector.sum() == 7.0 + 7 * 2.0**-50
