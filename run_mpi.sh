@@ -66,6 +66,8 @@ set_environment() {
     if [ "$(id -u)" = 0 ]; then
         export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     fi
+    # mpirun gives every rank a terminal, also where the output goes to a file
+    [ -t 1 ] || export TERM=dumb
     # one machine: shared memory alone, by copies that a container allows, and no wait for a network or munge
     export OMPI_MCA_btl=${OMPI_MCA_btl:-self,vader}
     export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism:-none}
@@ -78,9 +80,22 @@ mpirun_options() {
     [ "$1" -le "$(nproc)" ] || echo "--oversubscribe"
 }
 
+# SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it hands on, and they stop after the step in hand.
+# Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
+    local status=0
     # shellcheck disable=SC2046  # options, one word each
-    exec /usr/bin/mpirun $(mpirun_options "$ranks") $python -m ehlpetsc "$@"
+    setsid setpriv --pdeathsig TERM /usr/bin/mpirun $(mpirun_options "$ranks") \
+        $python -m ehlpetsc "$@" </dev/null &
+    local mpirun=$!
+    trap 'kill -USR1 $mpirun 2>/dev/null; trap "kill -TERM $mpirun" INT TERM' INT TERM HUP USR1
+    wait $mpirun || status=$?
+    while kill -0 $mpirun 2>/dev/null; do # a signal ends wait, not mpirun
+        status=0
+        wait $mpirun || status=$?
+    done
+    [ $status -lt 129 ] || say "a rank was ended by signal $((status - 128))"
+    exit $status
 }
 
 # Rank 0 reports; what the others say is shown only when something failed
