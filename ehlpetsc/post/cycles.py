@@ -1,0 +1,138 @@
+"""Rainflow counting by the four-point method, with the residue counted: closed on itself, or as half cycles.
+
+A four-point count alone leaves a residue of the largest ranges uncounted, which is not conservative. The history
+of a point that the contact passes over and over is periodic, so by default the residue is closed: started from
+its largest reversal, led back to it, and counted to the end (ASTM E1049, 5.4.5, repeating histories). As half
+cycles it gives the counts of ASTM E1049, 5.4.4.
+"""
+import numpy as np
+
+from ehlpetsc.post.jit import njit
+
+RESIDUES = ("closed", "half")
+
+
+@njit(cache=True, nogil=True)
+def _close(series, stack, bottom, top, first, second, weight, n):
+    """Take off closed cycles: the inner range of the last four reversals is within both its neighbours."""
+    while top - bottom >= 4:
+        b, c = series[stack[top - 3]], series[stack[top - 2]]
+        inner = abs(c - b)
+        if inner > abs(b - series[stack[top - 4]]) or inner > abs(series[stack[top - 1]] - c):
+            break
+        first[n], second[n], weight[n] = stack[top - 3], stack[top - 2], 1.0
+        n += 1
+        stack[top - 3] = stack[top - 1]
+        top -= 2
+    return top, n
+
+
+@njit(cache=True, nogil=True)
+def _close_residue(series, stack, top, first, second, weight, n):
+    """Count the residue stack[:top] as one period of a repeated history."""
+    start = 0
+    for i in range(1, top):
+        if series[stack[i]] > series[stack[start]]:
+            start = i
+    bottom = top
+    last = stack[start]
+    stack[bottom] = last
+    end = bottom + 1
+    rising = False  # the start is the highest
+    for i in range(1, top + 1):
+        new = stack[(start + i) % top]
+        if series[new] == series[last]:
+            continue
+        if (series[new] > series[last]) != rising:
+            stack[end] = last
+            end, n = _close(series, stack, bottom, end + 1, first, second, weight, n)
+            rising = not rising
+        last = new
+    stack[end] = last
+    end, n = _close(series, stack, bottom, end + 1, first, second, weight, n)
+    if end - bottom == 3:  # highest, lowest, highest: one cycle
+        first[n], second[n], weight[n] = stack[bottom], stack[bottom + 1], 1.0
+        n += 1
+    return n
+
+
+@njit(cache=True, nogil=True)
+def find_cycles(series, closed, stack, first, second, weight):
+    """Write each cycle's two reversals and its weight; return how many cycles.
+
+    `series` must be finite. Work space: stack of 2 len + 4 integers, the others of len + 2. Of a plateau the
+    first sample is the reversal.
+    """
+    size = series.shape[0]
+    n = 0
+    stack[0] = 0
+    top = 1
+    last = 0
+    value = series[0]
+    for i in range(1, size):  # up to the first sample that differs
+        if series[i] != value:
+            break
+    else:
+        return 0
+    rising = series[i] > value
+    for i in range(i, size):
+        new = series[i]
+        if new == value:
+            continue
+        if (new > value) != rising:
+            stack[top] = last
+            top += 1
+            if top >= 4:
+                top, n = _close(series, stack, 0, top, first, second, weight, n)
+            rising = not rising
+        value = new
+        last = i
+    stack[top] = last
+    top, n = _close(series, stack, 0, top + 1, first, second, weight, n)
+    if closed:
+        return _close_residue(series, stack, top, first, second, weight, n)
+    for i in range(top - 1):
+        first[n], second[n], weight[n] = stack[i], stack[i + 1], 0.5
+        n += 1
+    return n
+
+
+def workspace(size):
+    """Arrays (stack, first, second, weight) that :func:`find_cycles` needs for histories up to `size`."""
+    return (np.empty(2 * size + 4, np.int64), np.empty(size + 2, np.int64), np.empty(size + 2, np.int64),
+            np.empty(size + 2))
+
+
+def rainflow(series, residue="closed"):
+    """Rainflow cycles of one history.
+
+    Parameters
+    ----------
+    series : array_like, shape (n,)
+        Finite values.
+    residue : {"closed", "half"}
+        "closed": the history repeats, every cycle is whole. "half": what does not close counts one half a
+        range, as in ASTM E1049, 5.4.4.
+
+    Returns
+    -------
+    ndarray, shape (cycles, 5)
+        Rows of range, mean, count (1 or 0.5), index of the first and of the second reversal. In a closed
+        residue the second reversal may come before the first: the cycle then spans the repetition.
+
+    Raises
+    ------
+    ValueError
+        Not one-dimensional, nan or inf in it, unknown residue.
+    """
+    series = np.ascontiguousarray(series, dtype=float)
+    if residue not in RESIDUES:
+        raise ValueError(f"residue must be one of {', '.join(RESIDUES)}")
+    if series.ndim != 1 or not np.isfinite(series).all():
+        raise ValueError("a history must be one row of finite values")
+    if series.size < 2:
+        return np.empty((0, 5))
+    stack, first, second, weight = workspace(series.size)
+    n = find_cycles(series, residue == "closed", stack, first, second, weight)
+    i, j = first[:n], second[:n]
+    return np.column_stack([np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, weight[:n], i, j])

@@ -1,0 +1,166 @@
+r"""Stresses in the half plane under a line load, by FFT with exact element kernels.
+
+Each body in its own frame: x as in the contact, z into the solid, tension positive, pressure positive, traction
+q in +x on the solid. The load is linear between nodes and nothing outside them.
+"""
+from functools import lru_cache
+
+import numpy as np
+from scipy import fft
+
+from ehlpetsc.post.kernels import half_hat, hat
+
+UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
+
+
+def spacing(x):
+    """Spacing of uniform nodes; ValueError if there are under two or they are not uniform and increasing."""
+    x = np.asarray(x, float)
+    if x.ndim != 1 or x.size < 2:
+        raise ValueError("x must be one row of at least two nodes")
+    dx = (x[-1] - x[0]) / (x.size - 1)
+    if not dx > 0 or np.abs(np.diff(x) - dx).max() > UNIFORM * dx + 8 * np.spacing(np.abs(x).max()):
+        raise ValueError("x must be uniformly spaced and increasing")
+    return dx
+
+
+def padded_length(nx):
+    """FFT length that holds the linear convolution of nx nodes with nx offsets either way."""
+    return fft.next_fast_len(2 * nx - 1, real=True)
+
+
+def kernel_spectra(nx, z, offset=0.0):
+    """Spectra of the hat kernels, -2/pi included, seen from points `offset` elements right of the nodes.
+
+    z in elements. Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.kernels`.
+    """
+    n = padded_length(nx)
+    distance = np.arange(-(nx - 1), nx)
+    kernels = np.zeros((4, n))
+    kernels[:, distance] = -2 / np.pi * hat(distance + offset, z)
+    return fft.rfft(kernels)
+
+
+class StressField:
+    """Stress operator for one mesh and a set of depths.
+
+    Parameters
+    ----------
+    nx : int
+        Nodes.
+    dx : float
+        Their spacing, m.
+    z : array_like, shape (nz,)
+        Depths >= 0, m.
+    """
+
+    def __init__(self, nx, dx, z):
+        z = np.atleast_1d(np.asarray(z, float))
+        if not (np.isfinite(z).all() and (z >= 0).all()):
+            raise ValueError("depths must be finite and not negative")
+        self.nx, self.n = nx, padded_length(nx)
+        self.depths = z / dx
+        self.normal, self.cross, self.along, self.shear = np.stack(
+            [kernel_spectra(nx, depth) for depth in self.depths], axis=1)
+        self._ends = None
+
+    def __call__(self, pressure, shear=None):
+        """Stresses (sx, sz, txz), each (..., nz, nx), under pressure and traction (..., nx), all in Pa."""
+        p = fft.rfft(pressure, self.n)[..., None, :]
+        out = np.empty((3, *p.shape[:-2], len(self.depths), p.shape[-1]), complex)
+        np.multiply(self.along, p, out=out[0])
+        np.multiply(self.normal, p, out=out[1])
+        np.multiply(self.cross, p, out=out[2])
+        if shear is not None:
+            q = fft.rfft(shear, self.n)[..., None, :]
+            out[0] += self.shear * q
+            out[1] += self.cross * q
+            out[2] += self.along * q
+        fields = fft.irfft(out, self.n, overwrite_x=True)[..., :self.nx]
+        self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
+        return fields[0], fields[1], fields[2]
+
+    def _cut_ends(self, fields, pressure, shear):
+        """Take off the outer halves of the end nodes' hats, where the load does not end at zero."""
+        for node, kernels in ((0, 0), (-1, 1)):
+            p, q = pressure[..., node], 0.0 if shear is None else shear[..., node]
+            if not (np.any(p) or np.any(q)):
+                continue
+            normal, cross, along, tangential = self._end_kernels()[kernels]
+            p, q = np.asarray(p)[..., None, None], np.asarray(q)[..., None, None]
+            fields[0] -= along * p + tangential * q
+            fields[1] -= normal * p + cross * q
+            fields[2] -= cross * p + along * q
+
+    def _end_kernels(self):
+        if self._ends is None:
+            nodes = np.arange(self.nx)
+            left = -2 / np.pi * np.stack([half_hat(nodes, z) for z in self.depths], axis=1)
+            parity = np.array([1.0, -1.0, 1.0, -1.0])[:, None, None]
+            self._ends = left, parity * left[..., ::-1]
+        return self._ends
+
+
+@lru_cache(maxsize=4)
+def _field(nx, dx, depths):
+    return StressField(nx, dx, np.array(depths))
+
+
+def stress(x, z, pressure, shear, poisson_ratio):
+    r"""Plane-strain stresses under a load that is linear between nodes, to rounding.
+
+    .. math::
+        \sigma_x = -\tfrac{2z}{\pi}\int\tfrac{p\,(x-s)^2}{D^2}ds - \tfrac2\pi\int\tfrac{q\,(x-s)^3}{D^2}ds
+
+        \sigma_z = -\tfrac{2z^3}{\pi}\int\tfrac{p}{D^2}ds - \tfrac{2z^2}{\pi}\int\tfrac{q\,(x-s)}{D^2}ds
+
+        \tau_{xz} = -\tfrac{2z^2}{\pi}\int\tfrac{p\,(x-s)}{D^2}ds - \tfrac{2z}{\pi}\int\tfrac{q\,(x-s)^2}{D^2}ds
+
+    with :math:`D=(x-s)^2+z^2` (Holmes et al. 2005, section 2.3, restored). At z = 0 the limits from inside:
+    -p and the traction's principal value; at an end node that carries traction the infinite part is left out.
+
+    Parameters
+    ----------
+    x : array_like, shape (nx,)
+        Uniform nodes, m.
+    z : float or array_like, shape (nz,)
+        Depths >= 0, m.
+    pressure : array_like, shape (..., nx)
+        Pa.
+    shear : array_like, shape (..., nx), or None
+        Traction in +x on this solid, Pa.
+    poisson_ratio : float
+        None of the three in-plane stresses depends on it (a load on a half plane); it is checked here and
+        gives the fourth by :func:`out_of_plane`.
+
+    Returns
+    -------
+    sx, sz, txz : ndarray
+        Pa, (..., nz, nx), without the axis nz where z is one number.
+
+    Raises
+    ------
+    ValueError
+        Nodes not uniform, negative depth, shapes that do not fit, Poisson's ratio outside (-1, 0.5].
+    """
+    x, pressure = np.asarray(x, float), np.asarray(pressure, float)
+    shear = None if shear is None else np.asarray(shear, float)
+    if pressure.shape[-1:] != x.shape or shear is not None and shear.shape != pressure.shape:
+        raise ValueError("pressure and shear must have one value a node, and the same shape")
+    if not -1 < poisson_ratio <= 0.5:
+        raise ValueError("Poisson's ratio must lie between -1 and 0.5")
+    dx = spacing(x)
+    field = _field(x.size, dx, tuple(np.atleast_1d(np.asarray(z, float))))
+    result = field(pressure, shear)
+    return tuple(part[..., 0, :] for part in result) if np.ndim(z) == 0 else result
+
+
+def out_of_plane(sx, sz, poisson_ratio):
+    """sigma_y = nu (sigma_x + sigma_z), plane strain."""
+    return poisson_ratio * (sx + sz)
+
+
+def von_mises(sx, sz, txz, poisson_ratio):
+    """Von Mises stress under plane strain, Pa."""
+    sy = out_of_plane(sx, sz, poisson_ratio)
+    return np.sqrt(0.5 * ((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) + 3 * txz**2)
