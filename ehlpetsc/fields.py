@@ -67,11 +67,3 @@ OTHERS = {
     "surface/z": Field("m", "height, positive out of the metal", ("s",)),
 }
 """Coordinates and what else is neither a field nor a scalar of the step."""
-
-
-def describe(dataset, field, **more):
-    """Write the attributes of `field`, and `more`, on an HDF5 dataset."""
-    dataset.attrs["units"] = field.units
-    dataset.attrs["long_name"] = field.long_name
-    for key, value in more.items():
-        dataset.attrs[key] = value

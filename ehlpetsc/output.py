@@ -1,8 +1,9 @@
 """Writing result files, on rank 0.
 
 The file is written in HDF5's single-writer/multiple-reader mode: all datasets exist from the start, rows are
-appended in batches, and ``time`` is written after everything else, so that it vouches for the rows before it.
-A reader can therefore open a running job's file, and a killed job leaves one that is whole up to its last flush.
+appended in batches, and ``time`` is written after everything else, so that it vouches for the rows before
+it. A reader can therefore open a running job's file, and a killed job leaves one that is whole up to its
+last flush.
 """
 import contextlib
 import os
@@ -12,15 +13,16 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from .fields import FIELDS, OTHERS, STEP_SCALARS, describe
+from .fields import FIELDS, STEP_SCALARS
+from .layout import extend, lay_out
 from .provenance import earlier_runs, git_commit, versions
 from .restart import load_restart, plain_reason, save_restart
 from .result import FORMAT_VERSION, OutputError, Result, read_result
 
-__all__ = ["FORMAT_VERSION", "OutputError", "Result", "ResultWriter", "load_restart", "read_result", "save_restart"]
+__all__ = [
+    "FORMAT_VERSION", "OutputError", "Result", "ResultWriter", "load_restart", "read_result", "save_restart",
+]
 
-CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
-CHUNK_STEPS = 512
 BATCH_STEPS = 1024  # most steps held in memory
 BATCH_BYTES = 2**20  # most of one field held in memory
 FLUSH_SECONDS = 2.0
@@ -76,7 +78,7 @@ class ResultWriter:
             with self._plain_faults("not created"):
                 self._file = h5py.File(beside, "w", libver="latest")
                 self._root_attributes(case_text, title, dict(scalars_attrs))
-                self._layout(np.asarray(x, dtype=float), fields, precision, profiles)
+                lay_out(self._file, x, fields, precision, profiles)
                 if resume_step is not None and self.path.exists():
                     self._copy_up_to(resume_step, contact_count is None)
                 self._file.swmr_mode = True
@@ -100,7 +102,7 @@ class ResultWriter:
         fields : dict of str to ndarray, shape (nx,)
             At least the fields to be stored.
         scalars : dict of str to number
-            Per-step scalars, keys of `ehlpetsc.fields.STEP_SCALARS`; those left out are stored as nan (0 for counts).
+            Per-step scalars, keys of `ehlpetsc.fields.STEP_SCALARS`; those left out become nan, counts 0.
         in_contact : ndarray of bool, shape (nx,)
 
         Raises
@@ -126,20 +128,20 @@ class ResultWriter:
         with self._plain_faults("not written on"):
             steps, frames = slice(self._steps_held), slice(self._frames_held)
             for name, column in self._columns.items():
-                _extend(self._file[f"steps/{name}"], column[steps])
+                extend(self._file[f"steps/{name}"], column[steps])
             for name, held in self._frames.items():
-                _extend(self._file[name], held[frames])
-            _extend(self._file["step"], self._frame_steps[frames])
+                extend(self._file[name], held[frames])
+            extend(self._file["step"], self._frame_steps[frames])
             self._file["contact_count"][:] = self.contact_count
             self._file.flush()
-            _extend(self._file["steps/time"], self._times[steps])
-            _extend(self._file["time"], self._frame_times[frames])
+            extend(self._file["steps/time"], self._times[steps])
+            extend(self._file["time"], self._frame_times[frames])
             self._file.flush()
         self._written_step = self.last_step
         self._start_batch()
 
     def close(self, status):
-        """Write what is left, note how the run ended ("done", "stopped", "not converged") and close the file."""
+        """Write what is left, note how the run ended ("done", "stopped", "not converged") and close."""
         if not self._file:
             return
         self.flush()
@@ -172,59 +174,17 @@ class ResultWriter:
         for key, value in (attrs | more).items():
             self._file.attrs[key] = value
 
-    def _layout(self, x, fields, precision, profiles):
-        file = self._file
-        self._fixed("x", OTHERS["x"], x)
-        self._growing("time", OTHERS["time"], CHUNK_STEPS)
-        for name in [n for n in FIELDS if n in fields]:
-            dtype = np.dtype(FIELDS[name].dtype if name == "in_contact" else precision)
-            rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
-            # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
-            packed = {"compression": "gzip", "compression_opts": 1} if name == "in_contact" else {}
-            self._growing(name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
-        self._growing("step", OTHERS["step"], CHUNK_STEPS)
-        self._fixed("contact_count", OTHERS["contact_count"], self.contact_count)
-        self._growing("steps/time", OTHERS["steps/time"], CHUNK_STEPS)
-        for name, field in STEP_SCALARS.items():
-            self._growing(f"steps/{name}", field, CHUNK_STEPS)
-        for surface, profile in profiles.items():
-            if profile is not None:
-                s, z, speed, *more = profile
-                self._fixed(f"surface/{surface}/s", OTHERS["surface/s"], s)
-                self._fixed(f"surface/{surface}/z", OTHERS["surface/z"], z)
-                for key, value in ({"speed": speed} | (more[0] if more else {})).items():
-                    file[f"surface/{surface}"].attrs[key] = value
-
-    def _fixed(self, name, field, values):
-        self._describe(self._file.create_dataset(name, data=np.asarray(values)), field)
-
-    def _growing(self, name, field, rows, *width, dtype=None, **packed):
-        dataset = self._file.create_dataset(
-            name, (0, *width), dtype or field.dtype, maxshape=(None, *width), chunks=(rows, *width), **packed
-        )
-        self._describe(dataset, field)
-
-    def _describe(self, dataset, field):
-        describe(dataset, field)
-        own_name = dataset.name.rsplit("/", 1)[1]
-        if field.dims == (own_name,):
-            dataset.make_scale(own_name)
-            return
-        for axis, dim in enumerate(field.dims):
-            dataset.dims[axis].attach_scale(dataset.parent[dim])
-            dataset.dims[axis].label = dim
-
     def _copy_up_to(self, step, count_from_file):
         with read_result(self.path) as old:
             self._check_fits(old, step, count_from_file)
             frames = np.count_nonzero(old.step <= step)
             steps = np.count_nonzero(old.steps("step") <= step)
             for name in self._file["steps"]:
-                _extend(self._file["steps"][name], old[f"steps/{name}"][:steps])
+                extend(self._file["steps"][name], old[f"steps/{name}"][:steps])
             for name in [*self._frame_fields(), "step", "time"]:
                 source, target = old[name], self._file[name]
                 for begin in range(0, frames, BATCH_STEPS):
-                    _extend(target, source[begin : min(begin + BATCH_STEPS, frames)])
+                    extend(target, source[begin : min(begin + BATCH_STEPS, frames)])
             if count_from_file:
                 self.contact_count[:] = old.contact_count
             self._file["contact_count"][:] = self.contact_count
@@ -246,7 +206,7 @@ class ResultWriter:
             fault = f"it goes on to step {last} and the contacts up to step {step} are not known"
         if fault:
             self._file.close()
-            raise OutputError(f"{self.path}: cannot go on with this result, {fault}; give another -ehl_output")
+            raise OutputError(f"{self.path}: cannot be continued, {fault}; give another -ehl_output")
 
     def _frame_fields(self):
         return [name for name in FIELDS if name in self._file]
@@ -268,11 +228,3 @@ class ResultWriter:
         self._frame_times[row], self._frame_steps[row] = time, step
         for name, held in self._frames.items():
             held[row] = in_contact if name == "in_contact" else fields[name]
-
-
-def _extend(dataset, rows):
-    """Append rows to a dataset."""
-    if len(rows):
-        begin = dataset.shape[0]
-        dataset.resize(begin + len(rows), axis=0)
-        dataset[begin:] = rows

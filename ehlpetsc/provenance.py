@@ -39,5 +39,6 @@ def earlier_runs(attrs, last_step):
     """JSON list of the configurations of all runs before a restart, the last of them described by `attrs`."""
     runs = json.loads(attrs.get("history", "[]"))
     keys = ("case", "petsc_options", "ranks", "versions", "git_commit")
-    run = {key: attrs[key] if isinstance(attrs[key], str) else int(attrs[key]) for key in keys if key in attrs}
+    known = {key: attrs[key] for key in keys if key in attrs}
+    run = {key: value if isinstance(value, str) else int(value) for key, value in known.items()}
     return json.dumps([*runs, {"up_to_step": int(last_step), **run}])

@@ -79,8 +79,8 @@ class Progress:
 
     def _draw_bar(self, done, left, scalars):
         text = (
-            f" {100 * done:5.1f} %  h_min {1e6 * scalars['h_min']:.4f} um  p_max {1e-9 * scalars['p_max']:.3f} GPa"
-            f"  contacts {scalars['contacts']}  {left} left"
+            f" {100 * done:5.1f} %  h_min {1e6 * scalars['h_min']:.4f} um"
+            f"  p_max {1e-9 * scalars['p_max']:.3f} GPa  contacts {scalars['contacts']}  {left} left"
         )
         columns = shutil.get_terminal_size().columns
         width = max(10, columns - len(text) - 3)
@@ -135,6 +135,6 @@ def summary_line(status, *, steps, newton, h_min, p_max, contacts, load_error, m
         Wall clock time [s].
     """
     return (
-        f"ehlpetsc: {status} steps={steps} newton={newton} h_min={h_min:.6g} p_max={p_max:.6g}"
+        f"ehlpetsc: {status} steps={steps} newton={newton} h_min={h_min:.9g} p_max={p_max:.9g}"
         f" contacts={contacts} load_error={load_error:.2e} mass_error={mass_error:.2e} wall={wall:.1f}"
     )

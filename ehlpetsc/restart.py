@@ -67,7 +67,7 @@ def load_restart(path):
             hint = ", but a result file" if "format_version" in file.attrs else ""
             raise OutputError(f"{path}: not a restart file of ehlpetsc{hint}")
         if version > FORMAT_VERSION:
-            raise OutputError(f"{path}: restart version {version}, this ehlpetsc reads up to {FORMAT_VERSION}")
+            raise OutputError(f"{path}: version {version}, this ehlpetsc reads up to {FORMAT_VERSION}")
         try:
             attrs = {key: value for key, value in file.attrs.items() if key != "restart_version"}
             return {name: file[name][()] for name in file}, attrs

@@ -1,0 +1,78 @@
+"""The datasets of a result file: created up front with dimension scales, then lengthened row by row."""
+import numpy as np
+
+from .fields import FIELDS, OTHERS, STEP_SCALARS
+
+CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
+CHUNK_STEPS = 512
+
+
+def lay_out(file, x, fields, precision, profiles):
+    """Create every dataset, empty along time.
+
+    Parameters
+    ----------
+    file : h5py.File
+    x : ndarray, shape (nx,)
+        Nodes [m].
+    fields : list of str
+        Fields to store, keys of `ehlpetsc.fields.FIELDS`.
+    precision : {"float64", "float32"}
+        Type of the fields.
+    profiles : dict
+        As for `ehlpetsc.output.ResultWriter`.
+    """
+    _fixed(file, "x", OTHERS["x"], np.asarray(x, dtype=float))
+    _growing(file, "time", OTHERS["time"], CHUNK_STEPS)
+    for name in [n for n in FIELDS if n in fields]:
+        dtype = np.dtype(FIELDS[name].dtype if name == "in_contact" else precision)
+        rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
+        # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
+        packed = {"compression": "gzip", "compression_opts": 1} if name == "in_contact" else {}
+        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
+    _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
+    _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
+    _growing(file, "steps/time", OTHERS["steps/time"], CHUNK_STEPS)
+    for name, field in STEP_SCALARS.items():
+        _growing(file, f"steps/{name}", field, CHUNK_STEPS)
+    for surface, profile in profiles.items():
+        if profile is not None:
+            _surface(file, f"surface/{surface}", *profile)
+
+
+def extend(dataset, rows):
+    """Append rows to a dataset."""
+    if len(rows):
+        begin = dataset.shape[0]
+        dataset.resize(begin + len(rows), axis=0)
+        dataset[begin:] = rows
+
+
+def _surface(file, name, s, z, speed, statistics=None):
+    _fixed(file, f"{name}/s", OTHERS["surface/s"], s)
+    _fixed(file, f"{name}/z", OTHERS["surface/z"], z)
+    for key, value in ({"speed": speed} | (statistics or {})).items():
+        file[name].attrs[key] = value
+
+
+def _fixed(file, name, field, values):
+    _describe(file.create_dataset(name, data=np.asarray(values)), field)
+
+
+def _growing(file, name, field, rows, *width, dtype=None, **packed):
+    dataset = file.create_dataset(
+        name, (0, *width), dtype or field.dtype, maxshape=(None, *width), chunks=(rows, *width), **packed
+    )
+    _describe(dataset, field)
+
+
+def _describe(dataset, field):
+    dataset.attrs["units"] = field.units
+    dataset.attrs["long_name"] = field.long_name
+    own_name = dataset.name.rsplit("/", 1)[1]
+    if field.dims == (own_name,):
+        dataset.make_scale(own_name)
+        return
+    for axis, dim in enumerate(field.dims):
+        dataset.dims[axis].attach_scale(dataset.parent[dim])
+        dataset.dims[axis].label = dim
