@@ -42,7 +42,8 @@ class Case(Table):
     def _options(cls, options):
         """PETSc takes text; TOML's true, false and numbers are written out for it."""
         for name, value in options.items():
-            if name.startswith("-") or not name or not isinstance(value, str | bool | int | float):
+            number = isinstance(value, int | float) and abs(value) < 1e300
+            if not name or name.startswith("-") or not (number or isinstance(value, str)):
                 raise ValueError(name)
         return {name: show(v) if not isinstance(v, str) else v for name, v in options.items()}
 

@@ -14,8 +14,8 @@ MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip
 
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
-Height = confloat(gt=0, le=1e-2)
-Length = confloat(gt=0, le=1.0)
+Height = confloat(ge=1e-12, le=1e-2)
+Length = confloat(ge=1e-9, le=1.0)
 Depth = confloat(ge=0, le=100)
 
 
@@ -36,9 +36,11 @@ class Table(BaseModel):
 
     @validator("*", pre=True)
     def _no_conversion(cls, value, field):
-        kind = next((k for k in (bool, int, float, str) if _subclass(item_type(field), k)), None)
-        for item in value if isinstance(value, list) else [] if value is None else [value]:  # None: left out
-            if kind and not _is(kind, item):
+        kind = next((k for k in (bool, int, float, str, dict) if _subclass(item_type(field), k)), None)
+        if value is None or kind is None:  # None: left out
+            return value
+        for item in value if isinstance(value, list) and kind is not dict else [value]:
+            if not _is(kind, item):
                 raise TypeError(f"{kind.__name__} expected")
             if kind is float and not -1e308 < item < 1e308:  # nan compares false
                 raise ValueError("not finite")
@@ -46,7 +48,7 @@ class Table(BaseModel):
 
 
 def _subclass(type_, kind):
-    return isinstance(type_, type) and issubclass(type_, kind)
+    return isinstance(type_, type) and issubclass(type_, (BaseModel, dict) if kind is dict else kind)
 
 
 def item_type(field):
@@ -57,7 +59,7 @@ def item_type(field):
 class Contact(Table):
     """`[contact]`: solids and load."""
 
-    radius: float = Field(..., gt=0, le=100, unit="m", description="radius of relative curvature")
+    radius: float = Field(..., ge=1e-9, le=100, unit="m", description="radius of relative curvature")
     load: float = Field(..., ge=1e-3, le=1e10, unit="N/m", description="load per length of contact")
     youngs_modulus: tuple[Modulus, Modulus] = Field(..., unit="Pa", description="of surface fast and slow")
     poisson_ratio: tuple[Ratio, Ratio] = Field(..., description="of surface fast and slow")
@@ -70,10 +72,10 @@ class Fluid(Table):
 
     viscosity: float = Field(..., ge=1e-6, le=1e4, unit="Pa s", description="at ambient pressure")
     law: Literal["seed", "barus", "roelands"] = Field(..., description="viscosity law")
-    pressure_viscosity: float = Field(..., gt=0, le=1e-6, unit="1/Pa", description="alpha")
+    pressure_viscosity: float = Field(..., ge=1e-12, le=1e-6, unit="1/Pa", description="alpha")
     kappa: float | None = Field(None, ge=1e-9, le=1, unit="Pa s", description="seed law, below viscosity")
-    chi: float | None = Field(None, gt=0, le=1e-6, unit="1/Pa", description="seed law")
-    roelands_z: float | None = Field(None, gt=0, le=2, description="Roelands law, exponent z")
+    chi: float | None = Field(None, ge=1e-12, le=1e-6, unit="1/Pa", description="seed law")
+    roelands_z: float | None = Field(None, ge=1e-3, le=2, description="Roelands law, exponent z")
     roelands_pressure: float | None = Field(None, ge=1e6, le=1e10, unit="Pa", description="Roelands law, pr")
     density: Literal["dowson-higginson", "incompressible"] = Field(..., description="density law")
     gamma: float | None = Field(None, ge=0, le=1e-6, unit="1/Pa", description="Dowson-Higginson density")
@@ -112,7 +114,7 @@ class Fluid(Table):
 class Motion(Table):
     """`[motion]`: speeds of the surfaces."""
 
-    entrainment_speed: float = Field(..., gt=0, le=1e3, unit="m/s", description="mean of both, not zero")
+    entrainment_speed: float = Field(..., ge=1e-9, le=1e3, unit="m/s", description="mean of both, not zero")
     slide_roll_ratio: float = Field(0.0, ge=-100, le=100, description="(u1 - u2)/u")
 
 
@@ -140,7 +142,7 @@ class Ground(Table):
     """A random profile of given Ra, correlation length and skewness."""
 
     kind: Literal["ground"]
-    ra: float = Field(..., gt=0, le=1e-3, unit="m", description="mean height deviation")
+    ra: float = Field(..., ge=1e-12, le=1e-3, unit="m", description="mean height deviation")
     correlation: Length = Field(..., unit="m", description="lag at which the autocorrelation is 1/e")
     skewness: float = Field(0.0, ge=-3, le=3, description="negative: plateaus with valleys")
     seed: int = Field(..., ge=0, le=2**32 - 1, description="of the random numbers")
@@ -208,7 +210,7 @@ class Time(Table):
     """`[time]`: left out, the case is steady."""
 
     travel: float = Field(
-        ..., gt=0, le=1e5, unit="half widths", description="of the faster surface, from the smooth start"
+        ..., ge=1e-6, le=1e5, unit="half widths", description="of the faster surface, from the smooth start"
     )
     courant: float = Field(0.5, ge=1e-3, le=100, description="u_max dt/dx")
 
@@ -230,7 +232,7 @@ class Post(Table):
     c: float | None = Field(None, gt=-5, lt=0, description="fatigue ductility exponent")
     cyclic_hardening: float | None = Field(None, gt=0, lt=1, description="n'")
     fatigue_strength: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="sigma_f'")
-    fatigue_ductility: float | None = Field(None, gt=0, le=100, description="eps_f'")
+    fatigue_ductility: float | None = Field(None, ge=1e-6, le=100, description="eps_f'")
     cyclic_strength: float | None = Field(
         None, ge=1e6, le=1e12, unit="Pa", description="K'; left out: sigma_f'/eps_f'^n'"
     )

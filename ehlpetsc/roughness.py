@@ -58,7 +58,7 @@ class Profile:
         self._spline = CubicSpline(X, z, bc_type="clamped")
         deviation = z - z.mean()
         self.ra, self.rq = float(np.abs(deviation).mean()), float(np.sqrt((deviation**2).mean()))
-        self.rsk = float((deviation**3).mean() / self.rq**3) if self.rq > 0 else 0.0
+        self.rsk = float(((deviation / self.rq) ** 3).mean()) if self.rq > 0 else 0.0
 
     def height(self, s):
         """Heights [m] at body points s [m]."""

@@ -2,9 +2,6 @@
 import os
 
 import numpy as np
-import pytest
-
-pytestmark = pytest.mark.mpi
 
 
 def test_every_rank_of_mpirun_is_in_the_world():

@@ -1,0 +1,187 @@
+"""The scene of a case in words, and what to know before it runs."""
+
+import math
+
+from ehlpetsc.roughness import Roughness, mesh_warnings
+from ehlpetsc.scales import Scales
+
+STEP_TIME = 25e-6  # s a node for a time step in full film on one rank: an order of magnitude, not a promise
+ROUGH_FACTOR = 3.0  # times that where asperities touch
+SCALARS = 13  # of 8 bytes a step, in steps/ of the result file
+
+
+def dowson_higginson(scales, alpha):
+    r"""Minimum film of the smooth line contact [m].
+
+    :math:`h_\mathrm{min}/R=2.65\,U^{0.7}G^{0.54}W^{-0.13}` (Dowson & Higginson 1966; Dowson 1968).
+
+    Parameters
+    ----------
+    scales : scales.Scales
+    alpha : float
+        Pressure-viscosity coefficient [1/Pa].
+    """
+    U = scales.eta0 * scales.u / (scales.E * scales.R)
+    W = scales.load / (scales.E * scales.R)
+    return 2.65 * U**0.7 * (alpha * scales.E) ** 0.54 * W**-0.13 * scales.R
+
+
+def explain(case):
+    """The scene in words: figures, size, what is switched off.
+
+    Parameters
+    ----------
+    case : case.Case
+
+    Returns
+    -------
+    str
+        Several lines.
+
+    Raises
+    ------
+    profiles.ProfileError
+    """
+    scales = Scales.of(case)
+    rough = Roughness.of(case, scales)
+    sections = [
+        [case.title],
+        _contact(scales),
+        _film(case, scales, rough),
+        _motion(case, scales),
+        _surfaces(rough),
+        _size(case, scales, rough),
+        _switched_off(case, rough),
+        [f"Warning: {line}" for line in warnings(case, scales)],
+    ]
+    if case.series:
+        shown = ", ".join(str(value) for value in case.series.values)
+        sections.insert(1, [f"A series: {case.series.key} = {shown}; below, the base case."])
+    return "\n".join(line for section in sections for line in section)
+
+
+def warnings(case, scales):
+    """What a user should know before the run, one line each.
+
+    Parameters
+    ----------
+    case : case.Case
+    scales : scales.Scales
+    """
+    rough = [f"surface.{name}" for name in ("fast", "slow") if getattr(case.surface, name)]
+    notes = []
+    if rough and case.time is None and case.motion is not None:
+        notes.append(
+            f"{' and '.join(rough)} with [motion] but without [time]: "
+            "the roughness is held still under the film; add [time] to let it move"
+        )
+    return notes + mesh_warnings(case, scales)
+
+
+def _contact(s):
+    return [
+        f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
+        f"Hertz: half width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
+    ]
+
+
+def _film(case, s, rough):
+    if case.fluid is None:
+        return ["Film: none, dry contact"]
+    h_min = dowson_higginson(s, case.fluid.pressure_viscosity)
+    lines = [
+        f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
+        f"L = {s.moes_l:.2f}",
+        f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3f} um",
+    ]
+    if rough and rough.rq > 0:
+        lines.append(
+            f"Lambda ratio: {h_min / rough.rq:.2f} "
+            f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(h_min / rough.rq)}"
+        )
+    return lines
+
+
+def _regime(ratio):
+    """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
+    if ratio > 3:
+        return "full film"
+    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
+
+
+def _motion(case, s):
+    if case.motion is None:
+        return ["Motion: none"]
+    line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; fast {s.u1:g} m/s, slow {s.u2:g} m/s"
+    if case.time is None:
+        return [line, "Time: steady"]
+    return [
+        line,
+        f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
+        f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
+    ]
+
+
+def _surfaces(rough):
+    lines = []
+    for side in ("fast", "slow"):
+        profile = rough and getattr(rough, side)
+        lines.append(
+            f"Surface {side}: "
+            + (
+                f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}"
+                if profile
+                else "smooth"
+            )
+        )
+    return lines
+
+
+def _size(case, s, rough):
+    seconds = STEP_TIME * s.nx * (steps(s) if case.time else 20) * (ROUGH_FACTOR if rough else 1.0)
+    return [
+        f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
+        f"{2 * s.nx + 1} unknowns",
+        f"Expected run time on one rank: {_duration(seconds)}; result file: {_bytes(file_size(case, s))}",
+    ]
+
+
+def steps(s):
+    """Time steps of a transient case, none of them halved."""
+    return math.ceil(s.duration / s.dt - 1e-9)
+
+
+def file_size(case, s):
+    """Expected size of the result file [bytes]."""
+    value = 8 if case.output.precision == "float64" else 4
+    count = steps(s) if case.time else 1
+    frame = sum(1 if name == "in_contact" else value for name in case.output.fields) * s.nx
+    return frame * (count // case.output.every + 1) + SCALARS * 8 * count
+
+
+def _switched_off(case, rough):
+    fluid = case.fluid
+    off = {
+        "Reynolds equation (no [fluid])": fluid is None,
+        "time (no [time])": case.time is None,
+        "roughness (no [surface])": not rough,
+        "Eyring stress (Newtonian)": fluid and fluid.eyring_stress is None,
+        "compressibility": fluid and fluid.density == "incompressible",
+        "starvation (fully flooded inlet)": fluid and fluid.inlet_film is None,
+        "boundary friction at dry nodes": case.contact.boundary_friction == 0.0,
+    }
+    return ["Switched off: " + (", ".join(name for name, is_off in off.items() if is_off) or "nothing")]
+
+
+def _duration(seconds):
+    for limit, unit, size in ((90, "s", 1), (5400, "min", 60)):
+        if seconds < limit:
+            return f"about {max(seconds / size, 1):.0f} {unit}"
+    return f"about {seconds / 3600:.1f} h"
+
+
+def _bytes(count):
+    for unit, size in (("GB", 1e9), ("MB", 1e6)):
+        if count >= size:
+            return f"about {count / size:.1f} {unit}"
+    return f"about {math.ceil(count / 1e3)} kB"

@@ -1,0 +1,247 @@
+"""The case file: what is read, and what a user is told about faults in it."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc import case
+from ehlpetsc.case import CaseError
+from ehlpetsc.case_keys import FIELDS
+
+CASES = Path(__file__).parents[2] / "cases"
+SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
+
+
+def faults(path, *overrides):
+    with pytest.raises(CaseError) as caught:
+        case.load(path, overrides)
+    return caught.value.faults
+
+
+def fault(path, *overrides):
+    found = faults(path, *overrides)
+    assert len(found) == 1, found
+    return found[0]
+
+
+@pytest.fixture
+def write(tmp_path):
+    """A case file made of the smooth one by replacing text."""
+
+    def make(old="", new="", base=SMOOTH):
+        text = base.read_text()
+        assert old in text
+        path = tmp_path / "my.toml"
+        path.write_text(text.replace(old, new, 1))
+        return path
+
+    return make
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_case_of_the_project_loads_and_says_what_it_is_for(path):
+    assert case.load(path).title
+    head = path.read_text().splitlines()[:2]
+    assert all(line.startswith("# ") for line in head)
+    assert "Holmes, Qiao, Evans & Snidle (2005)" in head[1]
+
+
+def test_sections_left_out_are_none_or_default():
+    c = case.load(SMOOTH)
+    assert (c.time, c.series, c.surface.fast, c.surface.slow) == (None,) * 4
+    assert (c.mesh.near_field, c.output.every, c.output.precision) == (20, 1, "float64")
+    assert tuple(c.output.fields) == FIELDS
+    dry = case.load(CASES / "dry_hertz.toml")
+    assert (dry.fluid, dry.motion) == (None, None)
+    assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.0, 0.0)
+
+
+def test_values_come_as_written():
+    c = case.load(ROUGH)
+    assert c.contact.youngs_modulus == (207e9, 207e9)
+    assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
+    assert c.surface.fast.scale == 0.5
+    assert (c.time.travel, c.time.courant) == (6.0, 0.5)
+
+
+def test_a_case_cannot_be_changed():
+    with pytest.raises(TypeError):
+        case.load(SMOOTH).contact.radius = 1.0
+
+
+def test_overrides_win_and_stand_in_the_text_with_its_comments():
+    c = case.load(
+        ROUGH, ["fluid.viscosity=0.003", "output.fields=['pressure']", "time.travel = 2", "title=Mine"]
+    )
+    assert (c.fluid.viscosity, c.output.fields, c.time.travel, c.title) == (0.003, ["pressure"], 2, "Mine")
+    assert tomllib.loads(c.text)["output"]["fields"] == ["pressure"]
+    assert "# Pa s at ambient pressure" in c.text
+
+
+def test_the_text_of_an_overridden_case_loads_to_the_same_case(tmp_path):
+    c = case.load(
+        SMOOTH,
+        [
+            "mesh.near_field=7",
+            "petsc.snes_max_it=9",
+            "surface.slow.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}",
+        ],
+    )
+    path = tmp_path / "again.toml"
+    path.write_text(c.text)
+    again = case.load(path)
+    assert again == c
+    assert again.petsc == {"snes_max_it": "9"}
+
+
+def test_petsc_options_become_text():
+    c = case.load(SMOOTH, ["petsc.ksp_rtol=1e-8", "petsc.snes_vi_monitor=true", 'petsc.pc_type="lu"'])
+    assert c.petsc == {"ksp_rtol": "1e-08", "snes_vi_monitor": "true", "pc_type": "lu"}
+
+
+def test_members_of_a_series_differ_in_its_key_alone():
+    c = case.load(CASES / "fig4.toml")
+    members = case.members(c)
+    assert [value for value, _ in members] == c.series.values
+    for value, member in members:
+        assert member.fluid.viscosity == value
+        assert member.series is None
+        assert "series" not in tomllib.loads(member.text)
+        assert member.motion == c.motion and member.surface == c.surface and member.path == c.path
+
+
+def test_a_fault_names_file_key_value_and_what_is_allowed():
+    assert fault(SMOOTH, "contact.radius=-0.02") == (
+        f"{SMOOTH}: contact.radius = -0.02: "
+        "allowed: a number >= 1e-09 and <= 100 [m] (radius of relative curvature)"
+    )
+
+
+def test_all_faults_come_at_once():
+    found = faults(
+        ROUGH,
+        "contact.radius=-1",
+        "fluid.viscosity=nan",
+        "mesh.inlett=4",
+        "surface.fast.file='nowhere.csv'",
+        "surface.slow.file='missing.csv'",
+        "motion.entrainment_speed=0",
+        "nonsense",
+    )
+    for part in (
+        "contact.radius =",
+        "fluid.viscosity =",
+        "mesh.inlett =",
+        "surface.fast.file =",
+        "surface.slow.file =",
+        "motion.entrainment_speed =",
+        "nonsense:",
+    ):
+        assert sum(part in line for line in found) == 1
+    assert len(found) == 7
+
+
+@pytest.mark.parametrize(
+    ("override", "words"),
+    [
+        ("contact.radius=inf", ["contact.radius", "allowed: a number"]),
+        ("contact.radius=true", ["= true", "allowed: a number"]),
+        ("contact.radius='big'", ['= "big"', "allowed: a number"]),
+        ("contact.youngs_modulus=[207e9]", ["a list of two numbers >= 1e+06", "[Pa]"]),
+        ("contact.youngs_modulus=[207, 207]", ["contact.youngs_modulus", ">= 1e+06"]),
+        ("contact.poisson_ratio=[0.3, 0.6]", ["<= 0.5"]),
+        ("fluid.law='sead'", ['"seed", "barus", "roelands"']),
+        ("fluid.kappa=0.01", ["fluid.kappa = 0.01", "below viscosity"]),
+        ("fluid.lambda=3e-9", ["fluid.lambda", "below gamma"]),
+        ("fluid.lambda_=3e-9", ["fluid.lambda_", "unknown key", '"lambda"']),
+        ("motion.entrainment_speed=0", ["a number >= 1e-09", "not zero"]),
+        ("mesh.points_per_half_width=200.5", ["a whole number >= 4"]),
+        ("mesh.points_per_half_width=90000", ["at most 200000 nodes"]),
+        ("mesh.inlet=-0.5", ["< -1", "half widths"]),
+        ("mesh.points_per_half_with=100", ['did you mean "points_per_half_width"?']),
+        ("output.fields=['presure']", ['"pressure"', "a list of"]),
+        ("output.fields=[]", ["a list of"]),
+        ("petsc.-snes_monitor=''", ["without the dash"]),
+        ("time=5", ["time = 5", "a table"]),
+        (
+            "surface.fast.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}",
+            ["either file or synthetic"],
+        ),
+        ("surface.fast.cutoff=0.05", ["at most the length of the profile"]),
+        ("post.b=0.09", ["post.b", "< 0"]),
+    ],
+)
+def test_a_fault_of_each_kind(override, words):
+    line = fault(ROUGH, override)
+    for word in words:
+        assert word in line
+
+
+@pytest.mark.parametrize("key", ["radius", "viscosity", "kappa", "gamma", "entrainment_speed", "outlet"])
+def test_a_missing_key_is_named(write, key):
+    assert f".{key} is missing; allowed: a number" in fault(write(f"\n{key} = ", "\n# "))
+
+
+def test_missing_tables_are_named(write, tmp_path):
+    path = tmp_path / "empty.toml"
+    path.write_text("")
+    found = faults(path)
+    assert [line.split(": ")[1].split()[0] for line in found] == ["title", "contact", "mesh"]
+    assert "motion is missing" in fault(
+        write("[motion]\nentrainment_speed = 5.0          # m/s, mean\nslide_roll_ratio = 0.25\n")
+    )
+
+
+def test_synthetic_keys_are_those_of_its_kind():
+    wave = "surface.slow.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
+    assert [line.partition(": surface.slow.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)] == [
+        "wavelength",
+        "ra",
+    ]
+    assert '"ground" | "sine"' in fault(SMOOTH, "surface.slow.synthetic={kind='waves'}")
+    assert "are for a file" in fault(
+        SMOOTH, "surface.slow={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4}, level=true}"
+    )
+
+
+def test_a_series_is_checked_member_by_member():
+    found = faults(SMOOTH, "series.key='fluid.viscosity'", "series.values=[0.01, -1, 0.02, nan]")
+    assert len(found) == 2
+    assert "fluid.viscosity = -1" in found[0] and "fluid.viscosity = nan" in found[1]
+    assert "unknown key" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
+
+
+def test_text_that_is_no_toml_is_refused_with_the_line(tmp_path):
+    path = tmp_path / "bad.toml"
+    path.write_text("title = 'x'\n[contact\n")
+    assert "not valid TOML" in fault(path) and "line 2" in fault(path)
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    assert "No such file" in fault(tmp_path / "none.toml")
+    assert "directory" in fault(tmp_path)
+    path = tmp_path / "bytes.toml"
+    path.write_bytes(b"title = '\xff'")
+    assert "not UTF-8" in fault(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, "no such file"),
+        ("0,0\n1e-6,0\n2e-6,0\n", "3 points; allowed: at least 4"),
+        ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", "line 2: '1e-6,zero'; allowed: two numbers a line"),
+        ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "x falls after x = 2e-06"),
+        ("0,0\n1e-6,0\n1e-6,1e-7\n3e-6,0\n", "x = 1e-06 stands twice"),
+        ("0,0\n1e-6,nan\n2e-6,0\n3e-6,0\n", "point 2 is not a finite number"),
+        ("0,0\n1,2\n2,0\n3,1\n", "not in mm or um"),
+        ("0,0,0\n1,2,3\n", "allowed: two numbers a line"),
+    ],
+)
+def test_a_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
+    if content is not None:
+        (tmp_path / "p.csv").write_text(content)
+    path = write("[mesh]", "[surface.fast]\nfile = 'p.csv'\n[mesh]")
+    line = fault(path)
+    assert line.startswith(f'{path}: surface.fast.file = "p.csv": ') and words in line

@@ -1,0 +1,134 @@
+"""Corrupted case files: faults in words, never another exception.
+
+EHL_FUZZ=10000 in the environment draws that many; EHL_FUZZ_SEED another series of them.
+"""
+import os
+import random
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc import case, explain
+from ehlpetsc.case import CaseError
+from ehlpetsc.profiles import ProfileError
+from ehlpetsc.roughness import Roughness
+from ehlpetsc.scales import Scales
+
+CASES = Path(__file__).parents[2] / "cases"
+DRAWS = int(os.environ.get("EHL_FUZZ", "400"))
+SEED = int(os.environ.get("EHL_FUZZ_SEED", "1"))
+VALUES = (
+    "nan", "-inf", "0", "-1", "1e400", "-1e-300", "-0.0", "5e-324", "1_000", "+1", "0b1", "1.", "_", "true",
+    "10" * 60, "0x" + "f" * 5000, "9" * 5000, '""', '"\\u0000"', '"a"', "'''\n'''", "\t", "# x",
+    "[]", "[[]]", "[1, 'x']", "[" * 2000, "{}", "{a = {b = []}}", "1979-05-27T07:32:00Z", "07:32:00",
+    "{ kind = 'ridge' }", "{ kind = [] }", "{ kind = 'ground', ra = nan, seed = -1 }",
+    "'../'", "'/dev/zero'", '"profiles"',
+)
+
+
+def corrupted(text, rng):
+    """One to three random faults: bytes, lines, values, keys, tables."""
+    for _ in range(rng.randint(1, 3)):
+        corrupt = rng.choice((_bytes, _value, _value, _value, _key, _line_away, _line_twice, _table, _cut))
+        text = corrupt(text, rng)
+    return text
+
+
+def _bytes(text, rng):
+    raw = bytearray(text.encode("utf-8", "surrogateescape"))
+    for _ in range(rng.randint(1, 5)):
+        if raw:
+            raw[rng.randrange(len(raw))] = rng.randrange(256)
+    return raw.decode("utf-8", "surrogateescape")
+
+
+def _lines(text, rng, change):
+    lines = text.split("\n")
+    rows = [n for n, line in enumerate(lines) if "=" in line and not line.startswith("#")]
+    if rows:
+        n = rng.choice(rows)
+        lines[n:n + 1] = change(lines[n])
+    return "\n".join(lines)
+
+
+def _value(text, rng):
+    return _lines(text, rng, lambda line: [line.split("=")[0] + "= " + rng.choice(VALUES)])
+
+
+def _key(text, rng):
+    names = ("x", "radius.x", "lambda_", "__root__", "a.b.c.d", '""', "key", "'\\u00e9'", "file", "-", "self")
+    name = rng.choice(names)
+    return _lines(text, rng, lambda line: [name + " =" + line.partition("=")[2]])
+
+
+def _line_away(text, rng):
+    return _lines(text, rng, lambda line: [])
+
+
+def _line_twice(text, rng):
+    return _lines(text, rng, lambda line: [line, line])
+
+
+def _table(text, rng):
+    old = ("contact", "fluid", "motion", "mesh", "surface.fast", "surface.slow", "time", "output", "series")
+    new = ("contact", "petsc", "surface", "[fluid]", "surface.fast.synthetic", "", "time", "series", "x.y")
+    return text.replace(f"[{rng.choice(old)}]", f"[{rng.choice(new)}]")
+
+
+def _cut(text, rng):
+    start = rng.randrange(len(text) + 1)
+    return text[:start] + text[start + rng.randrange(200):]
+
+
+def _used(loaded):
+    """What a run does with a case that loads: it must not fail over a value that was let through."""
+    scales = Scales.of(loaded)
+    if loaded.mesh.nodes < 5000:
+        rough = Roughness.of(loaded, scales)
+        if rough:
+            rough.gap(scales.x * scales.a, 0.3 * (scales.duration or 0.0))
+        assert explain.explain(loaded)
+    tomllib.loads(loaded.text)
+
+
+@pytest.mark.filterwarnings("error")
+def test_corrupted_files_end_in_case_errors(tmp_path):
+    rng = random.Random(SEED)
+    texts = [path.read_text() for path in sorted(CASES.glob("*.toml"))]
+    (tmp_path / "profiles").symlink_to(CASES / "profiles")
+    path, refused = tmp_path / "case.toml", 0
+    for _ in range(DRAWS):
+        text = corrupted(rng.choice(texts), rng)
+        path.write_bytes(text.encode("utf-8", "surrogateescape"))
+        try:
+            _used(case.load(path, rng.choice(((), ["mesh.near_field=9"]))))
+        except CaseError as error:
+            refused += 1
+            assert error.faults and all(line.startswith(str(path)) for line in error.faults)
+            assert all("\n" not in line for line in error.faults)
+        except ProfileError:
+            pytest.fail(f"a profile fault was not found on loading:\n{text}")
+        except Exception as error:
+            pytest.fail(f"{type(error).__name__}: {error}\n{text}")
+    assert refused > 0.7 * DRAWS
+
+
+def test_corrupted_overrides_end_in_case_errors():
+    rng = random.Random(SEED)
+    keys = [
+        "contact.radius", "fluid", "surface.slow.synthetic", "series.values", "petsc.x", "x", "", ".",
+        "time.travel", "surface.fast.file", "contact.radius.x", "title", "output.fields",
+        "contact.youngs_modulus", "mesh..inlet",
+    ]
+    for _ in range(DRAWS):
+        overrides = [
+            rng.choice(keys) + rng.choice(("=", "=", "=", "", " = ")) + rng.choice(VALUES)
+            for _ in range(rng.randint(1, 3))
+        ]
+        try:
+            _used(case.load(CASES / "table1_rough.toml", overrides))
+        except CaseError as error:
+            assert error.faults
+        except Exception as error:
+            pytest.fail(f"{type(error).__name__}: {error}\n{overrides}")

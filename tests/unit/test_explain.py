@@ -1,0 +1,84 @@
+"""The scene in words: its figures, its size, what is switched off."""
+
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc import case
+from ehlpetsc.explain import dowson_higginson, explain, file_size, steps, warnings
+from ehlpetsc.scales import Scales
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def lines(name, *overrides):
+    return explain(case.load(CASES / name, overrides)).splitlines()
+
+
+def starting(found, word):
+    return [line for line in found if line.startswith(word)]
+
+
+def test_figures_of_the_main_case():
+    text = "\n".join(lines("table1_rough.toml"))
+    for part in (
+        "a = 0.335682 mm",
+        "p0 = 0.999455 GPa",
+        "M = 56.53, L = 3.70",
+        "801 nodes",
+        "1603 unknowns",
+        "2400 steps",
+        "fast 5.625 m/s, slow 4.375 m/s",
+        "Ra 0.0785 um",
+        "contact likely",
+    ):
+        assert part in text
+
+
+@pytest.mark.parametrize(
+    ("eta0", "speed", "film"), [(0.01, 5, 0.22747), (0.005, 5, 0.14216), (0.005, 25, 0.43387)]
+)
+def test_the_expected_film_is_that_of_newtonian_oil_within_a_quarter(eta0, speed, film):
+    # Eyring stress and compressibility stand in the computed films, not in the formula
+    c = case.load(
+        CASES / "table1_smooth.toml", [f"fluid.viscosity={eta0}", f"motion.entrainment_speed={speed}"]
+    )
+    assert dowson_higginson(Scales.of(c), c.fluid.pressure_viscosity) * 1e6 == pytest.approx(film, rel=0.25)
+
+
+def test_parts_switched_off_are_named():
+    assert starting(lines("dry_hertz.toml"), "Switched off") == [
+        "Switched off: Reynolds equation (no [fluid]), time (no [time]), roughness (no [surface]), "
+        "boundary friction at dry nodes"
+    ]
+    moes = starting(lines("moes.toml"), "Switched off")[0]
+    assert "Newtonian" in moes and "compressibility" in moes
+    full = lines("table1_rough.toml", "fluid.inlet_film=1e-6")
+    assert starting(full, "Switched off") == ["Switched off: nothing"]
+
+
+def test_size_of_the_result_file_counts_fields_frames_and_scalars():
+    c = case.load(
+        CASES / "table1_rough.toml", ["output.every=10", "output.fields=['pressure', 'in_contact']"]
+    )
+    s = Scales.of(c)
+    assert steps(s) == 2400
+    assert file_size(c, s) == 241 * 801 * (8 + 1) + 2400 * 13 * 8
+    c = case.load(CASES / "table1_rough.toml", ["output.fields=['pressure']", "output.precision='float32'"])
+    assert file_size(c, s) == 2401 * 801 * 4 + 2400 * 13 * 8
+
+
+def test_a_series_names_its_members():
+    assert "mesh.points_per_half_width = 100, 200, 300, 400" in lines("fig6.toml")[1]
+
+
+def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
+    c = case.load(CASES / "fig6.toml")
+    assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.fast", "surface.slow"]
+    still = starting(
+        lines("table1_smooth.toml", "surface.slow.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}"),
+        "Warning",
+    )
+    assert len(still) == 1 and "surface.slow with [motion] but without [time]" in still[0]
+    c = case.load(CASES / "dry_rough.toml")
+    assert warnings(c, Scales.of(c)) == []

@@ -1,0 +1,267 @@
+"""Profiles: reading, filters, synthetic heights, motion through the contact, coarse meshes."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc import case
+from ehlpetsc.profiles import ProfileError, high_pass, levelled, read_profile
+from ehlpetsc.roughness import RAMP, Profile, Roughness, mesh_warnings
+from ehlpetsc.scales import Scales
+
+CASES = Path(__file__).parents[2] / "cases"
+ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
+A = 1e-3  # half width of the domains made here, m
+
+
+def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
+    return Profile(X, z, repeats, speed, moving, -2.5 * A, 1.5 * A, RAMP * A, duration)
+
+
+def rough(name, *overrides):
+    c = case.load(CASES / name, overrides)
+    scales = Scales.of(c)
+    return Roughness.of(c, scales), scales
+
+
+@pytest.mark.parametrize(
+    ("text", "comment"), [("{},{}\n", "# x, z\n"), ("{}\t{}\n", ""), (" {}   {}  # p\n", "x z\n")]
+)
+def test_text_formats_give_the_same_profile(tmp_path, text, comment):
+    x, z = np.arange(5) * 1e-6 + 3e-6, np.array([0, 1e-7, -2e-7, 3e-7, 0])
+    path = tmp_path / "p.txt"
+    path.write_text(comment + "".join(text.format(a, b) for a, b in zip(x, z, strict=True)))
+    X, heights = read_profile(path)
+    np.testing.assert_allclose(X, x - 3e-6, atol=1e-18)
+    np.testing.assert_array_equal(heights, z)
+
+
+def test_measured_profiles_have_the_roughness_their_readme_gives():
+    X, z = read_profile(ALICONA)
+    assert np.abs(z - z.mean()).mean() == pytest.approx(0.157e-6, abs=0.0005e-6)
+    assert np.diff(X) == pytest.approx(0.5e-6)
+    X, z = read_profile(CASES / "profiles" / "hommel_stylus_profile.csv")
+    assert X[-1] == pytest.approx(4.8e-3, rel=2e-4)
+    assert np.abs(high_pass(X, z, 0.8e-3)).mean() == pytest.approx(0.018e-6, abs=0.0005e-6)
+
+
+def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
+    path = tmp_path / "p.x3p"
+    path.write_bytes(b"PK")
+    with pytest.raises(ProfileError, match="'.x3p' needs the package SurfaceTopography"):
+        read_profile(path)
+
+
+def test_other_formats_come_through_surface_topography(tmp_path, monkeypatch):
+    class Topography:
+        dim = 2
+
+        def to_unit(self, unit):
+            assert unit == "m"
+            return self
+
+        def positions_and_heights(self):
+            x, y = np.meshgrid(np.arange(6) * 1e-6, np.arange(3) * 1e-6, indexing="ij")
+            return x, y, 0.1 * x + y
+
+    package = type(sys)("SurfaceTopography")
+    package.read_topography = lambda path: Topography()
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+    path = tmp_path / "p.sur"
+    path.write_bytes(b"")
+    X, z = read_profile(path)
+    np.testing.assert_allclose(X, np.arange(6) * 1e-6)
+    np.testing.assert_allclose(z, 0.1 * X + 1e-6)  # the middle one of three traces
+
+
+def test_levelling_removes_a_line_and_nothing_else():
+    x = np.linspace(0, 1e-3, 401)
+    wave = 1e-7 * np.cos(2 * np.pi * x / 1e-4)
+    flat = levelled(x, wave + 2e-6 + 1e-3 * x)
+    assert np.polyfit(x / x[-1], flat, 1) == pytest.approx([0, 0], abs=1e-20)
+    assert np.abs(flat - wave).max() < 0.02e-7
+
+
+@pytest.mark.parametrize(("ratio", "left"), [(1.0, 0.5), (0.5, 1 - 2.0**-4), (4.0, 1 - 2.0 ** (-1 / 16))])
+def test_the_gaussian_filter_has_the_transmission_of_iso_16610_21(ratio, left):
+    # of the amplitude at wavelength ratio x cut-off, 1 - 2^-(1/ratio^2) passes the high-pass
+    cutoff = 80e-6
+    x = np.arange(40001) * 0.1e-6
+    wave = np.cos(2 * np.pi * x / (ratio * cutoff))
+    inner = slice(5000, -5000)
+    kept = high_pass(x, wave, cutoff)[inner]
+    assert kept @ wave[inner] / (wave[inner] @ wave[inner]) == pytest.approx(left, abs=1e-4)
+
+
+def test_the_filter_refuses_what_it_cannot_filter():
+    x = np.array([0, 1, 3, 4, 5]) * 1e-6
+    with pytest.raises(ProfileError, match="equally spaced"):
+        high_pass(x, x, 2e-6)
+    with pytest.raises(ProfileError, match="at most the length"):
+        high_pass(np.arange(5) * 1e-6, np.zeros(5), 5e-6)
+
+
+def test_keys_of_a_surface_act_in_their_order():
+    base, _ = rough("table1_rough.toml")
+    flipped, _ = rough("table1_rough.toml", "surface.fast.flip=true")
+    np.testing.assert_array_equal(flipped.fast.heights, base.fast.heights[::-1])
+    turned, _ = rough("table1_rough.toml", "surface.fast.scale=-2")
+    assert turned.fast.rsk == pytest.approx(-base.fast.rsk)
+    assert turned.fast.ra == pytest.approx(4 * base.fast.ra)
+    filtered, _ = rough("table1_rough.toml", "surface.fast.cutoff=20e-6", "surface.fast.level=true")
+    assert filtered.fast.rq < 0.7 * base.fast.rq
+
+
+def test_body_points_carry_their_heights_with_them():
+    x = np.linspace(-2.5, 1.5, 801) * A
+    X, z = read_profile(ALICONA)
+    p = profile(X, z, speed=2.0, duration=3e-3)
+    t = 1.3e-3
+    at = Roughness(p, None).gap(x, t)
+    np.testing.assert_allclose(at[400:], -p.height(x - 2.0 * t)[400:], rtol=0, atol=0)
+    # moved by exactly one sample spacing times speed, the film sees the sample before
+    later = Roughness(p, None).gap(x + 2.0 * 0.7e-3, t + 0.7e-3)
+    np.testing.assert_allclose(later, at, atol=1e-17)
+
+
+def test_the_profile_enters_at_the_inlet_from_its_first_point():
+    X, z = read_profile(ALICONA)
+    p = profile(X, z, speed=2.0)
+    inlet, t = -2.5 * A, 4e-4
+    beyond_ramp = np.arange(0.2e-3, 0.8e-3, 0.5e-6)
+    x = inlet - beyond_ramp + 2.0 * t  # where profile abscissa X stands at time t
+    np.testing.assert_allclose(p.height(x - 2.0 * t), np.interp(beyond_ramp, X, z), atol=1e-15)
+    assert (p.height(np.linspace(inlet + 2.0 * t, 1.5 * A, 100) - 2.0 * t) == 0.0).all()
+    assert (Roughness(p, p).gap(np.linspace(-2.5, 1.5, 100) * A, 0.0) == 0.0).all()
+
+
+def test_nothing_jumps_where_the_profile_begins():
+    X = np.arange(4000) * 0.5e-6
+    p = profile(X, np.full(X.size, 1e-6))
+    s = -2.5 * A - np.linspace(-0.01, 0.11, 12001) * A
+    h = p.height(s)
+    assert h[0] == 0.0 and h[-1] == pytest.approx(1e-6)
+    slope, curvature = np.gradient(h, s), np.gradient(np.gradient(h, s), s)
+    # smoothstep: slope at most 15/8 and curvature at most 10/sqrt(3) of the height over the ramp
+    assert np.abs(slope).max() == pytest.approx(15 / 8 * 1e-6 / (RAMP * A), rel=1e-4)
+    assert np.abs(curvature).max() == pytest.approx(10 / np.sqrt(3) * 1e-6 / (RAMP * A) ** 2, rel=1e-3)
+    assert np.abs(np.diff(curvature)).max() < 0.02 * np.abs(curvature).max()
+
+
+def test_a_short_profile_continues_mirrored_without_kink():
+    X, z = read_profile(ALICONA)
+    p = profile(X, z, speed=1.0)
+    d = np.linspace(0, 1e-5, 50)
+    for end in (X[-1], 2 * X[-1], 3 * X[-1]):
+        left, right = p.height(-2.5 * A - (end - d)), p.height(-2.5 * A - (end + d))
+        np.testing.assert_allclose(left, right, atol=1e-16)
+        beside = p.height(np.array([-2.5 * A - end, -2.5 * A - end + 1e-9]))
+        assert abs(np.diff(beside)[0]) < 2e-3 * 1e-9  # level at the end, where slopes elsewhere reach 0.2
+
+
+def test_a_surface_moving_backwards_enters_at_the_outlet():
+    X, z = read_profile(ALICONA)
+    p = profile(X, z, speed=-2.0)
+    t, at = 4e-4, np.arange(0.2e-3, 0.8e-3, 0.5e-6)
+    x = 1.5 * A + at - 2.0 * t
+    np.testing.assert_allclose(p.height(x + 2.0 * t), np.interp(at, X, z), atol=1e-15)
+    assert (p.height(np.linspace(-2.5, 1.5, 100) * A) == 0.0).all()
+
+
+@pytest.mark.parametrize(("speed", "moving"), [(0.0, True), (3.0, False)])
+def test_at_rest_or_steady_it_lies_under_the_whole_domain(speed, moving):
+    X, z = read_profile(ALICONA)
+    p = profile(X, z, speed=speed, moving=moving)
+    np.testing.assert_allclose(p.height(-2.5 * A + X), z, atol=1e-15)
+    assert (p.s[0], p.s[-1]) == pytest.approx((-2.5 * A, 1.5 * A))
+
+
+def test_stored_samples_are_the_heights_used():
+    r, scales = rough("table1_rough.toml")
+    for p in (r.fast, r.slow):
+        assert np.diff(p.s) == pytest.approx(0.5e-6)
+        assert p.s[-1] == pytest.approx(scales.x[0] * scales.a)
+        assert p.s[-1] - p.s[0] == pytest.approx(p.speed * scales.duration, abs=0.5e-6)
+        t = scales.duration
+        here = (p.s + p.speed * t > scales.x[0] * scales.a) & (p.s + p.speed * t < scales.x[-1] * scales.a)
+        one = Roughness(p, None).gap(p.s[here] + p.speed * t, t)
+        np.testing.assert_allclose(-one, p.z[here], atol=1e-15)
+
+
+def test_smooth_surfaces_have_no_roughness_and_load_no_spline():
+    assert rough("table1_smooth.toml")[0] is None
+    r, _ = rough("ridge.toml")
+    assert r.fast is None and r.slow is not None
+
+
+def test_the_ridge_case_is_the_gaussian_of_its_description():
+    r, s = rough("ridge.toml")
+    t = (2.5 + 0.4) * s.a / s.u2  # centre at x = 0
+    x = np.linspace(-0.5, 0.5, 401) * s.a
+    np.testing.assert_allclose(r.gap(x, t), -0.1e-6 * np.exp(-((x / s.a / 0.1) ** 2)), atol=2e-12)
+    assert np.abs(r.gap(s.x * s.a, t)).max() == pytest.approx(0.1e-6)
+
+
+def test_a_dent_is_a_ridge_turned_over():
+    ridge, s = rough("ridge.toml")
+    dent, _ = rough("ridge.toml", "surface.slow.synthetic.kind='dent'")
+    x, t = s.x * s.a, 2.9 * s.a / s.u2
+    np.testing.assert_array_equal(dent.gap(x, t), -ridge.gap(x, t))
+
+
+def test_a_wave_goes_on_for_ever_with_its_amplitude():
+    wave = "surface.slow.synthetic={kind='sine', amplitude=1e-7, wavelength=2e-5}"
+    r, s = rough("table1_smooth.toml", wave, "time.travel=30")
+    t = 20 * s.a / s.u2
+    x = np.linspace(-4, 1.5, 3001) * s.a
+    abscissa = s.x[0] * s.a - x + s.u2 * t
+    np.testing.assert_allclose(r.gap(x, t), -1e-7 * np.cos(2 * np.pi * abscissa / 2e-5), atol=1e-13)
+    assert r.slow.rq == pytest.approx(1e-7 / np.sqrt(2), rel=0.02)
+
+
+def test_a_square_wave_stays_within_its_amplitude():
+    r, s = rough(
+        "table1_smooth.toml", "surface.slow.synthetic={kind='square', amplitude=1e-7, wavelength=1e-4}"
+    )
+    z = r.gap(np.linspace(-4, 1.5, 20001) * s.a, 0.0)
+    assert np.abs(z).max() <= 1e-7 * (1 + 1e-6)
+    assert (np.abs(z) > 0.99e-7).mean() > 0.8
+
+
+@pytest.mark.parametrize("skewness", [-1.5, -0.5, 0.0, 1.0])
+def test_ground_heights_have_what_is_asked_for(skewness):
+    spec = f"{{kind='ground', ra=0.3e-6, correlation=25e-6, skewness={skewness}, seed=4}}"
+    r, _ = rough("table1_smooth.toml", f"surface.slow.synthetic={spec}")
+    assert r.slow.ra == pytest.approx(0.3e-6)
+    assert r.slow.rsk == pytest.approx(skewness, abs=1e-6)
+    z = r.slow.heights - r.slow.heights.mean()
+    assert z[10:] @ z[:-10] / (z @ z) == pytest.approx(np.exp(-1), abs=0.1)  # one correlation length apart
+
+
+def test_ground_heights_depend_on_their_seed_alone():
+    spec = "surface.slow.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
+    first, again, other = (
+        rough("table1_smooth.toml", spec.format(seed), travel)[0].slow.heights
+        for seed, travel in ((1, "time.travel=2"), (1, "time.travel=9"), (2, "time.travel=2"))
+    )
+    np.testing.assert_array_equal(first, again)
+    assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
+
+
+def test_a_coarse_mesh_is_told_with_its_figure():
+    for points, share in ((200, None), (100, "7.3 %"), (50, "51.1 %")):
+        c = case.load(CASES / "table1_rough.toml", [f"mesh.points_per_half_width={points}"])
+        notes = mesh_warnings(c, Scales.of(c))
+        assert [share in note for note in notes] == ([True, True] if share else [])
+    assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
+
+
+def test_the_share_of_short_waves_is_that_of_the_variance():
+    X = np.arange(8193) * 1e-6
+    z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)
+    p = profile(X, z)
+    assert p.short_share(5e-6) == pytest.approx(0.1, abs=1e-3)  # 4 nodes are 20 um: the 16 um wave
+    assert p.short_share(3.9e-6) < 1e-3
