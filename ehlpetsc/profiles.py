@@ -79,7 +79,9 @@ def _surface_topography(path):
             return topography.positions_and_heights()
         x, _, z = topography.positions_and_heights()
     except Exception as error:  # its readers raise what they like on a damaged file
-        raise ProfileError(f"SurfaceTopography cannot read it: {error}") from None
+        lines = str(error).strip().splitlines()  # many: what each of its readers says to an unknown format
+        reason = lines[0] if len(lines) == 1 else "in none of the formats it knows"
+        raise ProfileError(f"SurfaceTopography cannot read it: {reason}") from None
     middle = z.shape[1] // 2  # of an areal map the central trace
     return x[:, middle], z[:, middle]
 

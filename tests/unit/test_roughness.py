@@ -265,3 +265,20 @@ def test_the_share_of_short_waves_is_that_of_the_variance():
     p = profile(X, z)
     assert p.short_share(5e-6) == pytest.approx(0.1, abs=1e-3)  # 4 nodes are 20 um: the 16 um wave
     assert p.short_share(3.9e-6) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("said", "told"), [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of the formats it knows")]
+)
+def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeypatch, said, told):
+    def read_topography(path):
+        raise RuntimeError(said)
+
+    package = type(sys)("SurfaceTopography")
+    package.read_topography = read_topography
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+    path = tmp_path / "p.x3p"
+    path.write_bytes(b"PK nonsense")
+    with pytest.raises(ProfileError) as caught:
+        read_profile(path)
+    assert str(caught.value) == f"SurfaceTopography cannot read it: {told}"
