@@ -1,10 +1,14 @@
 """The datasets of a result file: created up front with dimension scales, then lengthened row by row."""
+import contextlib
+import os
+
 import numpy as np
 
 from .fields import FIELDS, OTHERS, STEP_SCALARS
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
+METADATA_BYTES = 2**20  # more than HDF5 adds to its own structures in one flush
 
 
 def lay_out(file, x, fields, precision, profiles):
@@ -38,6 +42,33 @@ def lay_out(file, x, fields, precision, profiles):
     for surface, profile in profiles.items():
         if profile is not None:
             _surface(file, f"surface/{surface}", *profile)
+
+
+@contextlib.contextmanager
+def room(file, data_bytes):
+    """Make sure of the disk space before HDF5 writes, which a full disk would leave broken, then flush.
+
+    Parameters
+    ----------
+    file : h5py.File
+    data_bytes : int
+        Size of the rows to be written.
+
+    Raises
+    ------
+    OSError
+        There is not enough room (or quota); the file is as it was and can be closed.
+    """
+    descriptor, end = file.id.get_vfd_handle(), file.id.get_filesize()
+    chunks = CHUNK_BYTES * len(FIELDS) + 8 * CHUNK_STEPS * (len(STEP_SCALARS) + len(OTHERS))
+    try:
+        os.posix_fallocate(descriptor, end, data_bytes + chunks + METADATA_BYTES)
+    except OSError:
+        os.ftruncate(descriptor, end)
+        raise
+    yield
+    file.flush()
+    os.ftruncate(descriptor, file.id.get_filesize())
 
 
 def extend(dataset, rows):

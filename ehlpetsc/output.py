@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from .fields import FIELDS, STEP_SCALARS
-from .layout import extend, lay_out
+from .layout import extend, lay_out, room
 from .provenance import earlier_runs, git_commit, versions
 from .restart import load_restart, plain_reason, save_restart
 from .result import FORMAT_VERSION, OutputError, Result, read_result
@@ -77,8 +77,9 @@ class ResultWriter:
         try:
             with self._plain_faults("not created"):
                 self._file = h5py.File(beside, "w", libver="latest")
-                self._root_attributes(case_text, title, dict(scalars_attrs))
-                lay_out(self._file, x, fields, precision, profiles)
+                with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
+                    self._root_attributes(case_text, title, dict(scalars_attrs))
+                    lay_out(self._file, x, fields, precision, profiles)
                 if resume_step is not None and self.path.exists():
                     self._copy_up_to(resume_step, contact_count is None)
                 self._file.swmr_mode = True
@@ -125,7 +126,7 @@ class ResultWriter:
 
     def flush(self):
         """Hand everything taken so far to the operating system; afterwards a kill does not lose it."""
-        with self._plain_faults("not written on"):
+        with self._plain_faults("not written on"), room(self._file, self._bytes_held()):
             steps, frames = slice(self._steps_held), slice(self._frames_held)
             for name, column in self._columns.items():
                 extend(self._file[f"steps/{name}"], column[steps])
@@ -136,7 +137,6 @@ class ResultWriter:
             self._file.flush()
             extend(self._file["steps/time"], self._times[steps])
             extend(self._file["time"], self._frame_times[frames])
-            self._file.flush()
         self._written_step = self.last_step
         self._start_batch()
 
@@ -155,7 +155,8 @@ class ResultWriter:
             yield
         except (OSError, RuntimeError) as error:
             whole = getattr(self, "_written_step", None)
-            with contextlib.suppress(Exception):  # what HDF5 could not write it cannot close cleanly either
+            with contextlib.suppress(Exception):  # the fault at hand is the one to tell
+                self._file.attrs["status"] = "stopped"
                 self._file.close()
             kept = "" if whole is None else f"; the file is whole up to step {whole}"
             raise OutputError(f"{self.path}: result file {what}, {plain_reason(error)}{kept}") from error
@@ -179,18 +180,22 @@ class ResultWriter:
             self._check_fits(old, step, count_from_file)
             frames = np.count_nonzero(old.step <= step)
             steps = np.count_nonzero(old.steps("step") <= step)
-            for name in self._file["steps"]:
-                extend(self._file["steps"][name], old[f"steps/{name}"][:steps])
             for name in [*self._frame_fields(), "step", "time"]:
-                source, target = old[name], self._file[name]
-                for begin in range(0, frames, BATCH_STEPS):
-                    extend(target, source[begin : min(begin + BATCH_STEPS, frames)])
+                self._copy_rows(old, name, frames)
+            for name in self._file["steps"]:
+                self._copy_rows(old, f"steps/{name}", steps)
             if count_from_file:
                 self.contact_count[:] = old.contact_count
             self._file["contact_count"][:] = self.contact_count
             self._file.attrs["restarts"] = int(old.attrs["restarts"]) + 1
             self._file.attrs["history"] = earlier_runs(old.attrs, step)
         self._written_step = step
+
+    def _copy_rows(self, old, name, rows):
+        for begin in range(0, rows, BATCH_STEPS):
+            block = old[name][begin : min(begin + BATCH_STEPS, rows)]
+            with room(self._file, block.nbytes):
+                extend(self._file[name], block)
 
     def _check_fits(self, old, step, count_from_file):
         """Refuse to go on with a file that is not an earlier part of the same run."""
@@ -210,6 +215,10 @@ class ResultWriter:
 
     def _frame_fields(self):
         return [name for name in FIELDS if name in self._file]
+
+    def _bytes_held(self):
+        frames = sum(held.itemsize * held.shape[1] for held in self._frames.values())
+        return frames * self._frames_held + 8 * (len(self._columns) + 3) * self._steps_held
 
     def _start_batch(self):
         """Empty the memory that holds steps and frames between flushes."""

@@ -1,5 +1,6 @@
 """Restart files: the state of a run, written so that a half-written one never replaces a whole one."""
 import contextlib
+import io
 import os
 from pathlib import Path
 
@@ -32,17 +33,20 @@ def save_restart(path, arrays, attrs):
     """
     path = Path(path)
     beside = path.with_name(path.name + ".tmp")
+    image = io.BytesIO()  # HDF5 does not end cleanly on a full disk, a plain write does
+    with h5py.File(image, "w") as file:
+        file.attrs["restart_version"] = FORMAT_VERSION
+        for key, value in attrs.items():
+            file.attrs[key] = value
+        for name, array in arrays.items():
+            file[name] = array
     try:
-        with h5py.File(beside, "w") as file:
-            file.attrs["restart_version"] = FORMAT_VERSION
-            for key, value in attrs.items():
-                file.attrs[key] = value
-            for name, array in arrays.items():
-                file[name] = array
-        with open(beside, "rb") as written:
-            os.fsync(written.fileno())
+        with open(beside, "wb") as raw:
+            raw.write(image.getbuffer())
+            raw.flush()
+            os.fsync(raw.fileno())
         os.replace(beside, path)
-    except (OSError, RuntimeError) as error:
+    except OSError as error:
         with contextlib.suppress(OSError):
             beside.unlink()
         raise OutputError(f"{path}: restart file not written, {plain_reason(error)}") from error

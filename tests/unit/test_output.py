@@ -1,0 +1,333 @@
+"""Result and restart files: what is in them, and that a fault leaves them whole."""
+import contextlib
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import textwrap
+
+import h5py
+import numpy as np
+import pytest
+
+from ehlpetsc.fields import FIELDS, STEP_SCALARS
+from ehlpetsc.output import OutputError, ResultWriter, load_restart, read_result, save_restart
+
+NX = 40
+X = np.linspace(-2.5, 1.5, NX) * 3.3e-4
+SCALARS = dict.fromkeys(STEP_SCALARS, 1)
+
+
+def make_writer(path, **changes):
+    arguments = dict(
+        case_text='title = "ä"\n', title="ä", x=X, fields=list(FIELDS), every=1, precision="float64",
+        scalars_attrs=dict(a=3.3e-4, p0=1e9, h_scale=5.7e-6, u1=5.6, u2=4.4, ranks=2, petsc_options="-x 1"),
+        profiles={"fast": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "slow": None},
+    )
+    return ResultWriter(path, **(arguments | changes))
+
+
+def put(writer, steps):
+    """Steps whose every value tells its step and node; node k is in contact in steps that k divides."""
+    for step in steps:
+        values = {name: step + np.arange(NX) / 100 for name in FIELDS}
+        contact = step % (np.arange(NX) + 1) == 0
+        writer.append(step, step * 1e-7, values, SCALARS | {"newton": step}, contact)
+
+
+def written(path, steps, every=1, **changes):
+    writer = make_writer(path, every=every, **changes)
+    put(writer, steps)
+    writer.close("done")
+    return path
+
+
+def content(path):
+    """All that must agree between an interrupted and an uninterrupted run."""
+    with read_result(path) as result:
+        data = {name: result[name][:] for name in [*result.fields, "time", "step", "contact_count"]}
+        return data | {f"steps/{n}": result.steps(n) for n in [*STEP_SCALARS, "time"]}
+
+
+def assert_same_content(one, other):
+    one, other = content(one), content(other)
+    assert one.keys() == other.keys()
+    for name in one:
+        np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+
+
+def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
+    with h5py.File(written(tmp_path / "r.h5", range(3)), "r") as file:
+        datasets = []
+        file.visititems(lambda _, item: datasets.append(item) if isinstance(item, h5py.Dataset) else None)
+        assert len(datasets) == len(FIELDS) + len(STEP_SCALARS) + 7
+        for dataset in datasets:
+            assert dataset.attrs["units"] and dataset.attrs["long_name"], dataset.name
+            assert h5py.h5ds.is_scale(dataset.id) or all(dim.keys() for dim in dataset.dims), dataset.name
+        for name in FIELDS:
+            assert [dim.keys()[0] for dim in file[name].dims] == ["time", "x"]
+        assert file["in_contact"].dtype == np.uint8
+        assert file["surface/fast"].attrs["speed"] == 5.6
+        assert file["surface/fast"].attrs["ra"] == 0.4e-6
+        assert "slow" not in file["surface"]
+
+
+def test_provenance_is_complete(tmp_path):
+    path = written(tmp_path / "r.h5", range(3), scalars_attrs={"versions": {"petsc": "3.18.5"}})
+    with read_result(path) as r:
+        assert r.attrs["format_version"] == 1
+        assert (r.attrs["title"], r.attrs["case"], r.attrs["status"]) == ("ä", 'title = "ä"\n', "done")
+        assert r.attrs["restarts"] == 0
+        assert {"ehlpetsc", "numpy", "petsc"} <= {item.split()[0] for item in r.attrs["versions"].split(", ")}
+
+
+def test_xarray_reads_coordinates_and_units(tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    path = written(tmp_path / "r.h5", range(5), every=2)
+    with xarray.open_dataset(path, engine="h5netcdf") as data:
+        assert data["pressure"].dims == ("time", "x")
+        assert data["pressure"].attrs["units"] == "Pa"
+        assert data["contact_count"].dims == ("x",)
+        np.testing.assert_allclose(data["time"], [0.0, 2e-7, 4e-7])
+        np.testing.assert_array_equal(data["x"], X)
+        assert data["pressure"].sel(time=2e-7).values[1] == 2.01
+    with xarray.open_dataset(path, engine="h5netcdf", group="steps") as steps:
+        assert steps["newton"].dims == ("time",)
+        np.testing.assert_array_equal(steps["newton"], range(5))
+    with xarray.open_dataset(path, engine="h5netcdf", group="surface/fast") as fast:
+        assert fast["z"].dims == ("s",)
+
+
+def test_frames_are_thinned_and_counts_are_not(tmp_path):
+    with read_result(written(tmp_path / "r.h5", range(1, 101), every=10)) as result:
+        np.testing.assert_array_equal(result.step, range(10, 101, 10))
+        np.testing.assert_array_equal(result.steps("step"), range(1, 101))
+        np.testing.assert_array_equal(result.contact_count, [100 // (k + 1) for k in range(NX)])
+        assert result.frame("pressure", -1)[3] == 100.03
+        assert result.nearest_frame(step=44) == 3
+        assert result.nearest_frame(time=0.0) == 0
+        assert result.profile("slow") is None
+        assert result.profile("fast")[2] == 5.6
+
+
+def test_fewer_fields_and_single_precision(tmp_path):
+    path = written(tmp_path / "r.h5", range(3), fields=["pressure"], precision="float32")
+    with read_result(path) as result:
+        assert result.fields == ["pressure"]
+        assert result["pressure"].dtype == np.float32
+        np.testing.assert_allclose(result.frame("pressure", 2), 2 + np.arange(NX) / 100, rtol=1e-7)
+
+
+def test_steady_result_is_small(tmp_path):
+    path = written(tmp_path / "r.h5", [0], x=np.linspace(0, 1, NX))
+    assert path.stat().st_size < 600_000
+
+
+def test_long_runs_take_no_more_room_than_their_data(tmp_path):
+    path = written(tmp_path / "r.h5", range(5000))
+    assert path.stat().st_size < 1.15 * 5000 * NX * 8 * 5 + 1_000_000
+
+
+@contextlib.contextmanager
+def file_size_limit(size):
+    """Writing beyond `size` bytes gives the errors of a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_older_result_survives_a_run_that_fails_at_its_start(tmp_path):
+    path = written(tmp_path / "r.h5", range(3))
+    with file_size_limit(100_000), pytest.raises(OutputError, match="not created, File too large"):
+        make_writer(path)
+    with read_result(path) as result:
+        assert len(result.time) == 3
+    assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
+
+
+def test_resuming_on_a_full_disk_keeps_the_original(tmp_path):
+    path = written(tmp_path / "r.h5", range(2000))
+    with file_size_limit(3_000_000), pytest.raises(OutputError, match="not created, File too large"):
+        make_writer(path, resume_step=1999)
+    assert_same_content(path, written(tmp_path / "whole.h5", range(2000)))
+
+
+def test_reader_follows_a_file_being_written(tmp_path):
+    path = tmp_path / "r.h5"
+    writer = make_writer(path)
+    for begin in (0, 10):
+        put(writer, range(begin, begin + 10))
+        writer.flush()
+        with read_result(path) as result:
+            assert result.attrs["status"] == "running"
+            assert len(result.time) == begin + 10
+            assert result.frame("pressure", -1)[1] == pytest.approx(begin + 9.01)
+    writer.close("stopped")
+    with read_result(path) as result:
+        assert result.attrs["status"] == "stopped"
+
+
+KILLED = """
+    import os, signal, sys
+    sys.path[:0] = {paths!r}
+    from pathlib import Path
+    import test_output
+    writer = test_output.make_writer(Path({path!r}))
+    test_output.put(writer, range({flushed}))
+    writer.flush()
+    test_output.put(writer, range({flushed}, {flushed} + {lost}))
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def killed(path, flushed, lost):
+    """A file as left by a killed run."""
+    paths = [os.path.dirname(__file__), *sys.path]
+    script = textwrap.dedent(KILLED).format(paths=paths, path=str(path), flushed=flushed, lost=lost)
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -signal.SIGKILL
+    return path
+
+
+@pytest.mark.parametrize("lost", [3, 900])
+def test_killed_run_is_readable_up_to_its_last_flush(tmp_path, lost):
+    path = killed(tmp_path / "r.h5", 50, lost)
+    with read_result(path) as result:
+        assert result.attrs["status"] == "running"
+        assert len(result.time) == 50
+        np.testing.assert_array_equal(result.steps("newton"), range(50))
+        for k in range(50):
+            assert result.frame("film_thickness", k)[2] == k + 0.02
+
+
+@pytest.mark.parametrize("every", [1, 3])
+def test_resumed_run_equals_an_uninterrupted_one(tmp_path, every):
+    first = written(tmp_path / "first.h5", range(60), every=every)
+    writer = make_writer(first, every=every, resume_step=59)
+    put(writer, range(60, 130))
+    writer.close("done")
+    assert_same_content(first, written(tmp_path / "whole.h5", range(130), every=every))
+    with read_result(first) as result:
+        assert result.attrs["restarts"] == 1
+        (earlier,) = json.loads(result.attrs["history"])
+        assert earlier["up_to_step"] == 59
+        assert earlier["petsc_options"] == "-x 1"
+        assert earlier["ranks"] == 2
+
+
+def test_killed_run_is_resumed_from_an_earlier_step(tmp_path):
+    path = killed(tmp_path / "r.h5", 50, 900)
+    count = [sum(step % (k + 1) == 0 for step in range(41)) for k in range(NX)]
+    writer = make_writer(path, resume_step=40, contact_count=count)
+    put(writer, range(41, 70))
+    writer.close("done")
+    assert_same_content(path, written(tmp_path / "whole.h5", range(70)))
+    h5py.File(path, "r").close()  # no mark of the killed writer is left
+
+
+def test_resuming_twice_keeps_the_history(tmp_path):
+    path = written(tmp_path / "r.h5", range(10))
+    for begin in (10, 20):
+        writer = make_writer(path, resume_step=begin - 1)
+        put(writer, range(begin, begin + 10))
+        writer.close("stopped")
+    with read_result(path) as result:
+        assert result.attrs["restarts"] == 2
+        assert [run["up_to_step"] for run in json.loads(result.attrs["history"])] == [9, 19]
+
+
+@pytest.mark.parametrize(
+    "changes, message",
+    [
+        ({"x": X * 2, "resume_step": 9}, "another mesh"),
+        ({"fields": ["pressure"], "resume_step": 9}, "stores other fields"),
+        ({"resume_step": 12}, "ends at step 9, before step 12"),
+        ({"resume_step": 5}, "contacts up to step 5 are not known"),
+    ],
+)
+def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
+    path = written(tmp_path / "r.h5", range(10))
+    before = path.read_bytes()
+    with pytest.raises(OutputError, match=message):
+        make_writer(path, **changes)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
+
+
+@pytest.mark.parametrize("limit", [6_000_000, 6_543_210, 8_000_000])
+def test_full_disk_is_named_and_the_file_stays_whole(tmp_path, limit):
+    writer = make_writer(tmp_path / "r.h5")
+    with file_size_limit(limit):
+        with pytest.raises(OutputError, match="File too large; the file is whole up to step") as fault:
+            put(writer, range(20_000))
+        writer.close("stopped")
+    last = int(str(fault.value).split()[-1])
+    with h5py.File(tmp_path / "r.h5", "r"):
+        pass  # closed cleanly
+    with read_result(tmp_path / "r.h5") as result:
+        assert result.attrs["status"] == "stopped"
+        np.testing.assert_array_equal(result.step, range(last + 1))
+        np.testing.assert_array_equal(result.steps("newton"), range(last + 1))
+        assert result.frame("pressure", -1)[1] == pytest.approx(last + 0.01)
+
+
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda path: None, "no such file"),
+        (lambda path: path.write_text("x" * 3000), "not an HDF5 file"),
+        (lambda path: h5py.File(path, "w").close(), "not a result of ehlpetsc"),
+        (lambda path: save_restart(path, {"p": X}, {}), "not a result of ehlpetsc"),
+        (lambda path: later_version(path), "format version 2"),
+    ],
+)
+def test_other_files_are_refused_in_words(tmp_path, make, message):
+    path = tmp_path / "r.h5"
+    make(path)
+    with pytest.raises(OutputError, match=message):
+        read_result(path)
+
+
+def later_version(path):
+    written(path, range(2))
+    with h5py.File(path, "r+") as file:
+        file.attrs["format_version"] = 2
+
+
+def test_restart_gives_back_what_was_saved(tmp_path):
+    path = tmp_path / "r.restart.h5"
+    for step in (4, 5):  # the second replaces the first
+        save_restart(path, {"p": X, "h": 2 * X}, {"step": step, "case": "text", "time": 0.1})
+    arrays, attrs = load_restart(path)
+    assert arrays.keys() == {"p", "h"}
+    np.testing.assert_array_equal(arrays["h"], 2 * X)
+    assert (attrs["step"], attrs["case"], attrs["time"]) == (5, "text", 0.1)
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+def test_restart_faults_are_told_in_words(tmp_path):
+    result = written(tmp_path / "r.h5", range(2))
+    with pytest.raises(OutputError, match="not a restart file of ehlpetsc, but a result file"):
+        load_restart(result)
+    with pytest.raises(OutputError, match="No such file or directory"):
+        save_restart(tmp_path / "no" / "r.h5", {"p": X}, {})
+    path = tmp_path / "s.h5"
+    save_restart(path, {"p": X}, {"step": 1})
+    with file_size_limit(10_000), pytest.raises(OutputError, match="File too large"):
+        save_restart(path, {"p": np.zeros(100_000)}, {"step": 2})
+    assert load_restart(path)[1]["step"] == 1
+
+
+def test_truncated_restart_is_refused(tmp_path):
+    path = tmp_path / "s.h5"
+    save_restart(path, {"p": np.arange(10_000.0)}, {"step": 1})
+    whole = path.read_bytes()
+    for size in (0, 100, len(whole) // 2, len(whole) - 1):
+        path.write_bytes(whole[:size])
+        with pytest.raises(OutputError, match="damaged"):
+            load_restart(path)
