@@ -1,4 +1,5 @@
 """Progress and summary of a run, on rank 0."""
+import os
 import shutil
 import sys
 import time as clock
@@ -32,7 +33,8 @@ class Progress:
     def __init__(self, begin, end, stream=None):
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
-        self._bar = self._stream.isatty()
+        # mpirun gives every rank a terminal, also where its output goes to a file: run_mpi.sh sets TERM then
+        self._bar = self._stream.isatty() and os.environ.get("TERM") != "dumb"
         self._started = clock.monotonic()
         self._shown = None
         self._pending = None
