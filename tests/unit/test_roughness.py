@@ -268,7 +268,8 @@ def test_the_share_of_short_waves_is_that_of_the_variance():
 
 
 @pytest.mark.parametrize(
-    ("said", "told"), [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of the formats it knows")]
+    ("said", "told"),
+    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of the formats it knows")],
 )
 def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeypatch, said, told):
     def read_topography(path):
