@@ -1,0 +1,46 @@
+"""Points fixed in a moving body: where each is at each time, and which passed the whole contact."""
+from typing import NamedTuple
+
+import numpy as np
+
+GRID_ROUNDING = 1e-9  # nodes
+
+
+class Passage(NamedTuple):
+    """Passage of body points through the nodes.
+
+    Body point j is at node j + shift[k] + offset[k] at frame k, 0 <= offset < 1. `enter` and `leave` are its
+    first and last frames inside the nodes; `complete` where it came from outside and went out again.
+    """
+
+    shift: np.ndarray
+    offset: np.ndarray
+    enter: np.ndarray
+    leave: np.ndarray
+    complete: np.ndarray
+
+    def samples(self):
+        """Most frames that a complete point spends inside."""
+        return int((self.leave - self.enter + 1)[self.complete].max(initial=0))
+
+
+def body_points(x, dx, time, speeds):
+    """Body coordinates s, dx apart, of all points of bodies at `speeds` that were ever among the nodes x."""
+    ends = np.array([[u * time[0], u * time[-1]] for u in speeds])
+    before = max(int(np.ceil(ends.max() / dx - GRID_ROUNDING)), 0)
+    after = max(int(np.ceil(-ends.min() / dx - GRID_ROUNDING)), 0)
+    return x[0] + dx * np.arange(-before, x.size + after)
+
+
+def passage(s, x, dx, time, speed):
+    """Passage of the points s = s[0] + j dx of a body at `speed` (x = s + speed * time)."""
+    base = np.round((s[0] - x[0] + speed * time) / dx / GRID_ROUNDING) * GRID_ROUNDING
+    shift = np.floor(base).astype(np.int64)
+    j, last = np.arange(s.size), x.size - 1
+    if speed >= 0:
+        enter, leave = np.searchsorted(base, -j, "left"), np.searchsorted(base, last - j, "right") - 1
+        complete = (base[0] + j <= 0) & (base[-1] + j >= last)
+    else:
+        enter, leave = np.searchsorted(-base, j - last, "left"), np.searchsorted(-base, j, "right") - 1
+        complete = (base[0] + j >= last) & (base[-1] + j <= 0)
+    return Passage(shift, base - shift, enter, leave, complete)

@@ -1,0 +1,197 @@
+"""The pictures of one result, and of several over slide/roll ratios; each as PNG and SVG."""
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from ehlpetsc.post import plots
+from ehlpetsc.post.fatigue import cycles_to_failure, equivalent_range
+from ehlpetsc.post.histories import QUANTUM, history_at
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.postresult import PostResult
+from ehlpetsc.post.settings import PostError, read_settings
+from ehlpetsc.post.stress import stress
+
+matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "svg.fonttype": "none", "font.size": 9})
+FIELD_DEPTH = 1.5  # half widths
+SECTION = 2.0  # half widths of profile shown, as in the paper
+
+
+def _save(figure, stem):
+    names = []
+    for kind in ("png", "svg"):
+        names.append(f"{stem}.{kind}")
+        metadata = {"Date": None} if kind == "svg" else None
+        figure.savefig(names[-1], dpi=160, bbox_inches="tight", metadata=metadata)
+    return names
+
+
+def draw(inputs, outputs, folder, point=None, frame=None):
+    """Draw everything there is to draw; returns the names of the files.
+
+    Parameters
+    ----------
+    inputs, outputs : sequences of str
+        Result files and their post-processing results.
+    folder : str
+        Empty: beside each result.
+    point : (float, float), optional
+        s/a and z/a of the history picture.
+    frame : int, optional
+        Stored frame of the stress picture.
+    """
+    names = []
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    results = [PostResult(output) for output in outputs]
+    for path, output, result in zip(inputs, outputs, results):
+        stem = Path(folder or Path(output).parent) / Path(path).stem
+        for surface in result.surfaces:
+            if result.complete[surface].any():
+                names += _save(damage_picture(result, surface), f"{stem}.damage_{surface}")
+        if result.height.size:
+            names += _save(depth_picture(result), f"{stem}.exceedance")
+        names += _save(field_picture(path, result, frame), f"{stem}.stress")
+        names += _save(history_picture(path, result, point), f"{stem}.history")
+    if len(results) > 1:
+        names += _compared(sorted(results, key=lambda r: r.ratio), Path(folder or Path(outputs[0]).parent))
+    return names
+
+
+def _compared(results, folder):
+    names = []
+    for surface in ("slow", "fast"):
+        if all(surface in result.surfaces and result.complete[surface].any() for result in results):
+            names += _save(stacked_picture(results, surface), folder / f"compared.damage_{surface}")
+    if all(result.height.size for result in results):
+        shared = [z for z in results[0].z if all(np.isclose(r.z, z).any() for r in results)]
+        for z in shared:
+            names += _save(ratio_picture(results, z), folder / f"compared.exceedance_z{z:g}")
+    return names
+
+
+def _bar(figure, contours, axes):
+    if contours is not None:
+        bar = figure.colorbar(contours, ax=axes, label="damage D of one pass", pad=0.02)
+        bar.ax.minorticks_off()
+
+
+def damage_picture(result, surface):
+    """Damage under the profile (figure 8 of Holmes et al. 2005)."""
+    figure = Figure(figsize=(8, 4.2), layout="constrained")
+    top, main = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2.4))
+    length = plots.shown_length(result, surface)
+    largest = max(result.largest(surface, k) for k in range(len(result.z)))
+    plots.profile(top, result, surface, length)
+    top.set_title(f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g}", fontsize=9)
+    _bar(figure, plots.damage_contours(main, result, surface, length, plots.decades(largest)), [top, main])
+    main.set_xlabel("along the surface [half widths]")
+    return figure
+
+
+def stacked_picture(results, surface):
+    """Damage at several slide/roll ratios under one scale (figure 9)."""
+    count = len(results)
+    figure = Figure(figsize=(8, 1.2 + 1.7 * count), layout="constrained")
+    axes = figure.subplots(count + 1, 1, sharex=True, height_ratios=(0.7, *[1] * count))
+    length = min(plots.shown_length(result, surface, SECTION) for result in results)
+    levels = plots.decades(max(r.largest(surface, k) for r in results for k in range(len(r.z))))
+    start = [_aligned(result, surface, results) for result in results]
+    plots.profile(axes[0], start[0], surface, length)
+    contours = None
+    for row, result in zip(axes[1:], start):
+        drawn = plots.damage_contours(row, result, surface, length, levels)
+        contours = contours or drawn
+        row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
+    axes[-1].set_xlabel(f"along the {surface} surface [half widths]")
+    _bar(figure, contours, list(axes))
+    return figure
+
+
+def _aligned(result, surface, results):
+    """The result cut to the points that passed in all results, so that one profile stands above them."""
+    first = max(r.s[r.complete[surface]][0] for r in results)
+    last = min(r.s[r.complete[surface]][-1] for r in results)
+    if last <= first:
+        raise PostError(f"no point of the {surface} surface passed the whole contact in all of the results")
+    last_shown = last + 0.5 * (result.s[1] - result.s[0])
+    first_shown = max(first, last - SECTION * result.a) - 0.5 * (result.s[1] - result.s[0])
+    result.complete[surface] &= (result.s >= first_shown) & (result.s <= last_shown)
+    return result
+
+
+def _colours(count):
+    return [matplotlib.colormaps["viridis"](0.9 * k / max(count - 1, 1)) for k in range(count)]
+
+
+def depth_picture(result):
+    """Distributions of damage at the asperities of one surface, by depth (figure 10)."""
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    axes = figure.subplots()
+    for k, color in enumerate(_colours(len(result.z))):
+        plots.exceedance_curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
+    plots.finish_exceedance(axes, f"{result.height.size} asperities, {result.main} surface, "
+                                  f"slide/roll ratio {result.ratio:.3g}")
+    return figure
+
+
+def ratio_picture(results, z):
+    """Distributions at one depth, by slide/roll ratio (figures 11 and 12)."""
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    axes = figure.subplots()
+    for result, color in zip(results, _colours(len(results))):
+        k = int(np.argmin(np.abs(result.z - z)))
+        plots.exceedance_curve(axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color)
+    plots.finish_exceedance(axes, f"z/a = {z:g}, {results[0].main} surface")
+    return figure
+
+
+def field_picture(path, result, frame):
+    """Pressure, and stresses in the solid of the result's main surface, at one stored frame."""
+    surface = result.main
+    with Loads(path) as loads:
+        frame = loads.time.size // 2 if frame is None else frame
+        if not 0 <= frame < loads.time.size:
+            raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
+        p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
+        nu = getattr(read_settings(loads.case), surface).poisson_ratio
+        z = FIELD_DEPTH * np.linspace(0, 1, 121) ** 2
+        fields = plots.stress_fields(*stress(loads.x, z * loads.a, p, q, nu), nu)
+        x, time = loads.x / loads.a, loads.time[frame]
+    figure = Figure(figsize=(8, 9), layout="constrained")
+    top, *axes = figure.subplots(5, 1, sharex=True, height_ratios=(0.7, 1, 1, 1, 1))
+    top.plot(x, p / 1e9, color=plots.DARK, lw=0.9)
+    top.set_ylabel("p [GPa]")
+    top.set_title(f"solid of the {surface} surface, t = {time * 1e6:.4g} µs", fontsize=9)
+    for row, (name, values) in zip(axes, fields.items()):
+        mesh = plots.stress_field(row, x, z, values, name)
+        figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.MaxNLocator(5))
+    axes[-1].set_xlabel("x/a")
+    return figure
+
+
+def history_picture(path, result, point):
+    """Stress history of one body point and its counted cycles."""
+    surface = result.main
+    with Loads(path) as loads:
+        s, z = (point[0] * loads.a, point[1]) if point else result.worst_point(surface)
+        material = getattr(read_settings(loads.case), surface)
+        time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
+    if time.size < 2:
+        raise PostError(f"the point s/a = {s / result.a:.4g} was not in the contact")
+    step = time[1] - time[0]
+    time = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])
+    channel = plots.counted_channel(result.attrs["count"], values, material)
+    figure = Figure(figsize=(8, 5.2), layout="constrained")
+    top, bottom = figure.subplots(2, 1, height_ratios=(1.6, 1))
+    cycles = plots.history(top, time, values, channel)
+    i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)
+    dx, dz, dt = (part[j] - part[i] for part in values)
+    ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
+    damages = 1 / cycles_to_failure(ranges, material)
+    top.set_xlabel("time [µs]")
+    top.set_title(f"{surface} surface, s/a = {s / result.a:.4g}, z/a = {z:g}: {len(cycles)} cycles of "
+                  f"{plots.COMPONENTS[channel]}, the largest 12 marked, damage {damages.sum():.3g}", fontsize=9)
+    plots.cycle_histogram(bottom, cycles, damages)
+    return figure

@@ -1,0 +1,157 @@
+"""Pictures of stresses, histories, damage and its distribution, each drawn into given axes."""
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+
+from ehlpetsc.post.accumulate import CHANNELS
+from ehlpetsc.post.cycles import rainflow
+from ehlpetsc.post.statistics import exceedance, fitted_exceedance
+from ehlpetsc.post.stress import von_mises
+
+DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
+COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
+DARK = "#222222"
+
+
+def decades(largest):
+    """Levels, one a decade, that end above the largest damage; None if there is none."""
+    if not (np.isfinite(largest) and largest > 0):
+        return None
+    top = int(np.ceil(np.log10(largest)))
+    return 10.0 ** np.arange(top - DECADES, top + 1)
+
+
+def profile(axes, result, surface, length):
+    """The profile over the points that passed, heights in um; x runs over `length` half widths."""
+    axes.set_ylabel("z [µm]")
+    axes.axhline(0, color="0.8", lw=0.6)
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    if surface in result.profiles:
+        s, z = result.profiles[surface]
+        x = _along(result, surface, s)
+        shown = (x >= 0) & (x <= length)
+        axes.plot(x[shown], z[shown] * 1e6, color=DARK, lw=0.8)
+
+
+def _along(result, surface, s):
+    """Distance from the first point that passed, in half widths."""
+    return (s - result.s[result.complete[surface]][0]) / result.a
+
+
+def shown_length(result, surface, longest=None):
+    """Length in half widths of the points that passed."""
+    passed = result.s[result.complete[surface]]
+    length = (passed[-1] - passed[0]) / result.a
+    return min(length, longest) if longest else length
+
+
+def damage_contours(axes, result, surface, length, levels):
+    """Filled logarithmic contours of damage over body point and depth; the depth axis is in its own nodes."""
+    complete = result.complete[surface]
+    x, values = _along(result, surface, result.s[complete]), result.damage[surface][:, complete]
+    depth, ticks = _depth_axis(result.z)
+    axes.set_yticks(depth[ticks], [f"{z:g}" for z in result.z[ticks]])
+    axes.set_ylim(depth[-1], depth[0])
+    axes.set_xlim(0, length)
+    axes.set_ylabel("z/a")
+    if levels is None or len(depth) < 2:
+        axes.text(0.5, 0.5, "no damage" if levels is None else "one depth", transform=axes.transAxes, ha="center")
+        return None
+    return axes.contourf(x, depth, np.maximum(values, levels[0] * 1e-3), levels=levels, norm=LogNorm(),
+                         cmap="inferno_r", extend="min")
+
+
+def _depth_axis(z):
+    """Square root of depth, which opens up the layer near the surface, and ticks that do not crowd."""
+    depth = np.sqrt(z)
+    gap = 0.07 * (depth[-1] - depth[0] or 1.0)
+    ticks = []
+    for k, place in enumerate(depth):
+        if not ticks or place - depth[ticks[-1]] >= gap:
+            ticks.append(k)
+    return depth, ticks
+
+
+def exceedance_curve(axes, under, fit, label, color):
+    """Share of asperities above a damage, with its Weibull fit."""
+    damaged = under[under > 0]
+    if not damaged.size:
+        axes.plot([], [], color=color, label=f"{label}: no damage")
+        return
+    falling, share = exceedance(under)
+    axes.plot(falling[falling > 0], share[falling > 0], ".", ms=3, color=color)
+    low, high = np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5)
+    values = np.logspace(low, max(high, low + 1), 300)
+    axes.plot(values, fitted_exceedance(values, fit), color=color, lw=1.2, label=label)
+
+
+def finish_exceedance(axes, title):
+    """Axes common to the distributions."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(10, numticks=12))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_ylim(0, 1)
+    axes.set_xlabel("damage D of one pass")
+    axes.set_ylabel("share of asperities above D")
+    axes.grid(color="0.92")
+    axes.set_title(title, fontsize=9)
+    axes.legend(fontsize=8, frameon=False)
+
+
+def stress_field(axes, x, z, values, label):
+    """One stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign."""
+    limit = np.abs(values).max() or 1.0
+    signed = values.min() < -0.02 * limit and values.max() > 0.02 * limit
+    low, high, colours = (-limit, limit, "RdBu_r") if signed else (values.min(), values.max(), "viridis")
+    if high <= low:
+        high = low + 1.0
+    mesh = axes.contourf(x, z, values, levels=np.linspace(low, high, 25), cmap=colours)
+    axes.set_ylim(z[-1], z[0])
+    axes.set_ylabel("z/a")
+    axes.set_title(label, fontsize=9, loc="left")
+    return mesh
+
+
+def stress_fields(sx, sz, txz, nu):
+    """The four stresses of the picture, GPa, by label."""
+    names = (*COMPONENTS, r"$\sigma_{vM}$")
+    return {name: values / 1e9 for name, values in zip(names, (sx, sz, txz, von_mises(sx, sz, txz, nu)))}
+
+
+def history(axes, time, values, channel, most=12):
+    """The three components over time, and the largest cycles of the counted one, whose number it returns."""
+    for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833")):
+        axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
+    counted = values[channel] / 1e9
+    cycles = rainflow(counted)
+    for row in cycles[np.argsort(-cycles[:, 0])][:most][::-1]:
+        i, j = int(row[3]), int(row[4])
+        axes.plot(time[[i, j]], counted[[i, j]], "o", ms=3, color="#cc3311")
+        axes.vlines(time[j], *sorted((counted[i], counted[j])), color="#cc3311", lw=0.8)
+        axes.hlines(counted[i], *sorted((time[i], time[j])), color="#cc3311", lw=0.5, ls=":")
+    axes.set_ylabel("stress [GPa]")
+    axes.legend(fontsize=8, frameon=False, ncol=3, loc="lower left")
+    return cycles
+
+
+def cycle_histogram(axes, cycles, damages):
+    """Each cycle's range and what it adds to the damage."""
+    shown = damages > 0
+    axes.scatter(cycles[shown, 0], damages[shown], s=10, color="#cc3311")
+    axes.set_yscale("log")
+    if shown.any():
+        top = damages[shown].max()
+        axes.set_ylim(top * 1e-12, top * 10)
+    axes.set_xlabel("range of the counted stress [GPa]")
+    axes.set_ylabel("1/N of the cycle")
+    axes.grid(color="0.92")
+
+
+def counted_channel(count, values, material):
+    """Channel whose cycles a picture shows: the counted one, or that of the largest damage."""
+    from ehlpetsc.post.accumulate import damage
+
+    if len(CHANNELS[count]) == 1:
+        return min(CHANNELS[count][0], 2)
+    names = ("sx", "sz", "txz")
+    return int(np.argmax([damage(*values, material, count=name).damage for name in names]))

@@ -1,0 +1,233 @@
+"""From a result file to a post-processing result: tasks over surfaces and depths, in one or more processes."""
+import multiprocessing
+import signal
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.post.accumulate import Counter, Counting
+from ehlpetsc.post.bodies import body_points, passage
+from ehlpetsc.post.histories import QUANTUM, blocks, sweep
+from ehlpetsc.post.loads import SURFACES, Loads
+from ehlpetsc.post.settings import PostError, read_settings
+from ehlpetsc.post.statistics import asperities, log_life, weibull_fit
+from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
+
+MEMORY = 400e6  # bytes of open histories, all processes together
+DEPTHS_AT_ONCE = 8  # more share the spectra of the loads no better
+EVERY_LOSS = {2: 3, 4: 15, 8: 40}  # set from the measurement in the verification tests
+
+
+class Job(NamedTuple):
+    """What is asked of one result file."""
+
+    path: str
+    output: str
+    surfaces: tuple = SURFACES
+    depths: tuple | None = None
+    counting: Counting = Counting()
+    regression: str = "x on y"
+    jobs: int = 1
+
+
+class Task(NamedTuple):
+    """Some depths of one surface."""
+
+    job: Job
+    surface: str
+    depths: tuple
+
+
+def run(job, report=None, progress=None):
+    """Compute damage and statistics of one result file and write them to `job.output`.
+
+    Depths already done by an interrupted run with the same input and choices are taken over; a finished result
+    of the same is left as it is.
+
+    Parameters
+    ----------
+    job : Job
+    report : callable(str), optional
+        Gets warnings and what was done.
+    progress : callable(done, of), optional
+        Gets the share of the work done.
+
+    Raises
+    ------
+    PostError
+        The result file is not fit for damage; the text says why.
+    """
+    report = report or (lambda text: None)
+    job.counting.check()
+    with Loads(job.path) as loads:
+        settings = read_settings(loads.case, job.depths)
+        loads.check(job.surfaces)
+        _check_frames(loads, settings)
+        s, motions = _motions(loads, job.surfaces)
+        _warn(loads, motions, report)
+    mark = fingerprint(job.path, job[2:-1], loads.time.size, loads.case)
+    if stored_mark(job.output) == mark:
+        report(f"{job.output}: already there, of the same file and options")
+        return
+    parts = Parts(job.output, mark)
+    missing = {surface: [d for d in settings.depths if parts.load(surface, d) is None] for surface in motions}
+    _work_off(_tasks(job, missing), job.jobs, parts, progress or (lambda done, of: None))
+    results = {surface: np.stack([parts.load(surface, d) for d in settings.depths]) for surface in motions}
+    _store(job, loads, settings, s, motions, results, mark, report)
+    parts.remove()
+
+
+def _check_frames(loads, settings):
+    if loads.time.size < 2:
+        what = "holds one stored frame" if settings.transient else "is a steady run with one frame"
+        if loads.time.size == 0:
+            what = "holds no stored frame"
+        raise PostError(f"it {what}: damage needs the stress history, a [time] section and output.every = 1")
+
+
+def _motions(loads, surfaces):
+    speeds = [loads.speeds[surface] for surface in surfaces]
+    s = body_points(loads.x, loads.dx, loads.time, speeds)
+    motions = {surface: passage(s, loads.x, loads.dx, loads.time, speed)
+               for surface, speed in zip(surfaces, speeds)}
+    if not any(motion.complete.any() for motion in motions.values()):
+        moved = max(abs(speed) for speed in speeds) * (loads.time[-1] - loads.time[0]) / loads.a
+        width = (loads.x[-1] - loads.x[0]) / loads.a
+        raise PostError(f"no body point passed the whole contact: the surfaces moved {moved:.3g} half widths, the "
+                        f"domain is {width:.3g} wide; raise time.travel")
+    return s, motions
+
+
+def _warn(loads, motions, report):
+    if loads.status not in ("done", "unknown"):
+        report(f"warning: the run's status is \"{loads.status}\": only its stored frames are used")
+    if loads.every > 1:
+        steps = min(EVERY_LOSS, key=lambda known: abs(known - loads.every))
+        report(f"warning: stored with output.every = {loads.every}: peaks between frames are lost; with every {steps} "
+               f"about {EVERY_LOSS[steps]} % of the damage near the surface was lost on ripples of ten nodes")
+    for surface, motion in motions.items():
+        if not motion.complete.any():
+            report(f"warning: no point of the {surface} surface passed the whole contact: its damage is nan")
+
+
+def _tasks(job, missing):
+    """Split the missing depths: shared load spectra against memory and an even load of the processes."""
+    tasks = []
+    for surface, depths in missing.items():
+        at_once = DEPTHS_AT_ONCE if job.jobs == 1 else max(1, min(DEPTHS_AT_ONCE, len(depths) // (2 * job.jobs)))
+        tasks += [Task(job, surface, tuple(depths[k:k + at_once])) for k in range(0, len(depths), at_once)]
+    return tasks
+
+
+def _work_off(tasks, jobs, parts, progress):
+    total = sum(len(task.depths) for task in tasks)
+    done = 0
+    if jobs == 1 or len(tasks) < 2:
+        for task in tasks:
+            def share(part, done=done, task=task):
+                progress(done + part * len(task.depths), total)
+            done += _keep(task, solve(task, share), parts)
+        return
+    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("fork"), _die_quietly)
+    try:
+        futures = {pool.submit(solve, task): task for task in tasks}
+        for future in as_completed(futures):
+            done += _keep(futures[future], future.result(), parts)
+            progress(done, total)
+    except BaseException:
+        for process in multiprocessing.active_children():
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _die_quietly():
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the parent says that the run was interrupted
+
+
+def _keep(task, values, parts):
+    for depth, part in zip(task.depths, values):
+        parts.save(task.surface, depth, part)
+    return len(task.depths)
+
+
+def solve(task, share=None):
+    """Damage, cycles and peak range (depths, points, 3) of a task; nan at points that did not pass."""
+    job, surface = task.job, task.surface
+    with Loads(job.path) as loads:
+        material = getattr(read_settings(loads.case, job.depths), surface)
+        s, motions = _motions(loads, job.surfaces)
+        motion = motions[surface]
+        out = np.full((len(task.depths), s.size, 3), np.nan)
+        if not motion.complete.any():
+            return out
+        lengths = motion.leave - motion.enter + 3
+        counter = Counter(material, job.counting, motion.samples() + 2)
+        runs = blocks(motion, MEMORY / job.jobs, len(task.depths))
+        frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points, _ in runs)
+        done = 0
+
+        def finish(depth, first, last, histories):
+            counter(histories, lengths[first:last], out[depth, first:last])
+
+        def advance(count):
+            nonlocal done
+            done += count
+            if share:
+                share(done / frames)
+
+        depths = np.array(task.depths) * loads.a / loads.dx
+        for points, slots in runs:
+            sweep(loads, surface, motion, points, slots, depths, QUANTUM * loads.p0, finish, advance)
+        return out
+
+
+def _store(job, loads, settings, s, motions, results, mark, report):
+    datasets = {"damage/s": s, "damage/z_over_a": np.array(settings.depths)}
+    first = _first_surface(loads, motions)
+    groups = {"damage": {"surface": first}}
+    for surface in motions:
+        values, complete = results[surface], motions[surface].complete
+        inner = "" if surface == first else f"{surface}/"
+        datasets[f"damage/{surface}"] = values[..., 0]
+        datasets[f"damage/{surface}_complete"] = complete.astype(np.uint8)
+        other = f"{surface}_" if inner else ""
+        datasets[f"damage/{other}cycles"] = values[..., 1]
+        datasets[f"damage/{other}peak_range"] = values[..., 2]
+        _statistics(job, loads, surface, inner, s, complete, values[..., 0], settings, datasets, groups, report)
+    speeds = {f"speed_{name}": loads.speeds[name] for name in motions}
+    mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
+    attrs = {"title": loads.title, "case": loads.case, "source": str(loads.path), "fingerprint": mark, "a": loads.a,
+             "p0": loads.p0, "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
+             "regression": job.regression, "every": loads.every, **speeds, **job.counting._asdict()}
+    write_result(job.output, datasets, attrs, groups)
+
+
+def _first_surface(loads, motions):
+    """The surface under the fixed names: the slow one, whose asperities meet more others, if it is rough."""
+    for surface in motions:
+        if loads.profiles[surface] is not None and motions[surface].complete.any():
+            return surface
+    return next(iter(motions))
+
+
+def _statistics(job, loads, surface, inner, s, complete, damage, settings, datasets, groups, report):
+    peaks = asperities(loads.profiles[surface], s, complete)
+    under = damage[:, peaks.point]
+    fits = np.array([weibull_fit(log_life(row), job.regression) for row in under]).reshape(-1, 3)
+    beyond = (under >= 1).sum(axis=1)
+    for name, values in (("s", peaks.s), ("height", peaks.height), ("damage", under)):
+        datasets[f"asperities/{inner}{name}"] = values
+    for name, values in (("alpha", fits[:, 0]), ("beta", fits[:, 1]), ("r_squared", fits[:, 2]),
+                         ("at_least_one", beyond), ("undamaged", (under == 0).sum(axis=1))):
+        datasets[f"weibull/{inner}{name}"] = values
+    if loads.profiles[surface] is not None:
+        datasets[f"profile/{surface}/s"], datasets[f"profile/{surface}/z"] = loads.profiles[surface]
+    for group in ("asperities", "weibull"):
+        groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
+    for depth, count in zip(settings.depths, beyond):
+        if count:
+            report(f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 or more "
+                   f"at z/a = {depth:g}: failure in the first pass")

@@ -1,0 +1,111 @@
+r"""Damage at asperity peaks and its Weibull distribution (Holmes et al. 2005, section 3.2)."""
+from typing import NamedTuple
+
+import numpy as np
+from scipy.signal import find_peaks
+
+PROMINENCE = 0.1  # of Rq: lower bumps are noise of the measurement, not asperities
+REGRESSIONS = ("x on y", "y on x")
+
+
+class WeibullFit(NamedTuple):
+    """Scale alpha, shape beta and squared correlation of the fitted line."""
+
+    alpha: float
+    beta: float
+    r_squared: float
+
+
+class Asperities(NamedTuple):
+    """Peaks of a profile (s, height in m) and the nearest body point of each."""
+
+    s: np.ndarray
+    height: np.ndarray
+    point: np.ndarray
+
+
+def asperities(profile, s, complete):
+    """Peaks of a profile among the body points that passed the whole contact.
+
+    Parameters
+    ----------
+    profile : (s, z) or None
+        As in the result file, sorted; None: smooth, no peaks.
+    s : ndarray, shape (ns,)
+        Body points, uniform.
+    complete : ndarray of bool, shape (ns,)
+    """
+    if profile is None or not complete.any():
+        return Asperities(np.empty(0), np.empty(0), np.empty(0, int))
+    places, heights = profile
+    passed = s[complete]
+    inside = (places >= passed[0]) & (places <= passed[-1])
+    rough = np.std(heights[inside]) if inside.any() else 0.0
+    peaks, _ = find_peaks(heights, prominence=max(PROMINENCE * rough, np.finfo(float).tiny))
+    peaks = peaks[inside[peaks]]
+    nearest = np.rint((places[peaks] - s[0]) / (s[1] - s[0])).astype(int)
+    return Asperities(places[peaks], heights[peaks], nearest)
+
+
+def benard_ranks(n):
+    """Median ranks (i - 0.3)/(n + 0.4) of n values in rising order."""
+    return (np.arange(1, n + 1) - 0.3) / (n + 0.4)
+
+
+def weibull_fit(values, regression="x on y"):
+    r"""Two-parameter Weibull by median rank regression.
+
+    .. math:: F(x) = 1-\exp[-(x/\alpha)^\beta]
+
+    (Holmes et al. 2005, section 3.2), a straight line of ln(-ln(1 - F)) over ln x, through Benard's ranks.
+
+    Parameters
+    ----------
+    values : array_like
+        -log10 of damages. An infinite one (no damage) is censored: it counts in the ranks and is above all
+        others. One of 0 or less (damage of 1 or more) keeps its rank, but has no place on the line.
+    regression : {"x on y", "y on x"}
+        Which deviations are least squares: those in ln x, or those in the ranks.
+
+    Returns
+    -------
+    WeibullFit
+        nan where fewer than two different values remain.
+
+    Raises
+    ------
+    ValueError
+        nan among the values, unknown regression.
+    """
+    values = np.sort(np.asarray(values, float).ravel())
+    if np.isnan(values).any():
+        raise ValueError("values must not be nan")
+    if regression not in REGRESSIONS:
+        raise ValueError(f"regression must be one of {', '.join(REGRESSIONS)}")
+    used = (values > 0) & np.isfinite(values)
+    if np.unique(values[used]).size < 2:
+        return WeibullFit(np.nan, np.nan, np.nan)
+    x = np.log(values[used])
+    y = np.log(-np.log1p(-benard_ranks(values.size)[used]))
+    dx, dy = x - x.mean(), y - y.mean()
+    beta = dy @ dy / (dx @ dy) if regression == "x on y" else dx @ dy / (dx @ dx)
+    alpha = np.exp(x.mean() - y.mean() / beta)
+    return WeibullFit(float(alpha), float(beta), float((dx @ dy) ** 2 / (dx @ dx * (dy @ dy))))
+
+
+def log_life(damage):
+    """-log10 D; infinite without damage."""
+    with np.errstate(divide="ignore"):
+        return -np.log10(damage)
+
+
+def exceedance(damage):
+    """Share of asperities with more damage than each, at Benard's ranks: (damage falling, probability)."""
+    falling = np.sort(np.asarray(damage, float))[::-1]
+    return falling, benard_ranks(falling.size)
+
+
+def fitted_exceedance(damage, fit):
+    """P(damage at a peak > D) of a fitted distribution, = F(-log10 D); 0 from D = 1 on."""
+    x = np.clip(log_life(np.asarray(damage, float)), 0.0, None)
+    return -np.expm1(-((x / fit.alpha) ** fit.beta))

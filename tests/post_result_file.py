@@ -1,0 +1,79 @@
+"""Result files for the tests of post-processing: Hertz pressure with ripples that travel with the surfaces."""
+import h5py
+import numpy as np
+
+CASE = """title = "made up"
+[contact]
+radius = 0.0191
+load = 527e3
+youngs_modulus = [207e9, 207e9]
+poisson_ratio = [0.3, 0.3]
+[motion]
+entrainment_speed = {mean}
+slide_roll_ratio = {ratio}
+{time}
+[output]
+every = {every}
+[post]
+depths = {depths}
+{post}
+"""
+A, P0 = 0.335682e-3, 0.999455e9
+
+
+def ground_profile(s, seed, correlation=12e-6, ra=0.1e-6):
+    """Gaussian-filtered noise on s, m."""
+    noise = np.random.default_rng(seed).normal(size=s.size)
+    width = correlation / (s[1] - s[0])
+    kernel = np.exp(-0.5 * (np.arange(-4 * width, 4 * width + 1) / width) ** 2)
+    z = np.convolve(noise, kernel, "same")
+    return z * ra / np.abs(z).mean()
+
+
+class Scene:
+    """Nodes, times, profiles and loads; `pressure(k)`, `shear(k)` of frame k.
+
+    The pressure is Hertz's, times 1 + ripple of both profiles where they are at that time.
+    """
+
+    def __init__(self, per_width=50, steps=None, ratio=0.5, travel=6.0, mean=25.0, courant=0.5, ripple=3e6, seed=0):
+        self.x = A * np.arange(-2.5 * per_width, 1.5 * per_width + 0.5) / per_width
+        self.dx, self.mean, self.ratio, self.ripple = A / per_width, mean, ratio, ripple
+        self.u1, self.u2 = mean * (1 + ratio / 2), mean * (1 - ratio / 2)
+        dt = courant * self.dx / self.u1
+        count = steps or int(np.ceil(travel * A / self.u1 / dt)) + 1
+        self.time = dt * np.arange(count)
+        s = np.arange(self.x[0] - self.u1 * self.time[-1] - 20e-6, self.x[-1] + 20e-6, 2e-6)
+        self.profiles = {"fast": (s, ground_profile(s, seed + 1)), "slow": (s, ground_profile(s, seed + 2))}
+        self.hertz = P0 * np.sqrt(np.clip(1 - (self.x / A) ** 2, 0, None))
+
+    def pressure(self, k):
+        height = sum(np.interp(self.x - u * self.time[k], *self.profiles[name])
+                     for name, u in (("fast", self.u1), ("slow", self.u2)))
+        return np.clip(self.hertz * (1 + self.ripple * height), 0, None)
+
+
+def write(path, scene, *, every=1, depths=(0.0, 0.05, 0.5), post="", steady=False, frames=None, friction=0.05,
+          dtype=float, edit=None):
+    """Write the scene's result file; `edit(file)` may spoil it before it is closed."""
+    kept = np.arange(0, scene.time.size, every)[:frames]
+    case = CASE.format(mean=scene.mean, ratio=scene.ratio, time="" if steady else "[time]\ntravel = 6.0", every=every,
+                       depths=list(depths), post=post)
+    with h5py.File(path, "w") as file:
+        file.attrs.update(format_version=1, title="made up", case=case, petsc_options="", versions="", ranks=1,
+                          a=A, p0=P0, h_scale=A * A / 0.0191, u1=scene.u1, u2=scene.u2, status="done")
+        file["x"], file["time"], file["step"] = scene.x, scene.time[kept], kept
+        shape = (kept.size, scene.x.size)
+        sets = {name: file.create_dataset(name, shape, dtype, maxshape=(None, shape[1]), chunks=(8, shape[1]))
+                for name in ("pressure", "shear_stress_slow", "shear_stress_fast")}
+        for row, k in enumerate(kept):
+            p = scene.pressure(k)
+            sets["pressure"][row] = p
+            sets["shear_stress_slow"][row] = friction * p
+            sets["shear_stress_fast"][row] = -friction * p
+        for name, u in (("fast", scene.u1), ("slow", scene.u2)):
+            file[f"surface/{name}/s"], file[f"surface/{name}/z"] = scene.profiles[name]
+            file[f"surface/{name}"].attrs["speed"] = u
+        if edit:
+            edit(file)
+    return path
