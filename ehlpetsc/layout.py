@@ -1,7 +1,9 @@
 """The datasets of a result file: created up front with dimension scales, then lengthened row by row."""
 import contextlib
 import os
+import struct
 
+import h5py
 import numpy as np
 
 from .fields import FIELDS, OTHERS, STEP_SCALARS
@@ -9,6 +11,7 @@ from .fields import FIELDS, OTHERS, STEP_SCALARS
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
 METADATA_BYTES = 2**20  # more than HDF5 adds to its own structures in one flush
+RESERVE_BYTES = 2**16  # more than it writes on closing
 
 
 def lay_out(file, x, fields, precision, profiles):
@@ -44,9 +47,18 @@ def lay_out(file, x, fields, precision, profiles):
             _surface(file, f"surface/{surface}", *profile)
 
 
+def create(path):
+    """Create an HDF5 file for writing; OSError if the disk has no room for an empty one."""
+    with open(path, "wb") as raw:
+        os.posix_fallocate(raw.fileno(), 0, METADATA_BYTES)
+    return h5py.File(path, "w", libver="latest")
+
+
 @contextlib.contextmanager
 def room(file, data_bytes):
-    """Make sure of the disk space before HDF5 writes, which a full disk would leave broken, then flush.
+    """Make sure of the disk space before HDF5 writes, which crashes on a full disk; flush what was written.
+
+    Some space is kept in reserve behind the data, so that the file can always be closed.
 
     Parameters
     ----------
@@ -57,18 +69,30 @@ def room(file, data_bytes):
     Raises
     ------
     OSError
-        There is not enough room (or quota); the file is as it was and can be closed.
+        There is not enough room (or quota); the file is as it was.
     """
     descriptor, end = file.id.get_vfd_handle(), file.id.get_filesize()
     chunks = CHUNK_BYTES * len(FIELDS) + 8 * CHUNK_STEPS * (len(STEP_SCALARS) + len(OTHERS))
     try:
-        os.posix_fallocate(descriptor, end, data_bytes + chunks + METADATA_BYTES)
+        os.posix_fallocate(descriptor, end, data_bytes + chunks + METADATA_BYTES + RESERVE_BYTES)
     except OSError:
-        os.ftruncate(descriptor, end)
+        os.ftruncate(descriptor, end + RESERVE_BYTES)
         raise
     yield
     file.flush()
-    os.ftruncate(descriptor, file.id.get_filesize())
+    os.ftruncate(descriptor, file.id.get_filesize() + RESERVE_BYTES)
+
+
+def close(file, status):
+    """Note how the run ended, close the file and give its reserve back."""
+    descriptor = os.dup(file.id.get_vfd_handle())
+    try:
+        file.attrs["status"] = status
+        file.close()
+        (end,) = struct.unpack_from("<Q", os.pread(descriptor, 48, 0), 28)  # as superblocks 2 and 3 have it
+        os.ftruncate(descriptor, end)
+    finally:
+        os.close(descriptor)
 
 
 def extend(dataset, rows):

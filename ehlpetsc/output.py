@@ -10,11 +10,10 @@ import os
 import time as clock
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from .fields import FIELDS, STEP_SCALARS
-from .layout import extend, lay_out, room
+from .layout import close, create, extend, lay_out, room
 from .provenance import earlier_runs, git_commit, versions
 from .restart import load_restart, plain_reason, save_restart
 from .result import FORMAT_VERSION, OutputError, Result, read_result
@@ -76,7 +75,7 @@ class ResultWriter:
         beside = self.path.with_name(self.path.name + ".tmp")
         try:
             with self._plain_faults("not created"):
-                self._file = h5py.File(beside, "w", libver="latest")
+                self._file = create(beside)
                 with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
                     self._root_attributes(case_text, title, dict(scalars_attrs))
                     lay_out(self._file, x, fields, precision, profiles)
@@ -146,8 +145,7 @@ class ResultWriter:
             return
         self.flush()
         with self._plain_faults("not closed"):
-            self._file.attrs["status"] = status
-            self._file.close()
+            close(self._file, status)
 
     @contextlib.contextmanager
     def _plain_faults(self, what):
@@ -156,8 +154,7 @@ class ResultWriter:
         except (OSError, RuntimeError) as error:
             whole = getattr(self, "_written_step", None)
             with contextlib.suppress(Exception):  # the fault at hand is the one to tell
-                self._file.attrs["status"] = "stopped"
-                self._file.close()
+                close(self._file, "stopped")
             kept = "" if whole is None else f"; the file is whole up to step {whole}"
             raise OutputError(f"{self.path}: result file {what}, {plain_reason(error)}{kept}") from error
 
