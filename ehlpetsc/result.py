@@ -127,6 +127,21 @@ class Result:
         wanted, stored = (time, self.time) if step is None else (step, self.step)
         return int(np.argmin(np.abs(stored - wanted)))
 
+    def contact_rate(self):
+        """Contacts per millisecond at each node, Q of Holmes et al. 2005, figure 7; shape (nx,).
+
+        One time step in contact counts as one contact, so that Q grows as the time step falls.
+
+        Raises
+        ------
+        OutputError
+            The run has lasted no time: a steady one.
+        """
+        lasted = np.nansum(self.steps("dt"))
+        if not lasted > 0.0:
+            raise OutputError(f"{self.path}: a steady solution has no contacts per millisecond")
+        return self.contact_count / (1e3 * lasted)
+
     def profile(self, surface):
         """Roughness of surface "fast" or "slow" as ``(s, z, speed)``; None if it was smooth."""
         group = self._file.get(f"surface/{surface}")

@@ -1,0 +1,113 @@
+"""Comparing results: what is the same, what is not, and what cannot be compared."""
+import numpy as np
+import pytest
+from made_results import P0, A, make_result
+
+from ehlpetsc.compare import Line, compare, main
+from ehlpetsc.result import read_result
+
+
+@pytest.fixture
+def result(tmp_path):
+    return make_result(tmp_path / "one.h5")
+
+
+def differences(one, other):
+    with read_result(one) as a, read_result(other) as b:
+        return {d.name: d for d in compare(a, b)}
+
+
+def run(capsys, *arguments):
+    """Exit status, output and error output of the command."""
+    status = main([str(a) for a in arguments])
+    return status, *capsys.readouterr()
+
+
+def test_equal_results_are_the_same_to_the_bit(tmp_path, result, capsys):
+    status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5"), "--rtol", 0)
+    assert status == 0
+    assert text.splitlines()[-1].startswith("same")
+    assert "steps/load" in text and "DIFFERENT" not in text
+
+
+def test_a_difference_is_measured_and_placed(tmp_path, result, capsys):
+    other = make_result(tmp_path / "two.h5", factor=1 + 1e-4)
+    found = differences(result, other)
+    pressure = found["pressure"]
+    assert pressure.relative(pressure.greatest) == pytest.approx(1e-4, rel=1e-3)
+    assert pressure.scale == pytest.approx(1.4 * P0, rel=1e-2)
+    assert abs(pressure.x) < 0.2 * A
+    assert 0 < pressure.rms < pressure.greatest
+    assert found["film_thickness"].greatest == 0
+    status, text, _ = run(capsys, result, other)
+    assert status == 1
+    assert text.splitlines()[-1].startswith("different: pressure; steps/p_max")
+    assert run(capsys, result, other, "--rtol", 2e-4)[0] == 0
+    assert run(capsys, result, other, "--atol", 2e-4 * P0)[0] == 0
+    assert run(capsys, result, other, "--atol", 1e-5 * P0)[0] == 1
+
+
+def test_finer_mesh_and_time_step_are_aligned(tmp_path):
+    """Nodes and times of the coarser are among those of the finer, so nothing is lost by interpolation."""
+    coarse = make_result(tmp_path / "one.h5", nodes=161, steps=41)
+    found = differences(coarse, make_result(tmp_path / "two.h5", nodes=321, steps=81))
+    for name in ("pressure", "film_thickness", "shear_stress_slow", "void_fraction"):
+        assert found[name].relative(found[name].greatest) < 1e-12, name
+    assert found["steps/load"].greatest == 0
+    assert found["in_contact"].units == "share"
+    assert found["in_contact"].greatest < 0.02
+    # twice the steps give twice the counts, but at a node about the same share
+    assert 0 < found["contact_count"].greatest < 0.03
+
+
+def test_meshes_without_common_nodes_differ_by_the_error_of_interpolation(tmp_path):
+    found = []
+    for nodes in (100, 400, 1600):
+        one = make_result(tmp_path / "a.h5", nodes=nodes, steps=6)
+        other = make_result(tmp_path / "b.h5", nodes=nodes + 7, steps=6)
+        found.append(differences(one, other)["pressure"].rms / P0)
+    assert 0.05 > found[0] > 3 * found[1] > 9 * found[2] > 0
+
+
+def test_sparser_storage_of_the_same_run_is_the_same(tmp_path, result):
+    found = differences(result, make_result(tmp_path / "two.h5", every=4))
+    assert all(d.greatest == 0 for d in found.values())
+
+
+def test_steady_results_are_compared(tmp_path):
+    one = make_result(tmp_path / "one.h5", steps=1)
+    assert all(d.greatest == 0 for d in differences(one, make_result(tmp_path / "two.h5", steps=1)).values())
+    other = make_result(tmp_path / "three.h5", steps=1, factor=0.9)
+    assert differences(one, other)["pressure"].relative(P0) > 0.05
+
+
+def test_nan_on_one_side_is_a_difference(tmp_path, result, capsys):
+    """Friction is left out of both, which is the same; a nan in the pressure of one is not."""
+    assert differences(result, result)["steps/friction"].greatest == 0
+    status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
+    assert status == 1
+    assert "different: pressure;" in text
+
+
+def test_missing_field_and_unlike_end_are_differences(tmp_path, result, capsys):
+    other = make_result(tmp_path / "two.h5", fields=["pressure"], status="not converged")
+    status, text, _ = run(capsys, result, other)
+    assert status == 1
+    assert f"film_thickness is stored in {result} alone" in text
+    assert "one run is done, the other not converged" in text
+
+
+def test_bad_input_is_told_in_words(tmp_path, result, capsys):
+    status, _, text = run(capsys, result, tmp_path / "no.h5")
+    assert (status, text) == (2, f"ehlpetsc.compare: {tmp_path / 'no.h5'}: no such file\n")
+    with pytest.raises(SystemExit) as stop:
+        main([str(result), str(result), "--rtol", "-1"])
+    assert stop.value.code == 2
+    assert "-1 is not a number >= 0" in capsys.readouterr().err
+
+
+def test_interpolation_is_exact_for_straight_lines_and_at_the_ends():
+    grid = np.array([0.0, 1.0, 3.0])
+    line = Line(grid, np.array([0.0, 0.5, 2.0, 3.0]))
+    np.testing.assert_allclose(line(2 * grid + 1), [1, 2, 5, 7])
+    np.testing.assert_array_equal(line(np.array([np.nan, 1.0, 2.0]))[[2, 3]], [1.5, 2.0])
