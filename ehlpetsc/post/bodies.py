@@ -3,7 +3,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-GRID_ROUNDING = 1e-9  # nodes
+GRID_ROUNDING = 1e-9  # nodes; a point that far from a node is at it
 
 
 class Passage(NamedTuple):
@@ -34,7 +34,7 @@ def body_points(x, dx, time, speeds):
 
 def passage(s, x, dx, time, speed):
     """Passage of the points s = s[0] + j dx of a body at `speed` (x = s + speed * time)."""
-    base = np.round((s[0] - x[0] + speed * time) / dx / GRID_ROUNDING) * GRID_ROUNDING
+    base = np.round((s[0] - x[0] + speed * time) / dx, 9)
     shift = np.floor(base).astype(np.int64)
     j, last = np.arange(s.size), x.size - 1
     if speed >= 0:

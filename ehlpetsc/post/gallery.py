@@ -64,7 +64,7 @@ def _compared(results, folder):
     for surface in ("slow", "fast"):
         if all(surface in result.surfaces and result.complete[surface].any() for result in results):
             names += _save(stacked_picture(results, surface), folder / f"compared.damage_{surface}")
-    if all(result.height.size for result in results):
+    if all(result.height.size for result in results) and len({result.main for result in results}) == 1:
         shared = [z for z in results[0].z if all(np.isclose(r.z, z).any() for r in results)]
         for z in shared:
             names += _save(ratio_picture(results, z), folder / f"compared.exceedance_z{z:g}")
@@ -191,7 +191,8 @@ def history_picture(path, result, point):
     ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
     damages = 1 / cycles_to_failure(ranges, material)
     top.set_xlabel("time [µs]")
+    marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
     top.set_title(f"{surface} surface, s/a = {s / result.a:.4g}, z/a = {z:g}: {len(cycles)} cycles of "
-                  f"{plots.COMPONENTS[channel]}, the largest 12 marked, damage {damages.sum():.3g}", fontsize=9)
+                  f"{plots.COMPONENTS[channel]}, {marked} marked, damage {damages.sum():.3g}", fontsize=9)
     plots.cycle_histogram(bottom, cycles, damages)
     return figure

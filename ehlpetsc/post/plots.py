@@ -10,6 +10,7 @@ from ehlpetsc.post.stress import von_mises
 
 DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
 COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
+MARKED = 12  # cycles in the picture of a history
 DARK = "#222222"
 
 
@@ -118,13 +119,13 @@ def stress_fields(sx, sz, txz, nu):
     return {name: values / 1e9 for name, values in zip(names, (sx, sz, txz, von_mises(sx, sz, txz, nu)))}
 
 
-def history(axes, time, values, channel, most=12):
+def history(axes, time, values, channel):
     """The three components over time, and the largest cycles of the counted one, whose number it returns."""
     for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833")):
         axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
     counted = values[channel] / 1e9
     cycles = rainflow(counted)
-    for row in cycles[np.argsort(-cycles[:, 0])][:most][::-1]:
+    for row in cycles[np.argsort(-cycles[:, 0])][:MARKED][::-1]:
         i, j = int(row[3]), int(row[4])
         axes.plot(time[[i, j]], counted[[i, j]], "o", ms=3, color="#cc3311")
         axes.vlines(time[j], *sorted((counted[i], counted[j])), color="#cc3311", lw=0.8)

@@ -16,7 +16,7 @@ from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
 
 MEMORY = 400e6  # bytes of open histories, all processes together
 DEPTHS_AT_ONCE = 8  # more share the spectra of the loads no better
-EVERY_LOSS = {2: 3, 4: 15, 8: 40}  # set from the measurement in the verification tests
+EVERY_LOSS = {2: 3, 4: 14, 8: 24}  # % by steps between frames, as measured in tests/verification
 
 
 class Job(NamedTuple):
@@ -105,7 +105,7 @@ def _warn(loads, motions, report):
     if loads.every > 1:
         steps = min(EVERY_LOSS, key=lambda known: abs(known - loads.every))
         report(f"warning: stored with output.every = {loads.every}: peaks between frames are lost; with every {steps} "
-               f"about {EVERY_LOSS[steps]} % of the damage near the surface was lost on ripples of ten nodes")
+               f"about {EVERY_LOSS[steps]} % of the damage near the surface was lost on ripples of ten nodes at slide/roll ratio 1")
     for surface, motion in motions.items():
         if not motion.complete.any():
             report(f"warning: no point of the {surface} surface passed the whole contact: its damage is nan")

@@ -11,6 +11,9 @@ from scipy import fft
 from ehlpetsc.post.kernels import half_hat, hat
 
 UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
+DEPTHS_AT_ONCE = 5  # whose spectra stay in the cache
+NEAR = 24  # elements; beyond it a kernel is smooth over an element
+FAR_RULE = ((-0.4**0.5, 5 / 24), (0.0, 7 / 12), (0.4**0.5, 5 / 24))  # moments of the unit hat up to the fifth
 
 
 def spacing(x):
@@ -41,6 +44,33 @@ def kernel_spectra(nx, z, offset=0.0):
     return fft.rfft(kernels)
 
 
+def spline_spectra(nx, z, offset):
+    """As :func:`kernel_spectra`, for the load that is the cubic spline through the nodal values.
+
+    A cubic B-spline is a hat smeared by a hat; the spline's coefficients come of the nodal values by one division
+    of spectra.
+    """
+    n = padded_length(nx)
+    distance = np.arange(-(nx - 1), nx)
+    near = np.abs(distance) <= NEAR
+    kernels = np.zeros((4, n))
+    for chosen, rule in ((distance[near], _between_kinks(offset)), (distance[~near], FAR_RULE)):
+        for smear, share in rule:
+            kernels[:, chosen] -= 2 / np.pi * share * hat(chosen + offset - smear, z)
+    angle = 2 * np.pi * np.arange(n // 2 + 1) / n
+    return fft.rfft(kernels) / ((2 + np.cos(angle)) / 3)
+
+
+def _between_kinks(offset):
+    """Quadrature over the unit hat, (place, share), in pieces without a kink of a kernel seen from `offset`."""
+    breaks = np.unique([-1.0, 0.0, 1.0, offset - 1, offset])
+    nodes, weights = np.polynomial.legendre.leggauss(5)
+    for left, right in zip(breaks[:-1], breaks[1:]):
+        for node, weight in zip(nodes, weights):
+            place = left + (right - left) * (node + 1) / 2
+            yield place, (right - left) / 2 * weight * (1 - abs(place))
+
+
 class StressField:
     """Stress operator for one mesh and a set of depths.
 
@@ -67,18 +97,23 @@ class StressField:
     def __call__(self, pressure, shear=None):
         """Stresses (sx, sz, txz), each (..., nz, nx), under pressure and traction (..., nx), all in Pa."""
         p = fft.rfft(pressure, self.n)[..., None, :]
-        out = np.empty((3, *p.shape[:-2], len(self.depths), p.shape[-1]), complex)
-        np.multiply(self.along, p, out=out[0])
-        np.multiply(self.normal, p, out=out[1])
-        np.multiply(self.cross, p, out=out[2])
-        if shear is not None:
-            q = fft.rfft(shear, self.n)[..., None, :]
-            out[0] += self.shear * q
-            out[1] += self.cross * q
-            out[2] += self.along * q
-        fields = fft.irfft(out, self.n, overwrite_x=True)[..., :self.nx]
+        q = None if shear is None else fft.rfft(shear, self.n)[..., None, :]
+        fields = np.empty((3, *p.shape[:-2], len(self.depths), self.nx))
+        for first in range(0, len(self.depths), DEPTHS_AT_ONCE):
+            some = slice(first, first + DEPTHS_AT_ONCE)
+            fields[..., some, :] = fft.irfft(self._spectra(some, p, q), self.n, overwrite_x=True)[..., :self.nx]
         self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
         return fields[0], fields[1], fields[2]
+
+    def _spectra(self, some, p, q):
+        """Spectra (3, ..., depths, f) of the stresses at some depths."""
+        normal, cross, along = self.normal[some], self.cross[some], self.along[some]
+        out = np.stack([along * p, normal * p, cross * p])
+        if q is not None:
+            out[0] += self.shear[some] * q
+            out[1] += cross * q
+            out[2] += along * q
+        return out
 
     def _cut_ends(self, fields, pressure, shear):
         """Take off the outer halves of the end nodes' hats, where the load does not end at zero."""

@@ -1,0 +1,111 @@
+"""Speed of post-processing, as ratios to the plain ways: ``python3 tests/benchmarks/post_speed.py [--full]``.
+
+Ratios: FFT stress against direct summation of the same kernels, rainflow with damage against the pure-Python
+`rainflow` of PyPI (counting alone; left out where it is not installed). ``--full`` adds a run from a result file of
+0.8 GB: 20,000 body points (4 depths x 5,000) of 6,000 samples each, counted three ways (max3), on one process and two.
+"""
+import argparse
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+import numpy as np  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from post_result_file import Scene, write  # noqa: E402
+
+from ehlpetsc.post import Material  # noqa: E402
+from ehlpetsc.post.accumulate import Counter, Counting  # noqa: E402
+from ehlpetsc.post.kernels import hat  # noqa: E402
+from ehlpetsc.post.stress import StressField  # noqa: E402
+
+
+def best(call, repeats=5):
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def direct(p, q, kernels, n):
+    """Direct summation at every node of one depth: kernels (4, 2n - 1), Toeplitz rows."""
+    rows = np.lib.stride_tricks.sliding_window_view(kernels[:, ::-1], n, axis=1)[:, ::-1]
+    a, b, c, e = rows
+    return c @ p + e @ q, a @ p + b @ q, b @ p + c @ q
+
+
+def stress_speed(nx=1600, nz=50):
+    x = np.linspace(-2.5, 1.5, nx)
+    p = np.sqrt(np.clip(1 - x * x, 0, None))
+    z = np.linspace(0, 1, nz)
+    field = StressField(nx, x[1] - x[0], z)
+    fast = best(lambda: field(p, 0.1 * p), 20)
+    kernels = -2 / np.pi * hat(np.arange(-(nx - 1), nx), z[10] / (x[1] - x[0]))
+    slow = best(lambda: direct(p, 0.1 * p, kernels, nx), 3) * nz
+    difference = np.abs(np.stack(direct(p, 0.1 * p, kernels, nx)) - np.stack(field(p, 0.1 * p))[:, 10]).max()
+    print(f"stress {nx} x {nz} x 3: FFT {fast * 1e3:.2f} ms, direct {slow * 1e3:.0f} ms, ratio {slow / fast:.0f}, "
+          f"difference {difference:.1e}")
+
+
+def histories(points, samples):
+    """Hertz passes with three ripples of random phase."""
+    rng = np.random.default_rng(0)
+    t = np.arange(samples)
+    base = -1e9 * np.sqrt(np.clip(1 - ((t - samples / 2) / (samples / 3)) ** 2, 0, None))
+    phase = rng.uniform(0, 2 * np.pi, (3, points, 1))
+    ripple = 0.3 * np.sin(t / 30 + phase[0]) + 0.1 * np.sin(t / 7 + phase[1]) + 0.3 * np.sin(t / 110 + phase[2])
+    return np.stack([base * (1 + 0.7 * ripple), base * (1 + ripple), -0.3 * base * ripple], axis=1).astype(np.float32)
+
+
+def counting_speed(points=2000, samples=6000):
+    stress, lengths, out = histories(points, samples), np.full(points, samples), np.empty((points, 3))
+    rates = {}
+    for count in ("sz", "max3"):
+        counter = Counter(Material(), Counting(count), samples)
+        rates[count] = points * samples / best(lambda c=counter: c(stress, lengths, out)) / 1e6
+        print(f"rainflow, component ranges and damage, {count}: {rates[count]:.0f} million samples a second")
+    try:
+        from rainflow import extract_cycles
+    except ImportError:
+        print("ratio to PyPI rainflow: not installed")
+        return
+    few = stress[:10, 1].astype(float).tolist()
+    plain = 10 * samples / best(lambda: [list(extract_cycles(row)) for row in few], 2) / 1e6
+    print(f"PyPI rainflow, counting alone: {plain:.2f} million samples a second, ratio {rates['sz'] / plain:.0f}")
+
+
+def run_speed(folder):
+    path = Path(folder) / "speed.h5"
+    scene = Scene(per_width=400, ratio=0.6087, steps=24800)
+    write(path, scene, depths=(0.0, 0.01, 0.05, 0.5))
+    print(f"file: {path.stat().st_size / 1e6:.0f} MB, {scene.time.size} frames of {scene.x.size} nodes")
+    walls = {}
+    for jobs in (1, 2):
+        start = time.perf_counter()
+        done = subprocess.run([sys.executable, "-m", "ehlpetsc.post", path, "-o", path.with_name(f"{jobs}.post.h5"),
+                               "--surface", "slow", "--jobs", str(jobs)], check=True, text=True, capture_output=True,
+                              cwd=Path(__file__).resolve().parents[2])
+        walls[jobs] = time.perf_counter() - start
+        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
+        print(f"--jobs {jobs}: {walls[jobs]:.1f} s, largest process so far {peak:.2f} GB")
+        print("  " + done.stdout.splitlines()[-1])
+    print(f"speed-up of two processes: {walls[1] / walls[2]:.2f}")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--full", action="store_true")
+    chosen = parser.parse_args()
+    stress_speed()
+    counting_speed()
+    if chosen.full:
+        with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
+            run_speed(folder)

@@ -1,0 +1,157 @@
+"""Life and damage against the restored equations' values."""
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from ehlpetsc.post import Material, cycles_to_failure, damage, equivalent_range, strain_range
+from ehlpetsc.post.lifetable import life_table, look_up
+
+STEEL = Material()
+RANGES = np.array([1e9, 1.5e9, 2e9, 3e9, 4e9])
+
+
+def life_curve(n, material):
+    """Strain range that N cycles stand: Holmes et al. 2005, eq. (14)."""
+    return 2 * (material.fatigue_strength / material.youngs_modulus * (2 * n)**material.b
+                + material.fatigue_ductility * (2 * n)**material.c)
+
+
+def pulse(size, samples=41):
+    """One loading of sz alone in plane strain, from 0 to -size and back."""
+    sz = -size * np.sin(np.linspace(0, np.pi, samples))**2
+    return np.zeros(samples), sz, np.zeros(samples)
+
+
+def test_restored_values():
+    assert STEEL.hardening_coefficient == pytest.approx(2232.77e6, rel=1e-6)
+    assert strain_range(RANGES, STEEL) == pytest.approx([4.92393e-3, 8.634665e-3, 1.911124e-2, 0.1555341, 0.9793237],
+                                                        rel=1e-6)
+    assert cycles_to_failure(RANGES, STEEL) == pytest.approx([2.106877e6, 2.565758e4, 1093.558, 12.21644, 0.5],
+                                                             rel=1e-6)
+
+
+def test_inversion_to_1e10_over_23_decades():
+    """Find the stress range of each life by bisection, then get the life back."""
+    lives = np.logspace(-3, 20, 47)
+    wanted = life_curve(lives, STEEL)
+    low, high = np.full_like(lives, 1.0), np.full_like(lives, 1e13)
+    for _ in range(200):
+        middle = np.sqrt(low * high)
+        above = strain_range(middle, STEEL) > wanted
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    lives_back = cycles_to_failure(np.sqrt(low * high), STEEL)
+    # a rounding error of the stress range itself moves N by 1/(0.091) of it
+    assert lives_back == pytest.approx(lives, rel=1e-10)
+    assert life_curve(lives_back, STEEL) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_extremes_do_not_overflow():
+    with np.errstate(all="raise"):
+        lives = cycles_to_failure(np.array([0.0, 1e-300, 1e-30, 1e30, np.inf]), STEEL)
+    assert lives[0] == lives[1] == np.inf and lives[2] > 1e300 and lives[3] < 1e-30 and lives[4] == 0
+
+
+def test_bad_ranges_are_refused():
+    for value in (-1.0, np.nan):
+        with pytest.raises(ValueError, match="stress ranges"):
+            cycles_to_failure(value, STEEL)
+
+
+def test_table_error_is_below_1e9():
+    table = life_table(STEEL)
+    ranges = np.exp(np.random.default_rng(0).uniform(np.log(1e2), np.log(1e12), 4000))  # wider than the table
+    exact = 1 / cycles_to_failure(ranges, STEEL)
+    found = np.array([look_up(value * value, table) for value in ranges])
+    assert found == pytest.approx(exact, rel=1e-9)
+
+
+def test_equivalent_range_needs_signs():
+    assert equivalent_range(3.0, 3.0, 3.0, 0.0) == 0
+    assert equivalent_range(1.0, 0.0, -1.0, 0.0) == pytest.approx(np.sqrt(3))
+    assert equivalent_range(0.0, 0.0, 0.0, 1.0) == pytest.approx(np.sqrt(3))
+
+
+def test_one_pulse_is_one_cycle():
+    size = 2e9
+    result = damage(*pulse(size), STEEL)
+    dsv = size * np.sqrt(1 - 0.3 + 0.09)  # sx = 0, sy = nu sz
+    assert result.peak_range == pytest.approx(dsv, rel=1e-12)
+    assert result.cycles == 1
+    assert result.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL), rel=1e-9)
+    assert damage(*pulse(size), STEEL, residue="half").damage == pytest.approx(result.damage, rel=1e-9)  # two halves
+
+
+def test_max3_is_the_largest_of_its_counts():
+    rng = np.random.default_rng(3)
+    parts = rng.normal(scale=5e8, size=(3, 50, 200)) * np.array([1, 1, 0.6])[:, None, None]
+    single = np.array([damage(*parts, STEEL, count=name).damage for name in ("sx", "sz", "txz")])
+    assert damage(*parts, STEEL).damage == pytest.approx(single.max(axis=0), rel=1e-14)
+    assert len(set(single.argmax(axis=0))) == 3
+
+
+def test_turned_shear_counts_though_von_mises_does_not_see_it():
+    t = np.linspace(0, 2 * np.pi, 81)
+    parts = np.zeros(81), np.zeros(81), 5e8 * np.sin(t)
+    assert damage(*parts, STEEL).peak_range == pytest.approx(np.sqrt(3) * 1e9, rel=1e-6)
+    assert damage(*parts, STEEL, count="von_mises").peak_range == pytest.approx(np.sqrt(3) * 5e8, rel=1e-6)
+
+
+def test_window_sees_what_happens_between_reversals():
+    parts = np.array([0.0, 0, 0, 0, 0]), np.array([0.0, -1, -2, -1, 0]) * 1e9, np.array([0.0, 3e8, 0, 0, 0])
+    by_reversals = damage(*parts, STEEL, count="sz")
+    by_window = damage(*parts, STEEL, count="sz", ranges="window")
+    assert by_reversals.peak_range == pytest.approx(2e9 * np.sqrt(0.79))
+    assert by_window.peak_range == pytest.approx(np.sqrt(4e18 * 0.79 + 3 * 9e16))
+
+
+def test_morrow_lengthens_life_under_compression():
+    result = damage(*pulse(1e9), STEEL, mean_stress="morrow")
+    mean = 1.3 * -0.5e9
+    expected = 1 / cycles_to_failure(1e9 * np.sqrt(0.79), STEEL, mean)
+    assert result.damage == pytest.approx(expected, rel=1e-9)
+    assert result.damage < damage(*pulse(1e9), STEEL).damage
+    beyond = cycles_to_failure(1e9, STEEL, 3e9)  # mean above the strength: the plastic term alone
+    assert np.isfinite(beyond) and 0 < beyond < cycles_to_failure(1e9, STEEL)
+
+
+def test_no_stress_no_damage():
+    result = damage(np.zeros((2, 9)), np.zeros((2, 9)), np.zeros((2, 9)), STEEL)
+    assert (result.damage == 0).all() and (result.cycles == 0).all() and (result.peak_range == 0).all()
+
+
+@pytest.mark.parametrize("choice", [{"count": "signed"}, {"residue": "none"}, {"ranges": "x"}, {"mean_stress": "swt"}])
+def test_unknown_choices(choice):
+    with pytest.raises(ValueError, match="must be one of"):
+        damage(*pulse(1e9), STEEL, **choice)
+
+
+@pytest.mark.parametrize("constant", [{"b": 0.1}, {"c": np.nan}, {"fatigue_strength": -1.0},
+                                      {"poisson_ratio": 0.7}, {"cyclic_hardening": 0.0}])
+def test_bad_constants(constant):
+    with pytest.raises(ValueError, match=next(iter(constant))):
+        Material(**constant)
+
+
+SCRIPT = """
+import sys
+{block}
+import numpy as np
+from ehlpetsc.post import Material, damage, rainflow
+from ehlpetsc.post.jit import COMPILED
+assert COMPILED is {compiled}
+parts = np.cumsum(np.random.default_rng(5).normal(scale=2e8, size=(3, 20, 300)), axis=-1)
+for choice in ({{}}, dict(residue="half", count="von_mises"), dict(ranges="window", mean_stress="morrow")):
+    for row in damage(*parts, Material(), **choice):
+        print(row.tobytes().hex())
+print(rainflow(parts[0, 0]).tobytes().hex())
+"""
+
+
+def test_without_numba_to_the_last_bit():
+    pytest.importorskip("numba")
+    outputs = [subprocess.run([sys.executable, "-c", SCRIPT.format(block=block, compiled=compiled)], check=True,
+                              capture_output=True, text=True).stdout
+               for block, compiled in (("", True), ("sys.modules['numba'] = None", False))]
+    assert outputs[0] == outputs[1] and len(outputs[0]) > 1000

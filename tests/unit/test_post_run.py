@@ -1,0 +1,234 @@
+"""The command, its result file, its faults, and going on after an interruption."""
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from post_result_file import Scene, write
+
+from ehlpetsc.post import run as runner
+from ehlpetsc.post.__main__ import main
+from ehlpetsc.post.run import Job, run
+
+ROOT = Path(__file__).resolve().parents[2]
+FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.solver", "ehlpetsc.march", "ehlpetsc.case", "ehlpetsc.output")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return Scene(per_width=40, ratio=0.5, travel=9.0)
+
+
+@pytest.fixture
+def result(scene, tmp_path):
+    return write(tmp_path / "run.h5", scene)
+
+
+def fault(capsys, *argv):
+    """Exit status 2 and what was said."""
+    assert main([str(part) for part in argv]) == 2
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    return said
+
+
+def test_result_has_the_fixed_names(result, scene, capsys):
+    assert main([str(result)]) == 0
+    assert "ehlpetsc.post: done" in capsys.readouterr().out
+    with h5py.File(result.with_name("run.post.h5")) as file:
+        ns = file["damage/s"].size
+        for name in ("damage/slow", "damage/fast", "damage/cycles", "damage/peak_range"):
+            assert file[name].shape == (3, ns)
+        assert list(file["damage/z_over_a"]) == [0.0, 0.05, 0.5]
+        peaks = file["asperities/s"].size
+        assert peaks == file["asperities/height"].size > 3 and file["asperities/damage"].shape == (3, peaks)
+        for name in ("weibull/alpha", "weibull/beta", "weibull/r_squared"):
+            assert file[name].shape == (3,) and np.isfinite(file[name]).all()
+
+        def described(name, item):
+            assert not isinstance(item, h5py.Dataset) or {"units", "long_name"} <= set(item.attrs), name
+        file.visititems(described)
+        passed = file["damage/slow_complete"][:].astype(bool)
+        assert passed.any() and not passed.all()
+        assert np.isnan(file["damage/slow"][:, ~passed]).all() and np.isfinite(file["damage/slow"][:, passed]).all()
+        s = file["damage/s"][passed]
+        assert s[-1] <= scene.x[0] + 1e-12 and s[0] + scene.u2 * scene.time[-1] >= scene.x[-1] - 1e-12
+    assert not result.with_name("run.post.h5.parts").exists()
+
+
+def test_imports_no_petsc_mpi_or_solver(result):
+    code = ("import sys; from ehlpetsc.post.__main__ import main; import ehlpetsc.post.gallery; "
+            f"assert main([{str(result)!r}]) == 0; bad = [m for m in {FORBIDDEN!r} if m in sys.modules]; "
+            "own = [m for m in sys.modules if m.startswith('ehlpetsc.') and not m.startswith('ehlpetsc.post')]; "
+            "assert not bad and not own, (bad, own)")
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
+
+
+def test_without_pictures_no_matplotlib(result):
+    code = ("import sys; from ehlpetsc.post.__main__ import main; "
+            f"assert main([{str(result)!r}]) == 0; assert 'matplotlib' not in sys.modules")
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
+
+
+def arrays(path):
+    with h5py.File(path) as file:
+        return {name: file[name][:] for name in ("damage/slow", "damage/fast", "damage/cycles", "weibull/beta")}
+
+
+def test_two_processes_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
+    run(Job(str(result), str(tmp_path / "one.h5")))
+    run(Job(str(result), str(tmp_path / "two.h5"), jobs=2))
+    monkeypatch.setattr(runner, "MEMORY", 2e5)  # some tens of histories at a time
+    run(Job(str(result), str(tmp_path / "small.h5")))
+    one = arrays(tmp_path / "one.h5")
+    for other in ("two.h5", "small.h5"):
+        for name, values in arrays(tmp_path / other).items():
+            np.testing.assert_allclose(values, one[name], rtol=1e-3 if other == "small.h5" else 0, err_msg=name)
+
+
+def test_goes_on_after_an_interruption(result, tmp_path, monkeypatch):
+    whole, output = tmp_path / "whole.h5", tmp_path / "out.h5"
+    run(Job(str(result), str(whole)))
+    monkeypatch.setattr(runner, "DEPTHS_AT_ONCE", 1)
+    solve, solved = runner.solve, []
+
+    def interrupted(task, share=None):
+        if len(solved) == 2:
+            raise KeyboardInterrupt
+        solved.append(task)
+        return solve(task, share)
+
+    monkeypatch.setattr(runner, "solve", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run(Job(str(result), str(output)))
+    assert not output.exists() and len(list(tmp_path.glob("out.h5.parts/*.npy"))) == 2
+    again = []
+    monkeypatch.setattr(runner, "solve", lambda task, share=None: again.append(task) or solve(task, share))
+    run(Job(str(result), str(output)))
+    assert len(again) == 4
+    for name, values in arrays(output).items():
+        np.testing.assert_allclose(values, arrays(whole)[name], rtol=1e-9)
+    run(Job(str(result), str(output)))  # finished: nothing to do
+    assert len(again) == 4
+
+
+def test_parts_of_other_choices_are_not_used(result, tmp_path):
+    output = tmp_path / "out.h5"
+    parts = tmp_path / "out.h5.parts"
+    parts.mkdir()
+    (parts / "mark").write_text("another run")
+    np.save(parts / "slow_0.npy", np.full((3, 3), 7.0))
+    run(Job(str(result), str(output), depths=(0.0,)))
+    with h5py.File(output) as file:
+        assert np.nanmax(file["damage/slow"]) < 1
+
+
+def test_killed_writer(scene, tmp_path):
+    """A file left in SWMR state, its datasets flushed unequally."""
+    path = write(tmp_path / "killed.h5", scene)
+    code = f"""
+import h5py, os
+with h5py.File({str(path)!r}) as old, h5py.File({str(path) + '.new'!r}, "w", libver="latest") as new:
+    new.attrs.update(old.attrs); new.attrs["status"] = "running"
+    for name in old: old.copy(name, new)
+    del new["time"]
+    new.create_dataset("time", data=old["time"][:], maxshape=(None,), chunks=(64,))
+    new["pressure"].resize(len(old["time"]) - 5, axis=0)
+    new.flush(); new.swmr_mode = True; new["time"].flush(); os._exit(9)
+"""
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 9
+    said = []
+    run(Job(str(path) + ".new", str(tmp_path / "out.h5")), said.append)
+    assert any("running" in line for line in said)
+    run(Job(str(path), str(tmp_path / "whole.h5")))
+    with h5py.File(tmp_path / "out.h5") as cut, h5py.File(tmp_path / "whole.h5") as whole:
+        assert 0 < cut["damage/slow_complete"][:].sum() < whole["damage/slow_complete"][:].sum()
+
+
+@pytest.mark.parametrize("name", ["pressure", "shear_stress_slow", "time", "x"])
+def test_missing_dataset(name, scene, tmp_path, capsys):
+    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__(name))
+    assert f"no dataset {name}" in fault(capsys, path)
+
+
+def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
+    def spoil(file):
+        file["pressure"][300, 70] = np.nan
+    said = fault(capsys, write(tmp_path / "a.h5", scene, edit=spoil))
+    assert "pressure is nan at frame 300" in said and "x/a = -0.75" in said
+    assert not (tmp_path / "a.post.h5").exists()
+
+
+def test_truncated_file(result, capsys):
+    os.truncate(result, result.stat().st_size // 2)
+    assert "truncated" in fault(capsys, result)
+
+
+def test_not_a_result(tmp_path, capsys):
+    (tmp_path / "a.h5").write_text("no HDF5")
+    assert "not an HDF5 file" in fault(capsys, tmp_path / "a.h5")
+    assert "no such file" in fault(capsys, tmp_path / "b.h5")
+    with h5py.File(tmp_path / "c.h5", "w") as file:
+        file["x"] = [1.0]
+    assert "not a result file of ehlpetsc" in fault(capsys, tmp_path / "c.h5")
+
+
+def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
+    assert "steady run" in fault(capsys, write(tmp_path / "a.h5", scene, steady=True, frames=1))
+    assert "one stored frame" in fault(capsys, write(tmp_path / "b.h5", scene, frames=1))
+    assert "raise time.travel" in fault(capsys, write(tmp_path / "c.h5", scene, frames=40))
+
+
+@pytest.mark.parametrize("post, text", [
+    ("fatigue_strenght = 2e9", "did you mean fatigue_strength"), ("b = 0.1", "post.b = 0.1"),
+    ("c = nan", "post.c"), ("fatigue_ductility = true", "post.fatigue_ductility")])
+def test_faults_in_the_post_section(post, text, scene, tmp_path, capsys):
+    assert text in fault(capsys, write(tmp_path / "a.h5", scene, post=post))
+
+
+def test_bad_depths(result, capsys):
+    assert "every depth" in fault(capsys, result, "--depths", "-0.1")
+    assert "every depth" in fault(capsys, result, "--depths", "nan")
+
+
+def test_every_is_warned_of(scene, tmp_path, capsys):
+    assert main([str(write(tmp_path / "a.h5", scene, every=4))]) == 0
+    said = capsys.readouterr().err
+    assert "output.every = 4" in said and "14 %" in said
+
+
+def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
+    frames = int(1.1 * 4 * 40 / 0.5)  # the fast surface has passed, the slow one not
+    assert main([str(write(tmp_path / "a.h5", scene, frames=frames))]) == 0
+    assert "no point of the slow surface" in capsys.readouterr().err
+    with h5py.File(tmp_path / "a.post.h5") as file:
+        assert np.isnan(file["damage/slow"]).all() and np.isfinite(file["damage/fast"]).any()
+        assert file["asperities"].attrs["surface"] == "fast"
+
+
+def test_smooth_surfaces(scene, tmp_path, capsys):
+    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface"))
+    assert main([str(path), "--pictures"]) == 0
+    with h5py.File(tmp_path / "a.post.h5") as file:
+        assert file["asperities/damage"].shape == (3, 0) and np.isnan(file["weibull/beta"]).all()
+
+
+def test_pictures_of_two_ratios(scene, tmp_path, capsys):
+    paths = [write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
+             for r in (0.5, 0.7)]
+    assert main([*map(str, paths), "--pictures", str(tmp_path / "out")]) == 0
+    drawn = {path.name for path in (tmp_path / "out").iterdir()}
+    for stem in ("0.5.damage_slow", "0.5.damage_fast", "0.5.exceedance", "0.5.stress", "0.5.history",
+                 "compared.damage_slow", "compared.damage_fast", "compared.exceedance_z0", "compared.exceedance_z0.1"):
+        assert {f"{stem}.png", f"{stem}.svg"} <= drawn
+    assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
+    assert "was not in the contact" in fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
+
+
+def test_one_output_for_one_input(result, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([str(result), str(result), "-o", "x.h5"])
+    assert end.value.code == 2

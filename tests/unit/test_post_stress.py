@@ -1,0 +1,151 @@
+"""Stresses against closed forms and direct integration."""
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from ehlpetsc.post import out_of_plane, stress, von_mises
+from ehlpetsc.post.kernels import hat, point_kernels
+from ehlpetsc.post.stress import StressField
+
+
+def hertz(per_width, traction=0.0, z=0.5):
+    x = np.arange(-2 * per_width, 2 * per_width + 1) / per_width
+    p = np.sqrt(np.clip(1 - x * x, 0, None))
+    return x, stress(x, z, p, traction * p, 0.3)
+
+
+def at(x, fields, place):
+    return np.array([field[..., np.argmin(np.abs(x - place))] for field in fields])
+
+
+def integral(x, p, q, place, z):
+    """The three stresses by adaptive quadrature of the piecewise-linear load, element by element."""
+    total = np.zeros(3)
+    for k in range(x.size - 1):
+        def value(s, part, k=k):
+            a, b, c, e = point_kernels(place - s, z)
+            ps, qs = np.interp(s, x[k:k + 2], p[k:k + 2]), np.interp(s, x[k:k + 2], q[k:k + 2])
+            return -2 / np.pi * (c * ps + e * qs, a * ps + b * qs, b * ps + c * qs)[part]
+        total += [quad(value, x[k], x[k + 1], args=(part,), epsabs=1e-14, epsrel=1e-13)[0] for part in range(3)]
+    return total
+
+
+@pytest.mark.parametrize("z", [0.02, 0.1, 1.0, 5.0])
+def test_equals_exact_integral_of_the_piecewise_linear_load(z):
+    rng = np.random.default_rng(1)
+    x = np.linspace(-1.0, 1.0, 41)
+    p, q = rng.uniform(0, 1, 41), rng.normal(size=41)  # ends not at zero: jumps
+    fields = stress(x, z, p, q, 0.3)
+    for node in (0, 7, 20, 40):
+        exact = integral(x, p, q, x[node], z)
+        assert [field[node] for field in fields] == pytest.approx(exact, abs=1e-10)
+
+
+def test_far_elements_keep_their_digits():
+    """Second differences of the closed form alone lose 1e-9 of a kernel 6,400 elements away."""
+    u = np.array([6400.0])
+    mean_distance = point_kernels(u, 3.0)[:, 0]
+    assert hat(u, 3.0)[:, 0] == pytest.approx(mean_distance, rel=1e-6)
+    assert hat(u, 3.0)[1, 0] == pytest.approx(9 * quad(lambda s: (1 - abs(s)) * (u[0] - s) / ((u[0] - s)**2 + 9)**2,
+                                                       -1, 1, points=[0], epsabs=0, epsrel=1e-13)[0], rel=1e-11)
+
+
+@pytest.mark.parametrize("nodes", [101, 801])
+def test_uniform_strip(nodes):
+    x = np.linspace(-1, 1, nodes)
+    i = np.argmin(np.abs(x - 0.3))
+    if abs(x[i] - 0.3) > 1e-12:
+        pytest.skip("0.3 is no node")
+    pressed = stress(x, 0.5, np.ones(nodes), None, 0.3)
+    assert [field[i] for field in pressed] == pytest.approx([-0.4284912, -0.9428956, -0.0665178], abs=5e-8)
+    left, right = np.arctan2(x[i] + 1, 0.5), np.arctan2(x[i] - 1, 0.5)
+    angle, double = left - right, (np.sin(2 * left) - np.sin(2 * right)) / 2
+    squares = np.log(((x[i] + 1)**2 + 0.25) / ((x[i] - 1)**2 + 0.25)), np.sin(left)**2 - np.sin(right)**2
+    dragged = stress(x, 0.5, np.zeros(nodes), np.ones(nodes), 0.3)
+    exact = -np.array([squares[0] - squares[1], squares[1], angle - double]) / np.pi
+    assert [field[i] for field in dragged] == pytest.approx(exact, abs=1e-12)
+
+
+def test_hertz_values_and_order_of_sampling():
+    """Hertz's edges, which rise with infinite slope, hold the sampled load to order 1.5."""
+    exact = np.array([-0.329715992, -0.841995437, -0.107116594])
+    dragged = np.array([-0.3405462, -0.8473513, -0.1236024])
+    errors = []
+    for per_width in (100, 200, 400):
+        errors.append(np.abs(at(*hertz(per_width), 0.3) - exact).max())
+        assert at(*hertz(per_width, 0.05), 0.3) == pytest.approx(dragged, abs=1.2 * errors[-1])
+    assert errors[0] < 1.3e-4 and errors[2] < 1.6e-5
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx([1.5, 1.5], abs=0.03)
+
+
+def test_smooth_pressure_converges_with_second_order():
+    """p = (1 - x^2)^(3/2), whose slope is finite everywhere."""
+    def exact(kernel):
+        return quad(lambda t: -2 / np.pi * kernel(0.3 - np.sin(t)) * np.cos(t)**4, -np.pi / 2, np.pi / 2,
+                    epsabs=1e-14)[0]
+    parts = [exact(lambda u, k=k: point_kernels(np.array(u), 0.5)[k]) for k in (2, 0, 1)]
+    errors = []
+    for per_width in (100, 200, 400):
+        x = np.arange(-2 * per_width, 2 * per_width + 1) / per_width
+        fields = stress(x, 0.5, np.clip(1 - x * x, 0, None)**1.5, None, 0.3)
+        errors.append(np.abs(at(x, fields, 0.3) - parts).max())
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2, 2], abs=0.05)
+    assert errors[-1] < 2e-6
+
+
+def test_hertz_extremes():
+    z = np.array([0.5, 0.7042917, 0.7861514])
+    x, (sx, sz, txz) = hertz(400, z=z)
+    middle = np.argmin(np.abs(x))
+    assert (sx - sz)[2, middle] / 2 == pytest.approx(0.3002831, abs=2e-5)
+    assert von_mises(sx, sz, txz, 0.3)[1, middle] == pytest.approx(0.5575162, abs=5e-5)
+    assert np.abs(txz[0]).max() == pytest.approx(0.25, abs=2e-5)
+    assert abs(x[np.abs(txz[0]).argmax()]) == pytest.approx(np.sqrt(3) / 2, abs=0.0026)
+    assert out_of_plane(sx, sz, 0.3) == pytest.approx(0.3 * (sx + sz))
+
+
+def test_surface_is_the_limit_from_inside():
+    x = np.linspace(-2, 2, 401)
+    p = np.clip(1 - x * x, 0, None)
+    for field in stress(x, [0.0, 1e-9], p, 0.1 * p, 0.3):
+        assert field[0] == pytest.approx(field[1], abs=1e-7)
+    sx, sz, txz = stress(x, 0.0, p, 0.1 * p, 0.3)
+    assert sz == pytest.approx(-p, abs=1e-14) and txz == pytest.approx(-0.1 * p, abs=1e-14)
+    only_pressed = stress(x, 0.0, p, None, 0.3)
+    assert only_pressed[0] == pytest.approx(-p, abs=1e-14)
+
+
+def test_no_wrap_around():
+    """A load at one end is not felt at the other as if it came from beyond."""
+    x = np.linspace(0, 10, 256)
+    p = np.zeros(256)
+    p[1] = 1.0
+    short = stress(x, 1.0, p, None, 0.3)
+    assert short[1][-1] == pytest.approx(-2 / np.pi / 9.96**4 * (10 / 255), rel=0.05)
+    assert (np.abs(short[1][-20:]) < 1e-5).all()
+
+
+def test_batches_and_shapes():
+    x = np.linspace(-1, 1, 64)
+    p = np.random.default_rng(0).uniform(size=(3, 2, 64))
+    whole = stress(x, [0.1, 0.2], p, p, 0.3)
+    assert whole[0].shape == (3, 2, 2, 64)
+    single = stress(x, 0.2, p[1, 0], p[1, 0], 0.3)
+    for many, one in zip(whole, single):
+        assert many[1, 0, 1] == pytest.approx(one, abs=1e-13)
+
+
+@pytest.mark.parametrize("change, text", [
+    ({"x": [0.0, 1.0, 3.0]}, "uniformly"), ({"x": [2.0, 1.0, 0.0]}, "uniformly"), ({"z": -0.1}, "depths"),
+    ({"pressure": [1.0, 2.0]}, "one value a node"), ({"shear": [1.0]}, "same shape"),
+    ({"poisson_ratio": 0.6}, "Poisson")])
+def test_faults_are_named(change, text):
+    given = {"x": [0.0, 1.0, 2.0], "z": 0.1, "pressure": [0.0, 1.0, 0.0], "shear": None, "poisson_ratio": 0.3}
+    with pytest.raises(ValueError, match=text):
+        stress(**(given | change))
+
+
+def test_depths_of_an_operator_must_be_finite():
+    with pytest.raises(ValueError, match="finite"):
+        StressField(10, 1.0, [np.nan])

@@ -1,0 +1,166 @@
+"""Histories at body points, and with them damage, on ripples of ten nodes."""
+import numpy as np
+import pytest
+from post_result_file import P0, A, Scene, write
+
+from ehlpetsc.post import Material, damage, stress
+from ehlpetsc.post.accumulate import Counting
+from ehlpetsc.post.bodies import passage
+from ehlpetsc.post.histories import BodyStress, history_at
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.postresult import PostResult
+from ehlpetsc.post.run import EVERY_LOSS, Job, run
+
+FINE = 16  # elements of the reference a node spacing
+DEPTHS = (0.0, 0.02, 0.05, 0.1)  # z/a: 0 to 5 elements
+WAVE = 10  # nodes
+
+
+class Ripples(Scene):
+    """Hertz times 1 + half a ripple of ten nodes that the fast surface carries."""
+
+    def load(self, x, k):
+        phase = 2 * np.pi * (x - self.u1 * self.time[k]) / (WAVE * self.dx)
+        return P0 * np.clip(1 - (x / A) ** 2, 0, None) ** 1.5 * (1.6 + 0.8 * np.cos(phase))
+
+    def pressure(self, k):
+        return self.load(self.x, k)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return Ripples(per_width=50, ratio=0.5, travel=8.5)
+
+
+@pytest.fixture(scope="module")
+def loads(scene, tmp_path_factory):
+    with Loads(write(tmp_path_factory.mktemp("ripples") / "a.h5", scene, depths=DEPTHS)) as opened:
+        yield opened
+
+
+def reference(scene, s, frames):
+    """Histories (3, nz, frames) at body point s from the continuous pressure on a mesh FINE times finer."""
+    fine = np.arange(scene.x[0], scene.x[-1] + scene.dx / 2 / FINE, scene.dx / FINE)
+    out = np.empty((3, len(DEPTHS), frames.size))
+    for n, k in enumerate(frames):
+        place = s + scene.u2 * scene.time[k]
+        shifted = fine + (place - fine[0]) % (scene.dx / FINE)  # a node of the reference at the point
+        p = scene.load(shifted, k)
+        node = int(np.rint((place - shifted[0]) / (scene.dx / FINE)))
+        for part, field in enumerate(stress(shifted, np.array(DEPTHS) * A, p, 0.05 * p, 0.3)):
+            out[part, :, n] = field[:, node]
+    return out
+
+
+def linear(scene, s, frames):
+    """The same by linear interpolation of nodal stresses."""
+    out = np.empty((3, len(DEPTHS), frames.size))
+    for n, k in enumerate(frames):
+        p = scene.pressure(k)
+        for part, field in enumerate(stress(scene.x, np.array(DEPTHS) * A, p, 0.05 * p, 0.3)):
+            out[part, :, n] = [np.interp(s + scene.u2 * scene.time[k], scene.x, row) for row in field]
+    return out
+
+
+def test_damage_on_ripples_of_ten_nodes_within_two_percent(scene, loads):
+    motion_s = scene.x[0] - np.array([10.0, 25.37, 41.81]) * scene.dx
+    losses = []
+    for s in motion_s:
+        place = s + scene.u2 * scene.time
+        frames = np.flatnonzero((place >= scene.x[0]) & (place <= scene.x[-1]))
+        assert frames[0] > 0 and frames[-1] < scene.time.size - 1
+        exact = damage(*reference(scene, s, frames), Material()).damage
+        ours = [damage(*history_at(loads, "slow", s, z * A)[1], Material()).damage for z in DEPTHS]
+        assert ours == pytest.approx(exact, rel=0.02)
+        losses.append(1 - damage(*linear(scene, s, frames), Material()).damage / exact)
+    assert np.mean(losses) > 0.1  # what linear interpolation would lose
+
+
+def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
+    """Equal ripples may pair otherwise on the sweep's grid of 60 Pa, hence the half per cent."""
+    output = tmp_path / "a.post.h5"
+    run(Job(str(loads.path), str(output)))
+    result = PostResult(output)
+    for surface in ("slow", "fast"):
+        points = np.flatnonzero(result.complete[surface])
+        for j in points[[0, points.size // 3, -1]]:
+            for k, z in enumerate(DEPTHS):
+                values = history_at(loads, surface, result.s[j], z * A)[1]
+                assert result.damage[surface][k, j] == pytest.approx(damage(*values, Material()).damage, rel=5e-3)
+
+
+def test_signs_of_the_two_bodies(loads):
+    """Traction +0.05 p on the slow solid, -0.05 p on the fast one: at the surface txz = -q."""
+    for surface, sign in (("slow", -1), ("fast", 1)):
+        s = loads.x[0] - 30 * loads.dx
+        _, values = history_at(loads, surface, s, 0.0)
+        assert values[2] == pytest.approx(-sign * 0.05 * values[1], abs=1e-6 * P0)
+        assert values[1].min() < -0.7 * P0
+
+
+def test_exact_at_nodes_and_offsets_for_a_smooth_load():
+    """The spline load against a mesh 16 times finer: fourth order, where hats would err by a percent."""
+    errors = []
+    for nodes in (20, 10):
+        x = np.arange(0, 400.0)
+        fine = np.arange(0, 399.01, 1 / 16)
+
+        def load(y, nodes=nodes):
+            return np.exp(-((y - 200) / 60) ** 2) * (1 + 0.5 * np.cos(2 * np.pi * y / nodes))
+        body = BodyStress(400, np.array([0.0, 2.0]))
+        spectra = body.transform(load(x)[None], 0.1 * load(x)[None])
+        worst = 0.0
+        for depth, z in enumerate((0.0, 2.0)):
+            exact = stress(fine, z, load(fine), 0.1 * load(fine), 0.3)
+            for offset in (0.0, 0.25, 0.4375):
+                found = body(depth, spectra, np.array([offset]))[0, :, 100:300]
+                at = np.rint((x[100:300] + offset) * 16).astype(int)
+                worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact)))
+        errors.append(worst)
+    assert errors[1] < 1e-3
+    assert errors[0] < 3e-4
+
+
+@pytest.mark.parametrize("every", sorted(EVERY_LOSS))
+def test_loss_stated_for_skipped_frames(every, tmp_path):
+    """The share of near-surface damage that a result stored with every 2, 4, 8 loses, as the warning says."""
+    scene = Ripples(per_width=50, ratio=1.0, travel=14.5)
+    found = {}
+    for k in (1, every):
+        path = write(tmp_path / f"{k}.h5", scene, every=k, depths=(0.0, 0.02))
+        run(Job(str(path), str(tmp_path / "out.h5"), surfaces=("slow",)))
+        result = PostResult(tmp_path / "out.h5")
+        rows = result.damage["slow"][:, result.complete["slow"]]
+        found[k] = np.interp(np.linspace(0, 1, 50), np.linspace(0, 1, rows.shape[1]), rows.mean(axis=0)).mean()
+    assert 100 * (1 - found[every] / found[1]) == pytest.approx(EVERY_LOSS[every], abs=1)
+
+
+def test_only_points_that_entered_and_left(scene):
+    time = scene.time
+    s = scene.x[0] + scene.dx * np.arange(-900, scene.x.size)
+    for speed in (scene.u1, scene.u2, -scene.u2):
+        motion = passage(s, scene.x, scene.dx, time, speed)
+        first, last = s + speed * time[0], s + speed * time[-1]
+        tiny = 1e-6 * scene.dx
+        through = np.sort([first, last], axis=0)
+        expected = (through[0] <= scene.x[0] + tiny) & (through[1] >= scene.x[-1] - tiny)
+        assert (motion.complete == expected).all() and (expected.any() or speed < 0)
+        for j in np.flatnonzero(expected)[::40]:
+            place = (s[j] + speed * time - scene.x[0]) / scene.dx
+            inside = np.flatnonzero((place >= -1e-6) & (place <= scene.x.size - 1 + 1e-6))
+            assert (motion.enter[j], motion.leave[j]) == (inside[0], inside[-1])
+
+
+def test_at_rest_no_point_passes(scene):
+    motion = passage(scene.x, scene.x, scene.dx, scene.time, 0.0)
+    assert not motion.complete.any()
+
+
+def test_counting_choices_reach_the_result(loads, tmp_path):
+    values = {}
+    for name, counting in {"max3": Counting(), "sz": Counting("sz"), "morrow": Counting(mean_stress="morrow"),
+                           "window": Counting(ranges="window")}.items():
+        run(Job(str(loads.path), str(tmp_path / "o.h5"), surfaces=("slow",), depths=(0.05,), counting=counting))
+        values[name] = np.nanmax(PostResult(tmp_path / "o.h5").damage["slow"])
+    assert values["sz"] <= values["max3"] <= values["window"]
+    assert values["morrow"] < values["max3"]
