@@ -1,0 +1,106 @@
+"""Progress lines, the bar, and the summary line."""
+import io
+import re
+
+import pytest
+
+from ehlpetsc import report
+
+SCALARS = dict(dt=1.5e-7, newton=4, contacts=2, h_min=0.1234e-6, p_max=1.25e9)
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock set by hand: a list whose last item is the time."""
+    times = [100.0]
+    monkeypatch.setattr(report.clock, "monotonic", lambda: times[-1])
+    return times
+
+
+def run(stream, clock, seconds_a_step, steps=100):
+    progress = report.Progress(0.0, steps * 1e-6, stream)
+    for step in range(1, steps + 1):
+        clock.append(clock[-1] + seconds_a_step)
+        progress.step(step, step * 1e-6, SCALARS)
+    progress.close()
+    return stream.getvalue()
+
+
+def test_lines_have_fixed_columns_and_are_few(clock):
+    lines = run(io.StringIO(), clock, seconds_a_step=1.0).splitlines()
+    assert len(lines) == 1 + 20 + 1  # heading, one each five seconds, last
+    assert len({len(line) for line in lines}) == 1
+    names = ["step", "time/us", "dt/us", "newton", "contacts", "h_min/um", "p_max/GPa", "remaining"]
+    assert lines[0].split() == names
+    assert lines[1].split() == ["1", "1.0000", "0.15000", "4", "2", "0.12340", "1.2500", "1m39s"]
+    assert lines[-1].split()[::7] == ["100", "0s"]
+
+
+def test_a_quick_run_shows_its_first_and_last_step(clock):
+    steps = [line.split()[0] for line in run(io.StringIO(), clock, seconds_a_step=1e-3).splitlines()[1:]]
+    assert steps == ["1", "100"]
+
+
+def test_a_single_step_is_shown_once(clock):
+    assert len(run(io.StringIO(), clock, 1.0, steps=1).splitlines()) == 2
+
+
+def test_nothing_is_written_if_nothing_happened():
+    stream = io.StringIO()
+    report.Progress(0.0, 1.0, stream).close()
+    assert stream.getvalue() == ""
+
+
+def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
+    text = run(Terminal(), clock, seconds_a_step=1.0, steps=10)
+    assert text.count("\n") == 1 and text.endswith("\n")
+    bars = [bar.removesuffix("\x1b[K") for bar in text.strip().split("\r") if bar]
+    assert len(bars) == 10
+    assert all(len(bar) < 100 for bar in bars)
+    drawn = bars[4].split("]")[0]
+    assert drawn.count("#") == pytest.approx(drawn.count("."), abs=1)
+    assert "50.0 %" in bars[4] and "5s left" in bars[4] and "p_max 1.250 GPa" in bars[4]
+    assert "." not in bars[-1].split("]")[0]
+
+
+def test_narrow_terminal_is_not_overrun(clock, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "40")
+    bars = run(Terminal(), clock, 1.0, steps=3).strip().split("\r")
+    assert all(len(bar.removesuffix("\x1b[K")) < 40 for bar in bars)
+
+
+def test_progress_of_a_restarted_run_counts_from_its_restart(clock):
+    stream = io.StringIO()
+    progress = report.Progress(50e-6, 100e-6, stream)
+    clock.append(clock[-1] + 10.0)
+    progress.step(60, 60e-6, SCALARS)
+    assert stream.getvalue().split()[-1] == "40s"
+
+
+@pytest.mark.parametrize(
+    "seconds, text",
+    [(0.4, "0s"), (59.4, "59s"), (59.6, "1m00s"), (725, "12m05s"), (12000, "3h20m"), (187200, "2d04h")],
+)
+def test_durations_read_well(seconds, text):
+    assert report.duration(seconds) == text
+
+
+def test_summary_line_can_be_grepped_and_read_back():
+    line = report.summary_line(
+        "done", steps=120, newton=600, h_min=0.0, p_max=1.23456789e9, contacts=27, load_error=2.5e-12,
+        mass_error=3e-4, wall=12.34,
+    )
+    assert line.startswith("ehlpetsc: done steps=")
+    values = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", line)}
+    assert values == dict(
+        steps=120, newton=600, h_min=0, p_max=1.23456789e9, contacts=27, load_error=2.5e-12, mass_error=3e-4,
+        wall=12.3,
+    )
