@@ -89,7 +89,7 @@ def save_movie(results, options, path):
     steps = np.unique(np.linspace(0, last, min(last + 1, MOVIE_FRAMES)).round().astype(int))
     colours, labels, key = drawing.series_colours(results)
     figure, axes = _two_panels()
-    limits = None
+    limits = _movie_limits(results, steps)
     writer = PillowWriter(fps=MOVIE_RATE)
     with writer.saving(figure, str(path), dpi=MOVIE_DPI):
         for index in steps:
@@ -99,11 +99,24 @@ def save_movie(results, options, path):
             drawing.pressure_and_film(axes, results, indices, colours, _window(results, options))
             if len(results) > 1:
                 drawing.series_legend(axes[0], colours, labels, key)
-            limits = limits or (1.05e-9 * np.nanmax(results[0].steps("p_max")), axes[1].get_ylim()[1])
-            axes[0].set_ylim(0.0, limits[0])
-            axes[1].set_ylim(0.0, limits[1])
+            for panel, limit in zip(axes, limits, strict=True):
+                panel.set_ylim(0.0, limit)
             axes[0].set_title(_instant(results[0], index), fontsize="medium")
             writer.grab_frame()
+
+
+def _movie_limits(results, frames):
+    """Upper ends of the axes [GPa, um]: all pressures, and the film inside the contact.
+
+    A series is in order of its swept value, so that its thickest film is likely at one of the ends.
+    """
+    film = 1e-9
+    for result in (results[0], results[-1]):
+        inside = np.abs(result.x) <= result.attrs["a"]
+        shown = [index for index in frames if index < len(result.time)]
+        film = max(film, *(result.frame("film_thickness", index)[inside].max() for index in shown))
+    pressure = max(np.nanmax(result.steps("p_max")) for result in results)
+    return 1.05e-9 * pressure, 1.15e6 * film
 
 
 def _two_panels():
