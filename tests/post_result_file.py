@@ -1,4 +1,5 @@
 """Result files for the tests of post-processing: Hertz pressure with ripples that travel with the surfaces."""
+
 import h5py
 import numpy as np
 
@@ -36,7 +37,9 @@ class Scene:
     The pressure is Hertz's, times 1 + ripple of both profiles where they are at that time.
     """
 
-    def __init__(self, per_width=50, steps=None, ratio=0.5, travel=6.0, mean=25.0, courant=0.5, ripple=3e6, seed=0):
+    def __init__(
+        self, per_width=50, steps=None, ratio=0.5, travel=6.0, mean=25.0, courant=0.5, ripple=3e6, seed=0
+    ):
         self.x = A * np.arange(-2.5 * per_width, 1.5 * per_width + 0.5) / per_width
         self.dx, self.mean, self.ratio, self.ripple = A / per_width, mean, ratio, ripple
         self.u1, self.u2 = mean * (1 + ratio / 2), mean * (1 - ratio / 2)
@@ -48,24 +51,57 @@ class Scene:
         self.hertz = P0 * np.sqrt(np.clip(1 - (self.x / A) ** 2, 0, None))
 
     def pressure(self, k):
-        height = sum(np.interp(self.x - u * self.time[k], *self.profiles[name])
-                     for name, u in (("fast", self.u1), ("slow", self.u2)))
+        height = sum(
+            np.interp(self.x - u * self.time[k], *self.profiles[name])
+            for name, u in (("fast", self.u1), ("slow", self.u2))
+        )
         return np.clip(self.hertz * (1 + self.ripple * height), 0, None)
 
 
-def write(path, scene, *, every=1, depths=(0.0, 0.05, 0.5), post="", steady=False, frames=None, friction=0.05,
-          dtype=float, edit=None):
+def write(
+    path,
+    scene,
+    *,
+    every=1,
+    depths=(0.0, 0.05, 0.5),
+    post="",
+    steady=False,
+    frames=None,
+    friction=0.05,
+    dtype=float,
+    edit=None,
+):
     """Write the scene's result file; `edit(file)` may spoil it before it is closed."""
     kept = np.arange(0, scene.time.size, every)[:frames]
-    case = CASE.format(mean=scene.mean, ratio=scene.ratio, time="" if steady else "[time]\ntravel = 6.0", every=every,
-                       depths=list(depths), post=post)
+    case = CASE.format(
+        mean=scene.mean,
+        ratio=scene.ratio,
+        time="" if steady else "[time]\ntravel = 6.0",
+        every=every,
+        depths=list(depths),
+        post=post,
+    )
     with h5py.File(path, "w") as file:
-        file.attrs.update(format_version=1, title="made up", case=case, petsc_options="", versions="", ranks=1,
-                          a=A, p0=P0, h_scale=A * A / 0.0191, u1=scene.u1, u2=scene.u2, status="done")
+        file.attrs.update(
+            format_version=1,
+            title="made up",
+            case=case,
+            petsc_options="",
+            versions="",
+            ranks=1,
+            a=A,
+            p0=P0,
+            h_scale=A * A / 0.0191,
+            u1=scene.u1,
+            u2=scene.u2,
+            status="done",
+        )
         file["x"], file["time"], file["step"] = scene.x, scene.time[kept], kept
         shape = (kept.size, scene.x.size)
-        sets = {name: file.create_dataset(name, shape, dtype, maxshape=(None, shape[1]), chunks=(8, shape[1]))
-                for name in ("pressure", "shear_stress_slow", "shear_stress_fast")}
+        sets = {
+            name: file.create_dataset(name, shape, dtype, maxshape=(None, shape[1]), chunks=(8, shape[1]))
+            for name in ("pressure", "shear_stress_slow", "shear_stress_fast")
+        }
         for row, k in enumerate(kept):
             p = scene.pressure(k)
             sets["pressure"][row] = p

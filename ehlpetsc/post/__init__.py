@@ -1,9 +1,22 @@
 """Stresses, fatigue damage and its statistics from result files or arrays; needs no PETSc and no MPI."""
+
 from ehlpetsc.post.accumulate import Damage, damage
 from ehlpetsc.post.cycles import rainflow
 from ehlpetsc.post.fatigue import Material, cycles_to_failure, equivalent_range, strain_range
 from ehlpetsc.post.statistics import WeibullFit, weibull_fit
 from ehlpetsc.post.stress import out_of_plane, stress, von_mises
 
-__all__ = ["Damage", "Material", "WeibullFit", "cycles_to_failure", "damage", "equivalent_range", "out_of_plane",
-           "rainflow", "strain_range", "stress", "von_mises", "weibull_fit"]
+__all__ = [
+    "Damage",
+    "Material",
+    "WeibullFit",
+    "cycles_to_failure",
+    "damage",
+    "equivalent_range",
+    "out_of_plane",
+    "rainflow",
+    "strain_range",
+    "stress",
+    "von_mises",
+    "weibull_fit",
+]

@@ -1,4 +1,5 @@
 """``python3 -m ehlpetsc.post RESULT.h5 [...]``: damage, statistics and pictures."""
+
 import argparse
 import sys
 import time
@@ -28,24 +29,50 @@ def arguments(argv=None):
     parser = argparse.ArgumentParser(
         prog="python3 -m ehlpetsc.post",
         description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics from "
-                    "result files. Material and depths come from the case text in the file, section [post].")
+        "result files. Material and depths come from the case text in the file, section [post].",
+    )
     add = parser.add_argument
-    add("results", nargs="+", metavar="RESULT.h5", help="several, as of one slide/roll ratio each: also compared")
-    add("-o", "--output", metavar="FILE", help="result, of a single input (default: RESULT.post.h5 beside it)")
+    add(
+        "results",
+        nargs="+",
+        metavar="RESULT.h5",
+        help="several, as of one slide/roll ratio each: also compared",
+    )
+    add(
+        "-o", "--output", metavar="FILE", help="result, of a single input (default: RESULT.post.h5 beside it)"
+    )
     add("--surface", choices=("both", *SURFACES), default="both")
     add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
-    add("--count", choices=CHANNELS, default="max3",
-        help="counted scalar; max3: largest damage among counting sx, sz and txz (default)")
+    add(
+        "--count",
+        choices=CHANNELS,
+        default="max3",
+        help="counted scalar; max3: largest damage among counting sx, sz and txz (default)",
+    )
     add("--residue", choices=RESIDUES, default="closed", help="history repeated (default), or half cycles")
-    add("--ranges", choices=RANGES, default="reversals",
-        help="component ranges of a cycle: between its reversals (default) or largest less smallest in it")
+    add(
+        "--ranges",
+        choices=RANGES,
+        default="reversals",
+        help="component ranges of a cycle: between its reversals (default) or largest less smallest in it",
+    )
     add("--mean-stress", choices=MEAN_STRESSES, default="none")
     add("--regression", choices=REGRESSIONS, default="x on y", help="of the median ranks")
     add("--jobs", type=_jobs, default=1, metavar="N", help="processes (default 1)")
-    add("--pictures", nargs="?", const="", metavar="FOLDER",
-        help="also draw PNG and SVG, in FOLDER or beside the result")
-    add("--point", nargs=2, type=float, metavar=("S/A", "Z/A"),
-        help="body point of the history picture (default: that of the largest damage)")
+    add(
+        "--pictures",
+        nargs="?",
+        const="",
+        metavar="FOLDER",
+        help="also draw PNG and SVG, in FOLDER or beside the result",
+    )
+    add(
+        "--point",
+        nargs=2,
+        type=float,
+        metavar=("S/A", "Z/A"),
+        help="body point of the history picture (default: that of the largest damage)",
+    )
     add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
     chosen = parser.parse_args(argv)
     if chosen.output and len(chosen.results) > 1:
@@ -66,7 +93,12 @@ class Progress:
         if self.shown and (now - self.last > 0.2 or done >= total):
             self.last = now
             end = "\n" if done >= total else ""
-            print(f"\r{self.name}: {100 * done / total:5.1f} % of {total} depths", end=end, file=sys.stderr, flush=True)
+            print(
+                f"\r{self.name}: {100 * done / total:5.1f} % of {total} depths",
+                end=end,
+                file=sys.stderr,
+                flush=True,
+            )
 
 
 def _process(path, chosen):
@@ -78,8 +110,10 @@ def _process(path, chosen):
     start = time.perf_counter()
 
     def report(text):
-        print(f"ehlpetsc.post: {text}" if text.startswith(output) else f"ehlpetsc.post: {path}: {text}",
-              file=sys.stderr)
+        print(
+            f"ehlpetsc.post: {text}" if text.startswith(output) else f"ehlpetsc.post: {path}: {text}",
+            file=sys.stderr,
+        )
 
     run(job, report, Progress(path))
     _summary(output, time.perf_counter() - start)
@@ -90,20 +124,26 @@ def _summary(output, wall):
     """One greppable line a result, and one a depth."""
     result = PostResult(output)
     for k, z in enumerate(result.z):
-        print(f"z/a={z:<6g}" + "".join(
-            f" {surface}: D_max={result.largest(surface, k):.3e}" for surface in result.surfaces)
+        print(
+            f"z/a={z:<6g}"
+            + "".join(f" {surface}: D_max={result.largest(surface, k):.3e}" for surface in result.surfaces)
             + f" weibull alpha={result.fits[k].alpha:.4g} beta={result.fits[k].beta:.4g}"
-              f" r2={result.fits[k].r_squared:.4f}")
+            f" r2={result.fits[k].r_squared:.4f}"
+        )
     points = " ".join(f"{name}={result.complete[name].sum()}" for name in result.surfaces)
-    print(f"ehlpetsc.post: done {output} points {points} depths={len(result.z)} "
-          f"asperities={len(result.height)} wall={wall:.2f}")
+    print(
+        f"ehlpetsc.post: done {output} points {points} depths={len(result.z)} "
+        f"asperities={len(result.height)} wall={wall:.2f}"
+    )
 
 
 def main(argv=None):
     """Run; returns the exit status."""
     chosen = arguments(argv)
     if not COMPILED:
-        print("ehlpetsc.post: numba is not installed: the same results, a hundred times slower", file=sys.stderr)
+        print(
+            "ehlpetsc.post: numba is not installed: the same results, a hundred times slower", file=sys.stderr
+        )
     path = chosen.results[0]
     try:
         outputs = []
@@ -122,7 +162,9 @@ def main(argv=None):
         print(f"ehlpetsc.post: {fault}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
-        print("ehlpetsc.post: interrupted; the same command goes on from the finished depths", file=sys.stderr)
+        print(
+            "ehlpetsc.post: interrupted; the same command goes on from the finished depths", file=sys.stderr
+        )
         return STOPPED
     return DONE
 

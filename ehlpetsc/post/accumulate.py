@@ -1,4 +1,5 @@
 r"""Palmgren-Miner damage of stress histories, :math:`D=\sum1/N_i` (Holmes et al. 2005, eq. (15))."""
+
 from math import sqrt
 from typing import NamedTuple
 
@@ -32,7 +33,7 @@ class Counting(NamedTuple):
 
     def check(self):
         """Raise ValueError for a choice that does not exist."""
-        for name, value, known in zip(self._fields, self, (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES)):
+        for name, value, known in zip(self._fields, self, (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES), strict=False):
             if value not in known:
                 raise ValueError(f"{name} = {value!r}: must be one of {', '.join(known)}")
         return self
@@ -65,8 +66,9 @@ def _sum_cycles(stress, nu, n, first, second, weight, window, morrow, constants,
         i, j = first[k], second[k]
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
         if window:
-            squared = _squared_range(_window(stress[0], i, j), _window(stress[1], i, j),
-                                     _window(stress[2], i, j), nu)
+            squared = _squared_range(
+                _window(stress[0], i, j), _window(stress[1], i, j), _window(stress[2], i, j), nu
+            )
         else:
             squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
         if squared <= 0:
@@ -93,16 +95,17 @@ def damage_of_points(stress, lengths, nu, channels, closed, window, morrow, cons
     """Fill out (points, 3) from stress (points, 3, samples), of which the first lengths[point] count."""
     stack, first, second, weight, scalar = work
     for point in range(stress.shape[0]):
-        history = stress[point, :, :lengths[point]]
+        history = stress[point, :, : lengths[point]]
         worst = -1.0
         for channel in channels:
             if channel == 3:
                 _fill_von_mises(history, nu, scalar)
-                n = find_cycles(scalar[:lengths[point]], closed, stack, first, second, weight)
+                n = find_cycles(scalar[: lengths[point]], closed, stack, first, second, weight)
             else:
                 n = find_cycles(history[channel], closed, stack, first, second, weight)
-            total, number, largest = _sum_cycles(history, nu, n, first, second, weight, window, morrow,
-                                                 constants, table)
+            total, number, largest = _sum_cycles(
+                history, nu, n, first, second, weight, window, morrow, constants, table
+            )
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
                 out[point, 0], out[point, 1], out[point, 2] = total, number, sqrt(largest)
@@ -114,15 +117,27 @@ class Counter:
     def __init__(self, material, counting, samples):
         counting.check()
         self.material = material
-        self.options = (np.array(CHANNELS[counting.count]), counting.residue == "closed",
-                        counting.ranges == "window", counting.mean_stress == "morrow")
+        self.options = (
+            np.array(CHANNELS[counting.count]),
+            counting.residue == "closed",
+            counting.ranges == "window",
+            counting.mean_stress == "morrow",
+        )
         self.table = life_table(material)
         self.work = (*workspace(samples), np.empty(samples))
 
     def __call__(self, stress, lengths, out):
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range."""
-        damage_of_points(stress, lengths, self.material.poisson_ratio, *self.options,
-                         self.material.constants(), self.table, self.work, out)
+        damage_of_points(
+            stress,
+            lengths,
+            self.material.poisson_ratio,
+            *self.options,
+            self.material.constants(),
+            self.table,
+            self.work,
+            out,
+        )
 
 
 def damage(sx, sz, txz, material, count="max3", residue="closed", ranges="reversals", mean_stress="none"):

@@ -1,4 +1,5 @@
 """Points fixed in a moving body: where each is at each time, and which passed the whole contact."""
+
 from typing import NamedTuple
 
 import numpy as np

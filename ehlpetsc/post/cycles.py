@@ -5,6 +5,7 @@ of a point that the contact passes over and over is periodic, so by default the 
 its largest reversal, led back to it, and counted to the end (ASTM E1049, 5.4.5, repeating histories). As half
 cycles it gives the counts of ASTM E1049, 5.4.4.
 """
+
 import numpy as np
 
 from ehlpetsc.post.jit import njit
@@ -75,8 +76,8 @@ def find_cycles(series, closed, stack, first, second, weight):
     else:
         return 0
     rising = series[i] > value
-    for i in range(i, size):
-        new = series[i]
+    for k in range(i, size):
+        new = series[k]
         if new == value:
             continue
         if (new > value) != rising:
@@ -86,7 +87,7 @@ def find_cycles(series, closed, stack, first, second, weight):
                 top, n = _close(series, stack, 0, top, first, second, weight, n)
             rising = not rising
         value = new
-        last = i
+        last = k
     stack[top] = last
     top, n = _close(series, stack, 0, top + 1, first, second, weight, n)
     if closed:
@@ -99,8 +100,12 @@ def find_cycles(series, closed, stack, first, second, weight):
 
 def workspace(size):
     """Arrays (stack, first, second, weight) that :func:`find_cycles` needs for histories up to `size`."""
-    return (np.empty(2 * size + 4, np.int64), np.empty(size + 2, np.int64), np.empty(size + 2, np.int64),
-            np.empty(size + 2))
+    return (
+        np.empty(2 * size + 4, np.int64),
+        np.empty(size + 2, np.int64),
+        np.empty(size + 2, np.int64),
+        np.empty(size + 2),
+    )
 
 
 def rainflow(series, residue="closed"):

@@ -11,6 +11,7 @@ r"""From stress ranges to life: equivalent range, cyclic stress-strain curve, st
 Holmes et al. 2005. K' is not in their Table 1; unless given it is :math:`\sigma_f'/\varepsilon_f'^{n'}`, which
 makes the two curves agree.
 """
+
 from dataclasses import dataclass
 from math import exp, inf, log
 
@@ -35,8 +36,13 @@ class Material:
     cyclic_strength: float | None = None
 
     def __post_init__(self):
-        for name in ("youngs_modulus", "cyclic_hardening", "fatigue_strength", "fatigue_ductility",
-                     "cyclic_strength"):
+        for name in (
+            "youngs_modulus",
+            "cyclic_hardening",
+            "fatigue_strength",
+            "fatigue_ductility",
+            "cyclic_strength",
+        ):
             value = getattr(self, name)
             if value is not None and not 0 < value < inf:
                 raise ValueError(f"{name} = {value}: must be a finite number above 0")
@@ -53,8 +59,15 @@ class Material:
 
     def constants(self):
         """(E, K', n', sigma_f', eps_f', b, c), what the compiled functions take."""
-        return (self.youngs_modulus, self.hardening_coefficient, self.cyclic_hardening, self.fatigue_strength,
-                self.fatigue_ductility, self.b, self.c)
+        return (
+            self.youngs_modulus,
+            self.hardening_coefficient,
+            self.cyclic_hardening,
+            self.fatigue_strength,
+            self.fatigue_ductility,
+            self.b,
+            self.c,
+        )
 
 
 def equivalent_range(dsx, dsy, dsz, dtxz):
@@ -65,8 +78,9 @@ def equivalent_range(dsx, dsy, dsz, dtxz):
 def strain_range(dsv, material):
     """Strain range of a stress range dsv in Pa (Holmes et al. 2005, eq. (13))."""
     dsv = np.asarray(dsv, float)
-    return (dsv / material.youngs_modulus
-            + 2 * (dsv / (2 * material.hardening_coefficient)) ** (1 / material.cyclic_hardening))
+    return dsv / material.youngs_modulus + 2 * (dsv / (2 * material.hardening_coefficient)) ** (
+        1 / material.cyclic_hardening
+    )
 
 
 @njit(cache=True, nogil=True)

@@ -1,4 +1,5 @@
 """The pictures of one result, and of several over slide/roll ratios; each as PNG and SVG."""
+
 from pathlib import Path
 
 import matplotlib
@@ -45,7 +46,7 @@ def draw(inputs, outputs, folder, point=None, frame=None):
     if folder:
         Path(folder).mkdir(parents=True, exist_ok=True)
     results = [PostResult(output) for output in outputs]
-    for path, output, result in zip(inputs, outputs, results):
+    for path, output, result in zip(inputs, outputs, results, strict=False):
         stem = Path(folder or Path(output).parent) / Path(path).stem
         for surface in result.surfaces:
             if result.complete[surface].any():
@@ -84,7 +85,9 @@ def damage_picture(result, surface):
     length = plots.shown_length(result, surface)
     largest = max(result.largest(surface, k) for k in range(len(result.z)))
     plots.profile(top, result, surface, length)
-    top.set_title(f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g}", fontsize=9)
+    top.set_title(
+        f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g}", fontsize=9
+    )
     _bar(figure, plots.damage_contours(main, result, surface, length, plots.decades(largest)), [top, main])
     main.set_xlabel("along the surface [half widths]")
     return figure
@@ -100,7 +103,7 @@ def stacked_picture(results, surface):
     start = [_aligned(result, surface, results) for result in results]
     plots.profile(axes[0], start[0], surface, length)
     contours = None
-    for row, result in zip(axes[1:], start):
+    for row, result in zip(axes[1:], start, strict=False):
         drawn = plots.damage_contours(row, result, surface, length, levels)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
@@ -131,8 +134,9 @@ def depth_picture(result):
     axes = figure.subplots()
     for k, color in enumerate(_colours(len(result.z))):
         plots.exceedance_curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
-    plots.finish_exceedance(axes, f"{result.height.size} asperities, {result.main} surface, "
-                                  f"slide/roll ratio {result.ratio:.3g}")
+    plots.finish_exceedance(
+        axes, f"{result.height.size} asperities, {result.main} surface, slide/roll ratio {result.ratio:.3g}"
+    )
     return figure
 
 
@@ -140,9 +144,11 @@ def ratio_picture(results, z):
     """Distributions at one depth, by slide/roll ratio (figures 11 and 12)."""
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
-    for result, color in zip(results, _colours(len(results))):
+    for result, color in zip(results, _colours(len(results)), strict=False):
         k = int(np.argmin(np.abs(result.z - z)))
-        plots.exceedance_curve(axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color)
+        plots.exceedance_curve(
+            axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color
+        )
     plots.finish_exceedance(axes, f"z/a = {z:g}, {results[0].main} surface")
     return figure
 
@@ -164,7 +170,7 @@ def field_picture(path, result, frame):
     top.plot(x, p / 1e9, color=plots.DARK, lw=0.9)
     top.set_ylabel("p [GPa]")
     top.set_title(f"solid of the {surface} surface, t = {time * 1e6:.4g} µs", fontsize=9)
-    for row, (name, values) in zip(axes, fields.items()):
+    for row, (name, values) in zip(axes, fields.items(), strict=False):
         mesh = plots.stress_field(row, x, z, values, name)
         figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.MaxNLocator(5))
     axes[-1].set_xlabel("x/a")
@@ -192,7 +198,10 @@ def history_picture(path, result, point):
     damages = 1 / cycles_to_failure(ranges, material)
     top.set_xlabel("time [µs]")
     marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
-    top.set_title(f"{surface} surface, s/a = {s / result.a:.4g}, z/a = {z:g}: {len(cycles)} cycles of "
-                  f"{plots.COMPONENTS[channel]}, {marked} marked, damage {damages.sum():.3g}", fontsize=9)
+    top.set_title(
+        f"{surface} surface, s/a = {s / result.a:.4g}, z/a = {z:g}: {len(cycles)} cycles of "
+        f"{plots.COMPONENTS[channel]}, {marked} marked, damage {damages.sum():.3g}",
+        fontsize=9,
+    )
     plots.cycle_histogram(bottom, cycles, damages)
     return figure

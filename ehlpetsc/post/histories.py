@@ -9,6 +9,7 @@ pressure spike of a single node the spline swings by up to 13 % of it to the oth
 
 A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
 """
+
 import numpy as np
 from scipy import fft
 
@@ -83,8 +84,12 @@ class BodyStress:
 
     def __init__(self, nx, depths):
         self.n = padded_length(nx)
-        self.tables = [np.ascontiguousarray(np.stack([spline_spectra(nx, depth, d) for d in OFFSETS], axis=1))
-                       .view(float) for depth in depths]
+        self.tables = [
+            np.ascontiguousarray(np.stack([spline_spectra(nx, depth, d) for d in OFFSETS], axis=1)).view(
+                float
+            )
+            for depth in depths
+        ]
         self._out = np.empty((BATCH, 3, self.n // 2 + 1), complex)
 
     def transform(self, pressure, shear):
@@ -93,7 +98,7 @@ class BodyStress:
 
     def __call__(self, depth, spectra, offset):
         """Stresses (frames, 3, n) of depth number `depth`, `offset` (frames,) elements right of the nodes."""
-        out = self._out[:len(offset)]
+        out = self._out[: len(offset)]
         _spectra(self.tables[depth], offset_weights(offset), *spectra, out)
         return fft.irfft(out, self.n, overwrite_x=True)
 
@@ -161,7 +166,7 @@ def _hand_over(depth, ring, done, finish):
     while done.size:
         slot = done[0] % slots
         count = min(done.size, slots - slot)
-        finish(depth, done[0], done[0] + count, ring[slot:slot + count])
+        finish(depth, done[0], done[0] + count, ring[slot : slot + count])
         done = done[count:]
 
 
@@ -172,11 +177,11 @@ def history_at(loads, surface, s, depth, quantum=0.0):
     stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
     values = np.zeros((3, inside.size + 2))
     for begin in range(0, inside.size, BATCH):
-        frames = inside[begin:begin + BATCH]
+        frames = inside[begin : begin + BATCH]
         node = np.floor(place[frames]).astype(int)
         spectra = stress.transform(*loads.read(surface, frames[0], frames[-1] + 1))
         fields = stress(0, spectra, place[frames] - node)
-        values[:, begin + 1:begin + 1 + frames.size] = fields[np.arange(frames.size), :, node].T
+        values[:, begin + 1 : begin + 1 + frames.size] = fields[np.arange(frames.size), :, node].T
     if quantum:
         values = np.floor(values / quantum + 0.5) * quantum
     return loads.time[inside], values

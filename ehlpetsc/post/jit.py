@@ -1,6 +1,8 @@
 """numba where it is installed; without it the same functions run as plain Python, slowly, to the same digits."""
+
 try:
     from numba import njit
+
     COMPILED = True
 except ImportError:
     COMPILED = False

@@ -8,6 +8,7 @@ With u = x - s, D = u^2 + z^2 the plane-strain half plane under pressure p and t
 
 (Holmes et al. 2005, section 2.3). All lengths here are in element lengths, so the integrals are numbers.
 """
+
 import numpy as np
 
 GAUSS_DISTANCE = 8.0  # elements; beyond it quadrature is exact to rounding and the closed form cancels
@@ -26,10 +27,17 @@ def _primitives(u, z):
     d = u * u + z * z
     d = np.where(d > 0, d, 1.0)  # u = z = 0: u ln D and z ln D are 0, the rest is the finite part
     log_d = np.log(d)
-    first = np.stack([theta / 2 + z * u / (2 * d), -z * z / (2 * d),
-                      theta / 2 - z * u / (2 * d), log_d / 2 + z * z / (2 * d)])
-    second = np.stack([u * theta / 2, -z * theta / 2,
-                       u * theta / 2 - z * log_d / 2, u * log_d / 2 - u + 1.5 * z * theta])
+    first = np.stack(
+        [
+            theta / 2 + z * u / (2 * d),
+            -z * z / (2 * d),
+            theta / 2 - z * u / (2 * d),
+            log_d / 2 + z * z / (2 * d),
+        ]
+    )
+    second = np.stack(
+        [u * theta / 2, -z * theta / 2, u * theta / 2 - z * log_d / 2, u * log_d / 2 - u + 1.5 * z * theta]
+    )
     return first, second
 
 

@@ -1,4 +1,5 @@
 """The loads in a result file, read a few frames at a time, and what makes a file unfit for damage."""
+
 from pathlib import Path
 
 import h5py
@@ -80,8 +81,11 @@ class Loads:
         self.profiles = {surface: self._profile(surface) for surface in SURFACES}
 
     def _read_times(self):
-        fields = [self._file[name] for name in ("pressure", "shear_stress_slow", "shear_stress_fast")
-                  if name in self._file]
+        fields = [
+            self._file[name]
+            for name in ("pressure", "shear_stress_slow", "shear_stress_fast")
+            if name in self._file
+        ]
         frames = min([self._dataset("time").shape[0]] + [field.shape[0] for field in fields])
         time = self._dataset("time")[:frames]
         while len(time) > 1 and time[-1] == 0:  # lengthened but never filled by a killed writer
@@ -89,7 +93,7 @@ class Loads:
         if not np.isfinite(time).all() or (np.diff(time) <= 0).any():
             raise PostError("dataset time: does not increase from frame to frame")
         self.time = time
-        steps = self._file["step"][:len(time)] if "step" in self._file else np.arange(len(time))
+        steps = self._file["step"][: len(time)] if "step" in self._file else np.arange(len(time))
         self.every = int(np.median(np.diff(steps))) if len(time) > 1 else 1
 
     def _dataset(self, name):
@@ -119,8 +123,7 @@ class Loads:
 
     def read(self, surface, first, last):
         """Pressure and traction in +x on the solid of `surface` in frames first .. last-1, float64, Pa."""
-        return (self._finite("pressure", first, last),
-                self._finite(f"shear_stress_{surface}", first, last))
+        return (self._finite("pressure", first, last), self._finite(f"shear_stress_{surface}", first, last))
 
     def _finite(self, name, first, last):
         try:
@@ -129,8 +132,10 @@ class Loads:
             raise PostError(f"dataset {name}: frames {first} to {last - 1} cannot be read: {fault}") from None
         if not np.isfinite(rows).all():
             frame, node = np.argwhere(~np.isfinite(rows))[0]
-            raise PostError(f"{name} is {rows[frame, node]} at frame {first + frame} "
-                            f"(t = {self.time[first + frame]:.6g} s), x/a = {self.x[node] / self.a:.4g}")
+            raise PostError(
+                f"{name} is {rows[frame, node]} at frame {first + frame} "
+                f"(t = {self.time[first + frame]:.6g} s), x/a = {self.x[node] / self.a:.4g}"
+            )
         return rows
 
 

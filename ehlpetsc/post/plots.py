@@ -1,4 +1,5 @@
 """Pictures of stresses, histories, damage and its distribution, each drawn into given axes."""
+
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
@@ -56,10 +57,19 @@ def damage_contours(axes, result, surface, length, levels):
     axes.set_xlim(0, length)
     axes.set_ylabel("z/a")
     if levels is None or len(depth) < 2:
-        axes.text(0.5, 0.5, "no damage" if levels is None else "one depth", transform=axes.transAxes, ha="center")
+        axes.text(
+            0.5, 0.5, "no damage" if levels is None else "one depth", transform=axes.transAxes, ha="center"
+        )
         return None
-    return axes.contourf(x, depth, np.maximum(values, levels[0] * 1e-3), levels=levels, norm=LogNorm(),
-                         cmap="inferno_r", extend="min")
+    return axes.contourf(
+        x,
+        depth,
+        np.maximum(values, levels[0] * 1e-3),
+        levels=levels,
+        norm=LogNorm(),
+        cmap="inferno_r",
+        extend="min",
+    )
 
 
 def _depth_axis(z):
@@ -116,12 +126,12 @@ def stress_field(axes, x, z, values, label):
 def stress_fields(sx, sz, txz, nu):
     """The four stresses of the picture, GPa, by label."""
     names = (*COMPONENTS, r"$\sigma_{vM}$")
-    return {name: values / 1e9 for name, values in zip(names, (sx, sz, txz, von_mises(sx, sz, txz, nu)))}
+    return {name: values / 1e9 for name, values in zip(names, (sx, sz, txz, von_mises(sx, sz, txz, nu)), strict=False)}
 
 
 def history(axes, time, values, channel):
     """The three components over time, and the largest cycles of the counted one, whose number it returns."""
-    for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833")):
+    for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833"), strict=False):
         axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
     counted = values[channel] / 1e9
     cycles = rainflow(counted)

@@ -1,4 +1,5 @@
 """A post-processing result read back for the summary and the pictures."""
+
 import h5py
 import numpy as np
 
@@ -36,11 +37,16 @@ class PostResult:
             self.surfaces = [name for name in ("slow", "fast") if name in damage]
             self.damage = {name: damage[name][:] for name in self.surfaces}
             self.complete = {name: damage[f"{name}_complete"][:].astype(bool) for name in self.surfaces}
-            self.profiles = {name: (file[f"profile/{name}/s"][:], file[f"profile/{name}/z"][:])
-                             for name in self.surfaces if f"profile/{name}" in file}
+            self.profiles = {
+                name: (file[f"profile/{name}/s"][:], file[f"profile/{name}/z"][:])
+                for name in self.surfaces
+                if f"profile/{name}" in file
+            }
             self.height, self.under = file["asperities/height"][:], file["asperities/damage"][:]
             weibull = file["weibull"]
-            self.fits = [WeibullFit(*row) for row in zip(weibull["alpha"], weibull["beta"], weibull["r_squared"])]
+            self.fits = [
+                WeibullFit(*row) for row in zip(weibull["alpha"], weibull["beta"], weibull["r_squared"], strict=False)
+            ]
 
     def largest(self, surface, depth):
         """Largest damage of a surface at depth number `depth`; nan if no point passed."""

@@ -1,4 +1,5 @@
 """From a result file to a post-processing result: tasks over surfaces and depths, in one or more processes."""
+
 import multiprocessing
 import signal
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -15,7 +16,7 @@ from ehlpetsc.post.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
 
 MEMORY = 400e6  # bytes of open histories, all processes together
-DEPTHS_AT_ONCE = 8  # more share the spectra of the loads no better
+DEPTHS_AT_ONCE = 1  # more crowd each other out of the cache and were slower
 EVERY_LOSS = {2: 3, 4: 14, 8: 24}  # % by steps between frames, as measured in tests/verification
 
 
@@ -89,23 +90,28 @@ def _check_frames(loads, settings):
 def _motions(loads, surfaces):
     speeds = [loads.speeds[surface] for surface in surfaces]
     s = body_points(loads.x, loads.dx, loads.time, speeds)
-    motions = {surface: passage(s, loads.x, loads.dx, loads.time, speed)
-               for surface, speed in zip(surfaces, speeds)}
+    motions = {
+        surface: passage(s, loads.x, loads.dx, loads.time, speed) for surface, speed in zip(surfaces, speeds, strict=False)
+    }
     if not any(motion.complete.any() for motion in motions.values()):
         moved = max(abs(speed) for speed in speeds) * (loads.time[-1] - loads.time[0]) / loads.a
         width = (loads.x[-1] - loads.x[0]) / loads.a
-        raise PostError(f"no body point passed the whole contact: the surfaces moved {moved:.3g} half widths, the "
-                        f"domain is {width:.3g} wide; raise time.travel")
+        raise PostError(
+            f"no body point passed the whole contact: the surfaces moved {moved:.3g} half widths, the "
+            f"domain is {width:.3g} wide; raise time.travel"
+        )
     return s, motions
 
 
 def _warn(loads, motions, report):
     if loads.status not in ("done", "unknown"):
-        report(f"warning: the run's status is \"{loads.status}\": only its stored frames are used")
+        report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
     if loads.every > 1:
         steps = min(EVERY_LOSS, key=lambda known: abs(known - loads.every))
-        report(f"warning: stored with output.every = {loads.every}: peaks between frames are lost; with every {steps} "
-               f"about {EVERY_LOSS[steps]} % of the damage near the surface was lost on ripples of ten nodes at slide/roll ratio 1")
+        report(
+            f"warning: stored with output.every = {loads.every}: peaks between frames are lost; with every {steps} "
+            f"about {EVERY_LOSS[steps]} % of the damage near the surface was lost on ripples of ten nodes at slide/roll ratio 1"
+        )
     for surface, motion in motions.items():
         if not motion.complete.any():
             report(f"warning: no point of the {surface} surface passed the whole contact: its damage is nan")
@@ -115,8 +121,8 @@ def _tasks(job, missing):
     """Split the missing depths: shared load spectra against memory and an even load of the processes."""
     tasks = []
     for surface, depths in missing.items():
-        at_once = DEPTHS_AT_ONCE if job.jobs == 1 else max(1, min(DEPTHS_AT_ONCE, len(depths) // (2 * job.jobs)))
-        tasks += [Task(job, surface, tuple(depths[k:k + at_once])) for k in range(0, len(depths), at_once)]
+        at_once = DEPTHS_AT_ONCE
+        tasks += [Task(job, surface, tuple(depths[k : k + at_once])) for k in range(0, len(depths), at_once)]
     return tasks
 
 
@@ -125,8 +131,10 @@ def _work_off(tasks, jobs, parts, progress):
     done = 0
     if jobs == 1 or len(tasks) < 2:
         for task in tasks:
+
             def share(part, done=done, task=task):
                 progress(done + part * len(task.depths), total)
+
             done += _keep(task, solve(task, share), parts)
         return
     pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("fork"), _die_quietly)
@@ -148,7 +156,7 @@ def _die_quietly():
 
 
 def _keep(task, values, parts):
-    for depth, part in zip(task.depths, values):
+    for depth, part in zip(task.depths, values, strict=False):
         parts.save(task.surface, depth, part)
     return len(task.depths)
 
@@ -196,12 +204,24 @@ def _store(job, loads, settings, s, motions, results, mark, report):
         other = f"{surface}_" if inner else ""
         datasets[f"damage/{other}cycles"] = values[..., 1]
         datasets[f"damage/{other}peak_range"] = values[..., 2]
-        _statistics(job, loads, surface, inner, s, complete, values[..., 0], settings, datasets, groups, report)
+        _statistics(
+            job, loads, surface, inner, s, complete, values[..., 0], settings, datasets, groups, report
+        )
     speeds = {f"speed_{name}": loads.speeds[name] for name in motions}
     mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
-    attrs = {"title": loads.title, "case": loads.case, "source": str(loads.path), "fingerprint": mark, "a": loads.a,
-             "p0": loads.p0, "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
-             "regression": job.regression, "every": loads.every, **speeds, **job.counting._asdict()}
+    attrs = {
+        "title": loads.title,
+        "case": loads.case,
+        "source": str(loads.path),
+        "fingerprint": mark,
+        "a": loads.a,
+        "p0": loads.p0,
+        "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
+        "regression": job.regression,
+        "every": loads.every,
+        **speeds,
+        **job.counting._asdict(),
+    }
     write_result(job.output, datasets, attrs, groups)
 
 
@@ -220,14 +240,21 @@ def _statistics(job, loads, surface, inner, s, complete, damage, settings, datas
     beyond = (under >= 1).sum(axis=1)
     for name, values in (("s", peaks.s), ("height", peaks.height), ("damage", under)):
         datasets[f"asperities/{inner}{name}"] = values
-    for name, values in (("alpha", fits[:, 0]), ("beta", fits[:, 1]), ("r_squared", fits[:, 2]),
-                         ("at_least_one", beyond), ("undamaged", (under == 0).sum(axis=1))):
+    for name, values in (
+        ("alpha", fits[:, 0]),
+        ("beta", fits[:, 1]),
+        ("r_squared", fits[:, 2]),
+        ("at_least_one", beyond),
+        ("undamaged", (under == 0).sum(axis=1)),
+    ):
         datasets[f"weibull/{inner}{name}"] = values
     if loads.profiles[surface] is not None:
         datasets[f"profile/{surface}/s"], datasets[f"profile/{surface}/z"] = loads.profiles[surface]
     for group in ("asperities", "weibull"):
         groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
-    for depth, count in zip(settings.depths, beyond):
+    for depth, count in zip(settings.depths, beyond, strict=False):
         if count:
-            report(f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 or more "
-                   f"at z/a = {depth:g}: failure in the first pass")
+            report(
+                f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 or more "
+                f"at z/a = {depth:g}: failure in the first pass"
+            )

@@ -1,4 +1,5 @@
 """What the case text inside a result file says about the material and the depths."""
+
 import difflib
 import math
 import tomllib
@@ -12,7 +13,15 @@ class PostError(Exception):
 
 
 FATIGUE_KEYS = ("b", "c", "cyclic_hardening", "fatigue_strength", "fatigue_ductility", "cyclic_strength")
-DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5)  # where [post] names none: those of the paper and some between
+DEPTHS = (
+    0.0,
+    0.01,
+    0.03,
+    0.05,
+    0.1,
+    0.2,
+    0.5,
+)  # where [post] names none: those of the paper and some between
 
 
 class Settings(NamedTuple):
@@ -53,7 +62,7 @@ def _materials(contact, post, faults):
             return None, None
         pairs.append(pair)
     try:  # surface 1 is the fast one
-        return tuple(Material(E, nu, **constants) for E, nu in zip(*pairs))
+        return tuple(Material(E, nu, **constants) for E, nu in zip(*pairs, strict=False))
     except ValueError as fault:
         faults.append(f"post.{fault}")
         return None, None

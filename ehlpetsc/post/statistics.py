@@ -1,4 +1,5 @@
 r"""Damage at asperity peaks and its Weibull distribution (Holmes et al. 2005, section 3.2)."""
+
 from typing import NamedTuple
 
 import numpy as np

@@ -1,4 +1,5 @@
 """The post-processing result: its layout, and the parts from which an interrupted run goes on."""
+
 import hashlib
 import json
 import os
@@ -14,8 +15,14 @@ FORMAT_VERSION = 1
 DESCRIPTIONS = {
     "damage/s": ("m", "body coordinate, x = s + speed * time"),
     "damage/z_over_a": ("1", "depth over half width"),
-    "damage/slow": ("1", "fatigue damage of one pass, slow surface; nan where a point did not pass the whole contact"),
-    "damage/fast": ("1", "fatigue damage of one pass, fast surface; nan where a point did not pass the whole contact"),
+    "damage/slow": (
+        "1",
+        "fatigue damage of one pass, slow surface; nan where a point did not pass the whole contact",
+    ),
+    "damage/fast": (
+        "1",
+        "fatigue damage of one pass, fast surface; nan where a point did not pass the whole contact",
+    ),
     "damage/slow_complete": ("1", "1 where a point of the slow surface entered and left the domain"),
     "damage/fast_complete": ("1", "1 where a point of the fast surface entered and left the domain"),
     "damage/cycles": ("1", "counted cycles of a pass"),
@@ -36,7 +43,9 @@ DESCRIPTIONS = {
 def fingerprint(path, *choices):
     """Mark of an input file and of what is asked of it; parts of another mark are not used."""
     stat = os.stat(path)
-    text = json.dumps([str(Path(path).resolve()), stat.st_size, stat.st_mtime_ns, __version__, choices], default=str)
+    text = json.dumps(
+        [str(Path(path).resolve()), stat.st_size, stat.st_mtime_ns, __version__, choices], default=str
+    )
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -3,6 +3,7 @@ r"""Stresses in the half plane under a line load, by FFT with exact element kern
 Each body in its own frame: x as in the contact, z into the solid, tension positive, pressure positive, traction
 q in +x on the solid. The load is linear between nodes and nothing outside them.
 """
+
 from functools import lru_cache
 
 import numpy as np
@@ -13,7 +14,11 @@ from ehlpetsc.post.kernels import half_hat, hat
 UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
 DEPTHS_AT_ONCE = 5  # whose spectra stay in the cache
 NEAR = 24  # elements; beyond it a kernel is smooth over an element
-FAR_RULE = ((-0.4**0.5, 5 / 24), (0.0, 7 / 12), (0.4**0.5, 5 / 24))  # moments of the unit hat up to the fifth
+FAR_RULE = (
+    (-(0.4**0.5), 5 / 24),
+    (0.0, 7 / 12),
+    (0.4**0.5, 5 / 24),
+)  # moments of the unit hat up to the fifth
 
 
 def spacing(x):
@@ -65,8 +70,8 @@ def _between_kinks(offset):
     """Quadrature over the unit hat, (place, share), in pieces without a kink of a kernel seen from `offset`."""
     breaks = np.unique([-1.0, 0.0, 1.0, offset - 1, offset])
     nodes, weights = np.polynomial.legendre.leggauss(5)
-    for left, right in zip(breaks[:-1], breaks[1:]):
-        for node, weight in zip(nodes, weights):
+    for left, right in zip(breaks[:-1], breaks[1:], strict=False):
+        for node, weight in zip(nodes, weights, strict=False):
             place = left + (right - left) * (node + 1) / 2
             yield place, (right - left) / 2 * weight * (1 - abs(place))
 
@@ -91,7 +96,8 @@ class StressField:
         self.nx, self.n = nx, padded_length(nx)
         self.depths = z / dx
         self.normal, self.cross, self.along, self.shear = np.stack(
-            [kernel_spectra(nx, depth) for depth in self.depths], axis=1)
+            [kernel_spectra(nx, depth) for depth in self.depths], axis=1
+        )
         self._ends = None
 
     def __call__(self, pressure, shear=None):
@@ -101,7 +107,9 @@ class StressField:
         fields = np.empty((3, *p.shape[:-2], len(self.depths), self.nx))
         for first in range(0, len(self.depths), DEPTHS_AT_ONCE):
             some = slice(first, first + DEPTHS_AT_ONCE)
-            fields[..., some, :] = fft.irfft(self._spectra(some, p, q), self.n, overwrite_x=True)[..., :self.nx]
+            fields[..., some, :] = fft.irfft(self._spectra(some, p, q), self.n, overwrite_x=True)[
+                ..., : self.nx
+            ]
         self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
         return fields[0], fields[1], fields[2]
 

@@ -1,4 +1,5 @@
 """Rainflow counts against the standard, hand-made cases, and a second implementation."""
+
 from collections import Counter
 
 import numpy as np
@@ -21,8 +22,11 @@ def counts(cycles):
 def three_point(series):
     """ASTM E1049, 5.4.4, written as the standard's text reads; ranges and counts."""
     turns = [v for k, v in enumerate(series) if k == 0 or v != series[k - 1]]
-    turns = [v for k, v in enumerate(turns)
-             if k in (0, len(turns) - 1) or (v - turns[k - 1]) * (turns[k + 1] - v) < 0]
+    turns = [
+        v
+        for k, v in enumerate(turns)
+        if k in (0, len(turns) - 1) or (v - turns[k - 1]) * (turns[k + 1] - v) < 0
+    ]
     stack, total = [], Counter()
     for value in turns:
         stack.append(value)
@@ -36,7 +40,7 @@ def three_point(series):
             else:
                 total[y] += 1.0
                 del stack[-3:-1]
-    for a, b in zip(stack, stack[1:]):
+    for a, b in zip(stack, stack[1:], strict=False):
         total[abs(b - a)] += 0.5
     return {size: count for size, count in total.items() if size > 0}
 
@@ -58,7 +62,7 @@ def test_largest_range_is_not_dropped():
 def test_random_series_against_the_standard():
     rng = np.random.default_rng(0)
     for k in range(1000):
-        series = (rng.integers(-8, 9, rng.integers(2, 80)) if k % 2 else rng.normal(size=rng.integers(2, 300)))
+        series = rng.integers(-8, 9, rng.integers(2, 80)) if k % 2 else rng.normal(size=rng.integers(2, 300))
         assert counts(rainflow(series, "half")) == three_point(series.tolist())
 
 
@@ -66,7 +70,7 @@ def test_random_series_against_the_rainflow_package():
     package = pytest.importorskip("rainflow")
     rng = np.random.default_rng(1)
     for k in range(1000):
-        series = (rng.integers(-8, 9, rng.integers(3, 80)) if k % 2 else rng.normal(size=rng.integers(3, 300)))
+        series = rng.integers(-8, 9, rng.integers(3, 80)) if k % 2 else rng.normal(size=rng.integers(3, 300))
         expected = {size: count for size, count in package.count_cycles(series) if size > 0}
         assert counts(rainflow(series, "half")) == expected
 
@@ -99,8 +103,14 @@ def test_constant_and_short_series_have_no_cycles():
         assert rainflow(series).shape == (0, 5)
 
 
-@pytest.mark.parametrize("series, residue, text", [
-    ([1.0, np.nan, 2.0], "closed", "finite"), ([[1.0, 2.0]], "closed", "one row"), ([1.0, 2.0], "none", "residue")])
+@pytest.mark.parametrize(
+    "series, residue, text",
+    [
+        ([1.0, np.nan, 2.0], "closed", "finite"),
+        ([[1.0, 2.0]], "closed", "one row"),
+        ([1.0, 2.0], "none", "residue"),
+    ],
+)
 def test_faults(series, residue, text):
     with pytest.raises(ValueError, match=text):
         rainflow(series, residue)

@@ -1,4 +1,5 @@
 """Life and damage against the restored equations' values."""
+
 import subprocess
 import sys
 
@@ -14,22 +15,26 @@ RANGES = np.array([1e9, 1.5e9, 2e9, 3e9, 4e9])
 
 def life_curve(n, material):
     """Strain range that N cycles stand: Holmes et al. 2005, eq. (14)."""
-    return 2 * (material.fatigue_strength / material.youngs_modulus * (2 * n)**material.b
-                + material.fatigue_ductility * (2 * n)**material.c)
+    return 2 * (
+        material.fatigue_strength / material.youngs_modulus * (2 * n) ** material.b
+        + material.fatigue_ductility * (2 * n) ** material.c
+    )
 
 
 def pulse(size, samples=41):
     """One loading of sz alone in plane strain, from 0 to -size and back."""
-    sz = -size * np.sin(np.linspace(0, np.pi, samples))**2
+    sz = -size * np.sin(np.linspace(0, np.pi, samples)) ** 2
     return np.zeros(samples), sz, np.zeros(samples)
 
 
 def test_restored_values():
     assert STEEL.hardening_coefficient == pytest.approx(2232.77e6, rel=1e-6)
-    assert strain_range(RANGES, STEEL) == pytest.approx([4.92393e-3, 8.634665e-3, 1.911124e-2, 0.1555341, 0.9793237],
-                                                        rel=1e-6)
-    assert cycles_to_failure(RANGES, STEEL) == pytest.approx([2.106877e6, 2.565758e4, 1093.558, 12.21644, 0.5],
-                                                             rel=1e-6)
+    assert strain_range(RANGES, STEEL) == pytest.approx(
+        [4.92393e-3, 8.634665e-3, 1.911124e-2, 0.1555341, 0.9793237], rel=1e-6
+    )
+    assert cycles_to_failure(RANGES, STEEL) == pytest.approx(
+        [2.106877e6, 2.565758e4, 1093.558, 12.21644, 0.5], rel=1e-6
+    )
 
 
 def test_inversion_to_1e10_over_23_decades():
@@ -80,7 +85,9 @@ def test_one_pulse_is_one_cycle():
     assert result.peak_range == pytest.approx(dsv, rel=1e-12)
     assert result.cycles == 1
     assert result.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL), rel=1e-9)
-    assert damage(*pulse(size), STEEL, residue="half").damage == pytest.approx(result.damage, rel=1e-9)  # two halves
+    assert damage(*pulse(size), STEEL, residue="half").damage == pytest.approx(
+        result.damage, rel=1e-9
+    )  # two halves
 
 
 def test_max3_is_the_largest_of_its_counts():
@@ -121,14 +128,24 @@ def test_no_stress_no_damage():
     assert (result.damage == 0).all() and (result.cycles == 0).all() and (result.peak_range == 0).all()
 
 
-@pytest.mark.parametrize("choice", [{"count": "signed"}, {"residue": "none"}, {"ranges": "x"}, {"mean_stress": "swt"}])
+@pytest.mark.parametrize(
+    "choice", [{"count": "signed"}, {"residue": "none"}, {"ranges": "x"}, {"mean_stress": "swt"}]
+)
 def test_unknown_choices(choice):
     with pytest.raises(ValueError, match="must be one of"):
         damage(*pulse(1e9), STEEL, **choice)
 
 
-@pytest.mark.parametrize("constant", [{"b": 0.1}, {"c": np.nan}, {"fatigue_strength": -1.0},
-                                      {"poisson_ratio": 0.7}, {"cyclic_hardening": 0.0}])
+@pytest.mark.parametrize(
+    "constant",
+    [
+        {"b": 0.1},
+        {"c": np.nan},
+        {"fatigue_strength": -1.0},
+        {"poisson_ratio": 0.7},
+        {"cyclic_hardening": 0.0},
+    ],
+)
 def test_bad_constants(constant):
     with pytest.raises(ValueError, match=next(iter(constant))):
         Material(**constant)
@@ -151,7 +168,13 @@ print(rainflow(parts[0, 0]).tobytes().hex())
 
 def test_without_numba_to_the_last_bit():
     pytest.importorskip("numba")
-    outputs = [subprocess.run([sys.executable, "-c", SCRIPT.format(block=block, compiled=compiled)], check=True,
-                              capture_output=True, text=True).stdout
-               for block, compiled in (("", True), ("sys.modules['numba'] = None", False))]
+    outputs = [
+        subprocess.run(
+            [sys.executable, "-c", SCRIPT.format(block=block, compiled=compiled)],
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for block, compiled in (("", True), ("sys.modules['numba'] = None", False))
+    ]
     assert outputs[0] == outputs[1] and len(outputs[0]) > 1000

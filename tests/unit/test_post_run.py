@@ -1,4 +1,5 @@
 """The command, its result file, its faults, and going on after an interruption."""
+
 import os
 import subprocess
 import sys
@@ -50,32 +51,42 @@ def test_result_has_the_fixed_names(result, scene, capsys):
 
         def described(name, item):
             assert not isinstance(item, h5py.Dataset) or {"units", "long_name"} <= set(item.attrs), name
+
         file.visititems(described)
         passed = file["damage/slow_complete"][:].astype(bool)
         assert passed.any() and not passed.all()
-        assert np.isnan(file["damage/slow"][:, ~passed]).all() and np.isfinite(file["damage/slow"][:, passed]).all()
+        assert (
+            np.isnan(file["damage/slow"][:, ~passed]).all()
+            and np.isfinite(file["damage/slow"][:, passed]).all()
+        )
         s = file["damage/s"][passed]
         assert s[-1] <= scene.x[0] + 1e-12 and s[0] + scene.u2 * scene.time[-1] >= scene.x[-1] - 1e-12
     assert not result.with_name("run.post.h5.parts").exists()
 
 
 def test_imports_no_petsc_mpi_or_solver(result):
-    code = ("import sys; from ehlpetsc.post.__main__ import main; import ehlpetsc.post.gallery; "
-            f"assert main([{str(result)!r}]) == 0; bad = [m for m in {FORBIDDEN!r} if m in sys.modules]; "
-            "own = [m for m in sys.modules if m.startswith('ehlpetsc.') and not m.startswith('ehlpetsc.post')]; "
-            "assert not bad and not own, (bad, own)")
+    code = (
+        "import sys; from ehlpetsc.post.__main__ import main; import ehlpetsc.post.gallery; "
+        f"assert main([{str(result)!r}]) == 0; bad = [m for m in {FORBIDDEN!r} if m in sys.modules]; "
+        "own = [m for m in sys.modules if m.startswith('ehlpetsc.') and not m.startswith('ehlpetsc.post')]; "
+        "assert not bad and not own, (bad, own)"
+    )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
 
 
 def test_without_pictures_no_matplotlib(result):
-    code = ("import sys; from ehlpetsc.post.__main__ import main; "
-            f"assert main([{str(result)!r}]) == 0; assert 'matplotlib' not in sys.modules")
+    code = (
+        "import sys; from ehlpetsc.post.__main__ import main; "
+        f"assert main([{str(result)!r}]) == 0; assert 'matplotlib' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
 
 
 def arrays(path):
     with h5py.File(path) as file:
-        return {name: file[name][:] for name in ("damage/slow", "damage/fast", "damage/cycles", "weibull/beta")}
+        return {
+            name: file[name][:] for name in ("damage/slow", "damage/fast", "damage/cycles", "weibull/beta")
+        }
 
 
 def test_two_processes_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
@@ -86,7 +97,9 @@ def test_two_processes_and_small_memory_give_the_same(result, tmp_path, monkeypa
     one = arrays(tmp_path / "one.h5")
     for other in ("two.h5", "small.h5"):
         for name, values in arrays(tmp_path / other).items():
-            np.testing.assert_allclose(values, one[name], rtol=1e-3 if other == "small.h5" else 0, err_msg=name)
+            np.testing.assert_allclose(
+                values, one[name], rtol=1e-3 if other == "small.h5" else 0, err_msg=name
+            )
 
 
 def test_goes_on_after_an_interruption(result, tmp_path, monkeypatch):
@@ -131,7 +144,7 @@ def test_killed_writer(scene, tmp_path):
     path = write(tmp_path / "killed.h5", scene)
     code = f"""
 import h5py, os
-with h5py.File({str(path)!r}) as old, h5py.File({str(path) + '.new'!r}, "w", libver="latest") as new:
+with h5py.File({str(path)!r}) as old, h5py.File({str(path) + ".new"!r}, "w", libver="latest") as new:
     new.attrs.update(old.attrs); new.attrs["status"] = "running"
     for name in old: old.copy(name, new)
     del new["time"]
@@ -157,6 +170,7 @@ def test_missing_dataset(name, scene, tmp_path, capsys):
 def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
     def spoil(file):
         file["pressure"][300, 70] = np.nan
+
     said = fault(capsys, write(tmp_path / "a.h5", scene, edit=spoil))
     assert "pressure is nan at frame 300" in said and "x/a = -0.75" in said
     assert not (tmp_path / "a.post.h5").exists()
@@ -182,9 +196,15 @@ def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
     assert "raise time.travel" in fault(capsys, write(tmp_path / "c.h5", scene, frames=40))
 
 
-@pytest.mark.parametrize("post, text", [
-    ("fatigue_strenght = 2e9", "did you mean fatigue_strength"), ("b = 0.1", "post.b = 0.1"),
-    ("c = nan", "post.c"), ("fatigue_ductility = true", "post.fatigue_ductility")])
+@pytest.mark.parametrize(
+    "post, text",
+    [
+        ("fatigue_strenght = 2e9", "did you mean fatigue_strength"),
+        ("b = 0.1", "post.b = 0.1"),
+        ("c = nan", "post.c"),
+        ("fatigue_ductility = true", "post.fatigue_ductility"),
+    ],
+)
 def test_faults_in_the_post_section(post, text, scene, tmp_path, capsys):
     assert text in fault(capsys, write(tmp_path / "a.h5", scene, post=post))
 
@@ -217,12 +237,23 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
 
 
 def test_pictures_of_two_ratios(scene, tmp_path, capsys):
-    paths = [write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
-             for r in (0.5, 0.7)]
+    paths = [
+        write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
+        for r in (0.5, 0.7)
+    ]
     assert main([*map(str, paths), "--pictures", str(tmp_path / "out")]) == 0
     drawn = {path.name for path in (tmp_path / "out").iterdir()}
-    for stem in ("0.5.damage_slow", "0.5.damage_fast", "0.5.exceedance", "0.5.stress", "0.5.history",
-                 "compared.damage_slow", "compared.damage_fast", "compared.exceedance_z0", "compared.exceedance_z0.1"):
+    for stem in (
+        "0.5.damage_slow",
+        "0.5.damage_fast",
+        "0.5.exceedance",
+        "0.5.stress",
+        "0.5.history",
+        "compared.damage_slow",
+        "compared.damage_fast",
+        "compared.exceedance_z0",
+        "compared.exceedance_z0.1",
+    ):
         assert {f"{stem}.png", f"{stem}.svg"} <= drawn
     assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
     assert "was not in the contact" in fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")

@@ -1,4 +1,5 @@
 """Weibull fits, ranks, and asperity peaks."""
+
 import numpy as np
 import pytest
 
@@ -18,20 +19,20 @@ def test_textbook_data():
 
 def test_recovers_its_own_quantiles():
     ranks = benard_ranks(25)
-    values = 7.0 * (-np.log1p(-ranks))**(1 / 9.0)
+    values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
     assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
 
 
 def test_undamaged_are_censored_not_dropped():
     ranks = benard_ranks(25)
-    values = 7.0 * (-np.log1p(-ranks))**(1 / 9.0)
+    values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
     values[20:] = log_life(np.zeros(5))  # no damage: infinite
     assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
 
 
 def test_failed_at_once_keep_their_ranks():
     ranks = benard_ranks(25)
-    values = 7.0 * (-np.log1p(-ranks))**(1 / 9.0)
+    values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
     values[:3] = log_life(np.array([1.0, 3.0, 40.0]))  # damage of 1 and more: no logarithm of -log10 D
     assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
 
@@ -49,7 +50,7 @@ def test_faults():
 
 
 def test_exceedance_and_its_fit_agree():
-    values = 7.0 * (-np.log1p(-benard_ranks(25)))**(1 / 9.0)
+    values = 7.0 * (-np.log1p(-benard_ranks(25))) ** (1 / 9.0)
     damages = 10.0**-values
     falling, share = exceedance(damages)
     assert (np.diff(falling) <= 0).all()
@@ -60,7 +61,9 @@ def test_exceedance_and_its_fit_agree():
 
 def test_peaks_of_the_profile_that_passed():
     s = np.linspace(0, 1e-3, 501)
-    z = 1e-6 * np.sin(2 * np.pi * s / 1e-4) + 1e-9 * np.sin(2 * np.pi * s / 5e-6)  # ten asperities, small noise
+    z = 1e-6 * np.sin(2 * np.pi * s / 1e-4) + 1e-9 * np.sin(
+        2 * np.pi * s / 5e-6
+    )  # ten asperities, small noise
     grid = np.linspace(-1e-3, 2e-3, 1501)
     complete = (grid > 0.2e-3) & (grid < 0.81e-3)
     peaks = asperities((s, z), grid, complete)

@@ -1,4 +1,5 @@
 """Stresses against closed forms and direct integration."""
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -22,11 +23,15 @@ def integral(x, p, q, place, z):
     """The three stresses by adaptive quadrature of the piecewise-linear load, element by element."""
     total = np.zeros(3)
     for k in range(x.size - 1):
+
         def value(s, part, k=k):
             a, b, c, e = point_kernels(place - s, z)
-            ps, qs = np.interp(s, x[k:k + 2], p[k:k + 2]), np.interp(s, x[k:k + 2], q[k:k + 2])
+            ps, qs = np.interp(s, x[k : k + 2], p[k : k + 2]), np.interp(s, x[k : k + 2], q[k : k + 2])
             return -2 / np.pi * (c * ps + e * qs, a * ps + b * qs, b * ps + c * qs)[part]
-        total += [quad(value, x[k], x[k + 1], args=(part,), epsabs=1e-14, epsrel=1e-13)[0] for part in range(3)]
+
+        total += [
+            quad(value, x[k], x[k + 1], args=(part,), epsabs=1e-14, epsrel=1e-13)[0] for part in range(3)
+        ]
     return total
 
 
@@ -46,8 +51,18 @@ def test_far_elements_keep_their_digits():
     u = np.array([6400.0])
     mean_distance = point_kernels(u, 3.0)[:, 0]
     assert hat(u, 3.0)[:, 0] == pytest.approx(mean_distance, rel=1e-6)
-    assert hat(u, 3.0)[1, 0] == pytest.approx(9 * quad(lambda s: (1 - abs(s)) * (u[0] - s) / ((u[0] - s)**2 + 9)**2,
-                                                       -1, 1, points=[0], epsabs=0, epsrel=1e-13)[0], rel=1e-11)
+    assert hat(u, 3.0)[1, 0] == pytest.approx(
+        9
+        * quad(
+            lambda s: (1 - abs(s)) * (u[0] - s) / ((u[0] - s) ** 2 + 9) ** 2,
+            -1,
+            1,
+            points=[0],
+            epsabs=0,
+            epsrel=1e-13,
+        )[0],
+        rel=1e-11,
+    )
 
 
 @pytest.mark.parametrize("nodes", [101, 801])
@@ -60,7 +75,10 @@ def test_uniform_strip(nodes):
     assert [field[i] for field in pressed] == pytest.approx([-0.4284912, -0.9428956, -0.0665178], abs=5e-8)
     left, right = np.arctan2(x[i] + 1, 0.5), np.arctan2(x[i] - 1, 0.5)
     angle, double = left - right, (np.sin(2 * left) - np.sin(2 * right)) / 2
-    squares = np.log(((x[i] + 1)**2 + 0.25) / ((x[i] - 1)**2 + 0.25)), np.sin(left)**2 - np.sin(right)**2
+    squares = (
+        np.log(((x[i] + 1) ** 2 + 0.25) / ((x[i] - 1) ** 2 + 0.25)),
+        np.sin(left) ** 2 - np.sin(right) ** 2,
+    )
     dragged = stress(x, 0.5, np.zeros(nodes), np.ones(nodes), 0.3)
     exact = -np.array([squares[0] - squares[1], squares[1], angle - double]) / np.pi
     assert [field[i] for field in dragged] == pytest.approx(exact, abs=1e-12)
@@ -81,14 +99,20 @@ def test_hertz_values_and_order_of_sampling():
 
 def test_smooth_pressure_converges_with_second_order():
     """p = (1 - x^2)^(3/2), whose slope is finite everywhere."""
+
     def exact(kernel):
-        return quad(lambda t: -2 / np.pi * kernel(0.3 - np.sin(t)) * np.cos(t)**4, -np.pi / 2, np.pi / 2,
-                    epsabs=1e-14)[0]
+        return quad(
+            lambda t: -2 / np.pi * kernel(0.3 - np.sin(t)) * np.cos(t) ** 4,
+            -np.pi / 2,
+            np.pi / 2,
+            epsabs=1e-14,
+        )[0]
+
     parts = [exact(lambda u, k=k: point_kernels(np.array(u), 0.5)[k]) for k in (2, 0, 1)]
     errors = []
     for per_width in (100, 200, 400):
         x = np.arange(-2 * per_width, 2 * per_width + 1) / per_width
-        fields = stress(x, 0.5, np.clip(1 - x * x, 0, None)**1.5, None, 0.3)
+        fields = stress(x, 0.5, np.clip(1 - x * x, 0, None) ** 1.5, None, 0.3)
         errors.append(np.abs(at(x, fields, 0.3) - parts).max())
     assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2, 2], abs=0.05)
     assert errors[-1] < 2e-6
@@ -132,14 +156,21 @@ def test_batches_and_shapes():
     whole = stress(x, [0.1, 0.2], p, p, 0.3)
     assert whole[0].shape == (3, 2, 2, 64)
     single = stress(x, 0.2, p[1, 0], p[1, 0], 0.3)
-    for many, one in zip(whole, single):
+    for many, one in zip(whole, single, strict=False):
         assert many[1, 0, 1] == pytest.approx(one, abs=1e-13)
 
 
-@pytest.mark.parametrize("change, text", [
-    ({"x": [0.0, 1.0, 3.0]}, "uniformly"), ({"x": [2.0, 1.0, 0.0]}, "uniformly"), ({"z": -0.1}, "depths"),
-    ({"pressure": [1.0, 2.0]}, "one value a node"), ({"shear": [1.0]}, "same shape"),
-    ({"poisson_ratio": 0.6}, "Poisson")])
+@pytest.mark.parametrize(
+    "change, text",
+    [
+        ({"x": [0.0, 1.0, 3.0]}, "uniformly"),
+        ({"x": [2.0, 1.0, 0.0]}, "uniformly"),
+        ({"z": -0.1}, "depths"),
+        ({"pressure": [1.0, 2.0]}, "one value a node"),
+        ({"shear": [1.0]}, "same shape"),
+        ({"poisson_ratio": 0.6}, "Poisson"),
+    ],
+)
 def test_faults_are_named(change, text):
     given = {"x": [0.0, 1.0, 2.0], "z": 0.1, "pressure": [0.0, 1.0, 0.0], "shear": None, "poisson_ratio": 0.3}
     with pytest.raises(ValueError, match=text):

@@ -1,4 +1,5 @@
 """Histories at body points, and with them damage, on ripples of ten nodes."""
+
 import numpy as np
 import pytest
 from post_result_file import P0, A, Scene, write
@@ -86,7 +87,9 @@ def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
         for j in points[[0, points.size // 3, -1]]:
             for k, z in enumerate(DEPTHS):
                 values = history_at(loads, surface, result.s[j], z * A)[1]
-                assert result.damage[surface][k, j] == pytest.approx(damage(*values, Material()).damage, rel=5e-3)
+                assert result.damage[surface][k, j] == pytest.approx(
+                    damage(*values, Material()).damage, rel=5e-3
+                )
 
 
 def test_signs_of_the_two_bodies(loads):
@@ -106,7 +109,8 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
         fine = np.arange(0, 399.01, 1 / 16)
 
         def load(y, nodes=nodes):
-            return np.exp(-((y - 200) / 60) ** 2) * (1 + 0.5 * np.cos(2 * np.pi * y / nodes))
+            return np.exp(-(((y - 200) / 60) ** 2)) * (1 + 0.5 * np.cos(2 * np.pi * y / nodes))
+
         body = BodyStress(400, np.array([0.0, 2.0]))
         spectra = body.transform(load(x)[None], 0.1 * load(x)[None])
         worst = 0.0
@@ -115,7 +119,7 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
             for offset in (0.0, 0.25, 0.4375):
                 found = body(depth, spectra, np.array([offset]))[0, :, 100:300]
                 at = np.rint((x[100:300] + offset) * 16).astype(int)
-                worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact)))
+                worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact, strict=False)))
         errors.append(worst)
     assert errors[1] < 1e-3
     assert errors[0] < 3e-4
@@ -131,7 +135,9 @@ def test_loss_stated_for_skipped_frames(every, tmp_path):
         run(Job(str(path), str(tmp_path / "out.h5"), surfaces=("slow",)))
         result = PostResult(tmp_path / "out.h5")
         rows = result.damage["slow"][:, result.complete["slow"]]
-        found[k] = np.interp(np.linspace(0, 1, 50), np.linspace(0, 1, rows.shape[1]), rows.mean(axis=0)).mean()
+        found[k] = np.interp(
+            np.linspace(0, 1, 50), np.linspace(0, 1, rows.shape[1]), rows.mean(axis=0)
+        ).mean()
     assert 100 * (1 - found[every] / found[1]) == pytest.approx(EVERY_LOSS[every], abs=1)
 
 
@@ -158,9 +164,17 @@ def test_at_rest_no_point_passes(scene):
 
 def test_counting_choices_reach_the_result(loads, tmp_path):
     values = {}
-    for name, counting in {"max3": Counting(), "sz": Counting("sz"), "morrow": Counting(mean_stress="morrow"),
-                           "window": Counting(ranges="window")}.items():
-        run(Job(str(loads.path), str(tmp_path / "o.h5"), surfaces=("slow",), depths=(0.05,), counting=counting))
+    for name, counting in {
+        "max3": Counting(),
+        "sz": Counting("sz"),
+        "morrow": Counting(mean_stress="morrow"),
+        "window": Counting(ranges="window"),
+    }.items():
+        run(
+            Job(
+                str(loads.path), str(tmp_path / "o.h5"), surfaces=("slow",), depths=(0.05,), counting=counting
+            )
+        )
         values[name] = np.nanmax(PostResult(tmp_path / "o.h5").damage["slow"])
     assert values["sz"] <= values["max3"] <= values["window"]
     assert values["morrow"] < values["max3"]
