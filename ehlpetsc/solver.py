@@ -13,11 +13,12 @@ from petsc4py import PETSc
 
 from ehlpetsc.contact import ContactProblem
 
+
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
 REFILLED = 1e-9  # pressure in p0 that a cavity gets in the iteration that fills it
 DEFAULTS = {
     "snes_type": "vinewtonrsls",
-    "snes_linesearch_type": "bt",
+    "snes_linesearch_type": "basic",
     "snes_linesearch_maxstep": "1e10",
     "snes_max_it": "60",
     "snes_atol": "1e-7",
@@ -159,15 +160,18 @@ class Solver:
         return 0.0
 
     def _limit_step(self, x, y):
-        q, _, _ = self.gather(y)
-        largest = np.abs(q).max()
+        now, step = x.array_r[: 2 * self.local: 2], y.array[: 2 * self.local: 2]
+        pressure = self.problem.pressure
+        largest = np.abs(pressure(now - step) - pressure(now)).max(initial=0.0)
+        largest = self.comm.tompi4py().allreduce(largest, max)
         if largest > STEP_LIMIT:
             y.scale(STEP_LIMIT / largest)
         if self.problem.dry:
             return largest > STEP_LIMIT
-        now, step = x.array_r[: 2 * self.local: 2], y.array[: 2 * self.local: 2]
+        step = y.array[: 2 * self.local: 2]
         refilled = (now < 0.0) & (now - step > REFILLED)
         step[refilled] = now[refilled] - REFILLED
+        np.minimum(step, now + 1.0, out=step)  # a void is at most the whole gap
         return True
 
     def solve(self, q, h, h00):
