@@ -11,7 +11,7 @@ viscosity is exponential in p, and scaled as a whole, so that linear rows stay s
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.contact import ContactProblem
+from ehlpetsc.contact import LEAK, ContactProblem
 
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
@@ -83,7 +83,8 @@ class Solver:
         self.f = self.x.duplicate()
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self._create_matrix(local)
-        self._create_bounds(case.contact.minimum_film / scales.h)
+        self.bound = case.contact.minimum_film / scales.h
+        self._create_bounds(self.bound)
         self._create_snes()
 
     def _create_matrix(self, local):
@@ -138,7 +139,6 @@ class Solver:
         mine = slice(self.first, self.first + self.local)
         if self.cavitated is None or not np.array_equal(slope, self.slope):
             self.slope, self.cavitated = slope, slope == 0.0
-            from ehlpetsc.contact import LEAK
             self.leak = np.where(slope[mine] > 0.0, 0.0, LEAK)
             columns, values = p.deflection_rows(slope)
             rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32)
@@ -155,10 +155,6 @@ class Solver:
         matrix.assemble()
         operator.assemble()
 
-    @property
-    def bound(self):
-        return 0.0
-
     def _limit_step(self, x, y):
         now, step = x.array_r[: 2 * self.local: 2], y.array[: 2 * self.local: 2]
         pressure = self.problem.pressure
@@ -173,6 +169,11 @@ class Solver:
         step[refilled] = now[refilled] - REFILLED
         np.minimum(step, now + 1.0, out=step)  # a void is at most the whole gap
         return True
+
+    def flow_rows(self):
+        """F of the last solution at every node, shape (nx,)."""
+        self.snes.computeFunction(self.x, self.f)
+        return self.gather(self.f)[1]
 
     def solve(self, q, h, h00):
         """Solve from the given start.

@@ -1,0 +1,168 @@
+r"""From the start to the end of a run: steady solution, time steps, retries, stops.
+
+Predictor: what the roughness has changed of the smooth solution is carried along with the mean speed
+(cubic interpolation); extrapolation in time was worse than none, because pressures over asperities that
+pass the nodes swing from step to step. A step that does not converge is halved and counted, and grows by
+1.5 a step back to the nominal one, never beyond the BDF2 limit 2.4.
+"""
+import time as clock
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ehlpetsc.reynolds import Storage
+
+SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
+GROWTH = 1.5
+CONTINUATION = 12  # halvings of the way from a thick film when a steady start does not converge
+
+
+class Failed(Exception):
+    """A step or start that cannot be saved: the message names step, time and reason."""
+
+
+@dataclass
+class State:
+    """One time level and what the next step needs of the past; arrays of shape (nx,), dimensionless.
+
+    Attributes
+    ----------
+    q, h, h00
+        Unknowns (see :mod:`ehlpetsc.contact`).
+    m, m_older
+        Film contents of this level and the one before (None: none).
+    time, dt
+        [s]; `dt` is the step that led here (None at the start), `dt_next` the one to try.
+    step
+        Number of steps taken.
+    """
+
+    q: np.ndarray
+    h: np.ndarray
+    h00: float
+    m: np.ndarray | None = None
+    m_older: np.ndarray | None = None
+    time: float = 0.0
+    dt: float | None = None
+    dt_next: float | None = None
+    step: int = 0
+    newton: int = 0
+    retries: int = 0
+    flow: np.ndarray = field(default=None, repr=False)
+
+
+def smooth_start(problem, film, thick=1.3):
+    """Hertz pressure and a film everywhere above the expected one; behind the outlet a cavity."""
+    x = problem.x
+    p = np.sqrt(np.maximum(1.0 - x**2, 0.0))
+    p *= 0.5 * np.pi / (problem.dx * p.sum())
+    h = problem.film(p, 0.0)
+    if problem.dry:
+        return p, np.maximum(h - h.min(), 0.0), -h.min()
+    h00 = thick * film - h.min()
+    h += h00
+    void = np.minimum(film / h - 1.0, 0.0)
+    return np.where(p > 0.0, p, np.where(x < 0.0, 1e-6, void)), h, h00
+
+
+class March:
+    """Steady and transient solution of one scene.
+
+    Parameters
+    ----------
+    solver : solver.Solver
+    scales : scales.Scales
+    roughness : roughness.Roughness or None
+    film : float
+        Expected film in a^2/R.
+    """
+
+    def __init__(self, solver, scales, roughness, film):
+        self.solver, self.problem, self.scales, self.film = solver, solver.problem, scales, film
+        self.roughness = roughness
+        self.smooth = None
+
+    def set_gap(self, time):
+        """Put the roughness where it is at `time` [s]."""
+        if self.roughness is not None:
+            self.problem.gap = self.roughness.gap(self.scales.x * self.scales.a, time) / self.scales.h
+
+    def start(self, not_converged):
+        """Steady solution at time 0."""
+        self.set_gap(0.0)
+        self.problem.past = None
+        failure = None
+        for thick in (1.3, 2.0, 4.0, 1.0):
+            try:
+                q, h, h00, newton = self.solver.solve(*smooth_start(self.problem, self.film, thick))
+                break
+            except not_converged as error:
+                failure = error
+        else:
+            raise Failed(f"steady start: {failure}. Try a coarser mesh, a nearer viscosity with -ehl_restart, "
+                         "or -snes_max_it 200")
+        self.smooth = (q, h)
+        return State(q, h, h00, m=self._mass(q, h), newton=newton, flow=self._flow())
+
+    def _mass(self, q, h):
+        return None if self.problem.dry else self.problem.reynolds.mass(q, h)[0]
+
+    def _flow(self):
+        return self.solver.flow_rows()
+
+    def predict(self, state, dt):
+        """Start of Newton's iteration: the roughness' share carried along with the mean speed."""
+        if self.roughness is None or self.problem.dry:
+            return state.q, state.h
+        from scipy.ndimage import shift
+        nodes = self.scales.u * dt / self.scales.dx
+        q0, h0 = self.smooth
+        q = q0 + shift(state.q - q0, nodes, order=3, mode="nearest")
+        h = h0 + shift(state.h - h0, nodes, order=3, mode="nearest")
+        return q, np.maximum(h, self.solver.bound)
+
+    def advance(self, state, not_converged, nominal):
+        """One accepted time step, retried with smaller ones as needed."""
+        unit = self.scales.u / self.scales.a if self.scales.u else 1.0
+        dt, retries, newton = state.dt_next or nominal, 0, 0
+        while True:
+            self.set_gap(state.time + dt)
+            older = None if state.dt is None else state.dt * unit
+            self.problem.past = None if self.problem.dry else Storage(state.m, state.m_older, dt * unit, older)
+            guess = self.predict(state, dt) if retries == 0 else (state.q, state.h)
+            try:
+                q, h, h00, iterations = self.solver.solve(*guess, state.h00)
+                break
+            except not_converged as error:
+                newton, retries = newton + error.iterations, retries + 1
+                dt *= 0.5
+                if dt < SMALLEST * nominal:
+                    raise Failed(
+                        f"step {state.step + 1}, time {state.time:.6e} s: {error}, also with a step of {dt:.2e} s. "
+                        "Try a smaller time.courant, a finer mesh or a higher viscosity") from error
+        return State(q, h, h00, m=self._mass(q, h), m_older=state.m, time=state.time + dt, dt=dt,
+                     dt_next=min(nominal, GROWTH * dt), step=state.step + 1, newton=newton + iterations,
+                     retries=retries, flow=self._flow())
+
+    def scalars(self, case, state, started):
+        """Per-step scalars and fields in SI units."""
+        s, p = self.scales, self.problem
+        from ehlpetsc.traction import shear_stresses
+        pressure = p.pressure(state.q)
+        in_contact = state.h <= self.solver.bound
+        void = np.zeros_like(pressure) if p.dry else np.maximum(-state.q, 0.0)
+        fast, slow = shear_stresses(case, s, pressure * s.p0, state.h * s.h, void, in_contact)
+        load = s.dx * s.p0 * pressure.sum()
+        # F sums to the mass imbalance; at contact nodes it is what replacing Reynolds made up
+        defect = 0.0 if p.dry else float(np.abs(state.flow[in_contact]).sum() * p.film_scale / state.m[0])
+        scalars = {
+            "dt": state.dt or 0.0, "newton": state.newton, "retries": state.retries,
+            "h_min": state.h.min() * s.h, "p_max": pressure.max() * s.p0, "contacts": int(in_contact.sum()),
+            "load": load, "load_error": abs(load / s.load - 1.0), "mass_error": defect,
+            "approach": state.h00 * s.h, "friction": s.dx * slow.sum(), "wall": clock.monotonic() - started,
+        }
+        fields = {
+            "pressure": pressure * s.p0, "film_thickness": state.h * s.h, "void_fraction": void,
+            "shear_stress_fast": fast, "shear_stress_slow": slow, "in_contact": in_contact,
+        }
+        return scalars, fields, in_contact
