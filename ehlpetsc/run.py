@@ -203,7 +203,7 @@ def run(path, overrides):
     if case is None:
         return BAD_INPUT
     options = PETSc.Options()
-    set_defaults(options, case.petsc)
+    set_defaults(options, case.petsc, comm.size)
     restart = options.getString("ehl_restart", "")
     try:
         this = Run(comm, case, options)

@@ -28,8 +28,13 @@ DEFAULTS = {
     "ksp_type": "gmres",
     "ksp_rtol": "1e-6",
     "ksp_max_it": "60",
-    "pc_type": "lu",
-    "pc_factor_mat_ordering_type": "natural",
+}
+ONE_RANK = {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
+# at these sizes a factorisation repeated on every rank is quicker than a distributed one
+MORE_RANKS = {
+    "pc_type": "redundant",
+    "redundant_pc_type": "lu",
+    "redundant_pc_factor_mat_ordering_type": "natural",
 }
 
 
@@ -41,9 +46,10 @@ class NotConverged(Exception):
         self.reason, self.iterations = reason, iterations
 
 
-def set_defaults(options, extra=()):
-    """Enter this program's, then the case's options wherever the user gave none."""
-    for table in (extra, DEFAULTS):
+def set_defaults(options, extra=(), ranks=1):
+    """Enter the case's, then this program's options wherever the user gave none."""
+    own = ONE_RANK if ranks == 1 else MORE_RANKS
+    for table in (extra, DEFAULTS, own if not options.hasName("pc_type") else {}):
         for name, value in dict(table).items():
             if not options.hasName(name):
                 options[name] = value
