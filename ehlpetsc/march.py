@@ -58,7 +58,7 @@ def smooth_start(problem, film, thick=1.3):
     p *= 0.5 * np.pi / (problem.dx * p.sum())
     h = problem.film(p, 0.0)
     if problem.dry:
-        return p, np.maximum(h - h.min(), 0.0), -h.min()
+        return p, np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0)), -h[np.argmax(p)]
     h00 = thick * film - h.min()
     h += h00
     void = np.minimum(film / h - 1.0, 0.0)

@@ -27,7 +27,9 @@ DEFAULTS = {
     "snes_max_funcs": "100000",
     "ksp_type": "gmres",
     "ksp_rtol": "1e-6",
-    "ksp_max_it": "60",
+    "snes_max_linear_solve_fail": "1000",
+    "ksp_max_it": "100",
+    "ksp_gmres_restart": "100",
 }
 ONE_RANK = {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
 # at these sizes a factorisation repeated on every rank is quicker than a distributed one

@@ -1,0 +1,63 @@
+"""Smooth steady films against published and independently computed values, and Hertz, through the solver."""
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from petsc4py import PETSc  # noqa: E402
+
+from ehlpetsc.case import load  # noqa: E402
+from ehlpetsc.march import March  # noqa: E402
+from ehlpetsc.run import expected_film  # noqa: E402
+from ehlpetsc.scales import Scales  # noqa: E402
+from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def steady(name, *overrides):
+    set_defaults(PETSc.Options())
+    case = load(CASES / name, overrides)
+    scales = Scales.of(case)
+    film = expected_film(case, scales)
+    march = March(Solver(case, scales, film, PETSc.COMM_SELF), scales, None, film)
+    return scales, march.problem, march.start(NotConverged)
+
+
+@pytest.mark.parametrize("eta0, u, xi, h_min, h_c", [
+    (0.01, 5.0, 0.25, 0.22747, 0.26211),
+    (0.005, 5.0, 0.25, 0.14216, 0.16314),
+    (0.002, 5.0, 0.25, 0.07672, 0.08751),
+    (0.005, 25.0, 0.1, 0.43387, 0.50144),
+])
+def test_table_1_film_within_0_3_percent(eta0, u, xi, h_min, h_c):
+    s, _, state = steady("table1_smooth.toml", f"fluid.viscosity={eta0}", f"motion.entrainment_speed={u}",
+                         f"motion.slide_roll_ratio={xi}")
+    film = state.h * s.h * 1e6
+    assert film.min() == pytest.approx(h_min, rel=3e-3)
+    assert film[np.argmin(np.abs(s.x))] == pytest.approx(h_c, rel=3e-3)
+    assert state.newton <= 20
+
+
+@pytest.mark.parametrize("points, h_min, h_c", [(200, 0.141722, 0.162430), (400, 0.141839, 0.162654)])
+def test_film_on_short_domain_within_0_3_percent(points, h_min, h_c):
+    s, problem, state = steady("table1_smooth.toml", "mesh.inlet=-2.5", f"mesh.points_per_half_width={points}")
+    film = state.h * s.h * 1e6
+    assert film.min() == pytest.approx(h_min, rel=3e-3)
+    assert film[np.argmin(np.abs(s.x))] == pytest.approx(h_c, rel=3e-3)
+    assert abs(problem.dx * problem.pressure(state.q).sum() / (np.pi / 2) - 1) < 1e-8
+
+
+def test_dry_contact_is_hertz():
+    s, problem, state = steady("dry_hertz.toml")
+    inside = np.abs(s.x) < 0.99
+    assert np.all(state.h >= 0.0)
+    assert np.all(problem.pressure(state.q) >= -1e-12)
+    np.testing.assert_allclose(state.q[inside], np.sqrt(1 - s.x[inside] ** 2), atol=5e-3)
+    beyond = s.x < -1.2
+    x = np.abs(s.x[beyond])
+    gap = 0.5 * (x * np.sqrt(x**2 - 1) - np.log(x + np.sqrt(x**2 - 1)))
+    np.testing.assert_allclose(state.h[beyond], gap, rtol=2e-3)
