@@ -31,12 +31,17 @@ DEFAULTS = {
     "ksp_max_it": "100",
     "ksp_gmres_restart": "100",
 }
-ONE_RANK = {"pc_type": "lu", "pc_factor_mat_ordering_type": "natural"}
+ONE_RANK = {
+    "pc_type": "lu",
+    "pc_factor_mat_ordering_type": "natural",
+    "pc_factor_shift_type": "nonzero",
+}
 # at these sizes a factorisation repeated on every rank is quicker than a distributed one
 MORE_RANKS = {
     "pc_type": "redundant",
     "redundant_pc_type": "lu",
     "redundant_pc_factor_mat_ordering_type": "natural",
+    "redundant_pc_factor_shift_type": "nonzero",
 }
 
 
@@ -201,6 +206,9 @@ class Solver:
         reason, iterations = self.snes.getConvergedReason(), self.snes.getIterationNumber()
         q, h, h00 = self.gather(self.x)
         if reason <= 0:
+            # a failed factorisation stays failed in PETSc's solver objects
+            self.snes.destroy()
+            self._create_snes()
             raise NotConverged(REASONS.get(reason, str(reason)), iterations)
         if not np.isfinite([q.sum(), h.sum(), h00]).all():
             raise NotConverged("NOT_FINITE", iterations)

@@ -59,6 +59,7 @@ def test_nothing_is_written_if_nothing_happened():
 
 
 def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "100")
     text = run(Terminal(), clock, seconds_a_step=1.0, steps=10)
     assert text.count("\n") == 1 and text.endswith("\n")
@@ -72,6 +73,7 @@ def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
 
 
 def test_narrow_terminal_is_not_overrun(clock, monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "40")
     bars = run(Terminal(), clock, 1.0, steps=3).strip().split("\r")
     assert all(len(bar.removesuffix("\x1b[K")) < 40 for bar in bars)
