@@ -20,7 +20,7 @@ DEFAULTS = {
     "snes_type": "vinewtonrsls",
     "snes_linesearch_type": "basic",
     "snes_linesearch_maxstep": "1e10",
-    "snes_max_it": "60",
+    "snes_max_it": "30",
     "snes_atol": "1e-7",
     "snes_rtol": "1e-14",
     "snes_stol": "0",
