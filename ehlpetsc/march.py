@@ -119,7 +119,9 @@ class March:
         q0, h0 = self.smooth
         q = q0 + shift(state.q - q0, nodes, order=3, mode="nearest")
         h = h0 + shift(state.h - h0, nodes, order=3, mode="nearest")
-        return q, np.maximum(h, self.solver.bound)
+        # the cubic undershoots beside thin films; no film of the start is closed that was not
+        floor = 0.5 * shift(state.h, nodes, order=1, mode="nearest")
+        return np.maximum(q, -1.0 + 1e-3), np.maximum(h, np.maximum(floor, self.solver.bound))
 
     def advance(self, state, not_converged, nominal):
         """One accepted time step, retried with smaller ones as needed."""

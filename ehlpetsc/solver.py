@@ -16,6 +16,7 @@ from ehlpetsc.contact import LEAK, ContactProblem
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
 REFILLED = 1e-9  # pressure in p0 that a cavity gets in the iteration that fills it
+OIL_KEPT = 0.2  # of the oil in a cavity that one iteration must leave
 DEFAULTS = {
     "snes_type": "vinewtonrsls",
     "snes_linesearch_type": "basic",
@@ -180,7 +181,12 @@ class Solver:
         step = y.array[: 2 * self.local: 2]
         refilled = (now < 0.0) & (now - step > REFILLED)
         step[refilled] = now[refilled] - REFILLED
-        np.minimum(step, now + 1.0, out=step)  # a void is at most the whole gap
+        # a void takes at most a part of the oil left: at q = -1 on a closed gap every derivative is zero
+        cavity = now - step < 0.0
+        step[cavity] = np.minimum(step[cavity], now[cavity] + 1.0 - OIL_KEPT * (1.0 + np.minimum(now[cavity], 0.0)))
+        films = slice(1, 2 * self.local, 2)
+        closed = cavity & (x.array_r[films] - y.array[films] <= self.bound)
+        step[closed] = now[closed] - REFILLED  # solids that touch are not held apart by a void
         return True
 
     def flow_rows(self):
