@@ -1,7 +1,7 @@
 r"""From the start to the end of a run: steady solution, time steps, retries, stops.
 
 Predictor: what the roughness has changed of the smooth solution is carried along with the mean speed
-(cubic interpolation); extrapolation in time was worse than none, because pressures over asperities that
+(:func:`carried`); extrapolation in time was worse than none, because pressures over asperities that
 pass the nodes swing from step to step. A step that does not converge is halved and counted, and grows by
 1.5 a step back to the nominal one, never beyond the BDF2 limit 2.4.
 """
@@ -9,12 +9,13 @@ import time as clock
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.ndimage import shift
 
 from ehlpetsc.reynolds import Storage
+from ehlpetsc.traction import shear_stresses
 
 SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
 GROWTH = 1.5
-CONTINUATION = 12  # halvings of the way from a thick film when a steady start does not converge
 
 
 class Failed(Exception):
@@ -49,6 +50,18 @@ class State:
     newton: int = 0
     retries: int = 0
     flow: np.ndarray = field(default=None, repr=False)
+
+
+def carried(v, smooth, nodes):
+    """Carry what `v` has beyond `smooth` along by `nodes` nodes.
+
+    Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of asperities,
+    two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's method iterations.
+    """
+    moved = smooth + shift(v - smooth, nodes, order=3, mode="nearest")
+    whole = int(np.floor(nodes))
+    left, right = (shift(v, k, order=0, mode="nearest") for k in (whole + 1, whole))
+    return np.clip(moved, np.minimum(left, right), np.maximum(left, right))
 
 
 def smooth_start(problem, film, thick=1.3):
@@ -114,14 +127,11 @@ class March:
         """Start of Newton's iteration: the roughness' share carried along with the mean speed."""
         if self.roughness is None or self.problem.dry:
             return state.q, state.h
-        from scipy.ndimage import shift
         nodes = self.scales.u * dt / self.scales.dx
         q0, h0 = self.smooth
-        q = q0 + shift(state.q - q0, nodes, order=3, mode="nearest")
-        h = h0 + shift(state.h - h0, nodes, order=3, mode="nearest")
-        # the cubic undershoots beside thin films; no film of the start is closed that was not
-        floor = 0.5 * shift(state.h, nodes, order=1, mode="nearest")
-        return np.maximum(q, -1.0 + 1e-3), np.maximum(h, np.maximum(floor, self.solver.bound))
+        q = carried(state.q, q0, nodes)
+        h = carried(state.h, h0, nodes)
+        return np.maximum(q, -1.0 + 1e-3), np.maximum(h, self.solver.bound)
 
     def advance(self, state, not_converged, nominal):
         """One accepted time step, retried with smaller ones as needed."""
@@ -149,7 +159,6 @@ class March:
     def scalars(self, case, state, started):
         """Per-step scalars and fields in SI units."""
         s, p = self.scales, self.problem
-        from ehlpetsc.traction import shear_stresses
         pressure = p.pressure(state.q)
         in_contact = state.h <= self.solver.bound
         void = np.zeros_like(pressure) if p.dry else np.maximum(-state.q, 0.0)
