@@ -1,44 +1,49 @@
-"""``mpirun -n N python3 -m ehlpetsc CASE.toml [PETSc options]``: run a case.
-
-Own options: -ehl_output FILE.h5, -ehl_restart FILE.h5, -ehl_set table.key=value (repeatable),
--ehl_time_limit MINUTES; ``--explain CASE.toml`` prints the scene in words. Exit status: 0 done, 1 bug,
-2 bad input, 3 no convergence, 4 stopped.
-"""
+"""``mpirun -n N python3 -m ehlpetsc CASE.toml [options]``: run a case; ``-help`` lists the options."""
 import sys
 
 
-def split_own(argv):
-    """Take the repeatable -ehl_set out of the arguments: PETSc's table keeps only the last."""
-    rest, sets = [], []
-    words = iter(argv)
-    for word in words:
-        if word == "-ehl_set":
-            sets.append(next(words, ""))
-        else:
-            rest.append(word)
-    return rest, sets
-
-
 def main(argv):
-    arguments, overrides = split_own(argv[1:])
-    explain = "--explain" in arguments
-    names = [w for w in arguments if w.endswith(".toml")]
-    if len(names) != 1:
-        print("ehlpetsc: name one case file, as in: python3 -m ehlpetsc CASE.toml [PETSc options]", file=sys.stderr)
-        return 2
-    if explain:
-        from ehlpetsc.case import CaseError, load
-        from ehlpetsc.explain import explain as words
-        try:
-            print(words(load(names[0], overrides)))
-            return 0
-        except CaseError as error:
-            print("\n".join(error.faults), file=sys.stderr)
-            return 2
+    """Run the command; returns its exit status."""
+    from ehlpetsc import environment
+
+    missing = environment.prepare()
+    if missing:
+        return refuse(environment.advice(missing, argv[1:]))
+    from ehlpetsc.options import UsageError, understand
+
+    try:
+        command = understand(argv[1:])
+    except UsageError as error:
+        return refuse(f"ehlpetsc: {error}")
+    if command.explain:
+        return explain(command)
     import petsc4py
-    petsc4py.init([argv[0], *[w for w in arguments if w != names[0]]])
+
+    petsc4py.init([argv[0], *command.petsc])
     from ehlpetsc.run import run
-    return run(names[0], overrides)
+
+    return run(command.case, command.overrides)
+
+
+def explain(command):
+    """Print the scene in words."""
+    from ehlpetsc.case import CaseError, load
+    from ehlpetsc.explain import explain as words
+
+    try:
+        print(words(load(command.case, command.overrides)))
+    except CaseError as error:
+        return refuse("\n".join(error.faults))
+    return 0
+
+
+def refuse(text):
+    """Say once, not on every rank, what is wrong; bad input."""
+    from ehlpetsc.environment import first_rank
+
+    if first_rank():
+        print(text, file=sys.stderr, flush=True)
+    return 2
 
 
 def guarded(argv):
@@ -49,7 +54,9 @@ def guarded(argv):
         raise
     except BaseException:  # any other way out would leave the other ranks waiting for ever
         import traceback
+
         traceback.print_exc()
+        sys.stdout.flush()
         sys.stderr.flush()
         if "mpi4py.MPI" in sys.modules:
             mpi = sys.modules["mpi4py.MPI"]

@@ -2,6 +2,7 @@
 
 import math
 
+from ehlpetsc import __version__
 from ehlpetsc.roughness import Roughness, mesh_warnings
 from ehlpetsc.scales import Scales
 
@@ -58,6 +59,29 @@ def explain(case):
         shown = ", ".join(str(value) for value in case.series.values)
         sections.insert(1, [f"A series: {case.series.key} = {shown}; below, the base case."])
     return "\n".join(line for section in sections for line in section)
+
+
+def banner(case, scales, rough, ranks):
+    """What is about to run, in a few lines: title, size, surfaces.
+
+    Parameters
+    ----------
+    case : case.Case
+    scales : scales.Scales
+    rough : roughness.Roughness or None
+    ranks : int
+
+    Returns
+    -------
+    list of str
+    """
+    length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
+    return [
+        f"ehlpetsc {__version__}: {case.title}",
+        f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
+        f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
+        *(_surfaces(rough) if rough else []),
+    ]
 
 
 def warnings(case, scales):

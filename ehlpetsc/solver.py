@@ -55,12 +55,23 @@ class NotConverged(Exception):
 
 
 def set_defaults(options, extra=(), ranks=1):
-    """Enter the case's, then this program's options wherever the user gave none."""
-    own = ONE_RANK if ranks == 1 else MORE_RANKS
-    for table in (extra, DEFAULTS, own if not options.hasName("pc_type") else {}):
-        for name, value in dict(table).items():
-            if not options.hasName(name):
-                options[name] = value
+    """Enter the case's, then this program's options wherever the user gave none.
+
+    Returns
+    -------
+    list of str
+        Names of the program's own that were entered.
+    """
+    entered = []
+    for name, value in dict(extra).items():
+        if not options.hasName(name):
+            options[name] = value
+    factoring = ONE_RANK if ranks == 1 else MORE_RANKS
+    for name, value in (DEFAULTS | ({} if options.hasName("pc_type") else factoring)).items():
+        if not options.hasName(name):
+            options[name] = value
+            entered.append(name)
+    return entered
 
 
 class _Operator:

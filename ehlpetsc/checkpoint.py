@@ -1,0 +1,94 @@
+"""A run's state in a restart file: what is saved, and whether it fits the case it is to go on with."""
+import tomllib
+
+import numpy as np
+
+from ehlpetsc.march import State
+from ehlpetsc.output import OutputError, load_restart, save_restart
+
+NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
+
+
+def save(path, state, smooth, contact_count, case, scales):
+    """Write the restart file of a run.
+
+    Parameters
+    ----------
+    path : path-like
+    state : march.State
+    smooth : pair of ndarray
+        Steady q and h that the predictor starts from.
+    contact_count : ndarray of int, shape (nx,)
+    case, scales
+        Of the run.
+
+    Raises
+    ------
+    OutputError
+    """
+    arrays = {"x": scales.x * scales.a, "q": state.q, "h": state.h, "contact_count": contact_count,
+              "smooth_q": smooth[0], "smooth_h": smooth[1]}
+    arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
+    attributes = {"h00": state.h00, "time": state.time, "dt": state.dt or 0.0,
+                  "dt_next": state.dt_next or 0.0, "step": state.step, "case": case.text}
+    save_restart(path, arrays, attributes)
+
+
+def load(path, case, scales):
+    """State of a restart file, checked against the case.
+
+    Returns
+    -------
+    state : march.State
+    smooth : pair of ndarray
+    contact_count : ndarray
+    notes : list of str
+        Keys of the case that are not what they were, one line each.
+
+    Raises
+    ------
+    OutputError
+        Not a restart file, or it does not fit the case.
+    """
+    if case.time is None:
+        raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to go on with")
+    arrays, attributes = load_restart(path)
+    try:
+        earlier = tomllib.loads(attributes["case"])
+        _check_fits(path, arrays["x"], earlier, case, scales)
+        state = State(arrays["q"], arrays["h"], float(attributes["h00"]), m=arrays.get("m"),
+                      m_older=arrays.get("m_older"), time=float(attributes["time"]),
+                      dt=float(attributes["dt"]) or None, dt_next=float(attributes["dt_next"]) or None,
+                      step=int(attributes["step"]))
+        smooth = (arrays["smooth_q"], arrays["smooth_h"])
+        return state, smooth, arrays["contact_count"], changes(earlier, tomllib.loads(case.text))
+    except KeyError as error:
+        raise OutputError(f"{path}: damaged restart file ({error} is missing)") from error
+
+
+def _check_fits(path, x, earlier, case, scales):
+    now = scales.x * scales.a
+    if len(x) != len(now):
+        raise OutputError(f"{path}: has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was")
+    if np.abs(x - now).max() > 1e-9 * np.ptp(now):
+        was, is_now = (f"{1e3 * ends[0]:.6g} to {1e3 * ends[-1]:.6g} mm" for ends in (x, now))
+        raise OutputError(f"{path}: its nodes lie from {was}, those of the case from {is_now}; "
+                          "[mesh], contact.load, radius and elasticity must be as they were")
+    if ("fluid" in earlier) != (case.fluid is not None):
+        one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
+        raise OutputError(f"{path}: a run {one} [fluid] cannot go on {other} it")
+
+
+def changes(earlier, now):
+    """``fluid.viscosity was 0.002, is 0.004``, a line each for every key of the physics that differs."""
+    one, other = (dict(_flat({k: v for k, v in d.items() if k not in NOT_PHYSICS})) for d in (earlier, now))
+    keys = [key for key in {**one, **other} if one.get(key) != other.get(key)]
+    return [f"{key} was {one.get(key, 'left out')}, is {other.get(key, 'left out')}" for key in keys]
+
+
+def _flat(table, where=""):
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{where}{key}.")
+        else:
+            yield where + key, value
