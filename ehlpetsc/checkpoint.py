@@ -6,10 +6,11 @@ import numpy as np
 from ehlpetsc.march import State
 from ehlpetsc.output import OutputError, load_restart, save_restart
 
+TOTAL = "total "  # before the names of totals among the attributes
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
 
 
-def save(path, state, smooth, contact_count, case, scales):
+def save(path, state, smooth, contact_count, totals, case, scales):
     """Write the restart file of a run.
 
     Parameters
@@ -19,6 +20,8 @@ def save(path, state, smooth, contact_count, case, scales):
     smooth : pair of ndarray
         Steady q and h that the predictor starts from.
     contact_count : ndarray of int, shape (nx,)
+    totals : dict of str to number
+        Of all steps so far, for the summary.
     case, scales
         Of the run.
 
@@ -31,6 +34,7 @@ def save(path, state, smooth, contact_count, case, scales):
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     attributes = {"h00": state.h00, "time": state.time, "dt": state.dt or 0.0,
                   "dt_next": state.dt_next or 0.0, "step": state.step, "case": case.text}
+    attributes |= {TOTAL + name: value for name, value in totals.items()}
     save_restart(path, arrays, attributes)
 
 
@@ -42,6 +46,7 @@ def load(path, case, scales):
     state : march.State
     smooth : pair of ndarray
     contact_count : ndarray
+    totals : dict
     notes : list of str
         Keys of the case that are not what they were, one line each.
 
@@ -61,7 +66,8 @@ def load(path, case, scales):
                       dt=float(attributes["dt"]) or None, dt_next=float(attributes["dt_next"]) or None,
                       step=int(attributes["step"]))
         smooth = (arrays["smooth_q"], arrays["smooth_h"])
-        return state, smooth, arrays["contact_count"], changes(earlier, tomllib.loads(case.text))
+        totals = {name.removeprefix(TOTAL): attributes[name].item() for name in attributes if TOTAL in name}
+        return state, smooth, arrays["contact_count"], totals, changes(earlier, tomllib.loads(case.text))
     except KeyError as error:
         raise OutputError(f"{path}: damaged restart file ({error} is missing)") from error
 

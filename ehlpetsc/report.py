@@ -19,6 +19,22 @@ _COLUMNS = (
 )
 
 
+def on_terminal(stream):
+    """Whether someone watches.
+
+    mpirun gives every rank a terminal, also where its own output goes to a file: that of the process which
+    started this one tells, and run_mpi.sh sets TERM.
+    """
+    if not stream.isatty() or os.environ.get("TERM") == "dumb":
+        return False
+    if "OMPI_COMM_WORLD_RANK" not in os.environ:
+        return True
+    try:
+        return os.readlink(f"/proc/{os.getppid()}/fd/1").startswith(("/dev/pts/", "/dev/tty"))
+    except OSError:
+        return True
+
+
 class Progress:
     """Says how far a run is: fixed-column lines into a file, a bar on a terminal.
 
@@ -33,8 +49,7 @@ class Progress:
     def __init__(self, begin, end, stream=None):
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
-        # mpirun gives every rank a terminal, also where its output goes to a file: run_mpi.sh sets TERM then
-        self._bar = self._stream.isatty() and os.environ.get("TERM") != "dumb"
+        self._bar = on_terminal(self._stream)
         self._started = clock.monotonic()
         self._shown = None
         self._pending = None

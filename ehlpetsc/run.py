@@ -22,6 +22,7 @@ from ehlpetsc.solver import NotConverged, Solver, set_defaults
 from ehlpetsc.stop import StopRequest
 
 DONE, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 2, 3, 4
+FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 GREATEST = ("p_max", "load_error", "mass_error")  # of the run, in the summary
 
 
@@ -65,6 +66,8 @@ class Run:
         self.scales = Scales.of(case)
         self.roughness = Roughness.of(case, self.scales)
         film = expected_film(case, self.scales)
+        self.views = taken_out(options, ("snes_view", "ksp_view"))
+        self.follow = any(options.hasName(name) for name in FOLLOWED)
         self.march = March(Solver(case, self.scales, film), self.scales, self.roughness, film)
         self.output = Path(text_of(options, "ehl_output") or Path(case.path).stem + ".h5")
         self.restart = self.output.with_suffix(".restart.h5")
@@ -117,13 +120,14 @@ class Run:
         """Write the restart file beside the result, on rank 0."""
         def write():
             self.writer.flush()
-            count = self.writer.contact_count
-            checkpoint.save(self.restart, state, self.march.smooth, count, self.case, self.scales)
+            checkpoint.save(self.restart, state, self.march.smooth, self.writer.contact_count, self.totals,
+                            self.case, self.scales)
         on_root(self.comm, write)
 
     def resume(self, path):
         """State and contact count of a restart file."""
-        state, self.march.smooth, count, notes = checkpoint.load(path, self.case, self.scales)
+        state, self.march.smooth, count, totals, notes = checkpoint.load(path, self.case, self.scales)
+        self.totals |= totals
         if self.root:
             print(f"restart: {path}, step {state.step}, {1e6 * state.time:.4f} us")
             for note in notes:
@@ -137,7 +141,9 @@ class Run:
             state, count = self.resume(restart)
             self.open_writer(state.step, count)
         else:
+            self._follow("steady start")
             state = self.march.start(NotConverged)
+            self._view()
             self.open_writer()
             self.store(state, begun)
         status, failure = "done", None
@@ -147,6 +153,17 @@ class Run:
         if self.root:
             self._report(state, status, failure, clock.monotonic() - begun)
         return {"done": DONE, "stopped": STOPPED}.get(status, NOT_CONVERGED)
+
+    def _follow(self, what):
+        """Head PETSc's own lines, where the user asked for some."""
+        if self.follow:
+            PETSc.Sys.Print(what)
+
+    def _view(self):
+        """-snes_view and -ksp_view once, after the first solve: PETSc would repeat them at every step."""
+        snes = self.march.solver.snes
+        for name in self.views:
+            (snes if name == "snes_view" else snes.ksp).view()
 
     def _march(self, state):
         s = self.scales
@@ -158,6 +175,7 @@ class Run:
                 status = "stopped"
                 break
             started = clock.monotonic()
+            self._follow(f"step {state.step + 1} from {1e6 * state.time:.4f} us")
             try:
                 state = self.march.advance(state, NotConverged, s.dt)
             except Failed as error:
@@ -183,6 +201,14 @@ class Run:
             print(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {self.restart}")
         print(f"result: {self.output}")
         print(summary_line(status, steps=state.step, wall=wall, **self.totals), flush=True)
+
+
+def taken_out(options, names):
+    """Those of the names that stand in PETSc's table without a value, taken out of it."""
+    found = [name for name in names if options.hasName(name) and not options.getString(name, "")]
+    for name in found:
+        options.delValue(name)
+    return found
 
 
 def libraries():
