@@ -1,4 +1,4 @@
-"""Result files for the tests of post-processing: Hertz pressure with ripples that travel with the surfaces."""
+"""Result files for the tests of post-processing: Hertz pressure with ripples that travel with surfaces."""
 
 import h5py
 import numpy as np

@@ -28,8 +28,8 @@ def arguments(argv=None):
     """Parse the command line."""
     parser = argparse.ArgumentParser(
         prog="python3 -m ehlpetsc.post",
-        description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics from "
-        "result files. Material and depths come from the case text in the file, section [post].",
+        description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
+        "from result files. Material and depths come from the case text in the file, section [post].",
     )
     add = parser.add_argument
     add(

@@ -33,7 +33,8 @@ class Counting(NamedTuple):
 
     def check(self):
         """Raise ValueError for a choice that does not exist."""
-        for name, value, known in zip(self._fields, self, (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES), strict=False):
+        choices = (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES)
+        for name, value, known in zip(self._fields, self, choices, strict=True):
             if value not in known:
                 raise ValueError(f"{name} = {value!r}: must be one of {', '.join(known)}")
         return self

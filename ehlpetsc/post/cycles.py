@@ -1,9 +1,9 @@
 """Rainflow counting by the four-point method, with the residue counted: closed on itself, or as half cycles.
 
-A four-point count alone leaves a residue of the largest ranges uncounted, which is not conservative. The history
-of a point that the contact passes over and over is periodic, so by default the residue is closed: started from
-its largest reversal, led back to it, and counted to the end (ASTM E1049, 5.4.5, repeating histories). As half
-cycles it gives the counts of ASTM E1049, 5.4.4.
+A four-point count alone leaves a residue of the largest ranges uncounted, which is not conservative. The
+history of a point that the contact passes over and over is periodic, so by default the residue is closed:
+started from its largest reversal, led back to it, and counted to the end (ASTM E1049, 5.4.5, repeating
+histories). As half cycles it gives the counts of ASTM E1049, 5.4.4.
 """
 
 import numpy as np

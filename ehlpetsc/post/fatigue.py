@@ -8,8 +8,8 @@ r"""From stress ranges to life: equivalent range, cyclic stress-strain curve, st
 
     \Delta\varepsilon/2 = (\sigma_f'/E)(2N)^b + \varepsilon_f'(2N)^c  \qquad (14)
 
-Holmes et al. 2005. K' is not in their Table 1; unless given it is :math:`\sigma_f'/\varepsilon_f'^{n'}`, which
-makes the two curves agree.
+Holmes et al. 2005. K' is not in their Table 1; unless given it is :math:`\sigma_f'/\varepsilon_f'^{n'}`,
+which makes the two curves agree.
 """
 
 from dataclasses import dataclass

@@ -46,7 +46,7 @@ def draw(inputs, outputs, folder, point=None, frame=None):
     if folder:
         Path(folder).mkdir(parents=True, exist_ok=True)
     results = [PostResult(output) for output in outputs]
-    for path, output, result in zip(inputs, outputs, results, strict=False):
+    for path, output, result in zip(inputs, outputs, results, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
         for surface in result.surfaces:
             if result.complete[surface].any():
@@ -103,7 +103,7 @@ def stacked_picture(results, surface):
     start = [_aligned(result, surface, results) for result in results]
     plots.profile(axes[0], start[0], surface, length)
     contours = None
-    for row, result in zip(axes[1:], start, strict=False):
+    for row, result in zip(axes[1:], start, strict=True):
         drawn = plots.damage_contours(row, result, surface, length, levels)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
@@ -144,7 +144,7 @@ def ratio_picture(results, z):
     """Distributions at one depth, by slide/roll ratio (figures 11 and 12)."""
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
-    for result, color in zip(results, _colours(len(results)), strict=False):
+    for result, color in zip(results, _colours(len(results)), strict=True):
         k = int(np.argmin(np.abs(result.z - z)))
         plots.exceedance_curve(
             axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color
@@ -170,7 +170,7 @@ def field_picture(path, result, frame):
     top.plot(x, p / 1e9, color=plots.DARK, lw=0.9)
     top.set_ylabel("p [GPa]")
     top.set_title(f"solid of the {surface} surface, t = {time * 1e6:.4g} µs", fontsize=9)
-    for row, (name, values) in zip(axes, fields.items(), strict=False):
+    for row, (name, values) in zip(axes, fields.items(), strict=True):
         mesh = plots.stress_field(row, x, z, values, name)
         figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.MaxNLocator(5))
     axes[-1].set_xlabel("x/a")

@@ -1,11 +1,12 @@
 """Stress histories at points fixed in the body, evaluated where the points are.
 
-Between two frames a body point moves by a part of the node spacing. Linear interpolation, of nodal stresses or of
-the load, then cuts the peaks of short ripples: 3 % of the amplitude at ten nodes, and 20 to 40 % of the damage near
-the surface, which rises with about the eleventh power. Here the load is the cubic spline through its nodal values,
-and its kernels are evaluated at the offset of the body's points from the nodes, one offset a frame: their spectra
-are polynomials in the offset, through Chebyshev points, so that an offset costs a sum of a few tables. Beside a
-pressure spike of a single node the spline swings by up to 13 % of it to the other side.
+Between two frames a body point moves by a part of the node spacing. Linear interpolation, of nodal stresses
+or of the load, then cuts the peaks of short ripples: 3 % of the amplitude at ten nodes, and 20 to 40 % of the
+damage near the surface, which rises with about the eleventh power. Here the load is the cubic spline through
+its nodal values, and its kernels are evaluated at the offset of the body's points from the nodes, one offset
+a frame: their spectra are polynomials in the offset, through Chebyshev points, so that an offset costs a sum
+of a few tables. Beside a pressure spike of a single node the spline swings by up to 13 % of it to the other
+side.
 
 A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
 """
@@ -35,7 +36,7 @@ def offset_weights(offset):
 
 @njit(cache=True, nogil=True)
 def _spectra(tables, weights, p, q, out):
-    """out (frames, 3, f) = stress spectra, tables (4, n, 2 f) of kernel spectra as real and imaginary parts."""
+    """out (frames, 3, f) = stress spectra, tables (4, n, 2 f) of kernel spectra: real, imaginary in turns."""
     width = tables.shape[2]
     kernel = np.empty((4, width))
     for frame in range(p.shape[0]):
@@ -104,7 +105,7 @@ class BodyStress:
 
 
 def blocks(motion, memory, depths):
-    """Split the complete points into runs whose open histories fit in `memory` bytes; (points, slots) each."""
+    """Split the complete points into runs whose open histories fit in `memory` bytes: (points, slots)."""
     points = np.flatnonzero(motion.complete)
     room = max(1, int(memory / (12 * depths * (motion.samples() + 2))))
     slots = _slots(points, motion)
@@ -139,7 +140,8 @@ def sweep(loads, surface, motion, points, slots, depths, quantum, finish, advanc
     quantum : float
         Pa.
     finish : callable(depth, first, last, histories)
-        Gets histories (points, 3, samples) of points first .. last-1; the first leave - enter + 3 samples count.
+        Gets histories (points, 3, samples) of points first .. last-1, of which the first leave - enter + 3
+        samples count.
     advance : callable(frames), optional
     """
     stress = BodyStress(loads.x.size, depths)

@@ -1,4 +1,4 @@
-"""numba where it is installed; without it the same functions run as plain Python, slowly, to the same digits."""
+"""numba where it is installed; without it the same functions run as plain Python, slowly, to the same bit."""
 
 try:
     from numba import njit

@@ -4,7 +4,8 @@ With u = x - s, D = u^2 + z^2 the plane-strain half plane under pressure p and t
 
 .. math:: A = z^3/D^2,\quad B = z^2u/D^2,\quad C = zu^2/D^2,\quad E = u^3/D^2,
 
-    \sigma_x = -\tfrac2\pi(C*p+E*q),\quad \sigma_z = -\tfrac2\pi(A*p+B*q),\quad \tau_{xz} = -\tfrac2\pi(B*p+C*q)
+    \sigma_x = -\tfrac2\pi(C*p+E*q),\quad \sigma_z = -\tfrac2\pi(A*p+B*q),
+    \quad \tau_{xz} = -\tfrac2\pi(B*p+C*q)
 
 (Holmes et al. 2005, section 2.3). All lengths here are in element lengths, so the integrals are numbers.
 """

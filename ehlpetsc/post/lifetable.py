@@ -1,7 +1,7 @@
 """1/N over the stress range as a table, for the inner loop of the damage sum.
 
-ln(1/N) over ln(dsv^2) by cubic Hermite interpolation between 4,096 values with exact slopes, straight lines in
-logarithms (the power laws of the two curves' ends) outside. Relative error of 1/N below 1e-9, as tested.
+ln(1/N) over ln(dsv^2) by cubic Hermite interpolation between 4,096 values with exact slopes, straight lines
+in logarithms (the power laws of the two curves' ends) outside. Relative error of 1/N below 1e-9, as tested.
 """
 
 from math import exp, log

@@ -126,12 +126,13 @@ def stress_field(axes, x, z, values, label):
 def stress_fields(sx, sz, txz, nu):
     """The four stresses of the picture, GPa, by label."""
     names = (*COMPONENTS, r"$\sigma_{vM}$")
-    return {name: values / 1e9 for name, values in zip(names, (sx, sz, txz, von_mises(sx, sz, txz, nu)), strict=False)}
+    stresses = (sx, sz, txz, von_mises(sx, sz, txz, nu))
+    return {name: values / 1e9 for name, values in zip(names, stresses, strict=True)}
 
 
 def history(axes, time, values, channel):
     """The three components over time, and the largest cycles of the counted one, whose number it returns."""
-    for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833"), strict=False):
+    for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833"), strict=True):
         axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
     counted = values[channel] / 1e9
     cycles = rainflow(counted)

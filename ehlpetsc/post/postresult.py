@@ -44,9 +44,8 @@ class PostResult:
             }
             self.height, self.under = file["asperities/height"][:], file["asperities/damage"][:]
             weibull = file["weibull"]
-            self.fits = [
-                WeibullFit(*row) for row in zip(weibull["alpha"], weibull["beta"], weibull["r_squared"], strict=False)
-            ]
+            columns = (weibull[name][:] for name in WeibullFit._fields)
+            self.fits = [WeibullFit(*row) for row in zip(*columns, strict=True)]
 
     def largest(self, surface, depth):
         """Largest damage of a surface at depth number `depth`; nan if no point passed."""

@@ -1,4 +1,4 @@
-"""From a result file to a post-processing result: tasks over surfaces and depths, in one or more processes."""
+"""From a result file to a post-processing result: tasks over surfaces and depths, in one process or more."""
 
 import multiprocessing
 import signal
@@ -43,8 +43,8 @@ class Task(NamedTuple):
 def run(job, report=None, progress=None):
     """Compute damage and statistics of one result file and write them to `job.output`.
 
-    Depths already done by an interrupted run with the same input and choices are taken over; a finished result
-    of the same is left as it is.
+    Depths already done by an interrupted run with the same input and choices are taken over; a finished
+    result of the same is left as it is.
 
     Parameters
     ----------
@@ -91,7 +91,8 @@ def _motions(loads, surfaces):
     speeds = [loads.speeds[surface] for surface in surfaces]
     s = body_points(loads.x, loads.dx, loads.time, speeds)
     motions = {
-        surface: passage(s, loads.x, loads.dx, loads.time, speed) for surface, speed in zip(surfaces, speeds, strict=False)
+        surface: passage(s, loads.x, loads.dx, loads.time, speed)
+        for surface, speed in zip(surfaces, speeds, strict=True)
     }
     if not any(motion.complete.any() for motion in motions.values()):
         moved = max(abs(speed) for speed in speeds) * (loads.time[-1] - loads.time[0]) / loads.a
@@ -156,7 +157,7 @@ def _die_quietly():
 
 
 def _keep(task, values, parts):
-    for depth, part in zip(task.depths, values, strict=False):
+    for depth, part in zip(task.depths, values, strict=True):
         parts.save(task.surface, depth, part)
     return len(task.depths)
 
@@ -252,9 +253,9 @@ def _statistics(job, loads, surface, inner, s, complete, damage, settings, datas
         datasets[f"profile/{surface}/s"], datasets[f"profile/{surface}/z"] = loads.profiles[surface]
     for group in ("asperities", "weibull"):
         groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
-    for depth, count in zip(settings.depths, beyond, strict=False):
+    for depth, count in zip(settings.depths, beyond, strict=True):
         if count:
             report(
-                f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 or more "
-                f"at z/a = {depth:g}: failure in the first pass"
+                f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 or "
+                f"more at z/a = {depth:g}: failure in the first pass"
             )

@@ -62,7 +62,7 @@ def _materials(contact, post, faults):
             return None, None
         pairs.append(pair)
     try:  # surface 1 is the fast one
-        return tuple(Material(E, nu, **constants) for E, nu in zip(*pairs, strict=False))
+        return tuple(Material(E, nu, **constants) for E, nu in zip(*pairs, strict=True))
     except ValueError as fault:
         faults.append(f"post.{fault}")
         return None, None

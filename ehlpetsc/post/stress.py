@@ -1,10 +1,11 @@
 r"""Stresses in the half plane under a line load, by FFT with exact element kernels.
 
-Each body in its own frame: x as in the contact, z into the solid, tension positive, pressure positive, traction
-q in +x on the solid. The load is linear between nodes and nothing outside them.
+Each body in its own frame: x as in the contact, z into the solid, tension positive, pressure positive,
+traction q in +x on the solid. The load is linear between nodes and nothing outside them.
 """
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from scipy import fft
@@ -52,8 +53,8 @@ def kernel_spectra(nx, z, offset=0.0):
 def spline_spectra(nx, z, offset):
     """As :func:`kernel_spectra`, for the load that is the cubic spline through the nodal values.
 
-    A cubic B-spline is a hat smeared by a hat; the spline's coefficients come of the nodal values by one division
-    of spectra.
+    A cubic B-spline is a hat smeared by a hat; the spline's coefficients come of the nodal values by one
+    division of spectra.
     """
     n = padded_length(nx)
     distance = np.arange(-(nx - 1), nx)
@@ -67,11 +68,11 @@ def spline_spectra(nx, z, offset):
 
 
 def _between_kinks(offset):
-    """Quadrature over the unit hat, (place, share), in pieces without a kink of a kernel seen from `offset`."""
+    """Quadrature over the unit hat, (place, share), in pieces without a kink of the kernel at `offset`."""
     breaks = np.unique([-1.0, 0.0, 1.0, offset - 1, offset])
     nodes, weights = np.polynomial.legendre.leggauss(5)
-    for left, right in zip(breaks[:-1], breaks[1:], strict=False):
-        for node, weight in zip(nodes, weights, strict=False):
+    for left, right in pairwise(breaks):
+        for node, weight in zip(nodes, weights, strict=True):
             place = left + (right - left) * (node + 1) / 2
             yield place, (right - left) / 2 * weight * (1 - abs(place))
 
@@ -157,7 +158,8 @@ def stress(x, z, pressure, shear, poisson_ratio):
 
         \sigma_z = -\tfrac{2z^3}{\pi}\int\tfrac{p}{D^2}ds - \tfrac{2z^2}{\pi}\int\tfrac{q\,(x-s)}{D^2}ds
 
-        \tau_{xz} = -\tfrac{2z^2}{\pi}\int\tfrac{p\,(x-s)}{D^2}ds - \tfrac{2z}{\pi}\int\tfrac{q\,(x-s)^2}{D^2}ds
+        \tau_{xz} = -\tfrac{2z^2}{\pi}\int\tfrac{p\,(x-s)}{D^2}ds
+        - \tfrac{2z}{\pi}\int\tfrac{q\,(x-s)^2}{D^2}ds
 
     with :math:`D=(x-s)^2+z^2` (Holmes et al. 2005, section 2.3, restored). At z = 0 the limits from inside:
     -p and the traction's principal value; at an end node that carries traction the infinite part is left out.

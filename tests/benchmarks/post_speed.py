@@ -1,8 +1,9 @@
 """Speed of post-processing, as ratios to the plain ways: ``python3 tests/benchmarks/post_speed.py [--full]``.
 
 Ratios: FFT stress against direct summation of the same kernels, rainflow with damage against the pure-Python
-`rainflow` of PyPI (counting alone; left out where it is not installed). ``--full`` adds a run from a result file of
-0.8 GB: 20,000 body points (4 depths x 5,000) of 6,000 samples each, counted three ways (max3), on one process and two.
+`rainflow` of PyPI (counting alone; left out where it is not installed). ``--full`` adds a run from a result
+file of 0.8 GB: 20,000 body points (4 depths x 5,000) of 6,000 samples each, counted three ways (max3), on one
+process and two.
 """
 
 import argparse

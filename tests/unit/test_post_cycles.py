@@ -1,6 +1,7 @@
 """Rainflow counts against the standard, hand-made cases, and a second implementation."""
 
 from collections import Counter
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -40,7 +41,7 @@ def three_point(series):
             else:
                 total[y] += 1.0
                 del stack[-3:-1]
-    for a, b in zip(stack, stack[1:], strict=False):
+    for a, b in pairwise(stack):
         total[abs(b - a)] += 0.5
     return {size: count for size, count in total.items() if size > 0}
 

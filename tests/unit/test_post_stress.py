@@ -156,7 +156,7 @@ def test_batches_and_shapes():
     whole = stress(x, [0.1, 0.2], p, p, 0.3)
     assert whole[0].shape == (3, 2, 2, 64)
     single = stress(x, 0.2, p[1, 0], p[1, 0], 0.3)
-    for many, one in zip(whole, single, strict=False):
+    for many, one in zip(whole, single, strict=True):
         assert many[1, 0, 1] == pytest.approx(one, abs=1e-13)
 
 

@@ -119,7 +119,7 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
             for offset in (0.0, 0.25, 0.4375):
                 found = body(depth, spectra, np.array([offset]))[0, :, 100:300]
                 at = np.rint((x[100:300] + offset) * 16).astype(int)
-                worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact, strict=False)))
+                worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact, strict=True)))
         errors.append(worst)
     assert errors[1] < 1e-3
     assert errors[0] < 3e-4
