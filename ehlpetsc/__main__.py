@@ -28,12 +28,15 @@ def main(argv):
 def explain(command):
     """Print the scene in words."""
     from ehlpetsc.case import CaseError, load
+    from ehlpetsc.environment import first_rank
     from ehlpetsc.explain import explain as words
 
     try:
-        print(words(load(command.case, command.overrides)))
+        text = words(load(command.case, command.overrides))
     except CaseError as error:
         return refuse("\n".join(error.faults))
+    if first_rank():
+        print(text)
     return 0
 
 

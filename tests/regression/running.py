@@ -1,0 +1,56 @@
+"""Running the program as its users do: as processes of their own, under mpirun or without."""
+import re
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PYTHON = "/usr/bin/python3"
+TAMPERED = str(Path(__file__).with_name("tampered.py"))
+# what run_mpi.sh sets; the tests of a bare environment leave out the first two
+DEBIAN = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real"
+SCRIPT = {
+    "PETSC_DIR": DEBIAN, "PYTHONPATH": f"{ROOT}:{DEBIAN}/lib/python3/dist-packages", "OMP_NUM_THREADS": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "PMIX_MCA_psec": "native", "PMIX_MCA_gds": "hash",
+    "OMPI_MCA_mpi_yield_when_idle": "1",  # the cores may be fewer than the ranks, and not ours alone
+}
+BARE = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "TERM": "dumb"}
+
+# the inlet near the contact, so that a few steps carry the roughness there; 60 steps on 113 nodes
+SHORT = ["mesh.inlet=-1.5", "mesh.outlet=1.3", "mesh.points_per_half_width=40", "time.travel=0.75"]
+
+
+def settings(*overrides):
+    """-ehl_set before each override."""
+    return [word for override in overrides for word in ("-ehl_set", override)]
+
+
+def command(*words, ranks=0, tampered=()):
+    """The command line; with `ranks` under mpirun, with `tampered` words through tampered.py."""
+    program = [TAMPERED, *map(str, tampered)] if tampered else ["-m", "ehlpetsc"]
+    mpirun = ["mpirun", "-q", "-n", str(ranks), "--bind-to", "none", "--oversubscribe"] if ranks else []
+    return [*mpirun, PYTHON, *program, *map(str, words)]
+
+
+def run(*words, cwd, ranks=0, tampered=(), **environment):
+    """Run the program to its end; output and error output as text."""
+    return subprocess.run(
+        command(*words, ranks=ranks, tampered=tampered), cwd=cwd, env=BARE | SCRIPT | environment,
+        capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
+    )
+
+
+def start(*words, cwd, ranks=0, **environment):
+    """Start the program and do not wait."""
+    return subprocess.Popen(
+        command(*words, ranks=ranks), cwd=cwd, env=BARE | SCRIPT | environment, text=True,
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )
+
+
+def summary(text):
+    """Figures of the last line of a run, as text by name."""
+    line = text.strip().splitlines()[-1]
+    assert line.startswith("ehlpetsc: "), text
+    return dict(re.findall(r"(\w+)=(\S+)", line))
+

@@ -1,0 +1,34 @@
+"""The program with an accident at one step of one rank: ``tampered.py ACCIDENT RANK STEP arguments``.
+
+ACCIDENT is "raise", an error in the code, or the name of a signal that the rank gets during the step.
+"""
+import os
+import signal
+import sys
+
+from ehlpetsc.__main__ import guarded
+from ehlpetsc.environment import prepare
+
+
+def tamper(accident, rank, step):
+    from ehlpetsc.march import March
+
+    advance = March.advance
+
+    def with_accident(self, state, *arguments):
+        from mpi4py import MPI  # not before PETSc has been started with its options
+
+        if state.step + 1 == step and MPI.COMM_WORLD.rank == rank:
+            if accident == "raise":
+                raise ValueError("an accident")
+            os.kill(os.getpid(), getattr(signal, accident))
+        return advance(self, state, *arguments)
+
+    March.advance = with_accident
+
+
+if __name__ == "__main__":
+    accident, rank, step, *rest = sys.argv[1:]
+    prepare()
+    tamper(accident, int(rank), int(step))
+    sys.exit(guarded([sys.argv[0], *rest]))

@@ -1,0 +1,184 @@
+"""The command line: where options come from, what is refused, what -help and -options_left say."""
+import subprocess
+
+import pytest
+from running import BARE, PYTHON, ROOT, SCRIPT, run, settings, summary
+
+from ehlpetsc.options import OWN, UsageError, faults, understand
+from ehlpetsc.result import read_result
+
+SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
+MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]
+
+
+@pytest.fixture
+def case(tmp_path):
+    """A quick steady case with an option of its own."""
+    path = tmp_path / "case.toml"
+    path.write_text(SMOOTH.replace("inlet = -4.0", "inlet = -2.5").replace("= 200", "= 20"))
+    return path
+
+
+def max_it(done):
+    """-snes_max_it as SNES itself reports it."""
+    assert done.returncode == 0, done.stderr
+    line = next(line for line in done.stdout.splitlines() if "maximum iterations" in line)
+    return int(line.split("=")[1].split(",")[0])
+
+
+def with_petsc_table(case, line):
+    case.write_text(f"{case.read_text()}\n[petsc]\n{line}\n")
+    return case
+
+
+def test_defaults_of_the_program_stand_where_nobody_says_otherwise(case, tmp_path):
+    assert max_it(run(case, "-snes_view", cwd=tmp_path)) == 30
+
+
+def test_the_case_is_before_defaults(case, tmp_path):
+    assert max_it(run(with_petsc_table(case, "snes_max_it = 31"), "-snes_view", cwd=tmp_path)) == 31
+
+
+def test_petsc_options_is_before_the_case(case, tmp_path):
+    with_petsc_table(case, "snes_max_it = 31")
+    done = run(case, cwd=tmp_path, PETSC_OPTIONS="-snes_max_it 32 -snes_view")
+    assert max_it(done) == 32
+    with read_result(tmp_path / "case.h5") as result:
+        assert "-snes_max_it 32" in result.attrs["petsc_options"]
+
+
+def test_the_command_line_is_before_all(case, tmp_path):
+    with_petsc_table(case, "snes_max_it = 31")
+    done = run(case, "-snes_max_it", 33, cwd=tmp_path, PETSC_OPTIONS="-snes_max_it 32 -snes_view")
+    assert max_it(done) == 33
+
+
+def test_an_options_file_counts_where_it_stands(case, tmp_path):
+    (tmp_path / "opts").write_text("-snes_max_it 34\n-snes_view\n-ehl_output other.h5\n")
+    words = ["-options_file", "opts"]
+    assert max_it(run(case, "-snes_max_it", 33, *words, cwd=tmp_path)) == 34
+    assert max_it(run(case, *words, "-snes_max_it", 33, cwd=tmp_path)) == 33
+    assert (tmp_path / "other.h5").exists()
+
+
+def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
+    monkeypatch.setenv("PETSC_OPTIONS", "-ehl_set a.b=1 -snes_monitor -ehl_set 'title=two words'")
+    command = understand(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
+    assert command.overrides == ["a.b=1", "title=two words", "c.d=2", "a.b=3"]
+    assert command.petsc == ["-ksp_view"]
+    assert command.case == "x.toml"
+    words = settings(*MESH, "title=two words", "fluid.viscosity=0.01")
+    done = run(ROOT / "cases/table1_smooth.toml", *words, cwd=tmp_path, ranks=2)
+    assert done.returncode == 0, done.stderr
+    with read_result(tmp_path / "table1_smooth.h5") as result:
+        assert len(result.x) == 81
+        assert result.attrs["title"] == "two words"
+        assert "viscosity = 0.01 " in result.attrs["case"]
+
+
+def test_misspelt_own_options_are_refused_all_at_once(case, tmp_path):
+    done = run(case, "-ehl_outptu", "f.h5", "-ehl_nonesuch", cwd=tmp_path, ranks=2)
+    assert done.returncode == 2
+    assert done.stderr.splitlines() == [
+        f"-ehl_nonesuch: unknown option; allowed: -{', -'.join(OWN)}",
+        "-ehl_outptu: unknown option; did you mean -ehl_output?",
+    ]
+    assert done.stdout == ""
+    assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_faults_of_single_names():
+    (line,) = faults([*OWN, "snes_monitor"])
+    assert line == "-ehl_set in an options file: allowed on the command line and in PETSC_OPTIONS"
+    assert faults(["ehl-output"]) == ["-ehl-output: unknown option; did you mean -ehl_output?"]
+    assert faults(["ehl_outputs", "ehloutput"])[1].endswith("did you mean -ehl_output?")
+
+
+@pytest.mark.parametrize("arguments, message", [
+    ([], "which case?"),
+    (["-snes_monitor"], "which case?"),
+    (["a.toml", "b.toml"], "one case file at a time"),
+])
+def test_the_case_must_be_named_once(arguments, message):
+    with pytest.raises(UsageError, match=message):
+        understand(arguments)
+
+
+@pytest.mark.parametrize("words, message", [
+    (["-ehl_output"], "-ehl_output stands without a value; allowed: -ehl_output FILE.h5"),
+    (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: allowed: a number > 0"),
+    (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: allowed: a number > 0"),
+    (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: result file not created, No such file or directory"),
+    (["-ehl_restart", "none.h5"], "the case is steady"),
+    (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
+])
+def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
+    done = run(case, *words, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_options_left_speaks_of_the_users_options_alone(case, tmp_path):
+    words = ["-options_left", "-ehl_output", "f.h5", "-snes_monitr", "-ksp_rtol", "1e-7"]
+    for ranks in (0, 2):
+        text = run(case, *words, cwd=tmp_path, ranks=ranks).stdout
+        table = text.split("#PETSc Option Table entries:\n")[1].split("#End")[0].splitlines()
+        assert sorted(table) == ["-ehl_output f.h5", "-ksp_rtol 1e-7", "-options_left", "-snes_monitr"]
+        assert "one unused database option" in text and "name:-snes_monitr" in text
+    text = run(case, "-options_left", "-pc_type", "jacobi", "-ksp_gmres_restart", 30, cwd=tmp_path).stdout
+    assert "There are no unused options." in text
+
+
+def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
+    done = run(case, "-help", cwd=tmp_path, ranks=2)
+    assert done.returncode == 0
+    own = done.stdout.split("Own options:\n")[1].splitlines()
+    for line, (name, option) in zip(own, OWN.items(), strict=False):
+        assert line == f"  -{name} <{option.value}>: {option.text} (default: {option.default})"
+    assert done.stdout.count("Own options:") == 1
+    for petscs in ("-snes_linesearch_type", "-ksp_rtol", "-pc_type"):
+        assert petscs in done.stdout
+    assert not (tmp_path / "case.h5").exists()
+    assert "Own options:" in run("-help", cwd=tmp_path).stdout
+
+
+def test_views_come_once_and_monitors_are_headed(tmp_path):
+    words = [ROOT / "cases/ridge.toml", *settings(*MESH, "time.travel=0.1")]
+    text = run(*words, "-snes_view", "-snes_converged_reason", cwd=tmp_path).stdout
+    assert text.count("SNES Object") == 1
+    heads = [line for line in text.splitlines() if line.startswith(("steady start", "step "))]
+    heads = [line.split(" from ")[0] for line in heads]
+    assert heads == ["steady start", *[f"step {k}" for k in range(1, 5)]]
+    assert text.count("Nonlinear solve converged") == len(heads)
+
+
+def test_a_bare_environment_will_do(case, tmp_path):
+    bare = {name: value for name, value in SCRIPT.items() if name not in ("PETSC_DIR", "OMP_NUM_THREADS")}
+    done = subprocess.run(
+        ["mpirun", "-q", "-n", "2", PYTHON, "-m", "ehlpetsc", case], cwd=tmp_path, timeout=120,
+        env=BARE | bare | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert float(summary(done.stdout)["load_error"]) < 1e-8
+
+
+def test_a_python_without_the_packages_is_told_what_to_type(case, tmp_path):
+    done = subprocess.run(
+        ["mpirun", "-q", "-n", "2", PYTHON, "-S", "-m", "ehlpetsc", "case.toml", "-snes_monitor"],
+        cwd=tmp_path, timeout=120, env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+    )
+    assert done.returncode == 2
+    lines = done.stderr.splitlines()
+    assert len(lines) == 2
+    assert "does not have numpy, scipy" in lines[0]
+    assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
+
+
+def test_explain_runs_nothing_and_speaks_once(case, tmp_path):
+    done = run("--explain", case, cwd=tmp_path, ranks=2)
+    assert done.returncode == 0
+    assert done.stdout.count("Table 1, smooth and steady") == 1
+    assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
+

@@ -1,0 +1,155 @@
+"""Accidents, stops and restarts: what is left is whole, and going on equals an uninterrupted run."""
+import json
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, summary
+
+from ehlpetsc.compare import compare
+from ehlpetsc.result import read_result
+
+CASE = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT)]
+STEPS = 60
+
+
+@pytest.fixture(scope="session")
+def whole(tmp_path_factory):
+    """Folder of an uninterrupted run; its output is in the file "log"."""
+    folder = tmp_path_factory.mktemp("whole")
+    done = run(*CASE, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    (folder / "log").write_text(done.stdout)
+    return folder
+
+
+def assert_equal(one, other, rtol=1e-9):
+    with read_result(one) as a, read_result(other) as b:
+        assert len(a.time) == len(b.time)
+        apart = [d.name for d in compare(a, b) if not d.same(rtol, 0.0)]
+        assert not apart
+        np.testing.assert_array_equal(a.contact_count, b.contact_count)
+        np.testing.assert_array_equal(a.steps("newton"), b.steps("newton"))
+
+
+def last_step(path):
+    with read_result(path) as result:
+        return int(result.steps("step")[-1]), result.attrs["status"]
+
+
+def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
+    done = run(*CASE, cwd=tmp_path, ranks=2, tampered=("raise", 1, 5))
+    assert done.returncode == 1
+    assert "ValueError: an accident" in done.stderr
+    assert done.stderr.count("Traceback") == 1
+    assert "tampered.py" in done.stderr
+
+
+@pytest.mark.parametrize("name, ranks", [("SIGTERM", 2), ("SIGUSR1", 0), ("SIGINT", 0)])
+def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(whole, tmp_path, name, ranks):
+    stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), 20))
+    assert stopped.returncode == 4, stopped.stderr
+    assert "stopped at step 20; go on with -ehl_restart table1_rough.restart.h5" in stopped.stdout
+    assert last_step(tmp_path / "table1_rough.h5") == (20, "stopped")
+    going_on = [*CASE, "-ehl_restart", "table1_rough.restart.h5"]
+    done = run(*going_on, cwd=tmp_path, ranks=3 if ranks else 0)
+    assert done.returncode == 0, done.stderr
+    assert "restart: table1_rough.restart.h5, step 20, " in done.stdout
+    assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
+    figures, expected = summary(done.stdout), summary((whole / "log").read_text())
+    for figure in ("steps", "newton", "h_min", "p_max", "contacts"):
+        assert figures[figure] == expected[figure]
+    with read_result(tmp_path / "table1_rough.h5") as result:
+        assert result.attrs["restarts"] == 1
+        assert result.attrs["ranks"] == (3 if ranks else 1)
+        (earlier,) = json.loads(result.attrs["history"])
+        assert earlier["ranks"] == max(ranks, 1) and earlier["up_to_step"] == 20
+
+
+def test_a_killed_run_leaves_its_last_checkpoint_and_goes_on_from_there(whole, tmp_path):
+    often = [*CASE, *settings("output.checkpoint=1e-5")]
+    killed = run(*often, cwd=tmp_path, ranks=2, tampered=("SIGKILL", 0, 31))
+    assert killed.returncode not in (0, 4)
+    assert last_step(tmp_path / "table1_rough.h5") == (30, "running")
+    done = run(*often, "-ehl_restart", "table1_rough.restart.h5", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "step 30, " in done.stdout
+    assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
+    assert [p.name for p in tmp_path.iterdir() if p.name.endswith(".tmp")] == []
+
+
+def test_the_time_limit_stops_with_a_restart_file(tmp_path):
+    done = run(*CASE, "-ehl_time_limit", "1e-6", cwd=tmp_path)
+    assert done.returncode == 4
+    assert last_step(tmp_path / "table1_rough.h5")[1] == "stopped"
+    assert (tmp_path / "table1_rough.restart.h5").exists()
+
+
+@pytest.fixture(scope="session")
+def stopped(tmp_path_factory):
+    """Restart file of a run stopped after 10 steps."""
+    folder = tmp_path_factory.mktemp("stopped")
+    assert run(*CASE, cwd=folder, tampered=("SIGTERM", 0, 10)).returncode == 4
+    return folder / "table1_rough.restart.h5"
+
+
+def test_a_run_may_go_on_with_another_viscosity_and_says_so(stopped, tmp_path):
+    changed = settings("fluid.viscosity=0.003", "time.travel=0.2", "output.every=2")
+    done = run(*CASE, *changed, "-ehl_restart", stopped, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    said = [line for line in done.stdout.splitlines() if line.startswith("restart: ")][1:]
+    assert said == ["restart: fluid.viscosity was 0.002, is 0.003", "restart: time.travel was 0.75, is 0.2"]
+    with read_result(tmp_path / "table1_rough.h5") as result:
+        h_min = result.steps("h_min")
+        assert list(result.steps("step")) == [11, 12, 13, 14, 15, 16]
+        assert np.all(np.diff(h_min) > 0)  # the thicker oil comes in
+
+
+@pytest.mark.parametrize("more, message", [
+    (["mesh.points_per_half_width=41"], "has 113 nodes, the case 116; [mesh] must be as it was"),
+    (["contact.load=400e3"], "its nodes lie from -0.503523 to 0.436387 mm, those of the case from -0.438"),
+    (["mesh.inlet=-1.6", "mesh.outlet=1.2"], "its nodes lie from"),
+])
+def test_a_restart_file_of_another_mesh_is_refused(stopped, tmp_path, more, message):
+    done = run(*CASE, *settings(*more), "-ehl_restart", stopped, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_finished_run_has_nothing_left_to_do(whole, stopped, tmp_path):
+    done = run(*CASE, *settings("time.travel=0.1"), "-ehl_restart", stopped, cwd=tmp_path)
+    assert done.returncode == 0
+    assert summary(done.stdout)["steps"] == "10"
+
+
+def test_a_full_disk_is_told_and_leaves_a_whole_file(tmp_path):
+    limited = ["prlimit", "--fsize=3000000", *command(*CASE, *settings("mesh.points_per_half_width=400"))]
+    done = subprocess.run(
+        limited, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 2
+    assert "table1_rough.h5: result file not written on, File too large; the file is whole up" in done.stderr
+    told = int(done.stderr.split("up to step ")[1].split()[0].rstrip(";"))
+    assert last_step(tmp_path / "table1_rough.h5") == (told, "stopped")
+
+
+def test_the_script_hands_sigterm_on(tmp_path):
+    words = [ROOT / "run_mpi.sh", *map(str, CASE), *settings("time.travel=50")]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    process = subprocess.Popen(words, cwd=tmp_path, env=BARE, **pipes)
+    result = tmp_path / "table1_rough.h5"
+    try:
+        for _ in range(600):
+            time.sleep(0.1)
+            if result.exists() or process.poll() is not None:
+                break
+        process.send_signal(signal.SIGTERM)
+        output, errors = process.communicate(timeout=120)
+    finally:
+        process.kill()
+    assert process.returncode == 4, errors
+    assert last_step(result)[1] == "stopped"
+    assert output.splitlines()[-1].startswith("ehlpetsc: stopped steps=")
