@@ -167,7 +167,8 @@ def test_a_bare_environment_will_do(case, tmp_path):
 def test_a_python_without_the_packages_is_told_what_to_type(case, tmp_path):
     done = subprocess.run(
         ["mpirun", "-q", "-n", "2", PYTHON, "-S", "-m", "ehlpetsc", "case.toml", "-snes_monitor"],
-        cwd=tmp_path, timeout=120, env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+        cwd=tmp_path, env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)}, timeout=120,
+        capture_output=True, text=True,
     )
     assert done.returncode == 2
     lines = done.stderr.splitlines()
