@@ -1,0 +1,103 @@
+"""Every case of cases/ in a short form, and the scalars of its result that are held against stored ones.
+
+Refresh after a change that is meant to move results, and say in the commit why they move::
+
+    /usr/bin/python3 tests/regression/short_cases.py
+
+It prints what moved and writes expected.json.
+"""
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from running import ROOT, run, settings
+
+from ehlpetsc.result import read_result
+
+EXPECTED = Path(__file__).with_name("expected.json")
+
+# the inlet near the contact, so that a few steps carry the roughness into it
+QUICK = ("mesh.inlet=-1.4", "mesh.outlet=1.3", "mesh.points_per_half_width=50", "time.travel=0.6")
+VISCOSITIES = "series.values=[0.010, 0.006]"
+MESHES = "series.values=[40, 60]"
+SHORT = {
+    "dry_hertz": (),
+    "dry_rough": ("mesh.points_per_half_width=100",),
+    "fig1": (*QUICK, VISCOSITIES),
+    "fig2": (*QUICK, VISCOSITIES),
+    "fig3": (*QUICK, VISCOSITIES),
+    "fig4": (*QUICK, VISCOSITIES),
+    "fig5": QUICK,
+    "fig6": (*QUICK, MESHES),
+    "fig7": (*QUICK, MESHES, "output.every=10"),
+    "moes": (),
+    "ridge": (*QUICK, "surface.slow.synthetic.position=0.0"),
+    "table1_damage": QUICK,
+    "table1_rough": QUICK,
+    "table1_smooth": (),
+    "waviness": (*QUICK[:3], "time.travel=1.0"),
+}
+
+RTOL = 1e-5
+"""Newton stops at a residual of 1e-7, which leaves films and pressures certain to about 1e-6 of their scale;
+other processors and numbers of ranks change them by 1e-13. No short form halves a step, where a change in
+the last digits may take another path."""
+
+NEWTON_SLACK = 1.25
+"""Iterations may grow by a quarter before it counts as a loss: they are a cost and no result."""
+
+
+def scalars(path):
+    """Figures of one result file."""
+    with read_result(path) as result:
+        last = len(result.time) - 1
+        central = int(np.argmin(np.abs(result.x)))
+        steps = {name: result.steps(name) for name in ("h_min", "p_max", "contacts", "newton", "friction")}
+        return {
+            "steps": len(steps["newton"]),
+            "newton": int(steps["newton"].sum()),
+            "contacts": int(steps["contacts"].sum()),
+            "h_min": float(steps["h_min"].min()),
+            "p_max": float(steps["p_max"].max()),
+            "friction": float(steps["friction"][-1]),
+            "approach": float(result.steps("approach")[-1]),
+            "h_central": float(result.frame("film_thickness", last)[central]),
+            "p_central": float(result.frame("pressure", last)[central]),
+            "retries": int(result.steps("retries").sum()),
+            "load_error": float(result.steps("load_error").max()),
+        }
+
+
+def results(name, folder):
+    """Run a case in its short form; scalars by result file, several for a series.
+
+    Raises
+    ------
+    RuntimeError
+        It did not run to its end.
+    """
+    done = run(ROOT / "cases" / f"{name}.toml", *settings(*SHORT[name]), cwd=folder)
+    if done.returncode != 0:
+        raise RuntimeError(f"{name}: exit {done.returncode}\n{done.stdout}{done.stderr}")
+    files = [path for path in sorted(Path(folder).rglob("*.h5")) if not path.name.endswith(".restart.h5")]
+    return {path.stem: scalars(path) for path in files}
+
+
+def refresh():
+    """Run all cases and store their scalars."""
+    before = json.loads(EXPECTED.read_text()) if EXPECTED.exists() else {}
+    now = {}
+    for name in SHORT:
+        with tempfile.TemporaryDirectory() as folder:
+            now[name] = results(name, folder)
+        for file, figures in now[name].items():
+            old = before.get(name, {}).get(file, {})
+            moved = [f"{k} {old.get(k)} -> {v}" for k, v in figures.items() if old.get(k) != v]
+            print(f"{file}: {'; '.join(moved) or 'as before'}", flush=True)
+    EXPECTED.write_text(json.dumps(now, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    sys.exit(refresh())
