@@ -2,7 +2,7 @@
 
 import math
 
-from ehlpetsc import __version__
+from ehlpetsc import __version__, reference
 from ehlpetsc.roughness import Roughness, mesh_warnings
 from ehlpetsc.scales import Scales
 
@@ -12,9 +12,7 @@ SCALARS = 13  # of 8 bytes a step, in steps/ of the result file
 
 
 def dowson_higginson(scales, alpha):
-    r"""Minimum film of the smooth line contact [m].
-
-    :math:`h_\mathrm{min}/R=2.65\,U^{0.7}G^{0.54}W^{-0.13}` (Dowson & Higginson 1966; Dowson 1968).
+    """Minimum film of the smooth line contact [m], after `ehlpetsc.reference.dowson_higginson`.
 
     Parameters
     ----------
@@ -22,9 +20,9 @@ def dowson_higginson(scales, alpha):
     alpha : float
         Pressure-viscosity coefficient [1/Pa].
     """
-    U = scales.eta0 * scales.u / (scales.E * scales.R)
-    W = scales.load / (scales.E * scales.R)
-    return 2.65 * U**0.7 * (alpha * scales.E) ** 0.54 * W**-0.13 * scales.R
+    speed = scales.eta0 * scales.u / (scales.E * scales.R)
+    load = scales.load / (scales.E * scales.R)
+    return scales.R * reference.dowson_higginson(speed, alpha * scales.E, load)
 
 
 def explain(case):

@@ -1,0 +1,52 @@
+"""The batch script, with a stand-in for Slurm: stopped in time, queued again, it goes on and ends."""
+import os
+import signal
+import subprocess
+import time
+
+from running import BARE, ROOT, SHORT, settings
+
+from ehlpetsc.result import read_result
+
+JOB = ["/bin/bash", ROOT / "cases" / "batch.slurm", ROOT / "cases" / "table1_rough.toml", *settings(*SHORT)]
+
+
+def slurm(folder):
+    """The environment of a job, and a scontrol that notes what it is told."""
+    scontrol = folder / "bin" / "scontrol"
+    scontrol.parent.mkdir()
+    scontrol.write_text('#!/bin/sh\necho "$@" >>requeued\n')
+    scontrol.chmod(0o755)
+    path = f"{scontrol.parent}:{BARE['PATH']}"
+    return BARE | {"PATH": path, "SLURM_JOB_ID": "17", "SLURM_NTASKS": "1", "SLURM_SUBMIT_DIR": str(ROOT)}
+
+
+def test_a_job_stopped_before_its_time_is_over_goes_on_when_queued_again(tmp_path):
+    result, restart = tmp_path / "table1_rough.h5", tmp_path / "table1_rough.restart.h5"
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    environment = slurm(tmp_path)
+    job = subprocess.Popen(
+        [*JOB, *settings("time.travel=3.0")], cwd=tmp_path, env=environment, start_new_session=True, **pipes
+    )
+    for _ in range(600):
+        time.sleep(0.05)
+        if result.exists() or job.poll() is not None:
+            break
+    job.send_signal(signal.SIGUSR1)
+    text, _ = job.communicate(timeout=120)
+    assert job.returncode == 4, text
+    assert (tmp_path / "requeued").read_text() == "requeue 17\n"
+    assert restart.exists()
+    with read_result(result) as first:
+        stopped_at = int(first.steps("step")[-1])
+    assert 0 <= stopped_at < 240
+    shorter = [*JOB, *settings("time.travel=0.5")]
+    again = subprocess.run(shorter, cwd=tmp_path, env=environment, timeout=120, **pipes)
+    assert again.returncode == 0, again.stdout
+    assert f"step {stopped_at}, " in again.stdout
+    assert not restart.exists()
+    with read_result(result) as whole:
+        assert whole.attrs["restarts"] == 1
+        assert whole.attrs["status"] == "done"
+        assert int(whole.steps("step")[-1]) == max(40, stopped_at)
+    assert os.path.getsize(tmp_path / "requeued") == len("requeue 17\n")
