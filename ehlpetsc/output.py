@@ -90,13 +90,13 @@ class ResultWriter:
             raise
         self._start_batch()
 
-    def append(self, step, time, fields, scalars, in_contact):
+    def append(self, step, time, fields, scalars, in_contact, frame=None):
         """Take an accepted time step.
 
         Parameters
         ----------
         step : int
-            Number of the step; a frame is stored if `every` divides it.
+            Number of the step.
         time : float
             Time at its end [s].
         fields : dict of str to ndarray, shape (nx,)
@@ -104,6 +104,8 @@ class ResultWriter:
         scalars : dict of str to number
             Per-step scalars, keys of `ehlpetsc.fields.STEP_SCALARS`; those left out become nan, counts 0.
         in_contact : ndarray of bool, shape (nx,)
+        frame : bool, optional
+            Whether to store the fields; by default if `every` divides the step.
 
         Raises
         ------
@@ -116,7 +118,7 @@ class ResultWriter:
         for name, column in self._columns.items():
             column[row] = scalars.get(name, 0 if column.dtype.kind == "i" else np.nan)
         self._columns["step"][row] = step
-        if step % self.every == 0:
+        if step % self.every == 0 if frame is None else frame:
             self._hold_frame(step, time, fields, in_contact)
         self.last_step = step
         full = self._steps_held == BATCH_STEPS or self._frames_held == len(self._frame_times)

@@ -1,43 +1,22 @@
-"""One case on all ranks: read, solve, write, report. Rank 0 alone reads the case and writes files."""
+"""The command: one case on all ranks, or a series on groups of them. Rank 0 alone reads the case."""
 import sys
-import time as clock
 from pathlib import Path
 
-import mpi4py
-import numpy as np
-import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc import checkpoint
 from ehlpetsc.case import CaseError, load
-from ehlpetsc.explain import banner, dowson_higginson, warnings
-from ehlpetsc.march import Failed, March
+from ehlpetsc.march import Failed
 from ehlpetsc.options import UsageError, faults, help_text, text_of, time_limit
-from ehlpetsc.output import OutputError, ResultWriter
-from ehlpetsc.report import Progress, summary_line
-from ehlpetsc.roughness import Roughness
-from ehlpetsc.scales import Scales
-from ehlpetsc.solver import NotConverged, Solver, set_defaults
+from ehlpetsc.output import OutputError
+from ehlpetsc.series import Series
+from ehlpetsc.single import NOT_CONVERGED, Run, expected_film
+from ehlpetsc.solver import set_defaults
 from ehlpetsc.stop import StopRequest
 
-DONE, BAD_INPUT, NOT_CONVERGED, STOPPED = 0, 2, 3, 4
-FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
-GREATEST = ("p_max", "load_error", "mass_error")  # of the run, in the summary
+__all__ = ["expected_film", "run"]
 
-
-def on_root(comm, action, *arguments):
-    """What `action` returns on rank 0, None on the others; its OutputError is raised on every rank."""
-    answer = fault = None
-    if comm.rank == 0:
-        try:
-            answer = action(*arguments)
-        except OutputError as error:
-            fault = str(error)
-    fault = comm.bcast(fault)
-    if fault:
-        raise OutputError(fault)
-    return answer
+BAD_INPUT = 2
 
 
 def read_case(comm, path, overrides):
@@ -49,173 +28,6 @@ def read_case(comm, path, overrides):
         except CaseError as error:
             print("\n".join(error.faults), file=sys.stderr, flush=True)
     return comm.bcast(case)
-
-
-def expected_film(case, scales):
-    """Film scale in a^2/R that divides the Reynolds rows and sets the smooth start."""
-    if case.fluid is None:
-        return 1.0
-    return max(dowson_higginson(scales, case.fluid.pressure_viscosity) / scales.h, 1e-6)
-
-
-class Run:
-    """A case being run: holds march, writer, progress and restart file."""
-
-    def __init__(self, comm, case, options, stop):
-        self.comm, self.case, self.root, self.stop = comm, case, comm.rank == 0, stop
-        self.scales = Scales.of(case)
-        self.roughness = Roughness.of(case, self.scales)
-        film = expected_film(case, self.scales)
-        self.views = taken_out(options, ("snes_view", "ksp_view"))
-        self.follow = any(options.hasName(name) for name in FOLLOWED)
-        self.march = March(Solver(case, self.scales, film), self.scales, self.roughness, film)
-        self.output = Path(text_of(options, "ehl_output") or Path(case.path).stem + ".h5")
-        self.restart = self.output.with_suffix(".restart.h5")
-        self.writer = None
-        self.totals = {"newton": 0, "h_min": np.inf, "contacts": 0} | dict.fromkeys(GREATEST, 0.0)
-
-    def announce(self):
-        """Say on rank 0 what is about to run, and what the user should know before."""
-        if self.root:
-            for line in banner(self.case, self.scales, self.roughness, self.comm.size):
-                print(line)
-            for line in warnings(self.case, self.scales):
-                print(f"warning: {line}", flush=True)
-
-    def open_writer(self, step=None, count=None):
-        """Create or continue the result file, on rank 0."""
-        self.writer = on_root(self.comm, self._new_writer, step, count)
-
-    def _new_writer(self, step, count):
-        s, c = self.scales, self.case
-        fields = [f for f in c.output.fields if c.fluid is not None or f != "void_fraction"]
-        profiles = {"fast": None, "slow": None}
-        if self.roughness is not None:
-            for side in profiles:
-                p = getattr(self.roughness, side)
-                profiles[side] = p and (p.s, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk})
-        attributes = {
-            "a": s.a, "p0": s.p0, "h_scale": s.h, "u1": s.u1, "u2": s.u2, "ranks": self.comm.size,
-            "petsc_options": " ".join(f"-{k} {v}".strip() for k, v in PETSc.Options().getAll().items()),
-            "versions": libraries(),
-        }
-        return ResultWriter(
-            self.output, case_text=c.text, title=c.title, x=s.x * s.a, scalars_attrs=attributes,
-            fields=fields, every=c.output.every, precision=c.output.precision, profiles=profiles,
-            resume_step=step, contact_count=count)
-
-    def store(self, state, started):
-        """Write one accepted state; totals for the summary."""
-        scalars, fields, in_contact = self.march.scalars(self.case, state, started)
-        on_root(self.comm, lambda: self.writer.append(state.step, state.time, fields, scalars, in_contact))
-        t = self.totals
-        t["newton"] += scalars["newton"]
-        t["contacts"] += scalars["contacts"]
-        t["h_min"] = min(t["h_min"], scalars["h_min"])
-        for name in GREATEST:
-            t[name] = max(t[name], scalars[name])
-        return scalars
-
-    def checkpoint(self, state):
-        """Write the restart file beside the result, on rank 0."""
-        def write():
-            self.writer.flush()
-            checkpoint.save(self.restart, state, self.march.smooth, self.writer.contact_count, self.totals,
-                            self.case, self.scales)
-        on_root(self.comm, write)
-
-    def resume(self, path):
-        """State and contact count of a restart file."""
-        state, self.march.smooth, count, totals, notes = checkpoint.load(path, self.case, self.scales)
-        self.totals |= totals
-        if self.root:
-            print(f"restart: {path}, step {state.step}, {1e6 * state.time:.4f} us")
-            for note in notes:
-                print(f"restart: {note}", flush=True)
-        return state, count
-
-    def go(self, restart):
-        """Run to the end. Returns the exit status."""
-        begun = clock.monotonic()
-        if restart:
-            state, count = self.resume(restart)
-            self.open_writer(state.step, count)
-        else:
-            self._follow("steady start")
-            state = self.march.start(NotConverged)
-            self._view()
-            self.open_writer()
-            self.store(state, begun)
-        status, failure = "done", None
-        if self.case.time is not None:
-            state, status, failure = self._march(state)
-        on_root(self.comm, lambda: self.writer.close(status))
-        if self.root:
-            self._report(state, status, failure, clock.monotonic() - begun)
-        return {"done": DONE, "stopped": STOPPED}.get(status, NOT_CONVERGED)
-
-    def _follow(self, what):
-        """Head PETSc's own lines, where the user asked for some."""
-        if self.follow:
-            PETSc.Sys.Print(what)
-
-    def _view(self):
-        """-snes_view and -ksp_view once, after the first solve: PETSc would repeat them at every step."""
-        snes = self.march.solver.snes
-        for name in self.views:
-            (snes if name == "snes_view" else snes.ksp).view()
-
-    def _march(self, state):
-        s = self.scales
-        progress = Progress(state.time, s.duration) if self.root else None
-        saved = clock.monotonic()
-        status, failure = "done", None
-        while state.time < s.duration * (1.0 - 1e-9):
-            if self.stop(self.comm):
-                status = "stopped"
-                break
-            started = clock.monotonic()
-            self._follow(f"step {state.step + 1} from {1e6 * state.time:.4f} us")
-            try:
-                state = self.march.advance(state, NotConverged, s.dt)
-            except Failed as error:
-                status, failure = "not converged", str(error)
-                break
-            scalars = self.store(state, started)
-            if progress:
-                progress.step(state.step, state.time, scalars)
-            if self.comm.bcast(clock.monotonic() - saved > 60.0 * self.case.output.checkpoint):
-                self.checkpoint(state)
-                saved = clock.monotonic()
-        if progress:
-            progress.close()
-        if status != "done":
-            self.checkpoint(state)
-        return state, status, failure
-
-    def _report(self, state, status, failure, wall):
-        if failure:
-            print(f"ehlpetsc: not converged: {failure}. Last good state: {self.restart}", file=sys.stderr,
-                  flush=True)
-        elif status == "stopped":
-            print(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {self.restart}")
-        print(f"result: {self.output}")
-        print(summary_line(status, steps=state.step, wall=wall, **self.totals), flush=True)
-
-
-def taken_out(options, names):
-    """Those of the names that stand in PETSc's table without a value, taken out of it."""
-    found = [name for name in names if options.hasName(name) and not options.getString(name, "")]
-    for name in found:
-        options.delValue(name)
-    return found
-
-
-def libraries():
-    """Names and versions of what computes, for the result file."""
-    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
-    mpi = MPI.Get_library_version().split(",")[0].rstrip("\0")
-    return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}
 
 
 def refuse(comm, lines):
@@ -238,16 +50,28 @@ def run(path, overrides):
     case = path and read_case(comm, path, overrides)
     if path and case is None:
         return BAD_INPUT
-    entered = set_defaults(options, case.petsc, comm.size) if case else ()
     try:
-        this = case and Run(comm, case, options, stop)
-        if options.hasName("help"):  # after PETSc's own objects have told theirs
+        if case and options.hasName("help"):
+            set_defaults(options, case.petsc, comm.size)
+            Run(comm, case, options, stop, "")  # PETSc's own objects tell theirs as they are made
+        if options.hasName("help"):
             PETSc.Sys.Print(help_text())
-            return DONE
-        this.announce()
-        return this.go(text_of(options, "ehl_restart"))
+            return 0
+        output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
+        if case.series:
+            return Series(comm, case, options, stop, output).go()
+        return run_single(comm, case, options, stop, output)
     except (OutputError, UsageError) as error:
         return refuse(comm, [f"ehlpetsc: {error}"])
+
+
+def run_single(comm, case, options, stop, output):
+    """A case that is no series, on all ranks. Returns the exit status."""
+    entered = set_defaults(options, case.petsc, comm.size)
+    try:
+        this = Run(comm, case, options, stop, output)
+        this.announce()
+        return this.go(text_of(options, "ehl_restart"))
     except Failed as error:
         if comm.rank == 0:
             print(f"ehlpetsc: not converged: {error}", file=sys.stderr, flush=True)
