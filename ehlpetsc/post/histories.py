@@ -22,7 +22,7 @@ QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single preci
 #                     rounding noise of the transforms in an unloaded stretch is no cycle
 
 
-OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
+OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements, even about one half
 
 
 def offset_weights(offset):
@@ -34,26 +34,50 @@ def offset_weights(offset):
     return weights
 
 
+def half_element(nx):
+    """Spectrum of a shift by half an element."""
+    n = padded_length(nx)
+    return np.exp(1j * np.pi * np.arange(n // 2 + 1) / n)
+
+
+def parity_tables(nx, depth):
+    r"""Kernel spectra at OFFSETS in real numbers, shape (4, 6, f): half of what complex ones would take.
+
+    Kernels A, C are even, B, E odd. The spectrum of an even kernel at offset 1/2 + e, or 1/i of that of an
+    odd one, times :math:`e^{-i\omega/2}`, has a real part even in e and an imaginary part odd in e. The first
+    three rows hold the one at the three e < 0, the last three the other.
+    """
+    spectra = np.stack([spline_spectra(nx, depth, d) for d in OFFSETS[:3]], axis=1) * half_element(nx).conj()
+    spectra[[1, 3]] *= -1j
+    return np.ascontiguousarray(np.concatenate([spectra.real, spectra.imag], axis=1))
+
+
+def parity_weights(offset):
+    """Weights (frames, 6) of the rows of :func:`parity_tables` at offsets (frames,)."""
+    weights = offset_weights(offset)
+    left, right = weights[:, :3], weights[:, :2:-1]
+    return np.concatenate([left + right, left - right], axis=1)
+
+
+@njit(cache=True, nogil=True)
+def _kernel(rows, w, f):
+    return complex(
+        w[0] * rows[0, f] + w[1] * rows[1, f] + w[2] * rows[2, f],
+        w[3] * rows[3, f] + w[4] * rows[4, f] + w[5] * rows[5, f],
+    )
+
+
 @njit(cache=True, nogil=True)
 def _spectra(tables, weights, p, q, out):
-    """out (frames, 3, f) = stress spectra, tables (4, n, 2 f) of kernel spectra: real, imaginary in turns."""
-    width = tables.shape[2]
-    kernel = np.empty((4, width))
+    """out (frames, 3, f) = stress spectra under loads (frames, f) shifted by half an element."""
     for frame in range(p.shape[0]):
-        for part in range(4):
-            row = kernel[part]
-            row[:] = weights[frame, 0] * tables[part, 0]
-            for k in range(1, tables.shape[1]):
-                row += weights[frame, k] * tables[part, k]
-        for f in range(width // 2):
-            pf, qf = p[frame, f], q[frame, f]
-            normal = complex(kernel[0, 2 * f], kernel[0, 2 * f + 1])
-            cross = complex(kernel[1, 2 * f], kernel[1, 2 * f + 1])
-            along = complex(kernel[2, 2 * f], kernel[2, 2 * f + 1])
-            shear = complex(kernel[3, 2 * f], kernel[3, 2 * f + 1])
-            out[frame, 0, f] = along * pf + shear * qf
-            out[frame, 1, f] = normal * pf + cross * qf
-            out[frame, 2, f] = cross * pf + along * qf
+        w = weights[frame]
+        for f in range(p.shape[1]):
+            normal, cross = _kernel(tables[0], w, f), 1j * _kernel(tables[1], w, f)
+            along, shear = _kernel(tables[2], w, f), 1j * _kernel(tables[3], w, f)
+            out[frame, 0, f] = along * p[frame, f] + shear * q[frame, f]
+            out[frame, 1, f] = normal * p[frame, f] + cross * q[frame, f]
+            out[frame, 2, f] = cross * p[frame, f] + along * q[frame, f]
 
 
 @njit(cache=True, nogil=True)
@@ -85,22 +109,21 @@ class BodyStress:
 
     def __init__(self, nx, depths):
         self.n = padded_length(nx)
-        self.tables = [
-            np.ascontiguousarray(np.stack([spline_spectra(nx, depth, d) for d in OFFSETS], axis=1)).view(
-                float
-            )
-            for depth in depths
-        ]
+        self.tables = [parity_tables(nx, depth) for depth in depths]
+        self._half = half_element(nx)
         self._out = np.empty((BATCH, 3, self.n // 2 + 1), complex)
 
     def transform(self, pressure, shear):
-        """Spectra of the loads (frames, nx); beyond its ends a load falls to zero over one element."""
-        return fft.rfft(pressure, self.n), fft.rfft(shear, self.n)
+        """Spectra of the loads (frames, nx), shifted by half an element.
+
+        Beyond its ends a load falls to zero over one element.
+        """
+        return fft.rfft(pressure, self.n) * self._half, fft.rfft(shear, self.n) * self._half
 
     def __call__(self, depth, spectra, offset):
         """Stresses (frames, 3, n) of depth number `depth`, `offset` (frames,) elements right of the nodes."""
         out = self._out[: len(offset)]
-        _spectra(self.tables[depth], offset_weights(offset), *spectra, out)
+        _spectra(self.tables[depth], parity_weights(offset), *spectra, out)
         return fft.irfft(out, self.n, overwrite_x=True)
 
 

@@ -34,8 +34,11 @@ def spacing(x):
 
 
 def padded_length(nx):
-    """FFT length that holds the linear convolution of nx nodes with nx offsets either way."""
-    return fft.next_fast_len(2 * nx - 1, real=True)
+    """FFT length that holds the linear convolution of nx nodes with nx offsets either way.
+
+    2 nx - 1 would do; with 2 nx the kernels seen from between two nodes are symmetric.
+    """
+    return fft.next_fast_len(2 * nx, real=True)
 
 
 def kernel_spectra(nx, z, offset=0.0):
@@ -57,7 +60,7 @@ def spline_spectra(nx, z, offset):
     division of spectra.
     """
     n = padded_length(nx)
-    distance = np.arange(-(nx - 1), nx)
+    distance = np.arange(-nx, nx)
     near = np.abs(distance) <= NEAR
     kernels = np.zeros((4, n))
     for chosen, rule in ((distance[near], _between_kinks(offset)), (distance[~near], FAR_RULE)):
