@@ -75,7 +75,7 @@ def _compared(results, folder):
 def _bar(figure, contours, axes):
     if contours is not None:
         bar = figure.colorbar(contours, ax=axes, label="damage D of one pass", pad=0.02)
-        bar.ax.minorticks_off()
+        bar.ax.yaxis.set_major_formatter(lambda power, place: f"$10^{{{power:.0f}}}$")
 
 
 def damage_picture(result, surface):

@@ -1,7 +1,6 @@
 """Pictures of stresses, histories, damage and its distribution, each drawn into given axes."""
 
 import numpy as np
-from matplotlib.colors import LogNorm
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from ehlpetsc.post.accumulate import CHANNELS
@@ -16,11 +15,11 @@ DARK = "#222222"
 
 
 def decades(largest):
-    """Levels, one a decade, that end above the largest damage; None if there is none."""
+    """Powers of ten, whole ones, that end above the largest damage; None if there is none."""
     if not (np.isfinite(largest) and largest > 0):
         return None
     top = int(np.ceil(np.log10(largest)))
-    return 10.0 ** np.arange(top - DECADES, top + 1)
+    return np.arange(top - DECADES, top + 1)
 
 
 def profile(axes, result, surface, length):
@@ -48,7 +47,7 @@ def shown_length(result, surface, longest=None):
 
 
 def damage_contours(axes, result, surface, length, levels):
-    """Filled logarithmic contours of damage over body point and depth; the depth axis is in its own nodes."""
+    """Filled contours of log10 D over body point and depth, whose axis shows the root of the depth."""
     complete = result.complete[surface]
     x, values = _along(result, surface, result.s[complete]), result.damage[surface][:, complete]
     depth, ticks = _depth_axis(result.z)
@@ -61,15 +60,8 @@ def damage_contours(axes, result, surface, length, levels):
             0.5, 0.5, "no damage" if levels is None else "one depth", transform=axes.transAxes, ha="center"
         )
         return None
-    return axes.contourf(
-        x,
-        depth,
-        np.maximum(values, levels[0] * 1e-3),
-        levels=levels,
-        norm=LogNorm(),
-        cmap="inferno_r",
-        extend="min",
-    )
+    shown = np.log10(np.maximum(values, 10.0 ** (levels[0] - 1.0)))
+    return axes.contourf(x, depth, shown, levels=levels, cmap="inferno_r", extend="min")
 
 
 def _depth_axis(z):
@@ -110,13 +102,20 @@ def finish_exceedance(axes, title):
 
 
 def stress_field(axes, x, z, values, label):
-    """One stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign."""
-    limit = np.abs(values).max() or 1.0
-    signed = values.min() < -0.02 * limit and values.max() > 0.02 * limit
-    low, high, colours = (-limit, limit, "RdBu_r") if signed else (values.min(), values.max(), "viridis")
+    """One stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign.
+
+    The colours span all but the highest and lowest thousandths: peaks under single asperities would leave the
+    rest in one colour.
+    """
+    low, high = np.quantile(values, [0.001, 0.999])
+    limit = max(-low, high)
+    colours = "viridis"
+    if low < -0.1 * limit and high > 0.1 * limit:
+        low, high, colours = -limit, limit, "RdBu_r"
     if high <= low:
         high = low + 1.0
-    mesh = axes.contourf(x, z, values, levels=np.linspace(low, high, 25), cmap=colours)
+    levels = MaxNLocator(25).tick_values(low, high)
+    mesh = axes.contourf(x, z, values, levels=levels, cmap=colours, extend="both")
     axes.set_ylim(z[-1], z[0])
     axes.set_ylabel("z/a")
     axes.set_title(label, fontsize=9, loc="left")
