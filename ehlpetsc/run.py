@@ -53,7 +53,7 @@ def run(path, overrides):
     try:
         if case and options.hasName("help"):
             set_defaults(options, case.petsc, comm.size)
-            Run(comm, case, options, stop, "")  # PETSc's own objects tell theirs as they are made
+            Run(comm, case, options, stop, "none.h5")  # PETSc's own objects tell theirs as they are made
         if options.hasName("help"):
             PETSc.Sys.Print(help_text())
             return 0
