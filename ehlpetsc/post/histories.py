@@ -1,12 +1,11 @@
 """Stress histories at points fixed in the body, evaluated where the points are.
 
 Between two frames a body point moves by a part of the node spacing. Linear interpolation, of nodal stresses
-or of the load, then cuts the peaks of short ripples: 3 % of the amplitude at ten nodes, and 20 to 40 % of the
-damage near the surface, which rises with about the eleventh power. Here the load is the cubic spline through
-its nodal values, and its kernels are evaluated at the offset of the body's points from the nodes, one offset
-a frame: their spectra are polynomials in the offset, through Chebyshev points, so that an offset costs a sum
-of a few tables. Beside a pressure spike of a single node the spline swings by up to 13 % of it to the other
-side.
+or of the load, then cuts the peaks of short ripples: 5 % of the amplitude at ten nodes, and much more of the
+damage near the surface, which rises with about the eleventh power. Here the load has cubic pieces
+(:mod:`ehlpetsc.post.between`), and their kernels are evaluated at the offset of the body's points from the
+nodes, one offset a frame: their spectra are polynomials in the offset, through Chebyshev points, so that an
+offset costs a sum of a few tables.
 
 A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
 """
@@ -14,8 +13,9 @@ A point is unstressed before it enters and after it leaves: each history starts 
 import numpy as np
 from scipy import fft
 
+from ehlpetsc.post.between import hermite_spectra, limited_slopes
 from ehlpetsc.post.jit import njit
-from ehlpetsc.post.stress import padded_length, spline_spectra
+from ehlpetsc.post.stress import padded_length
 
 BATCH = 32  # frames transformed together: spectra and stresses stay in the cache
 QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single precision on this grid, so that the
@@ -41,14 +41,15 @@ def half_element(nx):
 
 
 def parity_tables(nx, depth):
-    r"""Kernel spectra at OFFSETS in real numbers, shape (4, 6, f): half of what complex ones would take.
+    r"""Kernel spectra at OFFSETS in real numbers, shape (8, 6, f): half of what complex ones would take.
 
-    Kernels A, C are even, B, E odd. The spectrum of an even kernel at offset 1/2 + e, or 1/i of that of an
-    odd one, times :math:`e^{-i\omega/2}`, has a real part even in e and an imaginary part odd in e. The first
-    three rows hold the one at the three e < 0, the last three the other.
+    Under values kernels A, C are even, B, E odd, under slopes the other way round. The spectrum of an even
+    kernel at offset 1/2 + e, or 1/i of that of an odd one, times :math:`e^{-i\omega/2}`, has a real part even
+    in e and an imaginary part odd in e. The first three rows hold the one at the three e < 0, the last three
+    the other.
     """
-    spectra = np.stack([spline_spectra(nx, depth, d) for d in OFFSETS[:3]], axis=1) * half_element(nx).conj()
-    spectra[[1, 3]] *= -1j
+    spectra = np.stack([hermite_spectra(nx, depth, d) for d in OFFSETS[:3]], axis=1) * half_element(nx).conj()
+    spectra[[1, 3, 4, 6]] *= -1j
     return np.ascontiguousarray(np.concatenate([spectra.real, spectra.imag], axis=1))
 
 
@@ -68,16 +69,18 @@ def _kernel(rows, w, f):
 
 
 @njit(cache=True, nogil=True)
-def _spectra(tables, weights, p, q, out):
-    """out (frames, 3, f) = stress spectra under loads (frames, f) shifted by half an element."""
-    for frame in range(p.shape[0]):
-        w = weights[frame]
-        for f in range(p.shape[1]):
-            normal, cross = _kernel(tables[0], w, f), 1j * _kernel(tables[1], w, f)
-            along, shear = _kernel(tables[2], w, f), 1j * _kernel(tables[3], w, f)
-            out[frame, 0, f] = along * p[frame, f] + shear * q[frame, f]
-            out[frame, 1, f] = normal * p[frame, f] + cross * q[frame, f]
-            out[frame, 2, f] = cross * p[frame, f] + along * q[frame, f]
+def _spectra(tables, weights, loads, out):
+    """out (frames, 3, f) = stress spectra under p, q and their slopes, shifted by half an element."""
+    for frame in range(out.shape[0]):
+        w, (p, q, dp, dq) = weights[frame], loads[:, frame]
+        for f in range(out.shape[2]):
+            a, b = _kernel(tables[0], w, f), 1j * _kernel(tables[1], w, f)
+            c, e = _kernel(tables[2], w, f), 1j * _kernel(tables[3], w, f)
+            da, db = 1j * _kernel(tables[4], w, f), _kernel(tables[5], w, f)
+            dc, de = 1j * _kernel(tables[6], w, f), _kernel(tables[7], w, f)
+            out[frame, 0, f] = c * p[f] + e * q[f] + dc * dp[f] + de * dq[f]
+            out[frame, 1, f] = a * p[f] + b * q[f] + da * dp[f] + db * dq[f]
+            out[frame, 2, f] = b * p[f] + c * q[f] + db * dp[f] + dc * dq[f]
 
 
 @njit(cache=True, nogil=True)
@@ -114,16 +117,20 @@ class BodyStress:
         self._out = np.empty((BATCH, 3, self.n // 2 + 1), complex)
 
     def transform(self, pressure, shear):
-        """Spectra of the loads (frames, nx), shifted by half an element.
+        """Spectra (4, frames, f) of the loads (frames, nx) and their slopes, shifted by half an element.
 
         Beyond its ends a load falls to zero over one element.
         """
-        return fft.rfft(pressure, self.n) * self._half, fft.rfft(shear, self.n) * self._half
+        loads = np.empty((4, *pressure.shape))
+        loads[0], loads[1] = pressure, shear
+        limited_slopes(loads[0], loads[2])
+        limited_slopes(loads[1], loads[3])
+        return fft.rfft(loads, self.n) * self._half
 
     def __call__(self, depth, spectra, offset):
         """Stresses (frames, 3, n) of depth number `depth`, `offset` (frames,) elements right of the nodes."""
         out = self._out[: len(offset)]
-        _spectra(self.tables[depth], parity_weights(offset), *spectra, out)
+        _spectra(self.tables[depth], parity_weights(offset), spectra, out)
         return fft.irfft(out, self.n, overwrite_x=True)
 
 

@@ -5,7 +5,6 @@ traction q in +x on the solid. The load is linear between nodes and nothing outs
 """
 
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 from scipy import fft
@@ -14,12 +13,6 @@ from ehlpetsc.post.kernels import half_hat, hat
 
 UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
 DEPTHS_AT_ONCE = 5  # whose spectra stay in the cache
-NEAR = 24  # elements; beyond it a kernel is smooth over an element
-FAR_RULE = (
-    (-(0.4**0.5), 5 / 24),
-    (0.0, 7 / 12),
-    (0.4**0.5, 5 / 24),
-)  # moments of the unit hat up to the fifth
 
 
 def spacing(x):
@@ -41,43 +34,16 @@ def padded_length(nx):
     return fft.next_fast_len(2 * nx, real=True)
 
 
-def kernel_spectra(nx, z, offset=0.0):
-    """Spectra of the hat kernels, -2/pi included, seen from points `offset` elements right of the nodes.
+def kernel_spectra(nx, z):
+    """Spectra of the hat kernels, -2/pi included; z in elements.
 
-    z in elements. Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.kernels`.
+    Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.kernels`.
     """
     n = padded_length(nx)
     distance = np.arange(-(nx - 1), nx)
     kernels = np.zeros((4, n))
-    kernels[:, distance] = -2 / np.pi * hat(distance + offset, z)
+    kernels[:, distance] = -2 / np.pi * hat(distance, z)
     return fft.rfft(kernels)
-
-
-def spline_spectra(nx, z, offset):
-    """As :func:`kernel_spectra`, for the load that is the cubic spline through the nodal values.
-
-    A cubic B-spline is a hat smeared by a hat; the spline's coefficients come of the nodal values by one
-    division of spectra.
-    """
-    n = padded_length(nx)
-    distance = np.arange(-nx, nx)
-    near = np.abs(distance) <= NEAR
-    kernels = np.zeros((4, n))
-    for chosen, rule in ((distance[near], _between_kinks(offset)), (distance[~near], FAR_RULE)):
-        for smear, share in rule:
-            kernels[:, chosen] -= 2 / np.pi * share * hat(chosen + offset - smear, z)
-    angle = 2 * np.pi * np.arange(n // 2 + 1) / n
-    return fft.rfft(kernels) / ((2 + np.cos(angle)) / 3)
-
-
-def _between_kinks(offset):
-    """Quadrature over the unit hat, (place, share), in pieces without a kink of the kernel at `offset`."""
-    breaks = np.unique([-1.0, 0.0, 1.0, offset - 1, offset])
-    nodes, weights = np.polynomial.legendre.leggauss(5)
-    for left, right in pairwise(breaks):
-        for node, weight in zip(nodes, weights, strict=True):
-            place = left + (right - left) * (node + 1) / 2
-            yield place, (right - left) / 2 * weight * (1 - abs(place))
 
 
 class StressField:
