@@ -5,6 +5,7 @@ set -eu
 usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case, on 2 ranks unless told otherwise
+./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 
 What is missing is installed first from Debian's packages: by itself as root, else the command is shown.
@@ -136,6 +137,12 @@ fi
 case ${1-} in
     "") usage; exit 2 ;;
     -h | --help | -help) usage; exit 0 ;;
+    --explain)
+        # shellcheck disable=SC2086
+        install_missing $run_packages $post_packages
+        set_environment
+        $python -m ehlpetsc "$@"
+        ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
     test)
         # shellcheck disable=SC2086

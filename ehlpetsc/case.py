@@ -1,5 +1,7 @@
 """The case file: read, overridden, checked, all faults told at once."""
+import contextlib
 import copy
+import difflib
 import tomllib
 from pathlib import Path
 
@@ -119,7 +121,17 @@ def _read(path):
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError([f"{path}: cannot be read: {reason}"]) from None
+        raise CaseError([f"{path}: cannot be read: {reason}{_meant(path)}"]) from None
+
+
+def _meant(path):
+    """Hint at a case file of nearly that name in the same folder."""
+    with contextlib.suppress(OSError, ValueError):
+        beside = [p.stem for p in Path(path).parent.glob("*.toml")]
+        close = difflib.get_close_matches(Path(path).stem, beside, n=1)
+        if close:
+            return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"
+    return ""
 
 
 def _parse(path, text):

@@ -67,3 +67,13 @@ OTHERS = {
     "surface/z": Field("m", "height, positive out of the metal", ("s",)),
 }
 """Coordinates and what else is neither a field nor a scalar of the step."""
+
+GROUPS = {
+    "/": "Result of ehlpetsc, in SI units. Attributes: the case as run, Hertz half width a [m] and pressure "
+    "p0 [Pa], h_scale = a^2/R [m], speeds u1 (fast), u2 (slow) [m/s], provenance, how the run ended (status)",
+    "steps": "a row for every accepted time step, also where no frame is stored",
+    "surface": "profiles as used, fixed in the bodies",
+    "surface/fast": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
+    "surface/slow": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
+}
+"""What the groups hold."""

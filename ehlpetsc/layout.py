@@ -6,7 +6,7 @@ import struct
 import h5py
 import numpy as np
 
-from .fields import FIELDS, OTHERS, STEP_SCALARS
+from .fields import FIELDS, GROUPS, OTHERS, STEP_SCALARS
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
@@ -45,6 +45,9 @@ def lay_out(file, x, fields, precision, profiles):
     for surface, profile in profiles.items():
         if profile is not None:
             _surface(file, f"surface/{surface}", *profile)
+    for name, text in GROUPS.items():
+        if name in file:
+            comment(file[name], text)
 
 
 def create(path):
@@ -110,6 +113,11 @@ def _surface(file, name, s, z, speed, statistics=None):
         file[name].attrs[key] = value
 
 
+def comment(item, text):
+    """What `h5dump -H` and `h5ls -v` show of a group or dataset: attributes' values they leave out."""
+    h5py.h5o.set_comment(item.id, text.encode())
+
+
 def _fixed(file, name, field, values):
     _describe(file.create_dataset(name, data=np.asarray(values)), field)
 
@@ -124,6 +132,7 @@ def _growing(file, name, field, rows, *width, dtype=None, **packed):
 def _describe(dataset, field):
     dataset.attrs["units"] = field.units
     dataset.attrs["long_name"] = field.long_name
+    comment(dataset, f"{field.long_name} [{field.units}] ({', '.join(field.dims)})")
     own_name = dataset.name.rsplit("/", 1)[1]
     if field.dims == (own_name,):
         dataset.make_scale(own_name)

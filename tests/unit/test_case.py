@@ -245,3 +245,11 @@ def test_a_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
     path = write("[mesh]", "[surface.fast]\nfile = 'p.csv'\n[mesh]")
     line = fault(path)
     assert line.startswith(f'{path}: surface.fast.file = "p.csv": ') and words in line
+
+
+@pytest.mark.parametrize("typed, meant", [("table1_ruff.toml", "table1_rough.toml"), ("nothing.toml", None)])
+def test_a_mistyped_file_name_gets_a_hint(typed, meant):
+    with pytest.raises(CaseError) as error:
+        case.load(CASES / typed)
+    hint = f"; did you mean {CASES / meant}?" if meant else ""
+    assert error.value.faults == [f"{CASES / typed}: cannot be read: No such file or directory{hint}"]

@@ -74,6 +74,13 @@ def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
         assert "slow" not in file["surface"]
 
 
+def test_headers_alone_tell_what_is_stored(tmp_path):
+    """`h5dump -H` shows comments, which h5py cannot read, and leaves out the values of attributes."""
+    raw = written(tmp_path / "r.h5", range(3)).read_bytes()
+    for name, field in {**FIELDS, **STEP_SCALARS}.items():
+        assert f"{field.long_name} [{field.units}] ({', '.join(field.dims)})".encode() in raw, name
+
+
 def test_provenance_is_complete(tmp_path):
     path = written(tmp_path / "r.h5", range(3), scalars_attrs={"versions": {"petsc": "3.18.5"}})
     with read_result(path) as r:
