@@ -1,0 +1,74 @@
+"""The load between nodes against smooth ripples, steep peaks, and its kernels by direct integration."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+from ehlpetsc.post.between import hermite_spectra, limited_slopes
+from ehlpetsc.post.kernels import point_kernels
+from ehlpetsc.post.stress import padded_length
+
+NODES = np.arange(64.0)
+BETWEEN = np.linspace(10, 54, 881)
+
+
+def load(values):
+    """The values between the nodes."""
+    slopes = np.empty((1, NODES.size))
+    limited_slopes(np.asarray(values, float)[None], slopes)
+    return CubicHermiteSpline(NODES, values, slopes[0])(BETWEEN)
+
+
+@pytest.mark.parametrize("length, error", [(20, 2.6e-5), (10, 4.3e-4), (8, 1.1e-3)])
+def test_smooth_ripples_keep_their_peaks(length, error):
+    """Fourth order, wherever the peaks lie between the nodes."""
+    worst = 0.0
+    for shift in np.linspace(0, 1, 21):
+        found = load(np.cos(2 * np.pi * (NODES - shift) / length))
+        worst = max(worst, np.abs(found - np.cos(2 * np.pi * (BETWEEN - shift) / length)).max())
+    assert worst < error
+
+
+@pytest.mark.parametrize("peak", [[1], [1, 0.8], [0.4, 1, 0.4], [1, 1, 1], [0.1, 1, 0.9, 0.05]])
+def test_steep_peaks_do_not_overshoot(peak):
+    """By 1 % at most, where a spline swings to the other side by 2 to 14 %."""
+    values = np.zeros(64)
+    values[30 : 30 + len(peak)] = peak
+    assert load(values).min() > -0.01
+    assert CubicSpline(NODES, values)(BETWEEN).min() < -0.02
+
+
+def test_one_node_and_a_step_do_not_overshoot_at_all():
+    one, step = np.zeros(64), np.zeros(64)
+    one[30], step[32:] = 1, 1
+    for values in (one, step):
+        assert (load(values).min(), load(values).max()) == (0, 1)
+    assert CubicSpline(NODES, one)(BETWEEN).min() == pytest.approx(-0.136, abs=0.001)
+
+
+def test_random_loads_swing_less_than_a_spline():
+    rng = np.random.default_rng(0)
+    ours, spline = [], []
+    for _ in range(500):
+        values = rng.exponential(size=64) ** 3
+        ours.append(load(values).min() / values.max())
+        spline.append(CubicSpline(NODES, values)(BETWEEN).min() / values.max())
+    assert np.median(ours) > -0.02
+    assert np.median(spline) < -0.12
+
+
+@pytest.mark.parametrize("depth", [0.3, 2.0, 12.0])
+def test_kernels_equal_direct_integration(depth):
+    """Values and slopes, near and far, seen from between the nodes."""
+    nx, offset = 80, 0.3
+    kernels = np.fft.irfft(hermite_spectra(nx, depth, offset), padded_length(nx))
+    shapes = (lambda t: (1 - abs(t)) ** 2 * (1 + 2 * abs(t)), lambda t: t * (1 - abs(t)) ** 2)
+    for distance in (-60, -2, 0, 1, 23, 25, 70):
+        for part in range(8):
+
+            def value(t, part=part, distance=distance):
+                return shapes[part // 4](t) * point_kernels(np.array(distance + offset - t), depth)[part % 4]
+
+            exact = quad(value, -1, 1, points=[0], epsabs=1e-12, epsrel=1e-12)[0]
+            assert -np.pi / 2 * kernels[part, distance] == pytest.approx(exact, abs=1.2e-4)
