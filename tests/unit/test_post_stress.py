@@ -84,17 +84,57 @@ def test_uniform_strip(nodes):
     assert [field[i] for field in dragged] == pytest.approx(exact, abs=1e-12)
 
 
-def test_hertz_values_and_order_of_sampling():
-    """Hertz's edges, which rise with infinite slope, hold the sampled load to order 1.5."""
-    exact = np.array([-0.329715992, -0.841995437, -0.107116594])
+EXACT = np.array([-0.329715992, -0.841995437, -0.107116594])  # Hertz at (0.3, 0.5)
+
+
+def orders(errors):
+    """Observed orders over halved spacings."""
+    return np.log2(np.array(errors[:-1]) / errors[1:])
+
+
+def test_hertz_values_and_order_of_sampling_at_depth():
+    """Order 1.5 at (0.3, 0.5): straight lines between samples cut a load of order h^1.5 off at the edges,
+    where the pressure rises with infinite slope, and that is felt at depth.
+    """
     dragged = np.array([-0.3405462, -0.8473513, -0.1236024])
     errors = []
     for per_width in (100, 200, 400):
-        errors.append(np.abs(at(*hertz(per_width), 0.3) - exact).max())
+        errors.append(np.abs(at(*hertz(per_width), 0.3) - EXACT).max())
         assert at(*hertz(per_width, 0.05), 0.3) == pytest.approx(dragged, abs=1.2 * errors[-1])
     assert errors[0] < 1.3e-4 and errors[2] < 1.6e-5
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert orders == pytest.approx([1.5, 1.5], abs=0.03)
+    assert orders(errors) == pytest.approx([1.5, 1.5], abs=0.03)
+
+
+def test_second_order_of_sampling_away_from_the_edges():
+    """Between samples the surface stress errs by h^2 p''/8: order 2 in the mean over |x| < 0.9."""
+    errors = []
+    for per_width in (100, 200, 400):
+        x, (_, sz, _) = hertz(per_width, z=0.0)
+        middle = (x[1:] + x[:-1]) / 2
+        inner = np.abs(middle) < 0.9
+        error = -(sz[1:] + sz[:-1])[inner] / 2 - np.sqrt(1 - middle[inner] ** 2)
+        bend = -((1 - middle[inner] ** 2) ** -1.5) / per_width**2 / 8
+        assert error == pytest.approx(bend, rel=0.01)
+        errors.append(np.abs(error).mean())
+    assert orders(errors) == pytest.approx([2, 2], abs=0.03)
+
+
+def test_second_order_at_depth_once_the_samples_keep_the_load():
+    """Nodal values that are means of the pressure under each hat carry the whole load, edges included."""
+
+    def twice_integrated(x):
+        y = np.clip(x, -1, 1)
+        root = np.sqrt(1 - y * y)
+        return (y * np.arcsin(y) + root) / 2 - root**3 / 6 + np.pi / 4 * np.abs(x - y)
+
+    errors = []
+    for per_width in (100, 200, 400):
+        x = np.arange(-2 * per_width, 2 * per_width + 1) / per_width
+        means = np.diff(twice_integrated(np.arange(x.size + 2) / per_width + x[0] - 1 / per_width), 2)
+        fields = stress(x, 0.5, means * per_width**2, None, 0.3)
+        errors.append(np.abs(at(x, fields, 0.3) - EXACT).max())
+    assert orders(errors) == pytest.approx([2, 2], abs=0.01)
+    assert errors[0] < 3e-5
 
 
 def test_smooth_pressure_converges_with_second_order():
