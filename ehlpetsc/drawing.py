@@ -1,6 +1,4 @@
 """Pictures of results, each drawn into given axes; lengths in half widths, film in um, pressure in GPa."""
-import tomllib
-
 import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import ListedColormap
@@ -8,6 +6,7 @@ from matplotlib.lines import Line2D
 
 from .reference import hertz_pressure
 from .result import OutputError
+from .swept import series_values
 
 ACROSS = "x/a"
 PRESSURE = "pressure [GPa]"
@@ -168,37 +167,6 @@ def contact_rates(axes, results, colours):
     for panel in axes:
         panel.set_ylim(bottom=0.0)
     return means
-
-
-def series_values(results):
-    """The one number that the case files of a series do not share.
-
-    Returns
-    -------
-    key : str or None
-        Dotted key, None if no single key differs or it holds no numbers.
-    values : list of float
-    """
-    tables = [_flat(tomllib.loads(result.attrs["case"])) for result in results]
-    keys = sorted(set().union(*tables) - {"title", "series.key", "series.values"})
-    differing = [key for key in keys if any(table.get(key) != tables[0].get(key) for table in tables)]
-    numbers = (int, float)
-    if len(differing) == 1 and all(isinstance(table.get(differing[0]), numbers) for table in tables):
-        return differing[0], [float(table[differing[0]]) for table in tables]
-    return None, []
-
-
-def _flat(table, prefix=""):
-    found = {}
-    for key, value in table.items():
-        found |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return found
-
-
-def in_order(results):
-    """A series sorted by its swept value; other results as they come."""
-    key, values = series_values(results)
-    return [results[i] for i in np.argsort(values, kind="stable")] if key else results
 
 
 def series_colours(results):

@@ -1,13 +1,15 @@
-"""Draw results: ``python3 -m ehlpetsc.plot RESULT.h5 [...]``.
+"""Draw results: ``python3 -m ehlpetsc.plot RESULT.h5 [...]``, or the index of a series, OUTPUT.series.json.
 
 Pressure and film of one frame, by default that with most contacts; of several files, a series, the same
-instant of each in one picture. Or a map of pressure over place and time, contacts per millisecond, or a
-movie. The ending of the file given by -o chooses the format (png, svg, pdf).
+instant of each in one picture. Or a map of pressure over place and time, contacts per millisecond, a movie;
+of a series its collisions, or film and pressure at contact points against the swept value; of one result oil
+trapped between two contacts. The ending of the file given by -o chooses the format (png, svg, pdf).
 
 Exit status: 0 drawn, 2 bad input.
 """
 import argparse
 import contextlib
+import re
 import sys
 from pathlib import Path
 
@@ -18,14 +20,18 @@ mpl.use("Agg")
 from matplotlib import pyplot as plt
 from matplotlib.animation import PillowWriter
 
-from . import drawing
-from .result import OutputError, read_result
+from . import collisions, drawing, drawing_collisions, entrapment
+from .result import OutputError
+from .swept import from_thick_to_thin, in_order, open_all
 
 SIZE = (7.0, 5.2)  # inches
 DPI = 160
 MOVIE_FRAMES = 150
 MOVIE_RATE = 15  # frames per second
 MOVIE_DPI = 80
+AROUND_WIDTH = 0.5  # of a view around a place, half widths
+COLLISION_WIDTH = 0.12
+POINTS = 8  # most contact points in one picture
 
 
 def choose_frames(results, step=None, time=None):
@@ -83,6 +89,46 @@ def draw_contacts(results, _options):
     return figure
 
 
+def draw_collision(results, options):
+    """Figure of collisions in all members of a series, a column each; by default of the two best to see."""
+    found = collisions.find(from_thick_to_thin(results)[0])
+    numbers = options.collision or collisions.ranked(found)[:2]
+    if not numbers or max(numbers) >= len(found):
+        raise OutputError(f"{len(found)} collisions; allowed: --collision 0 to {len(found) - 1}")
+    chosen = [found[number] for number in numbers]
+    colours, labels, key = drawing.series_colours(results)
+    size = (SIZE[0] * max(1.0, 0.6 * len(chosen)), SIZE[1])
+    panels = dict(figsize=size, squeeze=False, sharex="col", layout="constrained")
+    figure, axes = plt.subplots(2, len(chosen), **panels)
+    width = options.width or COLLISION_WIDTH
+    drawing_collisions.collisions(axes, results, chosen, colours, width)
+    drawing.series_legend(axes[0, -1], colours, labels, key)
+    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+def draw_points(results, _options):
+    """Figure of film and pressure at the points of contact against the swept value."""
+    results, values, key = from_thick_to_thin(results)
+    points = collisions.contact_points(collisions.find(results))[:POINTS]
+    if not points:
+        raise OutputError("no contact point with two full films before it and two members in contact")
+    figure, axes = _two_panels()
+    drawing_collisions.against_value(axes, points, values, key, results[0].attrs["a"])
+    axes[0].set_title(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+def draw_entrapment(results, options):
+    """Figure of four instants of the strongest entrapment of a result."""
+    size = (1.6 * SIZE[0], SIZE[1])
+    figure, axes = plt.subplots(2, 4, figsize=size, sharex="col", sharey="row", layout="constrained")
+    found = entrapment.find(results[0])[0]
+    drawing_collisions.entrapped(axes, results[0], found, options.width or COLLISION_WIDTH)
+    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
 def save_movie(results, options, path):
     """Pressure and film over time as an animated GIF, at most `MOVIE_FRAMES` frames of it."""
     last = len(results[0].time) - 1
@@ -127,7 +173,8 @@ def _two_panels():
 def _window(results, options):
     if options.around is None:
         return drawing.default_window(results)
-    return options.around - options.width / 2.0, options.around + options.width / 2.0
+    half = 0.5 * (options.width or AROUND_WIDTH)
+    return options.around - half, options.around + half
 
 
 def _instant(result, index):
@@ -156,29 +203,38 @@ def _parser():
     instant.add_argument("--step", type=int, help="number of the time step [that with most contacts]")
     instant.add_argument("--time", type=float, help="time [s]")
     parser.add_argument("--around", type=float, metavar="X", help="place to look at closely [half widths]")
-    parser.add_argument("--width", type=float, default=0.5, help="width of the view around it [%(default)s]")
+    view = f"width of the view around it [{AROUND_WIDTH}; of a collision {COLLISION_WIDTH}]"
+    parser.add_argument("--width", type=float, help=view)
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--map", action="store_true", help="pressure over place and time, contacts marked")
     kind.add_argument("--contacts", action="store_true", help="contacts per millisecond along the contact")
+    numbers = "collisions by their number in the list of python3 -m ehlpetsc.collisions [the two best]"
+    kind.add_argument("--collision", type=int, nargs="*", metavar="NUMBER", help=numbers)
+    kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")
+    kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")
     kind.add_argument("--movie", action="store_true", help="pressure and film over time, as a GIF")
     return parser
+
+
+KINDS = {"map": draw_map, "contacts": draw_contacts, "collision": draw_collision, "points": draw_points,
+         "entrapment": draw_entrapment}
 
 
 def main(arguments=None):
     """Run the command; returns its exit status."""
     options = _parser().parse_args(arguments)
-    kind = next((k for k in ("map", "contacts", "movie") if getattr(options, k)), None)
+    kind = next((k for k in (*KINDS, "movie") if getattr(options, k) not in (None, False)), None)
     ending = ".gif" if kind == "movie" else f".{kind}.png" if kind else ".png"
-    output = options.output or Path(options.results[0]).with_suffix(ending)
+    output = options.output or Path(re.sub(r"(\.series\.json|\.h5)$", "", options.results[0]) + ending)
     try:
         with contextlib.ExitStack() as stack:
-            results = [stack.enter_context(read_result(path)) for path in options.results]
+            results = open_all(options.results, stack)
             _check(results, options)
-            results = drawing.in_order(results)
+            results = in_order(results)
             if kind == "movie":
                 save_movie(results, options, output)
             else:
-                draw = {"map": draw_map, "contacts": draw_contacts}.get(kind, draw_frame)
+                draw = KINDS.get(kind, draw_frame)
                 draw(results, options).savefig(output, dpi=DPI)
     except (OutputError, ValueError, OSError) as error:
         print(f"ehlpetsc.plot: {error}", file=sys.stderr)

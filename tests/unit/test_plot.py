@@ -6,7 +6,7 @@ from made_results import A, make_result
 pytest.importorskip("matplotlib")
 image = pytest.importorskip("PIL.Image")
 
-from ehlpetsc import drawing, plot  # noqa: E402
+from ehlpetsc import drawing, plot, swept  # noqa: E402
 from ehlpetsc.output import ResultWriter  # noqa: E402
 from ehlpetsc.result import read_result  # noqa: E402
 
@@ -105,7 +105,7 @@ def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
 
 def test_series_is_sorted_and_labelled_by_its_swept_value(series):
     results = [read_result(path) for path in series]
-    ordered = drawing.in_order(results)
+    ordered = swept.in_order(results)
     colours, labels, key = drawing.series_colours(ordered)
     assert (key, labels) == ("fluid.viscosity", ["0.002", "0.005", "0.01"])
     brightness = [sum(colour[:3]) for colour in colours]

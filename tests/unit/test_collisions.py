@@ -1,0 +1,150 @@
+"""Collisions are found where they were put, matched by time and place, and judged by exact figures."""
+import json
+
+import numpy as np
+import pytest
+from made_results import A
+
+from ehlpetsc import collisions, entrapment, swept
+from ehlpetsc.output import ResultWriter
+from ehlpetsc.result import OutputError, read_result
+
+X = np.linspace(-1.5, 1.5, 301)
+SPEED = 5.0
+CASE = "[fluid]\nviscosity = {}\n"
+
+
+def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=()):
+    """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
+    writer = ResultWriter(
+        path, case_text=case.format(viscosity), title="dips", x=X * A, every=1, precision="float64",
+        fields=["pressure", "film_thickness", "in_contact"], profiles={},
+        scalars_attrs={"a": A, "p0": 1e9, "u1": SPEED, "u2": SPEED})
+    for number in range(steps + 1):
+        time = number * step
+        film, pressure = np.full(len(X), 0.3), np.ones(len(X))
+        for x, at, width, depth in dips:
+            shape = np.maximum(1 - ((time - at) / width) ** 2, 0)
+            film -= depth * shape * np.exp(-((X - x - SPEED * (time - at) / A) / 0.02) ** 2)
+        film = np.maximum(film, 0.0)
+        pressure += 2.0 * (film == 0.0) * (0.01 / viscosity)
+        for x, height in bumps:
+            pressure += height * np.exp(-((X - x - SPEED * time / A) / 0.01) ** 2)
+        values = {"pressure": 1e9 * pressure, "film_thickness": 1e-6 * film}
+        least = 1e-6 * film.min() if number else 1e-5 * viscosity  # smooth films at the start
+        scalars = {"h_min": least, "contacts": (film == 0).sum(), "dt": step}
+        writer.append(number, time, values, scalars, film == 0.0)
+    writer.close("done")
+    return read_result(path)
+
+
+@pytest.fixture
+def series(tmp_path):
+    """Films 0.3 um less a dip that deepens by 0.05 um a member: contact from the third one on."""
+    depths = {0.010: 0.2, 0.008: 0.25, 0.006: 0.3001, 0.004: 0.35}
+    finer = {0.004: dict(step=0.25e-6, steps=160)}
+    return [make(tmp_path / f"{v}.h5", v, [(-0.2, 20e-6, 6e-6, depth), (0.5, 10e-6, 3e-6, 0.4)],
+                 **finer.get(v, {})) for v, depth in depths.items()]
+
+
+def test_collisions_are_found_where_they_are(series):
+    early, late = collisions.find(series)
+    assert early.touching == (True, True, True, True) and late.touching == (False, False, True, True)
+    assert (late.x / A, late.time) == (pytest.approx(-0.2), pytest.approx(20e-6))
+    np.testing.assert_allclose(late.film, [0.1e-6, 0.05e-6, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(late.pressure, [1e9, 1e9, 1e9 * (1 + 2 / 0.6), 6e9])
+    assert early.begin < 10e-6 < early.end < 13e-6
+    assert collisions.contact_points([early, late]) == [late]
+    assert collisions.ranked([early, late]) == [1, 0]
+
+
+def test_report_of_a_series(tmp_path, series, capsys):
+    index = {"members": [{"file": result.path.name} for result in series] + [{"file": "missing.h5"}]}
+    (tmp_path / "s.series.json").write_text(json.dumps(index))
+    assert collisions.main([str(tmp_path / "s.series.json")]) == 0
+    text = capsys.readouterr().out
+    assert "2 collisions in 4 members, fluid.viscosity = 0.01, 0.008, 0.006, 0.004" in text
+    assert "1 contact points" in text and "..xx" in text
+    assert "against the swept value: 1 of 1 (100 %)" in text
+
+
+@pytest.mark.parametrize(
+    "film, jump",
+    [
+        ([4, 3, 2, 1, 0], 0.0),  # a straight line
+        ([3, 2, 1, 0.5, 0], 0.0),  # shallower at the end
+        ([4, 2, 1, 0.5, 0], 0.0),
+        ([3, 1, 0], -0.5),
+        ([4, 3, 2.5, 0, 0], 4.0),  # half the slope, then 2.5 at a stroke
+        ([4, 3, 1.5, 0], 0.5),
+        ([4, 5, 2, 0], np.inf),  # grows on its way
+    ],
+)
+def test_jump_of_slope(film, jump):
+    values = np.arange(len(film), 0, -1.0)
+    assert collisions.slope_jump(values, film) == pytest.approx(jump)
+
+
+def test_jump_of_slope_needs_films_and_contact():
+    for film in ([3, 2, 1], [1, 0, 0], [0, 0, 0]):
+        with pytest.raises(ValueError, match="two films before contact"):
+            collisions.slope_jump([3, 2, 1], film)
+
+
+def test_pressure_changes_are_those_after_contact():
+    np.testing.assert_allclose(collisions.pressure_steps([2, 1, 0, 0, 0], [9, 5, 1, 2, 1]), [1.0, -0.5])
+    assert len(collisions.pressure_steps([2, 1, 1], [1, 2, 3])) == 0
+
+
+def test_members_are_sorted_from_thick_to_thin(series):
+    ordered, values, key = swept.from_thick_to_thin(series[::-1])
+    assert key == "fluid.viscosity" and values == [0.010, 0.008, 0.006, 0.004] and ordered == series
+    with pytest.raises(OutputError, match="not a series"):
+        swept.from_thick_to_thin([series[0], series[0]])
+
+
+def test_oil_between_two_contacts_is_found(tmp_path):
+    dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
+    at = SPEED * 20e-6 / A
+    result = make(tmp_path / "e.h5", 0.01, dips, bumps=[(-at, 6.0)])
+    best = entrapment.find(result)[0]
+    assert result.time[best.frame] == pytest.approx(20e-6)
+    np.testing.assert_allclose(result.x[[best.left, best.peak, best.right]] / A, [-0.02, 0, 0.02], atol=1e-9)
+    around = entrapment.instants(result, best, interval=4)
+    np.testing.assert_allclose([result.time[f] for f, _ in around], [16e-6, 18e-6, 20e-6, 22e-6])
+    np.testing.assert_allclose(np.diff([place for _, place in around]), SPEED * 2e-6)
+    lower, upper = entrapment.surfaces(result, best.frame)
+    np.testing.assert_allclose(upper - lower, result.frame("film_thickness", best.frame), atol=1e-20)
+
+
+def test_a_peak_at_a_contact_is_no_entrapment(series):
+    with pytest.raises(OutputError, match="no pressure maximum between two contacts"):
+        entrapment.find(series[-1])
+
+
+@pytest.mark.parametrize("kind", ["--collision", "--points"])
+def test_pictures_of_a_series(tmp_path, series, kind):
+    plot = pytest.importorskip("ehlpetsc.plot")
+    picture = tmp_path / "picture.svg"
+    assert plot.main([*(str(result.path) for result in series), kind, "-o", str(picture)]) == 0
+    lines = picture.read_text().count('<path')
+    assert lines > 30
+
+
+def test_picture_of_an_entrapment(tmp_path, capsys):
+    plot = pytest.importorskip("ehlpetsc.plot")
+    dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
+    make(tmp_path / "e.h5", 0.01, dips, bumps=[(-SPEED * 20e-6 / A, 6.0)]).close()
+    assert plot.main([str(tmp_path / "e.h5"), "--entrapment"]) == 0
+    assert (tmp_path / "e.entrapment.png").stat().st_size > 20000
+    assert plot.main([str(tmp_path / "e.h5"), "--collision"]) == 2
+    assert "not a series" in capsys.readouterr().err
+
+
+def test_index_that_is_none(tmp_path, capsys):
+    (tmp_path / "x.series.json").write_text("[]")
+    assert collisions.main([str(tmp_path / "x.series.json")]) == 2
+    assert "not the index of a series" in capsys.readouterr().err
+    (tmp_path / "y.series.json").write_text('{"members": [{"file": "no.h5"}]}')
+    assert collisions.main([str(tmp_path / "y.series.json")]) == 2
+    assert "no member of the series has a result file" in capsys.readouterr().err
