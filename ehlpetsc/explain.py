@@ -3,12 +3,13 @@
 import math
 
 from ehlpetsc import __version__, reference
+from ehlpetsc.fields import STEP_SCALARS
+from ehlpetsc.layout import CHUNK_BYTES, CHUNK_STEPS
 from ehlpetsc.roughness import Roughness, mesh_warnings
 from ehlpetsc.scales import Scales
 
 STEP_TIME = 25e-6  # s a node for a time step in full film on one rank: an order of magnitude, not a promise
 ROUGH_FACTOR = 3.0  # times that where asperities touch
-SCALARS = 13  # of 8 bytes a step, in steps/ of the result file
 
 
 def dowson_higginson(scales, alpha):
@@ -174,11 +175,14 @@ def steps(s):
 
 
 def file_size(case, s):
-    """Expected size of the result file [bytes]."""
+    """Expected size of the result file [bytes]: whole chunks; flags of contact pack to nothing."""
     value = 8 if case.output.precision == "float64" else 4
-    count = steps(s) if case.time else 1
-    frame = sum(1 if name == "in_contact" else value for name in case.output.fields) * s.nx
-    return frame * (count // case.output.every + 1) + SCALARS * 8 * count
+    count = steps(s) if case.time else 0
+    frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.nx * value))
+    fields = sum(name != "in_contact" and not (name == "void_fraction" and case.fluid is None)
+                 for name in case.output.fields)
+    scalars = (len(STEP_SCALARS) + 1) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
+    return fields * value * s.nx * rows * math.ceil(frames / rows) + scalars
 
 
 def _switched_off(case, rough):
