@@ -62,7 +62,8 @@ def test_parts_switched_off_are_named():
 
 @pytest.mark.parametrize("overrides", [
     ["time.travel=0.75"],
-    ["time.travel=6", "output.every=8", "output.precision='float32'", "output.fields=['pressure','in_contact']"],
+    ["time.travel=6.0", "output.every=8", "output.precision='float32'",
+     "output.fields=['pressure', 'in_contact']"],
 ])
 def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides):
     c = case.load(CASES / "table1_rough.toml", overrides)
