@@ -1,0 +1,115 @@
+"""Series through the command: every member once, failures named, reruns that do only what is missing."""
+import json
+
+import pytest
+from running import ROOT, SHORT, run, settings, summary
+
+from ehlpetsc.result import read_result
+
+CASE = ROOT / "cases" / "fig4.toml"
+VALUES = (0.01, 0.006, 0.003)
+QUICK = [*SHORT[:-1], "time.travel=0.5"]
+
+
+def series(folder, *words, ranks=2, values=VALUES, key="fluid.viscosity", **environment):
+    sets = [*QUICK, f"series.key='{key}'", f"series.values={json.dumps(list(values))}"]
+    words = ["-ehl_output", "out.h5", *settings(*sets), *words]
+    return run(CASE, *words, cwd=folder, ranks=ranks, **environment)
+
+
+def states(folder):
+    index = json.loads((folder / "out.series.json").read_text())
+    assert index["key"] in index["case"]
+    return {entry["file"]: entry["state"] for entry in index["members"]}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """Three members on two ranks."""
+    folder = tmp_path_factory.mktemp("series")
+    return folder, series(folder)
+
+
+def test_every_member_has_its_file(finished):
+    folder, done = finished
+    assert done.returncode == 0, done.stderr
+    assert states(folder) == {f"out_viscosity_{v:g}.h5": "done" for v in VALUES}
+    one, whole = [], summary(done.stdout)
+    for value in VALUES:
+        with read_result(folder / f"out_viscosity_{value:g}.h5") as result:
+            assert result.attrs["status"] == "done" and result.attrs["ranks"] == 1
+            assert f"viscosity = {value}" in result.attrs["case"]
+            newton, highest = result.steps("newton"), result.steps("p_max").max()
+            one.append((len(newton) - 1, newton.sum(), highest))
+        assert f"[viscosity={value:g}] ehlpetsc: done steps=" in done.stdout
+    assert int(whole["steps"]) == sum(steps for steps, *_ in one)
+    assert int(whole["newton"]) == sum(newton for _, newton, _ in one)
+    assert float(whole["p_max"]) == pytest.approx(max(p for *_, p in one), rel=1e-8)
+
+
+def test_a_member_is_what_the_case_alone_gives(finished, tmp_path):
+    folder, _ = finished
+    alone = run(ROOT / "cases" / "table1_rough.toml", "-ehl_output", "alone.h5",
+                *settings(*QUICK, "fluid.viscosity=0.003"), cwd=tmp_path)
+    assert alone.returncode == 0, alone.stderr
+    with read_result(tmp_path / "alone.h5") as a, read_result(folder / "out_viscosity_0.003.h5") as b:
+        assert (a.steps("p_max") == b.steps("p_max")).all() and (a.steps("time") == b.steps("time")).all()
+
+
+def test_members_are_at_the_same_times(finished):
+    folder, _ = finished
+    times = []
+    for value in VALUES:
+        with read_result(folder / f"out_viscosity_{value:g}.h5") as result:
+            levels = result.time / result.steps("dt").max()
+            times.append([round(level) for level in levels if abs(level - round(level)) < 1e-6])
+    assert times[0] == times[1] == times[2] == list(range(len(times[0])))
+
+
+def test_a_rerun_does_only_what_is_missing(finished):
+    folder, first = finished
+    files = sorted(folder.glob("out_*.h5"))
+    before = {file: file.stat().st_mtime_ns for file in files}
+    files[0].unlink()
+    again = series(folder, ranks=1)
+    assert again.returncode == 0 and "3 members, 1 of them to compute" in again.stdout
+    assert [file for file in files if before[file] != file.stat().st_mtime_ns] == files[:1]
+    one, two = summary(first.stdout), summary(again.stdout)
+    assert all(one[name] == two[name] for name in ("steps", "newton", "contacts", "h_min"))
+    other = series(folder, "-ehl_set", "time.courant=1.0", ranks=1)
+    assert other.returncode == 0 and "3 of them to compute" in other.stdout
+
+
+def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
+    done = series(tmp_path, key="petsc.snes_max_it", values=("1", "30", "2"))
+    assert done.returncode == 3
+    assert list(states(tmp_path).values()) == ["not converged", "done", "not converged"]
+    assert "ehlpetsc: snes_max_it=1: not converged: steady start: SNES DIVERGED_MAX_IT" in done.stderr
+    assert "snes_max_it=2: not converged" in done.stderr and "snes_max_it=30:" not in done.stderr
+    assert done.stdout.strip().splitlines()[-1].startswith("ehlpetsc: not converged steps=")
+
+
+def test_a_stopped_series_goes_on_where_it_was(tmp_path, finished):
+    stopped = series(tmp_path, "-ehl_time_limit", "0.012", "-ehl_ranks_per_member", "2")
+    assert stopped.returncode == 4, stopped.stdout + stopped.stderr
+    assert "the same command computes what is missing" in stopped.stdout
+    assert "done" not in states(tmp_path).values() and list(tmp_path.glob("*.restart.h5"))
+    on = series(tmp_path)
+    assert on.returncode == 0 and "restart: " in on.stdout
+    assert set(states(tmp_path).values()) == {"done"}
+    assert summary(on.stdout)["steps"] == summary(finished[1].stdout)["steps"]
+
+
+@pytest.mark.parametrize(
+    "words, fault",
+    [
+        (["-ehl_ranks_per_member", "3"], "allowed: whole numbers 1 to 1"),
+        (["-ehl_restart", "x.h5"], "begun members are gone on with"),
+        (["-ehl_set", "series.values=[0.01,0.010]"], "two values have the same name"),
+        (["-ehl_set", "series.values=[0.01,-1]"], "series.values: -1"),
+    ],
+)
+def test_what_makes_no_series(tmp_path, words, fault):
+    done = series(tmp_path, *words, ranks=0)
+    assert done.returncode == 2 and fault in done.stderr
+    assert not list(tmp_path.iterdir())
