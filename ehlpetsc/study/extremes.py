@@ -1,0 +1,99 @@
+"""The table of extremes: each line run by itself, told in a line, and in a CSV file."""
+import csv
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from ehlpetsc.study.lines import steady_lines
+from ehlpetsc.study.reasons import why
+from ehlpetsc.study.rough_lines import time_lines
+from ehlpetsc.study.runs import DONE, STOPPED, run
+
+HEAD = ("axis", "value", "converged", "steps", "retries", "newton", "h_min_um", "p_max_GPa", "load_error",
+        "mass_error", "viscosity_Pa_s", "seconds", "reason")
+SHORT = ("mesh.points_per_half_width=50", "time.travel=0.5")
+EARLY = ("-ehl_time_limit", "0.01")  # minutes: the earlier run of a restart ends in its first steps
+
+
+def lines(short=False):
+    """Lines of the table; the short form coarser and with fewer steps."""
+    whole = [*steady_lines(), *time_lines()]
+    if not short:
+        return whole
+    return [replace(line, overrides=_shortened(line.overrides), before=line.before and _shortened(line.before))
+            for line in whole if line.short]
+
+
+def _shortened(overrides):
+    keys = {override.partition("=")[0] for override in overrides}
+    more = [s for s in SHORT if s.partition("=")[0] in keys or not s.startswith("time.")]
+    kept = [o for o in overrides if not o.startswith("mesh.points")]
+    if any("load=" in o and "." in o and "mesh.outlet" in o for o in overrides):
+        return tuple(overrides)
+    return (*kept, *more)
+
+
+def table(path, short=False, limit=300.0, say=print):
+    """Run the table.
+
+    Parameters
+    ----------
+    path : path-like
+        The CSV file.
+    short : bool
+    limit : float
+        Wall clock time of a line [s].
+    say : callable
+        Takes each line as text as it is done.
+
+    Returns
+    -------
+    list of dict
+        A row a line, by the names of `HEAD`.
+    """
+    rows = []
+    say(_text(dict(zip(HEAD, HEAD, strict=True))))
+    with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, HEAD)
+        writer.writeheader()
+        for line in lines(short):
+            rows.append(row(line, Path(folder), limit))
+            writer.writerow(rows[-1])
+            file.flush()
+            say(_text(rows[-1]))
+    done = sum(r["converged"] == "yes" for r in rows)
+    say(f"{done} of {len(rows)} lines converged ({100 * done / len(rows):.0f} %)")
+    return rows
+
+
+def row(line, folder, limit):
+    """Figures of one line."""
+    case = folder / "case.toml"
+    case.write_text(line.text)
+    options = ()
+    if line.before:
+        first = run(case, line.before, options=EARLY, folder=folder, name="before", limit=limit)
+        if first.status != STOPPED:
+            return _row(line, first, f"the run before: {first.words or 'ended too early'}")
+        options = ("-ehl_restart", str(folder / "before.restart.h5"))
+    outcome = run(case, line.overrides, options=options, folder=folder, limit=limit)
+    return _row(line, outcome, "" if outcome.status == DONE else why(outcome, case, line.overrides))
+
+
+def _row(line, o, reason):
+    return {
+        "axis": line.axis, "value": line.value, "converged": "yes" if o.status == DONE else f"no, exit {o.status}",
+        "steps": o.steps, "retries": o.retries, "newton": o.newton, "h_min_um": f"{1e6 * o.h_min:.4g}",
+        "p_max_GPa": f"{1e-9 * o.p_max:.4g}", "load_error": f"{o.load_error:.1e}",
+        "mass_error": f"{o.mass_error:.1e}", "viscosity_Pa_s": f"{o.viscosity:.1e}",
+        "seconds": f"{o.seconds:.1f}", "reason": reason,
+    }
+
+
+WIDTHS = (13, 42, 10, 6, 7, 7, 9, 9, 10, 10, 14, 7, 0)
+
+
+def _text(row):
+    cells = (str(row[name]) for name in HEAD)
+    return " ".join(f"{cell:<{w}}" if i < 3 else f"{cell:>{w}}" for i, (cell, w) in enumerate(
+        zip(cells, WIDTHS, strict=True))).rstrip()

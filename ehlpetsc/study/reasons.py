@@ -1,0 +1,43 @@
+"""Why a contact did not converge, in words of the field rather than of the solver."""
+import math
+
+import numpy as np
+
+from ehlpetsc.case import load
+from ehlpetsc.rheology import viscosity
+from ehlpetsc.scales import Scales
+from ehlpetsc.study.runs import BAD_INPUT, BUG, TIMED_OUT
+
+SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
+PLASTIC = 6.0  # GPa: asperities of hardened steel yield
+
+
+def why(outcome, path, overrides):
+    """One line: what the scene has that the solver could not follow, then the solver's own words.
+
+    Parameters
+    ----------
+    outcome : runs.Outcome
+    path : path-like
+    overrides : sequence of str
+    """
+    if outcome.status == TIMED_OUT:
+        return f"stopped by the time limit after {outcome.steps} steps and {outcome.retries} halved ones"
+    if outcome.status in (BAD_INPUT, BUG):
+        return outcome.words
+    case = load(path, overrides)
+    scales = Scales.of(case)
+    found = _findings(outcome, case, scales)
+    return "; ".join([*found, f"solver: {outcome.words}"])
+
+
+def _findings(outcome, case, scales):
+    found = []
+    hertz = float(viscosity(np.array([scales.p0]), case.fluid)[0][0]) if case.fluid else 0.0
+    if hertz > SOLID:
+        found.append(f"the oil is solid at Hertz pressure (viscosity 10^{hertz / math.log(10):.0f} times ambient)")
+    if outcome.p_max > PLASTIC * 1e9:
+        found.append(f"asperity pressures reached {1e-9 * outcome.p_max:.1f} GPa, beyond what steel carries")
+    if outcome.h_min < 1e-9 and outcome.steps:
+        found.append(f"the film fell to {1e9 * outcome.h_min:.2g} nm before solids touched")
+    return found

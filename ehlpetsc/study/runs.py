@@ -1,0 +1,133 @@
+"""One run of a case as its own process, with a time limit: figures, exit status, last words."""
+import os
+import signal
+import subprocess
+import sys
+import time as clock
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.case import load
+from ehlpetsc.result import OutputError, read_result
+from ehlpetsc.rheology import viscosity
+
+DONE, BUG, BAD_INPUT, NOT_CONVERGED, STOPPED, TIMED_OUT = 0, 1, 2, 3, 4, -1
+
+
+@dataclass
+class Outcome:
+    """What a run came to.
+
+    Attributes
+    ----------
+    status : int
+        Exit status of ``python3 -m ehlpetsc``; `TIMED_OUT` where the time limit ended it.
+    words : str
+        Its last line on the error output: why it ended before its time.
+    steps, retries, newton : int
+        Of the whole run, the steady start's iterations included.
+    h_min, p_max, viscosity : float
+        Least film [m], greatest pressure [Pa] and the viscosity there [Pa s] of all steps.
+    load_error, mass_error : float
+        Greatest of all steps, relative.
+    seconds : float
+        Wall clock time of the process.
+    """
+
+    status: int
+    words: str = ""
+    steps: int = 0
+    retries: int = 0
+    newton: int = 0
+    h_min: float = np.nan
+    p_max: float = np.nan
+    viscosity: float = np.nan
+    load_error: float = np.nan
+    mass_error: float = np.nan
+    seconds: float = 0.0
+    result: Path | None = field(default=None, repr=False)
+
+
+def command(case, overrides, options, ranks, output):
+    """The words of the command that runs a case."""
+    words = [sys.executable, "-m", "ehlpetsc", str(case)]
+    if ranks > 1:
+        words = ["mpirun", "-n", str(ranks), *words]
+    for override in overrides:
+        words += ["-ehl_set", override]
+    return [*words, "-ehl_output", str(output), *options]
+
+
+def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=600.0):
+    """Run a case file in a process of its own.
+
+    Parameters
+    ----------
+    case : path-like
+    overrides : sequence of str
+        ``table.key=value``.
+    options : sequence of str
+        Further words of the command line.
+    ranks : int
+    folder : path-like
+        Where result, restart file and the program's words go.
+    name : str
+        Stem of those files.
+    limit : float
+        Wall clock time [s] after which the process is ended.
+
+    Returns
+    -------
+    Outcome
+    """
+    output = Path(folder) / f"{name}.h5"
+    output.unlink(missing_ok=True)
+    begun = clock.monotonic()
+    with open(output.with_suffix(".txt"), "w+") as words:
+        status = _wait(command(case, overrides, options, ranks, output), words, limit)
+        seconds = clock.monotonic() - begun
+        words.seek(0)
+        outcome = Outcome(status, last_words(words.read()), seconds=seconds)
+    if output.exists():
+        _read_figures(output, load(case, overrides), outcome)
+    return outcome
+
+
+def _wait(words, stream, limit):
+    process = subprocess.Popen(words, stdout=stream, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                               start_new_session=True)
+    try:
+        return process.wait(limit)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        return TIMED_OUT
+
+
+def last_words(text):
+    """The line that says why a run ended: the solver's own, else the last one."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    told = [line for line in lines if line.startswith("ehlpetsc: not converged:")]
+    return (told or lines or [""])[-1].removeprefix("ehlpetsc: not converged: ")
+
+
+def _read_figures(path, case, outcome):
+    """Enter the figures of a result file; a file that cannot be read is told in the words."""
+    try:
+        with read_result(path) as result:
+            steps = {name: np.asarray(result.steps(name)) for name in (
+                "newton", "retries", "h_min", "p_max", "load_error", "mass_error")}
+    except OutputError as error:
+        outcome.words = f"{outcome.words} {error}".strip()
+        return
+    if not len(steps["newton"]):
+        return
+    outcome.result, outcome.steps = path, len(steps["newton"]) - 1
+    outcome.newton, outcome.retries = int(steps["newton"].sum()), int(steps["retries"].sum())
+    outcome.h_min, outcome.p_max = steps["h_min"].min(), steps["p_max"].max()
+    outcome.load_error, outcome.mass_error = steps["load_error"].max(), steps["mass_error"].max()
+    if case.fluid:
+        ratio = viscosity(np.array([outcome.p_max]), case.fluid)[0][0]
+        outcome.viscosity = float(case.fluid.viscosity * np.exp(min(ratio, 700.0)))
