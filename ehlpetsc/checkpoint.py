@@ -34,6 +34,7 @@ def save(path, state, smooth, contact_count, totals, case, scales):
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     attributes = {"h00": state.h00, "time": state.time, "dt": state.dt or 0.0,
                   "dt_next": state.dt_next or 0.0, "step": state.step, "case": case.text}
+    attributes |= {"p0": scales.p0, "h_scale": scales.h}
     attributes |= {TOTAL + name: value for name, value in totals.items()}
     save_restart(path, arrays, attributes)
 
@@ -61,6 +62,7 @@ def load(path, case, scales):
     try:
         earlier = tomllib.loads(attributes["case"])
         _check_fits(path, arrays["x"], earlier, case, scales)
+        _rescale(arrays, attributes, scales)
         state = State(arrays["q"], arrays["h"], float(attributes["h00"]), m=arrays.get("m"),
                       m_older=arrays.get("m_older"), time=float(attributes["time"]),
                       dt=float(attributes["dt"]) or None, dt_next=float(attributes["dt_next"]) or None,
@@ -83,6 +85,18 @@ def _check_fits(path, x, earlier, case, scales):
     if ("fluid" in earlier) != (case.fluid is not None):
         one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
         raise OutputError(f"{path}: a run {one} [fluid] cannot go on {other} it")
+
+
+def _rescale(arrays, attributes, scales):
+    """Pressures and films in the units of the case: under another load those of Hertz are others."""
+    pressure, film = attributes["p0"] / scales.p0, attributes["h_scale"] / scales.h
+    if pressure == film == 1.0:
+        return
+    for name in ("q", "smooth_q"):  # negative: a void fraction
+        arrays[name] = np.where(arrays[name] > 0.0, pressure, 1.0) * arrays[name]
+    for name in {"h", "smooth_h", "m", "m_older"} & arrays.keys():
+        arrays[name] = film * arrays[name]
+    attributes["h00"] *= film
 
 
 def changes(earlier, now):
