@@ -11,10 +11,10 @@ VALUES = (0.01, 0.006, 0.003)
 QUICK = [*SHORT[:-1], "time.travel=0.5"]
 
 
-def series(folder, *words, ranks=2, values=VALUES, key="fluid.viscosity", **environment):
+def series(folder, *words, ranks=2, values=VALUES, key="fluid.viscosity", tampered=()):
     sets = [*QUICK, f"series.key='{key}'", f"series.values={json.dumps(list(values))}"]
     words = ["-ehl_output", "out.h5", *settings(*sets), *words]
-    return run(CASE, *words, cwd=folder, ranks=ranks, **environment)
+    return run(CASE, *words, cwd=folder, ranks=ranks, tampered=tampered)
 
 
 def states(folder):
@@ -90,12 +90,12 @@ def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
 
 
 def test_a_stopped_series_goes_on_where_it_was(tmp_path, finished):
-    stopped = series(tmp_path, "-ehl_time_limit", "0.012", "-ehl_ranks_per_member", "2")
+    stopped = series(tmp_path, tampered=("SIGUSR1", 0, 10))  # in the first rank's first member
     assert stopped.returncode == 4, stopped.stdout + stopped.stderr
     assert "the same command computes what is missing" in stopped.stdout
-    assert "done" not in states(tmp_path).values() and list(tmp_path.glob("*.restart.h5"))
+    assert sorted(states(tmp_path).values()) == ["done", "stopped", "waiting"]
     on = series(tmp_path)
-    assert on.returncode == 0 and "restart: " in on.stdout
+    assert on.returncode == 0 and "[viscosity=0.003] restart: " in on.stdout and "step 10," in on.stdout
     assert set(states(tmp_path).values()) == {"done"}
     assert summary(on.stdout)["steps"] == summary(finished[1].stdout)["steps"]
 
