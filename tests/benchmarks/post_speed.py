@@ -54,8 +54,8 @@ def stress_speed(nx=1600, nz=50):
     slow = best(lambda: direct(p, 0.1 * p, kernels, nx), 3) * nz
     difference = np.abs(np.stack(direct(p, 0.1 * p, kernels, nx)) - np.stack(field(p, 0.1 * p))[:, 10]).max()
     print(
-        f"stress {nx} x {nz} x 3: FFT {fast * 1e3:.2f} ms, direct {slow * 1e3:.0f} ms, ratio {slow / fast:.0f}, "
-        f"difference {difference:.1e}"
+        f"stress {nx} x {nz} x 3: FFT {fast * 1e3:.2f} ms, direct {slow * 1e3:.0f} ms, "
+        f"ratio {slow / fast:.0f}, difference {difference:.1e}"
     )
 
 
@@ -88,7 +88,8 @@ def counting_speed(points=2000, samples=6000):
     few = stress[:10, 1].astype(float).tolist()
     plain = 10 * samples / best(lambda: [list(extract_cycles(row)) for row in few], 2) / 1e6
     print(
-        f"PyPI rainflow, counting alone: {plain:.2f} million samples a second, ratio {rates['sz'] / plain:.0f}"
+        f"PyPI rainflow, counting alone: {plain:.2f} million samples a second, "
+        f"ratio {rates['sz'] / plain:.0f}"
     )
 
 

@@ -7,10 +7,10 @@ from post_result_file import P0, A, Scene, write
 from ehlpetsc.post import Material, damage, stress
 from ehlpetsc.post.accumulate import Counting
 from ehlpetsc.post.bodies import passage
-from ehlpetsc.post.histories import BodyStress, history_at
+from ehlpetsc.post.histories import QUANTUM, BodyStress, history_at
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.postresult import PostResult
-from ehlpetsc.post.run import EVERY_LOSS, Job, run
+from ehlpetsc.post.run import Job, run
 
 FINE = 16  # elements of the reference a node spacing
 DEPTHS = (0.0, 0.02, 0.05, 0.1)  # z/a: 0 to 5 elements
@@ -63,7 +63,7 @@ def linear(scene, s, frames):
     return out
 
 
-def test_damage_on_ripples_of_ten_nodes_within_two_percent(scene, loads):
+def test_damage_on_ripples_of_ten_nodes_within_a_fifth_of_a_percent(scene, loads):
     motion_s = scene.x[0] - np.array([10.0, 25.37, 41.81]) * scene.dx
     losses = []
     for s in motion_s:
@@ -72,24 +72,26 @@ def test_damage_on_ripples_of_ten_nodes_within_two_percent(scene, loads):
         assert frames[0] > 0 and frames[-1] < scene.time.size - 1
         exact = damage(*reference(scene, s, frames), Material()).damage
         ours = [damage(*history_at(loads, "slow", s, z * A)[1], Material()).damage for z in DEPTHS]
-        assert ours == pytest.approx(exact, rel=0.02)
+        assert ours == pytest.approx(exact, rel=0.002)
         losses.append(1 - damage(*linear(scene, s, frames), Material()).damage / exact)
-    assert np.mean(losses) > 0.1  # what linear interpolation would lose
+    assert np.mean(losses) > 0.2  # what linear interpolation would lose
 
 
 def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
-    """Equal ripples may pair otherwise on the sweep's grid of 60 Pa, hence the half per cent."""
+    """To rounding, but for equal ripples that pair otherwise where one rounds up and one down."""
     output = tmp_path / "a.post.h5"
     run(Job(str(loads.path), str(output)))
     result = PostResult(output)
+    differences = []
     for surface in ("slow", "fast"):
         points = np.flatnonzero(result.complete[surface])
         for j in points[[0, points.size // 3, -1]]:
             for k, z in enumerate(DEPTHS):
-                values = history_at(loads, surface, result.s[j], z * A)[1]
-                assert result.damage[surface][k, j] == pytest.approx(
-                    damage(*values, Material()).damage, rel=5e-3
-                )
+                values = history_at(loads, surface, result.s[j], z * A, QUANTUM * P0)[1]
+                single = damage(*values, Material()).damage
+                differences.append(abs(result.damage[surface][k, j] / single - 1))
+    assert np.median(differences) < 1e-6
+    assert max(differences) < 2e-3
 
 
 def test_signs_of_the_two_bodies(loads):
@@ -102,7 +104,7 @@ def test_signs_of_the_two_bodies(loads):
 
 
 def test_exact_at_nodes_and_offsets_for_a_smooth_load():
-    """The spline load against a mesh 16 times finer: fourth order, where hats would err by a percent."""
+    """The load between nodes against a mesh 16 times finer, where hats would err by a percent."""
     errors = []
     for nodes in (20, 10):
         x = np.arange(0, 400.0)
@@ -125,20 +127,18 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
     assert errors[0] < 3e-4
 
 
-@pytest.mark.parametrize("every", sorted(EVERY_LOSS))
-def test_loss_stated_for_skipped_frames(every, tmp_path):
-    """The share of near-surface damage that a result stored with every 2, 4, 8 loses, as the warning says."""
+def test_skipped_frames_lose_damage(tmp_path):
+    """The more the fewer frames: why results stored with every > 1 are warned of."""
     scene = Ripples(per_width=50, ratio=1.0, travel=14.5)
-    found = {}
-    for k in (1, every):
-        path = write(tmp_path / f"{k}.h5", scene, every=k, depths=(0.0, 0.02))
+    found = []
+    for every in (1, 2, 4, 8):
+        path = write(tmp_path / f"{every}.h5", scene, every=every, depths=(0.0, 0.02))
         run(Job(str(path), str(tmp_path / "out.h5"), surfaces=("slow",)))
         result = PostResult(tmp_path / "out.h5")
-        rows = result.damage["slow"][:, result.complete["slow"]]
-        found[k] = np.interp(
-            np.linspace(0, 1, 50), np.linspace(0, 1, rows.shape[1]), rows.mean(axis=0)
-        ).mean()
-    assert 100 * (1 - found[every] / found[1]) == pytest.approx(EVERY_LOSS[every], abs=1)
+        found.append(result.damage["slow"][:, result.complete["slow"]].mean())
+    kept = np.array(found) / found[0]
+    assert kept[1] < 0.99 and kept[2] < 0.95 and kept[3] < 0.85
+    assert (np.diff(kept) < 0).all()
 
 
 def test_only_points_that_entered_and_left(scene):

@@ -1,0 +1,71 @@
+"""Damage lost by storing every 2nd, 4th, 8th step: ``python3 tests/benchmarks/post_every.py RESULT.h5``.
+
+RESULT.h5 is stored with every = 1; its frames are thinned, each way from two first frames. Prints per surface
+and depth the median over the points of the share lost, and the share of the mean damage. The figures that
+python3 -m ehlpetsc.post names in its warning are the medians, both surfaces together, of
+cases/table1_damage.toml.
+"""
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from ehlpetsc.post.postresult import PostResult
+from ehlpetsc.post.run import Job, run
+
+DEPTHS = (0.0, 0.01, 0.03, 0.1, 0.5)
+FRAMED = ("time", "pressure", "shear_stress_slow", "shear_stress_fast")
+
+
+def thin(source, target, every, start):
+    """Copy of a result with every so manieth frame."""
+    with h5py.File(source) as old, h5py.File(target, "w") as new:
+        new.attrs.update(old.attrs)
+        new["x"] = old["x"][:]
+        for name in FRAMED:
+            new[name] = old[name][start::every]
+        old.copy("surface", new)
+
+
+def processed(path, output):
+    """Post-processing result of a file."""
+    run(Job(str(path), str(output), depths=DEPTHS))
+    return PostResult(output)
+
+
+def lost(whole, part, surface, depth):
+    """Shares of the damage lost: of each point, and of the mean."""
+    full = np.interp(part.s, whole.s, whole.damage[surface][depth])
+    both = part.complete[surface] & np.isfinite(full)
+    full, kept = full[both], part.damage[surface][depth][both]
+    return np.median(1 - kept / full), 1 - kept.mean() / full.mean()
+
+
+def main(source):
+    """Print the table."""
+    with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
+        whole = processed(source, Path(folder) / "1.post.h5")
+        for every in (2, 4, 8):
+            parts = []
+            for start in (0, every // 2):
+                path = Path(folder) / f"{every}_{start}.h5"
+                thin(source, path, every, start)
+                parts.append(processed(path, f"{path}.post"))
+                path.unlink()
+            for surface in whole.surfaces:
+                for k, depth in enumerate(DEPTHS):
+                    losses = 100 * np.mean([lost(whole, part, surface, k) for part in parts], axis=0)
+                    print(
+                        f"every {every}, {surface} surface, z/a = {depth:<4g}: {losses[0]:5.1f} % of a "
+                        f"point's damage, {losses[1]:5.1f} % of the mean"
+                    )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
