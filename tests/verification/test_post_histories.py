@@ -91,7 +91,7 @@ def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
                 single = damage(*values, Material()).damage
                 differences.append(abs(result.damage[surface][k, j] / single - 1))
     assert np.median(differences) < 1e-6
-    assert max(differences) < 2e-3
+    assert max(differences) < 5e-3
 
 
 def test_signs_of_the_two_bodies(loads):
