@@ -83,8 +83,9 @@ def draw_contacts(results, _options):
     colours, labels, key = drawing.series_colours(results)
     figure, axes = _two_panels()
     means = drawing.contact_rates(axes, results, colours)
-    labels = [f"{label}: {mean:.3g}" for label, mean in zip(labels, means, strict=True)]
-    drawing.series_legend(axes[1], colours, labels, f"{key or 'file'}:\nmean in |x| < a")
+    parts = [mean / means[0] if means[0] else np.nan for mean in means]
+    labels = [f"{n}: {mean:.3g} ({part:.2f})" for n, mean, part in zip(labels, means, parts, strict=True)]
+    drawing.series_legend(axes[1], colours, labels, f"{key or 'file'}:\nmean in |x| < a\n(to the first)")
     axes[0].set_title(results[0].attrs["title"], fontsize="medium")
     return figure
 
