@@ -70,8 +70,8 @@ class Loads:
             raise PostError(f"format version {attrs['format_version']}: written by a later ehlpetsc")
         self.case, self.title = _text(attrs["case"]), _text(attrs.get("title", ""))
         self.status = _text(attrs.get("status", "unknown"))
-        self.a, self.p0 = float(attrs["a"]), float(attrs["p0"])
-        self.speeds = {"fast": float(attrs["u1"]), "slow": float(attrs["u2"])}
+        self.a, self.p0, fast, slow = (self._number(name) for name in ("a", "p0", "u1", "u2"))
+        self.speeds = {"fast": fast, "slow": slow}
         self.x = self._dataset("x")[:]
         try:
             self.dx = spacing(self.x)
@@ -95,6 +95,15 @@ class Loads:
         self.time = time
         steps = self._file["step"][: len(time)] if "step" in self._file else np.arange(len(time))
         self.every = int(np.median(np.diff(steps))) if len(time) > 1 else 1
+
+    def _number(self, name):
+        try:
+            value = float(self._file.attrs[name])
+        except (TypeError, ValueError):
+            value = np.nan
+        if not np.isfinite(value) or name in ("a", "p0") and value <= 0:
+            raise PostError(f"attribute {name} = {self._file.attrs[name]}: not a width, pressure or speed")
+        return value
 
     def _dataset(self, name):
         found = self._file.get(name)

@@ -75,7 +75,11 @@ def run(job, report=None, progress=None):
         return
     parts = Parts(job.output, mark)
     missing = {surface: [d for d in settings.depths if parts.load(surface, d) is None] for surface in motions}
-    _work_off(_tasks(job, missing), job.jobs, parts, progress or (lambda done, of: None))
+    try:
+        _work_off(_tasks(job, missing), job.jobs, parts, progress or (lambda done, of: None))
+    except PostError:
+        parts.remove()  # unlike an interruption, nothing to go on from
+        raise
     results = {surface: np.stack([parts.load(surface, d) for d in settings.depths]) for surface in motions}
     _store(job, loads, settings, s, motions, results, mark, report)
     parts.remove()

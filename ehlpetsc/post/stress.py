@@ -21,7 +21,7 @@ def spacing(x):
     if x.ndim != 1 or x.size < 2:
         raise ValueError("x must be one row of at least two nodes")
     dx = (x[-1] - x[0]) / (x.size - 1)
-    if not dx > 0 or np.abs(np.diff(x) - dx).max() > UNIFORM * dx + 8 * np.spacing(np.abs(x).max()):
+    if not (dx > 0 and np.abs(np.diff(x) - dx).max() <= UNIFORM * dx + 8 * np.spacing(np.abs(x).max())):
         raise ValueError("x must be uniformly spaced and increasing")
     return dx
 

@@ -173,7 +173,18 @@ def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
 
     said = fault(capsys, write(tmp_path / "a.h5", scene, edit=spoil))
     assert "pressure is nan at frame 300" in said and "x/a = -0.75" in said
-    assert not (tmp_path / "a.post.h5").exists()
+    assert not list(tmp_path.glob("a.post.h5*"))
+
+
+@pytest.mark.parametrize("name, value", [("a", np.nan), ("p0", 0.0), ("u1", np.inf), ("u2", "fast")])
+def test_attributes_that_are_no_numbers(name, value, scene, tmp_path, capsys):
+    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.attrs.__setitem__(name, value))
+    assert f"attribute {name}" in fault(capsys, path)
+
+
+def test_nan_in_x(scene, tmp_path, capsys):
+    path = write(tmp_path / "a.h5", scene, edit=lambda file: file["x"].__setitem__(3, np.nan))
+    assert "dataset x" in fault(capsys, path)
 
 
 def test_truncated_file(result, capsys):
