@@ -1,0 +1,40 @@
+"""A Gaussian ridge on the slower surface as it passes the centre of the contact, against a dense solution.
+
+Film at x = 0 [um], least film [um] and greatest pressure [GPa] by mesh and time step:
+
+====  =======  =======  =======  =======
+a/dx  courant  h(0)     h_min    p_max
+====  =======  =======  =======  =======
+100   1        0.14665  0.12499  1.17826
+100   0.5      0.14814  0.12581  1.18108
+150   0.75     0.14766  0.12508  1.17932
+150   0.5      0.14794  0.12528  1.17977
+200   1        0.14739  0.12481  1.17829
+200   0.5      0.14780  0.12511  1.17894
+====  =======  =======  =======  =======
+"""
+import numpy as np
+import pytest
+from driving import CASES, Scene
+
+from ehlpetsc.case import load
+from ehlpetsc.reference import RIDGE
+
+
+def test_ridge_in_the_centre_of_the_contact():
+    scene = Scene("ridge.toml", "mesh.points_per_half_width=150", "time.courant=0.75").start()
+    s = scene.scales
+    position = load(CASES / "ridge.toml").surface.slow.synthetic.position
+    arrival = (position - s.x[0] * s.a) / s.u2
+    count = round(arrival / s.dt)
+    for _ in scene.steps(count, arrival / count):
+        pass
+    height = -scene.problem.gap * s.h  # nothing of the ridge is lost where profiles come in
+    np.testing.assert_allclose(height, 0.1e-6 * np.exp(-((s.x / 0.1) ** 2)), atol=1e-12)
+    found = {
+        "film at the centre": scene.film[scene.centre],
+        "h_min": scene.film.min(),
+        "p_max": scene.pressure.max(),
+    }
+    for name, bounds in RIDGE.items():
+        assert found[name] == pytest.approx(bounds.value, abs=bounds.uncertainty), name
