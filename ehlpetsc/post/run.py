@@ -1,7 +1,10 @@
 """From a result file to a post-processing result: tasks over surfaces and depths, in one process or more."""
 
 import multiprocessing
+import os
 import signal
+import threading
+import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import NamedTuple
 
@@ -146,7 +149,7 @@ def _work_off(tasks, jobs, parts, progress):
 
             done += _keep(task, solve(task, share), parts)
         return
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("fork"), _die_quietly)
+    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("fork"), _attend, (os.getpid(),))
     try:
         futures = {pool.submit(solve, task): task for task in tasks}
         for future in as_completed(futures):
@@ -160,8 +163,16 @@ def _work_off(tasks, jobs, parts, progress):
         pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _die_quietly():
+def _attend(parent):
+    """Set up a process of the pool: quiet when interrupted, and gone when the parent was killed."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # the parent says that the run was interrupted
+    threading.Thread(target=_watch, args=(parent,), daemon=True).start()
+
+
+def _watch(parent):
+    while os.getppid() == parent:
+        time.sleep(0.5)
+    os._exit(1)
 
 
 def _keep(task, values, parts):
