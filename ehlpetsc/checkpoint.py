@@ -3,7 +3,7 @@ import tomllib
 
 import numpy as np
 
-from ehlpetsc.march import State
+from ehlpetsc.march import Level, State
 from ehlpetsc.output import OutputError, load_restart, save_restart
 
 TOTAL = "total "  # before the names of totals among the attributes
@@ -32,6 +32,8 @@ def save(path, state, smooth, contact_count, totals, case, scales):
     arrays = {"x": scales.x * scales.a, "q": state.q, "h": state.h, "contact_count": contact_count,
               "smooth_q": smooth[0], "smooth_h": smooth[1]}
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
+    if state.earlier:
+        arrays |= {f"earlier_{name}": np.array(each) for name, each in zip(Level._fields, zip(*state.earlier))}
     attributes = {"h00": state.h00, "time": state.time, "dt": state.dt or 0.0,
                   "dt_next": state.dt_next or 0.0, "step": state.step, "case": case.text}
     attributes |= {"p0": scales.p0, "h_scale": scales.h}
@@ -66,12 +68,18 @@ def load(path, case, scales):
         state = State(arrays["q"], arrays["h"], float(attributes["h00"]), m=arrays.get("m"),
                       m_older=arrays.get("m_older"), time=float(attributes["time"]),
                       dt=float(attributes["dt"]) or None, dt_next=float(attributes["dt_next"]) or None,
-                      step=int(attributes["step"]))
+                      step=int(attributes["step"]), earlier=_earlier(arrays))
         smooth = (arrays["smooth_q"], arrays["smooth_h"])
         totals = {name.removeprefix(TOTAL): attributes[name].item() for name in attributes if TOTAL in name}
         return state, smooth, arrays["contact_count"], totals, changes(earlier, tomllib.loads(case.text))
     except KeyError as error:
         raise OutputError(f"{path}: damaged restart file ({error} is missing)") from error
+
+
+def _earlier(arrays):
+    if "earlier_time" not in arrays:
+        return ()
+    return tuple(map(Level, *(arrays[f"earlier_{name}"] for name in Level._fields)))
 
 
 def _check_fits(path, x, earlier, case, scales):
@@ -92,9 +100,9 @@ def _rescale(arrays, attributes, scales):
     pressure, film = attributes["p0"] / scales.p0, attributes["h_scale"] / scales.h
     if pressure == film == 1.0:
         return
-    for name in ("q", "smooth_q"):  # negative: a void fraction
+    for name in {"q", "smooth_q", "earlier_q"} & arrays.keys():  # negative: a void fraction
         arrays[name] = np.where(arrays[name] > 0.0, pressure, 1.0) * arrays[name]
-    for name in {"h", "smooth_h", "m", "m_older"} & arrays.keys():
+    for name in {"h", "smooth_h", "earlier_h", "m", "m_older"} & arrays.keys():
         arrays[name] = film * arrays[name]
     attributes["h00"] *= film
 

@@ -11,7 +11,10 @@ over nodes is the relative mass imbalance.
 
 Finite volumes, one node a cell. The Couette flux and the storage are second-order upwind (BDF2 in
 time), both by :func:`positive_extrapolation`: second order where the film is resolved, and never
-a negative outflow, so that no node is emptied by the scheme itself.
+a negative outflow, so that no node is emptied by the scheme itself. The pressure flow through a face takes
+the mean of both nodes' :math:`\rho h^3S/(12\eta)`, as central differences do. With the viscosity at the
+mean pressure instead, the flow out of a node would fall again when its pressure exceeds its neighbour's by
+more than about 2/alpha: a fold, at which Newton's method cycles, and which asperities two nodes wide reach.
 """
 import numpy as np
 
@@ -79,8 +82,7 @@ class Reynolds:
         self.dx = scales.x[1] - scales.x[0]
         j = np.arange(self.rows[0] - 1, self.rows[-1] + 1)  # face j lies between nodes j and j+1
         self.behind, self.left, self.right = np.maximum(j - 1, 0), j, np.minimum(j + 1, n - 1)
-        inner = j + 1 < n  # beyond the outlet: same film, no pressure
-        self.right_p, self.right_h = inner * 1.0, inner * 0.5
+        self.inner = j + 1 < n  # beyond the outlet: same film, no pressure
         self.second_order = np.where(j >= 1, 0.5, 0.0)
         self.sliding = scales.u1 - scales.u2
         self.inlet = None if fluid.inlet_film is None else fluid.inlet_film / scales.h
@@ -107,23 +109,35 @@ class Reynolds:
         b, le, r = self.behind, self.left, self.right
         flux, by_left, by_behind = positive_extrapolation(m[le], m[b], self.second_order)
         p, dp = np.maximum(q, 0.0), (q > 0.0) * 1.0
-        p_right = self.right_p * p[r]
-        ln_eta, dln_eta = rheology.viscosity(0.5 * s.p0 * (p[le] + p_right), self.fluid)
-        rho, drho = rheology.density(0.5 * s.p0 * (p[le] + p_right), self.fluid)
-        film = s.h * ((1 - self.right_h) * h[le] + self.right_h * h[r])
-        per_length = s.p0 / (s.a * self.dx)
+        p_right, h_right = self.inner * p[r], np.where(self.inner, h[r], h[le])
+        per_length = self.scales.p0 / (self.scales.a * self.dx)
         slope = per_length * (p_right - p[le])
-        mob, mob_h, mob_slope, mob_eta = rheology.mobility(film, slope, ln_eta, self.fluid, self.sliding)
-        unit = 1.0 / (s.u * s.h)
-        flux = flux - unit * rho * mob * slope
-        by_slope = -unit * rho * (mob + mob_slope * slope) * per_length
-        by_p = -unit * slope * (drho * mob + rho * mob_eta * dln_eta) * 0.5 * s.p0
-        by_h = -unit * rho * mob_h * slope * s.h
+        left = self._conductance(p[le], h[le], slope)
+        right = self._conductance(p_right, h_right, slope)
+        mean = 0.5 * (left[0] + right[0])
+        flux = flux - mean * slope
+        by_slope = -(mean + 0.5 * (left[3] + right[3]) * slope) * per_length
+        by_p_left, by_p_right = -0.5 * slope * left[1], -0.5 * slope * right[1]
+        by_h_left, by_h_right = -0.5 * slope * left[2], -0.5 * slope * right[2]
+        by_h_left = by_h_left + np.where(self.inner, 0.0, by_h_right)
         return flux, (
             by_behind * m_q[b], by_behind * m_h[b],
-            by_left * m_q[le] + (by_p - by_slope) * dp[le], by_left * m_h[le] + by_h * (1 - self.right_h),
-            (by_p + by_slope) * self.right_p * dp[r], by_h * self.right_h,
+            by_left * m_q[le] + (by_p_left - by_slope) * dp[le], by_left * m_h[le] + by_h_left,
+            (by_p_right + by_slope) * self.inner * dp[r], by_h_right * self.inner,
         )
+
+    def _conductance(self, p, h, slope):
+        r"""Mass flow per pressure gradient :math:`\rho h^3S/(12\eta)` of nodes beside faces of given gradient.
+
+        Returns value and derivatives with respect to p, h and slope.
+        """
+        s = self.scales
+        ln_eta, dln_eta = rheology.viscosity(s.p0 * p, self.fluid)
+        rho, drho = rheology.density(s.p0 * p, self.fluid)
+        mob, mob_h, mob_slope, mob_eta = rheology.mobility(s.h * h, slope, ln_eta, self.fluid, self.sliding)
+        unit = 1.0 / (s.u * s.h)
+        by_p = unit * s.p0 * (drho * mob + rho * mob_eta * dln_eta)
+        return unit * rho * mob, by_p, unit * s.h * rho * mob_h, unit * rho * mob_slope
 
     def evaluate(self, q, h, past):
         """Residual of the local rows and its derivatives.
