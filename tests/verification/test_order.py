@@ -1,7 +1,7 @@
 """Orders of accuracy in space, in time and in both on a full-film transient.
 
-A ridge of 0.1 um, 0.8 half widths wide, on the slower surface enters a film of 0.53 um and is followed until it
-fills the contact. Compared are successive refinements by two, at the nodes of the coarsest mesh within
+A ridge of 0.1 um, 0.8 half widths wide, on the slower surface enters a film of 0.53 um and is followed until
+it fills the contact. Compared are successive refinements by two, at the nodes of the coarsest mesh within
 -1 <= x/a <= 0.5, which leaves out the rupture of the film near x = 1.15 a; norm: root mean square.
 
 Rates of successive differences, film and pressure:
