@@ -9,6 +9,7 @@ from ehlpetsc.case import CaseError, load
 from ehlpetsc.march import Failed
 from ehlpetsc.options import UsageError, faults, help_text, text_of, time_limit
 from ehlpetsc.output import OutputError
+from ehlpetsc.schemes import scheme
 from ehlpetsc.series import Series
 from ehlpetsc.single import NOT_CONVERGED, Run, expected_film
 from ehlpetsc.solver import set_defaults
@@ -42,6 +43,7 @@ def run(path, overrides):
     comm, options = MPI.COMM_WORLD, PETSc.Options()
     try:
         stop = StopRequest(time_limit(options))
+        scheme(options)
     except UsageError as error:
         return refuse(comm, [f"ehlpetsc: {error}"])
     wrong = faults(options.getAll())

@@ -16,6 +16,7 @@ from ehlpetsc.output import OutputError, ResultWriter
 from ehlpetsc.report import Progress, summary_line
 from ehlpetsc.roughness import Roughness
 from ehlpetsc.scales import Scales
+from ehlpetsc.schemes import solver_of
 from ehlpetsc.solver import NotConverged, Solver
 
 LEVEL = 1e-6  # of a step: times nearer than this are the same
@@ -69,7 +70,7 @@ class Run:
         film = expected_film(case, self.scales)
         self.views = taken_out(options, ("snes_view", "ksp_view"))
         self.follow = any(options.hasName(name) for name in FOLLOWED)
-        solver = Solver(case, self.scales, film, PETSc.Comm(comm))
+        solver = solver_of(case, self.scales, film, PETSc.Comm(comm), options)
         self.march = March(solver, self.scales, self.roughness, film)
         self.output = Path(output)
         self.restart = self.output.with_suffix(".restart.h5")
@@ -166,9 +167,9 @@ class Run:
 
     def _view(self):
         """-snes_view and -ksp_view once, after the first solve: PETSc would repeat them at every step."""
-        snes = self.march.solver.snes
-        for name in self.views:
-            (snes if name == "snes_view" else snes.ksp).view()
+        solver = self.march.solver
+        for name in self.views if isinstance(solver, Solver) else ():
+            (solver.snes if name == "snes_view" else solver.snes.ksp).view()
 
     def _march(self, state):
         s = self.scales

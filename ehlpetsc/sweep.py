@@ -2,29 +2,32 @@ r"""The paper's own iteration: sweeps over the nodes that update each pair (p, h
 
 At every node the Reynolds and the deflection equation are put in the form (Holmes et al. 2005, eq. (8), (9))
 
-.. math:: A_0p_0+B_0h_0=R=-\sum_{k\ne0}(A_kp_k+B_kh_k)+\dots,\qquad C_0p_0+D_0h_0=E,
+.. math:: A_0p_0+B_0h_0=R,\qquad C_0p_0+D_0h_0=E,
 
-all other nodes at their newest values, and solved for the pair (eq. (10)); where h comes out below its bound, it is put
-there and p follows from the deflection equation alone (eq. (11)). Nothing is assumed about which nodes touch.
+R and E with the newest values of all other nodes, and solved for the pair (eq. (10)); where h comes out
+below its bound, it is put there and p follows from the deflection equation alone (eq. (11)). Nothing is
+assumed about which nodes touch.
 
-Residual and coefficients are those of :class:`ehlpetsc.contact.ContactProblem`: the :math:`A_k, B_k` are its
-derivatives at the state before the last `SWEEPS` sweeps, so that sweeps solve what Newton's
-method linearises; :math:`C_k, D_k` are exact. Between two evaluations
+Residual and coefficients are those of :class:`ehlpetsc.contact.ContactProblem`. A and B are derivatives of
+the Reynolds rows at the state before the last sweeps, so that sweeps solve what Newton's method
+linearises; C and D are exact. Between two evaluations of A and B
 
-* pressures further away than `NEAR` nodes act on E by FFT with the values of the last evaluation;
+* pressures further away than `NEAR` nodes act on E by FFT with their values of the last evaluation;
 * h00 moves with the load that is missing, by a part of what Hertz' contact would need;
-* where the gap is open, that is beyond `OPEN` times the expected film, h is put to the whole integral of p, as it
-  is at the two ends in any case. Second differences alone tell the ends of the contact from node to node: the error
-  then falls by some 0.5 % an evaluation (a/100), and the approach swings about its value for hundreds of them. In
-  the open gap, pressures hardly answer to the film, so that this is safe; in the film itself it is not.
+* where the gap is open, that is beyond `OPEN` times the expected film, h is put to the whole integral of p,
+  as it is at the two ends in any case. Second differences alone tell a change of h00 or of a distant pressure
+  from node to node, which takes the square of their number in sweeps. In the open gap pressures
+  hardly answer to the film, so that this is safe; in the film itself it is not.
 
-A node that changes between oil and cavity stops at the change, where its derivatives jump, until the next evaluation.
-Over-relaxation, 1.3 in the film and 1.7 in the open gap, where pressures obey Poisson's equation, halves
-the number of sweeps; beyond 1.5 in the film, and beyond 1 in cavities, where void is only carried
-along, they diverge. Sweeps go with the flow: against it, films are not carried through the contact in one sweep.
+A node that changes between oil and cavity stops at the change, where its derivatives jump, until the next
+evaluation. Over-relaxation takes less sweeps in the film and much less in the open gap, where pressures obey
+Poisson's equation. What the flow carries from node to node bears none, because each node would amplify it: void in
+cavities, and steady films, which also need more sweeps before coefficients are renewed. In a time step the
+storage of oil damps it, up to about 1.5.
 
-The order of the nodes is that of the paper, one after the other, which plain Python would take 10 ms a sweep for: numba
-compiles it. Ranks do not share a sweep: each does the whole of it.
+The order of the nodes is the paper's, one after the other with the flow. That is no work for array operations, and
+plain Python takes 0.1 s a sweep: numba compiles it, and is needed by this scheme alone. Ranks do not share a
+sweep: each does the whole of it.
 """
 import numpy as np
 from numba import njit
@@ -34,7 +37,8 @@ from ehlpetsc import elasticity
 from ehlpetsc.contact import ContactProblem
 from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
 
-REACH = 0.3  # half widths: as many sweeps between two evaluations of the coefficients as there are nodes in it
+# half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
+REACH, STEADY_REACH = 0.3, 2.0
 EVALUATIONS = 400  # before a solve is given up
 NEAR = 100  # nodes on either side whose pressures act at once
 OPEN = 4.0  # expected films: wider gaps are open
@@ -43,7 +47,7 @@ APPROACH = 0.2  # of the change of h00 that the missing load asks for
 STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, relaxation):
     r"""Update every pair once, in the direction of flow, in place.
 
@@ -133,7 +137,6 @@ class Sweeper:
         distant[: near + 1] = 0.0
         self.distant = elasticity.SymmetricToeplitz(distant)
         self.stretch = np.pi / p.dx
-        self.between = max(1, round(REACH / p.dx))
         self.sweeps = 0
 
     def flow_rows(self):
@@ -187,14 +190,16 @@ class Sweeper:
             return np.linalg.norm(rows)
 
     def _sweep(self, q, h, p, gap_is_open):
-        problem = self.problem
+        problem, steady = self.problem, self.problem.past is None
+        sweeps = max(1, round((STEADY_REACH if steady else REACH) / problem.dx))
         fixed = 0.5 * problem.x**2 + problem.gap
         bend = self.distant(p)
         bend[1:-1] += self.stretch * (fixed[:-2] - 2.0 * fixed[1:-1] + fixed[2:])
-        relaxation = np.where(q > 0.0, np.where(gap_is_open, IN_OPEN_GAP, IN_FILM), IN_CAVITY)
+        relaxation = np.where(q > 0.0, np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM), IN_CAVITY)
         then = q.copy(), h.copy()
         q[0] -= self.flow[0] / self.flow_by[0, 4]
         p[0] = max(q[0], 0.0)
-        for _ in range(self.between):
-            sweep(q, h, p, *then, self.flow, self.flow_by, -bend, self.kernel, self.stretch, self.bound, relaxation)
-        self.sweeps += self.between
+        for _ in range(sweeps):
+            sweep(q, h, p, *then, self.flow, self.flow_by, -bend, self.kernel, self.stretch, self.bound,
+                  relaxation)
+        self.sweeps += sweeps

@@ -77,10 +77,10 @@ def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
 
 
 def test_misspelt_own_options_are_refused_all_at_once(case, tmp_path):
-    done = run(case, "-ehl_outptu", "f.h5", "-ehl_nonesuch", cwd=tmp_path, ranks=2)
+    done = run(case, "-ehl_outptu", "f.h5", "-ehl_gibberish", cwd=tmp_path, ranks=2)
     assert done.returncode == 2
     assert done.stderr.splitlines() == [
-        f"-ehl_nonesuch: unknown option; allowed: -{', -'.join(OWN)}",
+        f"-ehl_gibberish: unknown option; allowed: -{', -'.join(OWN)}",
         "-ehl_outptu: unknown option; did you mean -ehl_output?",
     ]
     assert done.stdout == ""

@@ -1,0 +1,38 @@
+"""Which iteration solves the equations of a time step: ``-ehl_scheme``."""
+from ehlpetsc.options import UsageError, text_of
+from ehlpetsc.solver import Solver
+
+ALLOWED = ("newton", "sweep")
+
+
+def scheme(options):
+    """Name of the iteration asked for.
+
+    Raises
+    ------
+    options.UsageError
+        There is none of that name.
+    """
+    name = text_of(options, "ehl_scheme") or ALLOWED[0]
+    if name not in ALLOWED:
+        raise UsageError(f"-ehl_scheme {name}: allowed: {', '.join(ALLOWED)}")
+    return name
+
+
+def solver_of(case, scales, film_scale, comm, options):
+    """The solver asked for, of one scene on one communicator.
+
+    Raises
+    ------
+    options.UsageError
+        Sweeps are asked for, but the contact is dry or numba missing.
+    """
+    if scheme(options) == "newton":
+        return Solver(case, scales, film_scale, comm)
+    if case.fluid is None:
+        raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
+    try:
+        from ehlpetsc.sweep import Sweeper
+    except ImportError as error:
+        raise UsageError("-ehl_scheme sweep needs numba; Debian: apt-get install python3-numba") from error
+    return Sweeper(case, scales, film_scale)
