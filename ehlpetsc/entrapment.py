@@ -6,7 +6,7 @@ import numpy as np
 from .collisions import points_in_contact
 from .result import OutputError
 
-APART = 2  # nodes from each contact to the maximum: nearer, it is the contact's own
+NARROWEST = 3  # mesh spacings between the contacts: two nodes of oil
 WIDEST = 0.05  # half widths between them
 
 
@@ -41,18 +41,24 @@ def find(result):
     frames, nodes = points_in_contact(result)
     widest = WIDEST * result.attrs["a"] / float(np.diff(result.x).min())
     apart = np.diff(nodes)
-    pairs = np.flatnonzero((np.diff(frames) == 0) & (apart >= 2 * APART) & (apart <= widest))
+    pairs = np.flatnonzero((np.diff(frames) == 0) & (apart >= NARROWEST) & (apart <= widest))
     found = []
     for frame, left, right in zip(frames[pairs], nodes[pairs], nodes[pairs + 1], strict=True):
         pressure = result["pressure"][frame, left : right + 1].astype(float)
-        peak = APART + int(np.argmax(pressure[APART:-APART]))
+        peak = int(np.argmax(pressure))
         highest = max(pressure[0], pressure[-1])
-        if highest > 0.0 and pressure[peak] > highest and pressure[peak] == pressure.max():
+        if 0.0 < highest < pressure[peak] and _is_single(pressure, peak):
             excess = float(pressure[peak] / highest - 1.0)
             found.append(Entrapment(int(frame), int(left), int(right), int(left) + peak, excess))
     if not found:
         raise OutputError(f"{result.path}: no pressure maximum between two contacts {WIDEST} a apart or less")
     return sorted(found, key=lambda e: e.excess * result["pressure"][e.frame, e.peak], reverse=True)
+
+
+def _is_single(pressure, peak):
+    """Whether the pressure rises up to the peak and falls from there on: one peak, amid the oil."""
+    rise = np.diff(pressure)
+    return bool((rise[:peak] > 0.0).all() and (rise[peak:] < 0.0).all())
 
 
 def instants(result, entrapment, interval=30, count=4):

@@ -117,7 +117,7 @@ def test_oil_between_two_contacts_is_found(tmp_path):
     np.testing.assert_allclose(upper - lower, result.frame("film_thickness", best.frame), atol=1e-20)
 
 
-def test_a_peak_at_a_contact_is_no_entrapment(series):
+def test_a_peak_that_is_not_between_is_no_entrapment(series):
     with pytest.raises(OutputError, match="no pressure maximum between two contacts"):
         entrapment.find(series[-1])
 
