@@ -1,0 +1,108 @@
+"""Bad input from the command line to the exit status: what is said, and that nothing is left behind."""
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT / "cases"
+SMOOTH = (CASES / "table1_smooth.toml").read_text()
+SURFACE = "\n[surface.fast]\nfile = 'p.csv'\n"
+LEVEL = "".join(f"{k}e-6,0\n" for k in range(8))
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Run a case text in an empty directory: how it ended and what it said, and the names of the files it made."""
+    monkeypatch.setenv("PYTHONPATH", str(ROOT), prepend=":")
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+
+    def go(text, *words, profile=None):
+        (tmp_path / "my.toml").write_text(text)
+        if profile is not None:
+            (tmp_path / "p.csv").write_text(profile)
+        before = set(tmp_path.iterdir())
+        done = subprocess.run(
+            [sys.executable, "-m", "ehlpetsc", "my.toml", *words], cwd=tmp_path, capture_output=True,
+            text=True, timeout=120, stdin=subprocess.DEVNULL,
+        )
+        return done, {path.name for path in set(tmp_path.iterdir()) - before}
+
+    return go
+
+
+def replaced(old, new):
+    assert SMOOTH.count(old) == 1, old
+    return SMOOTH.replace(old, new)
+
+
+def refused(run, text, profile=None):
+    """Error output of a run that must be refused and leave nothing."""
+    done, left = run(text, profile=profile)
+    assert done.returncode == 2, done.stderr
+    assert left == set()
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+    return done.stderr.splitlines()
+
+
+@pytest.mark.parametrize("text, words", [
+    (replaced("radius = 0.0191", "radios = 0.0191"),
+     ["contact.radius is missing", "contact.radios", '"radius"?']),
+    (replaced("load = 527e3", "# "), ["contact.load is missing", "allowed: a number >"]),
+    (replaced("radius = 0.0191", "radius = 'big'"), ['contact.radius = "big"', "allowed: a number >"]),
+    (replaced("viscosity = 0.005", "viscosity = nan"), ["fluid.viscosity = nan", "allowed: a number >"]),
+    (replaced("radius = 0.0191", "radius = -0.0191"), ["contact.radius = -0.0191", "allowed: a number >"]),
+    (replaced("entrainment_speed = 5.0", "entrainment_speed = 0.0"),
+     ["motion.entrainment_speed = 0.0", "allowed: a number", "not zero"]),
+], ids=["unknown key", "missing key", "wrong type", "nan", "negative radius", "zero entrainment"])
+def test_a_bad_key(run, text, words):
+    said = "\n".join(refused(run, text))
+    assert said.startswith("my.toml: ")
+    for word in words:
+        assert word in said
+
+
+@pytest.mark.parametrize("profile, words", [
+    (None, "no such file"),
+    (LEVEL + "8e-6,high\n", "line 9: '8e-6,high'; allowed: two numbers a line"),
+    (LEVEL + "6.5e-6,0\n", "x falls after x = 7e-06; allowed: x increasing"),
+    (LEVEL + "7e-6,1e-7\n", "x = 7e-06 stands twice; allowed: every x once"),
+], ids=["missing", "text", "unsorted", "duplicate"])
+def test_a_bad_roughness_file(run, profile, words):
+    said = refused(run, SMOOTH + SURFACE, profile)
+    assert len(said) == 1
+    assert said[0].startswith('my.toml: surface.fast.file = "p.csv": ') and words in said[0]
+
+
+def test_everything_wrong_is_told_at_once(run):
+    text = SMOOTH + SURFACE + "[surface.slow]\nfile = 'nowhere.csv'\n"
+    for old, new in (
+        ("radius = 0.0191", "radius = -1"), ("viscosity = 0.005", "viscosity = inf"),
+        ("load = 527e3", "laod = 527e3"), ("entrainment_speed = 5.0", "entrainment_speed = 0"),
+        ("outlet = 1.5", "outlet = true"),
+    ):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    said = refused(run, text, LEVEL + "7e-6,0\n")
+    for key in ("contact.radius =", "fluid.viscosity =", "contact.laod =", "contact.load is missing",
+                "motion.entrainment_speed =", "mesh.outlet =", "surface.fast.file =", "surface.slow.file ="):
+        assert sum(line.startswith(f"my.toml: {key}") for line in said) == 1, key
+    assert len(said) == 8
+
+
+def test_a_mesh_too_coarse_for_the_profile_is_a_warning_with_the_figure(run):
+    rough = (CASES / "table1_rough.toml").read_text()
+    rough = rough.replace("profiles/", f"{CASES}/profiles/")
+    coarse = ("mesh.points_per_half_width=20", "mesh.inlet=-1.5", "time.travel=0.1")
+    done, made = run(rough, *(word for key in coarse for word in ("-ehl_set", key)))
+    assert done.returncode == 0, done.stderr
+    warned = [line for line in done.stdout.splitlines() if line.startswith("warning: ")]
+    assert len(warned) == 2
+    for side, line in zip(("fast", "slow"), warned, strict=True):
+        assert f"surface.{side}: the mesh is too coarse for the profile" in line
+        share = float(line.partition("profile: ")[2].split()[0])
+        needed = int(line.partition("half_width = ")[2].split()[0])
+        assert 1 < share < 100 and 20 < needed < 1000
+    assert made == {"my.h5"}
