@@ -125,7 +125,9 @@ class BodyStress:
         loads[0], loads[1] = pressure, shear
         limited_slopes(loads[0], loads[2])
         limited_slopes(loads[1], loads[3])
-        return fft.rfft(loads, self.n) * self._half
+        spectra = fft.rfft(loads, self.n)
+        spectra *= self._half
+        return spectra
 
     def __call__(self, depth, spectra, offset):
         """Stresses (frames, 3, n) of depth number `depth`, `offset` (frames,) elements right of the nodes."""

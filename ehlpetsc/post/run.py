@@ -19,7 +19,7 @@ from ehlpetsc.post.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
 
 MEMORY = 400e6  # bytes of open histories, all processes together
-DEPTHS_AT_ONCE = 1  # more crowd each other out of the cache and were slower
+DEPTHS_AT_ONCE = 2  # share reading and transforms of the loads; more crowd each other out of the cache
 EVERY_LOSS = {2: (4, 5), 4: (18, 13), 8: (37, 24)}
 # % of a point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml at slide/roll
 # ratio 0.5, thinned by tests/benchmarks/post_every.py
@@ -79,7 +79,7 @@ def run(job, report=None, progress=None):
     parts = Parts(job.output, mark)
     missing = {surface: [d for d in settings.depths if parts.load(surface, d) is None] for surface in motions}
     try:
-        _work_off(_tasks(job, missing), job.jobs, parts, progress or (lambda done, of: None))
+        _work_off(_tasks(job, missing, motions), job.jobs, parts, progress or (lambda done, of: None))
     except PostError:
         parts.remove()  # unlike an interruption, nothing to go on from
         raise
@@ -129,13 +129,15 @@ def _warn(loads, motions, report):
             report(f"warning: no point of the {surface} surface passed the whole contact: its damage is nan")
 
 
-def _tasks(job, missing):
-    """Split the missing depths: shared load spectra against memory and an even load of the processes."""
-    tasks = []
-    for surface, depths in missing.items():
-        at_once = DEPTHS_AT_ONCE
-        tasks += [Task(job, surface, tuple(depths[k : k + at_once])) for k in range(0, len(depths), at_once)]
-    return tasks
+def _tasks(job, missing, motions):
+    """Split the missing depths into tasks, enough for all processes, the longest first."""
+    at_once = min(DEPTHS_AT_ONCE, -(-sum(map(len, missing.values())) // job.jobs))
+    tasks = [
+        Task(job, surface, tuple(depths[k : k + at_once]))
+        for surface, depths in missing.items()
+        for k in range(0, len(depths), at_once)
+    ]
+    return sorted(tasks, key=lambda task: -len(task.depths) * motions[task.surface].complete.sum())
 
 
 def _work_off(tasks, jobs, parts, progress):

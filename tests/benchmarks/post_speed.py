@@ -93,37 +93,40 @@ def counting_speed(points=2000, samples=6000):
     )
 
 
+def post(path, jobs):
+    """Wall and processor time (user and system, all processes) of one run of the command, s."""
+    output = path.with_name("out.post.h5")
+    command = [sys.executable, "-m", "ehlpetsc.post", path, "-o", output, "--surface", "slow"]
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    root = Path(__file__).resolve().parents[2]
+    subprocess.run([*command, "--jobs", str(jobs)], check=True, capture_output=True, cwd=root)
+    wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    output.unlink()
+    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
 def run_speed(folder):
     path = Path(folder) / "speed.h5"
     scene = Scene(per_width=400, ratio=0.6087, steps=24800)
     write(path, scene, depths=(0.0, 0.01, 0.05, 0.5))
     print(f"file: {path.stat().st_size / 1e6:.0f} MB, {scene.time.size} frames of {scene.x.size} nodes")
-    walls = {1: [], 2: []}
-    for jobs in (1, 2, 1, 2):  # in turns: the load of the machine changes
-        output = path.with_name("out.post.h5")
-        start = time.perf_counter()
-        subprocess.run(
-            [
-                sys.executable,
-                "-m",
-                "ehlpetsc.post",
-                path,
-                "-o",
-                output,
-                "--surface",
-                "slow",
-                "--jobs",
-                str(jobs),
-            ],
-            check=True,
-            capture_output=True,
-            cwd=Path(__file__).resolve().parents[2],
-        )
-        walls[jobs].append(time.perf_counter() - start)
-        output.unlink()
+    walls, works = {1: [], 2: []}, {1: [], 2: []}
+    for jobs in (1, 2) * 3:  # in turns: the load of the machine changes
+        wall, work = post(path, jobs)
+        walls[jobs].append(wall)
+        works[jobs].append(work)
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
-        print(f"--jobs {jobs}: {walls[jobs][-1]:.1f} s, largest process so far {peak:.2f} GB", flush=True)
-    print(f"speed-up of two processes, best of each: {min(walls[1]) / min(walls[2]):.2f}")
+        print(
+            f"--jobs {jobs}: {wall:.1f} s, processor {work:.1f} s, largest process so far {peak:.2f} GB",
+            flush=True,
+        )
+    pairs = ", ".join(f"{one / two:.2f}" for one, two in zip(walls[1], walls[2], strict=True))
+    share = np.median(works[1]) / np.median(walls[1])
+    print(
+        f"speed-up of two processes over one, pair by pair: {pairs}; "
+        f"one had {100 * share:.0f} % of a processor\n"
+        f"processor time of two over one: {np.median(works[2]) / np.median(works[1]):.2f} (1: nothing lost)"
+    )
 
 
 if __name__ == "__main__":
