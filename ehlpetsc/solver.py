@@ -12,7 +12,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.contact import LEAK, ContactProblem
-
+from ehlpetsc.options import UsageError
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
 REFILLED = 1e-9  # pressure in p0 that a cavity gets in the iteration that fills it
@@ -133,7 +133,13 @@ class Solver:
         self.snes.setFunction(self._function, self.f)
         self.snes.setJacobian(self._jacobian, self.operator, self.matrix)
         self.snes.setFromOptions()
-        self.snes.setVariableBounds(self.lower, self.upper)
+        kind = self.snes.getType()
+        if kind == "vinewtonssls":
+            raise UsageError("-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
+                             "allowed: vinewtonrsls, and types without bounds where nothing touches")
+        self.bounded = kind == "vinewtonrsls"
+        if self.bounded:
+            self.snes.setVariableBounds(self.lower, self.upper)
         self.snes.setLineSearchPreCheck(self._limit_step)
 
     def gather(self, v):
@@ -232,6 +238,8 @@ class Solver:
             raise NotConverged(REASONS.get(reason, str(reason)), iterations)
         if not np.isfinite([q.sum(), h.sum(), h00]).all():
             raise NotConverged("NOT_FINITE", iterations)
+        if not self.bounded and h.min() < self.bound:
+            raise NotConverged("FILM_BELOW_ITS_BOUND", iterations)
         return q, h, h00, iterations
 
 

@@ -110,6 +110,7 @@ def test_the_case_must_be_named_once(arguments, message):
     (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: allowed: a number > 0"),
     (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: result file not created, No such file or directory"),
     (["-ehl_restart", "none.h5"], "the case is steady"),
+    (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls needs"),
     (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
 ])
 def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
@@ -117,6 +118,15 @@ def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_solver_without_bounds_does_for_full_films_and_no_others(case, tmp_path):
+    bounded, free = (run(case, "-snes_type", kind, cwd=tmp_path) for kind in ("vinewtonrsls", "newtonls"))
+    films = [float(summary(done.stdout)["h_min"]) for done in (bounded, free)]
+    assert films[1] == pytest.approx(films[0], rel=1e-6)
+    done = run(ROOT / "cases/dry_hertz.toml", "-snes_type", "newtonls", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "not converged: steady start" in done.stderr
 
 
 def test_options_left_speaks_of_the_users_options_alone(case, tmp_path):
