@@ -17,6 +17,7 @@ import numpy as np
 from scipy.ndimage import shift
 
 from ehlpetsc.reynolds import Storage
+from ehlpetsc.start import NoStart, steady
 from ehlpetsc.traction import shear_stresses
 
 SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
@@ -81,20 +82,6 @@ def carried(v, smooth, nodes):
     return np.clip(moved, np.minimum(left, right), np.maximum(left, right))
 
 
-def smooth_start(problem, film, thick=1.3):
-    """Hertz pressure and a film everywhere above the expected one; behind the outlet a cavity."""
-    x = problem.x
-    p = np.sqrt(np.maximum(1.0 - x**2, 0.0))
-    p *= 0.5 * np.pi / (problem.dx * p.sum())
-    h = problem.film(p, 0.0)
-    if problem.dry:
-        return p, np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0)), -h[np.argmax(p)]
-    h00 = thick * film - h.min()
-    h += h00
-    void = np.minimum(film / h - 1.0, 0.0)
-    return np.where(p > 0.0, p, np.where(x < 0.0, 1e-6, void)), h, h00
-
-
 class March:
     """Steady and transient solution of one scene.
 
@@ -121,16 +108,10 @@ class March:
         """Steady solution at time 0."""
         self.set_gap(0.0)
         self.problem.past = None
-        failure = None
-        for thick in (1.3, 2.0, 4.0, 1.0):
-            try:
-                q, h, h00, newton = self.solver.solve(*smooth_start(self.problem, self.film, thick))
-                break
-            except not_converged as error:
-                failure = error
-        else:
-            raise Failed(f"steady start: {failure}. Try a coarser mesh, a nearer viscosity with -ehl_restart, "
-                         "or -snes_max_it 200")
+        try:
+            q, h, h00, newton = steady(self.solver, self.film, not_converged)
+        except NoStart as error:
+            raise Failed(f"steady start: {error}") from error
         self.smooth = (q, h)
         return State(q, h, h00, m=self._mass(q, h), newton=newton, flow=self._flow())
 

@@ -10,9 +10,10 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc import checkpoint
-from ehlpetsc.explain import banner, dowson_higginson, warnings
+from ehlpetsc.explain import banner, warnings
 from ehlpetsc.march import Failed, March
 from ehlpetsc.output import OutputError, ResultWriter
+from ehlpetsc.reference import moes_central_film
 from ehlpetsc.report import Progress, summary_line
 from ehlpetsc.roughness import Roughness
 from ehlpetsc.scales import Scales
@@ -40,10 +41,10 @@ def on_root(comm, action, *arguments):
 
 
 def expected_film(case, scales):
-    """Film scale in a^2/R that divides the Reynolds rows and sets the smooth start."""
+    """Central film by Moes' fit over all regimes, in a^2/R: divides the Reynolds rows and sets the start."""
     if case.fluid is None:
         return 1.0
-    return max(dowson_higginson(scales, case.fluid.pressure_viscosity) / scales.h, 1e-6)
+    return max(moes_central_film(scales.moes_m, scales.moes_l) * np.pi / (8.0 * scales.moes_m), 1e-6)
 
 
 class Run:

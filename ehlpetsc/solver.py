@@ -214,8 +214,8 @@ class Solver:
         self.snes.computeFunction(self.x, self.f)
         return self.gather(self.f)[1]
 
-    def solve(self, q, h, h00):
-        """Solve from the given start.
+    def solve(self, q, h, h00, max_it=None):
+        """Solve from the given start, with `max_it` iterations instead of the usual number at most.
 
         Returns
         -------
@@ -228,7 +228,10 @@ class Solver:
         NotConverged
         """
         self.scatter(q, h, h00)
+        usual = self.snes.max_it
+        self.snes.max_it = max_it or usual
         self.snes.solve(None, self.x)
+        self.snes.max_it = usual
         reason, iterations = self.snes.getConvergedReason(), self.snes.getIterationNumber()
         q, h, h00 = self.gather(self.x)
         if reason <= 0:
