@@ -76,10 +76,11 @@ def carried(v, smooth, nodes):
     Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of asperities,
     two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's method iterations.
     """
-    moved = smooth + shift(v - smooth, nodes, order=3, mode="nearest")
+    extra = v - smooth
+    moved = shift(extra, nodes, order=3, mode="nearest")
     whole = int(np.floor(nodes))
-    left, right = (shift(v, k, order=0, mode="nearest") for k in (whole + 1, whole))
-    return np.clip(moved, np.minimum(left, right), np.maximum(left, right))
+    left, right = (shift(extra, k, order=0, mode="nearest") for k in (whole + 1, whole))
+    return smooth + np.clip(moved, np.minimum(left, right), np.maximum(left, right))
 
 
 class March:

@@ -14,7 +14,7 @@ LEVEL = "".join(f"{k}e-6,0\n" for k in range(8))
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Run a case text in an empty directory: how it ended and what it said, and the names of the files it made."""
+    """Run a case text in an empty directory: how it ended and what it said, and names of files it made."""
     monkeypatch.setenv("PYTHONPATH", str(ROOT), prepend=":")
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
 
