@@ -161,11 +161,12 @@ def ranked(collisions):
     return sorted(range(len(collisions)), key=rank)
 
 
-def slope_jump(values, film):
-    r"""Largest relative growth of the slope of a film against a value, on its way to zero.
+def slope_jumps(values, film):
+    r"""Relative growth of the slope of a film against a value, from interval to interval, on its way to zero.
 
-    Slopes :math:`s_k=|h_k-h_{k+1}|/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last one, cut
-    off at h = 0, is a lower bound.
+    Slopes :math:`s_k=(h_k-h_{k+1})/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last one, cut
+    off at h = 0, is a lower bound. A last jump of 0 or less says that the straight line through the last two
+    films reaches zero before the first member in contact: contact comes where extrapolation puts it.
 
     Parameters
     ----------
@@ -175,8 +176,8 @@ def slope_jump(values, film):
 
     Returns
     -------
-    float
-        Of :math:`s_{k+1}/s_k-1` the largest; inf where the film grows on its way.
+    ndarray, shape (number of films before contact - 1,)
+        :math:`s_{k+1}/s_k-1`.
 
     Raises
     ------
@@ -188,7 +189,7 @@ def slope_jump(values, film):
     if film.min() > 0.0 or end < 3:
         raise ValueError("two films before contact are needed")
     slopes = -np.diff(film[:end]) / np.abs(np.diff(values[:end]))
-    return float((slopes[1:] / slopes[:-1]).max() - 1.0) if (slopes > 0.0).all() else np.inf
+    return slopes[1:] / slopes[:-1] - 1.0
 
 
 def pressure_steps(film, pressure):
@@ -240,11 +241,14 @@ def breakdown(found, values, smooth):
     if not points:
         return ["no point with two full films before contact and two members in contact after them"]
     steps = [pressure_steps(c.film, c.pressure) for c in points]
+    jumps = [slope_jumps(values, c.film) for c in points]
     lines = [f"{len(points)} contact points with two full films or more before, and contact ever after",
-             "film reaches zero without steepening, or by less than a tenth:"]
+             f"contact where the last two films extrapolate to: {share([j[-1] <= 0.0 for j in jumps])}",
+             "growth of the film's slope from interval to interval before, median and largest:"]
     for what, abscissa in (("swept value", values), ("smooth film", smooth)):
-        jumps = np.array([slope_jump(abscissa, c.film) for c in points])
-        lines.append(f"  against the {what}: {share(jumps <= 0.0)}, {share(jumps <= 0.1)}")
+        before = np.concatenate([slope_jumps(abscissa, c.film)[:-1] for c in points])
+        if len(before):
+            lines.append(f"  against the {what} {100 * np.median(before):.1f} %, {100 * before.max():.1f} %")
     every = np.concatenate(steps)
     return [*lines, "pressure grows once the film is gone:",
             f"  from each member to the next: {share([(s > 0.0).all() for s in steps])}",

@@ -38,7 +38,8 @@ def collisions(axes, results, found, colours, width):
             shown = (x >= window[0]) & (x <= window[1])
             touching = shown & in_contact(result, frame)
             upper.plot(x[touching], pressure[touching], "v", color=colour, ms=4)
-            lower.plot(x[touching], film[touching], "v", color=colour, ms=4, clip_on=False)
+            if touching.any():  # an empty line that is not clipped would count for the layout
+                lower.plot(x[touching], film[touching], "v", color=colour, ms=4, clip_on=False)
             thickest, highest = max(thickest, film[shown].max()), max(highest, pressure[shown].max())
         lower.set_ylim(0.0, 1.05 * thickest)
         upper.set_ylim(0.0, 1.05 * highest)
