@@ -17,6 +17,7 @@ from ehlpetsc.post.stress import stress
 matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "svg.fonttype": "none", "font.size": 9})
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
+LAYER = 0.2  # half widths of depth in a picture of several results: damage under asperities ends above
 
 
 def _save(figure, stem):
@@ -104,7 +105,7 @@ def stacked_picture(results, surface):
     plots.profile(axes[0], start[0], surface, length)
     contours = None
     for row, result in zip(axes[1:], start, strict=True):
-        drawn = plots.damage_contours(row, result, surface, length, levels)
+        drawn = plots.damage_contours(row, result, surface, length, levels, LAYER)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
     axes[-1].set_xlabel(f"along the {surface} surface [half widths]")
@@ -172,7 +173,7 @@ def field_picture(path, result, frame):
     top.set_title(f"solid of the {surface} surface, t = {time * 1e6:.4g} µs", fontsize=9)
     for row, (name, values) in zip(axes, fields.items(), strict=True):
         mesh = plots.stress_field(row, x, z, values, name)
-        figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.MaxNLocator(5))
+        figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.ticks_within(mesh.levels))
     axes[-1].set_xlabel("x/a")
     return figure
 

@@ -46,12 +46,13 @@ def shown_length(result, surface, longest=None):
     return min(length, longest) if longest else length
 
 
-def damage_contours(axes, result, surface, length, levels):
+def damage_contours(axes, result, surface, length, levels, deepest=np.inf):
     """Filled contours of log10 D over body point and depth, whose axis shows the root of the depth."""
     complete = result.complete[surface]
-    x, values = _along(result, surface, result.s[complete]), result.damage[surface][:, complete]
-    depth, ticks = _depth_axis(result.z)
-    axes.set_yticks(depth[ticks], [f"{z:g}" for z in result.z[ticks]])
+    z = result.z[result.z <= max(deepest, result.z[:2].max())]
+    x, values = _along(result, surface, result.s[complete]), result.damage[surface][: z.size, complete]
+    depth, ticks = _depth_axis(z)
+    axes.set_yticks(depth[ticks], [f"{place:g}" for place in z[ticks]])
     axes.set_ylim(depth[-1], depth[0])
     axes.set_xlim(0, length)
     axes.set_ylabel("z/a")
@@ -91,6 +92,8 @@ def exceedance_curve(axes, under, fit, label, color):
 def finish_exceedance(axes, title):
     """Axes common to the distributions."""
     axes.set_xscale("log")
+    low, high = np.log10(axes.get_xlim())
+    axes.set_xlim(10 ** np.floor(low), 10 ** np.ceil(high))
     axes.xaxis.set_major_locator(LogLocator(10, numticks=12))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_ylim(0, 1)
@@ -120,6 +123,12 @@ def stress_field(axes, x, z, values, label):
     axes.set_ylabel("z/a")
     axes.set_title(label, fontsize=9, loc="left")
     return mesh
+
+
+def ticks_within(levels):
+    """About five round values between the ends of `levels`."""
+    ticks = MaxNLocator(5).tick_values(levels[0], levels[-1])
+    return ticks[(ticks >= levels[0]) & (ticks <= levels[-1])]
 
 
 def stress_fields(sx, sz, txz, nu):
@@ -156,6 +165,7 @@ def cycle_histogram(axes, cycles, damages):
     axes.set_xlabel("range of the counted stress [GPa]")
     axes.set_ylabel("1/N of the cycle")
     axes.grid(color="0.92")
+    axes.set_axisbelow(True)
 
 
 def counted_channel(count, values, material):
