@@ -30,7 +30,8 @@ def assert_equal(one, other, rtol=1e-9):
         apart = [d.name for d in compare(a, b) if not d.same(rtol, 0.0)]
         assert not apart
         np.testing.assert_array_equal(a.contact_count, b.contact_count)
-        np.testing.assert_array_equal(a.steps("newton"), b.steps("newton"))
+        # the last digits, which depend on the ranks, may tip a residual over its tolerance
+        assert np.abs(a.steps("newton") - b.steps("newton")).max() <= 1
 
 
 def last_step(path):
@@ -58,8 +59,8 @@ def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(whole
     assert "restart: table1_rough.restart.h5, step 20, " in done.stdout
     assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
     figures, expected = summary(done.stdout), summary((whole / "log").read_text())
-    for figure in ("steps", "newton", "h_min", "p_max", "contacts"):
-        assert figures[figure] == expected[figure]
+    for figure, rtol in {"steps": 0, "newton": 0.02, "h_min": 1e-8, "p_max": 1e-8, "contacts": 0}.items():
+        assert float(figures[figure]) == pytest.approx(float(expected[figure]), rel=rtol)
     with read_result(tmp_path / "table1_rough.h5") as result:
         assert result.attrs["restarts"] == 1
         assert result.attrs["ranks"] == (3 if ranks else 1)

@@ -1,0 +1,46 @@
+"""The solution does not depend on the number of ranks: a rough run with contact, on all ranks and on one."""
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+
+petsc4py.init([])
+
+from petsc4py import PETSc  # noqa: E402
+
+from ehlpetsc.case import load  # noqa: E402
+from ehlpetsc.march import March  # noqa: E402
+from ehlpetsc.roughness import Roughness  # noqa: E402
+from ehlpetsc.run import expected_film  # noqa: E402
+from ehlpetsc.scales import Scales  # noqa: E402
+from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
+# the inlet near the contact, thin oil: the asperities touch within few steps
+SHORT = ["mesh.inlet=-1.2", "mesh.outlet=1.3", "mesh.points_per_half_width=40", "time.travel=0.7",
+         "fluid.viscosity=0.001"]
+
+
+def marched(comm):
+    """Pressures, films and contacts of all steps; Newton iterations in all."""
+    set_defaults(PETSc.Options(), (), comm.size)
+    case = load(CASE, SHORT)
+    scales = Scales.of(case)
+    film = expected_film(case, scales)
+    march = March(Solver(case, scales, film, comm), scales, Roughness.of(case, scales), film)
+    states = [march.start(NotConverged)]
+    while states[-1].time < scales.duration:
+        states.append(march.advance(states[-1], NotConverged, scales.dt))
+    bound = march.solver.bound
+    return (np.array([march.problem.pressure(s.q) for s in states]), np.array([s.h for s in states]),
+            np.array([s.h <= bound for s in states]), np.array([s.newton for s in states]))
+
+
+def test_a_rough_run_is_the_same_on_every_number_of_ranks():
+    pressure, film, touching, newton = marched(PETSc.COMM_WORLD)
+    alone = marched(PETSc.COMM_SELF)
+    assert touching.any()
+    np.testing.assert_array_equal(touching, alone[2])
+    np.testing.assert_allclose(pressure, alone[0], rtol=0, atol=1e-9)  # p0
+    np.testing.assert_allclose(film, alone[1], rtol=0, atol=1e-9)  # a^2/R
+    assert np.abs(newton - alone[3]).max() <= 1  # the last digits may tip a residual over its tolerance
