@@ -14,7 +14,7 @@ from ehlpetsc.post.postresult import PostResult
 from ehlpetsc.post.settings import PostError, read_settings
 from ehlpetsc.post.stress import stress
 
-matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "svg.fonttype": "none", "font.size": 9})
+matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "font.size": 9})
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
 LAYER = 0.2  # half widths of depth in a picture of several results: damage under asperities ends above
