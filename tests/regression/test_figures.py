@@ -1,0 +1,97 @@
+"""The paper's figures of contact in short forms: what each of them shows must hold.
+
+The mesh is coarser and the roughness has only just come into the contact; the figures of the full lengths are
+in the README.
+"""
+import json
+from contextlib import ExitStack
+
+import numpy as np
+import pytest
+from running import ROOT, run, settings
+
+from ehlpetsc import collisions, counts
+from ehlpetsc.swept import from_thick_to_thin, in_order, open_all
+
+SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
+
+
+def series(folder, name, points, travel, values):
+    """Run a short form on two ranks; its index."""
+    mesh = [] if points is None else [f"mesh.points_per_half_width={points}"]
+    sets = settings(*SHORT, *mesh, f"time.travel={travel}", f"series.values={json.dumps(values)}")
+    done = run(ROOT / "cases" / f"{name}.toml", *sets, cwd=folder, ranks=2)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder / f"{name}.series.json"
+
+
+def thin_ones_and_collisions(stack, index):
+    results, values, _ = from_thick_to_thin(open_all([index], stack))
+    return results, values, collisions.find(results)
+
+
+@pytest.fixture(scope="module")
+def figure_4(tmp_path_factory):
+    values = [0.010, 0.0085, 0.007, 0.0055, 0.004, 0.0025, 0.001]
+    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.4, values)
+
+
+def test_films_reach_zero_where_extrapolation_says(figure_4):
+    """Figure 4 (i): six contact points or more, film falling to zero without steepening."""
+    with ExitStack() as stack:
+        results, values, found = thin_ones_and_collisions(stack, figure_4)
+        points = collisions.contact_points(found)
+        assert len(points) >= 6
+        last = [collisions.slope_jumps(values, c.film)[-1] for c in points]
+        assert np.mean(np.array(last) <= 0.0) >= 0.8
+        # but for what smooth films do against viscosity, the slopes before hardly grow either
+        smooth = collisions.smooth_films(results)
+        before = np.concatenate([collisions.slope_jumps(smooth, c.film)[:-1] for c in points])
+        assert np.median(before) < 0.03 and before.max() < 0.2
+
+
+def test_pressure_grows_once_the_film_is_gone(figure_4):
+    """Figure 4 (ii)."""
+    with ExitStack() as stack:
+        _, _, found = thin_ones_and_collisions(stack, figure_4)
+        changes = [collisions.pressure_steps(c.film, c.pressure) for c in collisions.contact_points(found)]
+        assert np.mean([np.prod(1 + change) > 1 for change in changes]) >= 0.9
+        assert np.mean(np.concatenate(changes) > 0) >= 0.75
+
+
+def test_thinner_oil_touches_wherever_thicker_does(figure_4):
+    """Figures 1 and 2: contacts develop from those at higher viscosity."""
+    with ExitStack() as stack:
+        results, _, found = thin_ones_and_collisions(stack, figure_4)
+        for c in found:
+            first = c.touching.index(True)
+            assert all(c.touching[first:]), c
+        lengths = [counts.contact_length(result) for result in results]
+        assert lengths == sorted(lengths)
+
+
+def test_little_contact_at_high_speed(figure_4, tmp_path):
+    """Figure 3: at 25 m/s contact comes at lower viscosities than at 5 m/s."""
+    index = series(tmp_path, "fig3", 80, 1.4, [0.007, 0.004, 0.001])
+    with ExitStack() as stack:
+        fast, values, found = thin_ones_and_collisions(stack, index)
+        slow, slow_values, _ = thin_ones_and_collisions(stack, figure_4)
+        assert found and all(c.touching[-1] for c in found)
+        for value, result in zip(values, fast, strict=True):
+            other = slow[slow_values.index(value)]
+            assert counts.contact_length(result) < counts.contact_length(other)
+
+
+def test_meshes_agree_on_collisions(tmp_path):
+    """Figures 6 and 7: the same collisions on two meshes, and contacts of one order.
+
+    With as light a contact as this the finer mesh has fewer, as Holmes et al. say of lighter interaction.
+    """
+    index = series(tmp_path, "fig6", None, 1.3, [80, 160])
+    with ExitStack() as stack:
+        coarse, fine = in_order(open_all([index], stack))
+        assert np.isin(coarse.time.round(12), fine.time.round(12)).mean() > 0.9  # stored frames coincide
+        found = collisions.find([coarse, fine])
+        shared = [c for c in found if all(c.touching)]
+        assert len(shared) >= 2 and len(shared) >= 0.4 * len(found)
+        assert 0.4 < counts.mean_rate(fine) / counts.mean_rate(coarse) < 1.8
