@@ -11,7 +11,8 @@ from ehlpetsc.study.runs import DONE, STOPPED, run
 
 HEAD = ("axis", "value", "converged", "steps", "retries", "newton", "h_min_um", "p_max_GPa", "load_error",
         "mass_error", "viscosity_Pa_s", "seconds", "reason")
-SHORT = ("mesh.points_per_half_width=50", "time.travel=0.5")
+COARSE = ("mesh.points_per_half_width=50",)
+NEAR = ("mesh.inlet=-1.2", "time.travel=1.0")  # a few steps carry the roughness into the contact
 EARLY = ("-ehl_time_limit", "0.01")  # minutes: the earlier run of a restart ends in its first steps
 
 
@@ -20,17 +21,14 @@ def lines(short=False):
     whole = [*steady_lines(), *time_lines()]
     if not short:
         return whole
-    return [replace(line, overrides=_shortened(line.overrides), before=line.before and _shortened(line.before))
-            for line in whole if line.short]
+    return [replace(line, overrides=_shortened(line)) for line in whole if line.short]
 
 
-def _shortened(overrides):
-    keys = {override.partition("=")[0] for override in overrides}
-    more = [s for s in SHORT if s.partition("=")[0] in keys or not s.startswith("time.")]
-    kept = [o for o in overrides if not o.startswith("mesh.points")]
-    if any("load=" in o and "." in o and "mesh.outlet" in o for o in overrides):
-        return tuple(overrides)
-    return (*kept, *more)
+def _shortened(line):
+    keys = {override.partition("=")[0] for override in line.overrides}
+    if line.before or "mesh.points_per_half_width" in keys:  # nodes where an earlier run has them
+        return (*line.overrides, "time.travel=0.3") if line.before else (*line.overrides, *NEAR)
+    return (*line.overrides, *COARSE, *(NEAR if "time.travel" in keys else ()))
 
 
 def table(path, short=False, limit=300.0, say=print):
@@ -82,7 +80,8 @@ def row(line, folder, limit):
 
 def _row(line, o, reason):
     return {
-        "axis": line.axis, "value": line.value, "converged": "yes" if o.status == DONE else f"no, exit {o.status}",
+        "axis": line.axis, "value": line.value,
+        "converged": "yes" if o.status == DONE else f"no, exit {o.status}",
         "steps": o.steps, "retries": o.retries, "newton": o.newton, "h_min_um": f"{1e6 * o.h_min:.4g}",
         "p_max_GPa": f"{1e-9 * o.p_max:.4g}", "load_error": f"{o.load_error:.1e}",
         "mass_error": f"{o.mass_error:.1e}", "viscosity_Pa_s": f"{o.viscosity:.1e}",

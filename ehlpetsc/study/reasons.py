@@ -35,7 +35,8 @@ def _findings(outcome, case, scales):
     found = []
     hertz = float(viscosity(np.array([scales.p0]), case.fluid)[0][0]) if case.fluid else 0.0
     if hertz > SOLID:
-        found.append(f"the oil is solid at Hertz pressure (viscosity 10^{hertz / math.log(10):.0f} times ambient)")
+        decades = hertz / math.log(10)
+        found.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")
     if outcome.p_max > PLASTIC * 1e9:
         found.append(f"asperity pressures reached {1e-9 * outcome.p_max:.1f} GPa, beyond what steel carries")
     if outcome.h_min < 1e-9 and outcome.steps:

@@ -1,4 +1,6 @@
 """The lines of the table of extremes that take time steps: roughness, mesh, domain, starts."""
+from dataclasses import replace
+
 from ehlpetsc.study.lines import PROFILES, TABLE_1, Line
 
 CORRELATION = 25e-6  # m
@@ -8,7 +10,8 @@ A = 0.335682e-3  # half width of TABLE_1 [m]
 
 def ground(ra, seed=1, correlation=CORRELATION):
     """Setting of a random ground profile."""
-    return f'{{ kind = "ground", ra = {ra:g}, correlation = {correlation:g}, skewness = -1.0, seed = {seed} }}'
+    shape = f"correlation = {correlation:g}, skewness = -1.0"
+    return f'{{ kind = "ground", ra = {ra:g}, {shape}, seed = {seed} }}'
 
 
 def wave(kind, amplitude, wavelength):
@@ -19,7 +22,8 @@ def wave(kind, amplitude, wavelength):
 def rough(axis, value, *overrides, fast=None, slow=None, travel=2.5, short=False):
     """A line of time steps from the smooth start, the inlet near so that few steps fill the contact."""
     settings = [*SHORT_DOMAIN, f"time.travel={travel}"]
-    settings += [f"surface.{side}.synthetic={spec}" for side, spec in (("fast", fast), ("slow", slow)) if spec]
+    for side, spec in (("fast", fast), ("slow", slow)):
+        settings += [f"surface.{side}.synthetic={spec}"] if spec else []
     return Line(axis, value, (*settings, *overrides), TABLE_1, short)
 
 
@@ -44,7 +48,8 @@ def _roughness():
 def _features():
     lines = [
         rough("roughness", f"sine 0.1 um, wavelength {name}", slow=wave("sine", 0.1e-6, length))
-        for name, length in (("6 nodes", 0.06 * A), ("12 nodes", 0.12 * A), ("0.5 a", 0.5 * A), ("2 a", 2 * A))
+        for name, length in (
+            ("6 nodes", 0.06 * A), ("12 nodes", 0.12 * A), ("0.5 a", 0.5 * A), ("2 a", 2 * A))
     ]
     lines += [
         rough("roughness", f"square steps {height:g} um, wavelength {name}",
@@ -122,8 +127,12 @@ def _starts():
                "mesh.points_per_half_width=80", "time.travel=3.0")
     return [
         rough("start", "from smooth", **both),
-        Line(thin.axis, thin.value, thin.overrides, TABLE_1, True, before(thin, "fluid.viscosity=0.01")),
-        Line(thick.axis, thick.value, thick.overrides, TABLE_1, False, before(thick, "fluid.viscosity=0.002")),
-        Line("start", "load suddenly 1.56 times", (*plain.overrides, *heavier), TABLE_1, True, plain.overrides),
-        Line("start", "load suddenly 0.64 times", (*plain.overrides, *lighter), TABLE_1, False, plain.overrides),
+        _restarted(thin, before(thin, "fluid.viscosity=0.01"), short=True),
+        _restarted(thick, before(thick, "fluid.viscosity=0.002")),
+        _restarted(rough("start", "load suddenly 1.56 times", *heavier, **both), plain.overrides, short=True),
+        _restarted(rough("start", "load suddenly 0.64 times", *lighter, **both), plain.overrides),
     ]
+
+
+def _restarted(line, before, short=False):
+    return replace(line, before=before, short=short)
