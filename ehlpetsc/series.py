@@ -155,10 +155,10 @@ class Series:
         try:
             run = Run(group, member.case, self.options, self._stop, member.output, out, err)
             return run.go(member.restart if begun else None), run.failure
-        except Failed as error:
-            return NOT_CONVERGED, str(error)
-        except (OutputError, UsageError) as error:
-            return BAD_INPUT, str(error)
+        except (Failed, OutputError, UsageError) as error:
+            if group.rank == 0:
+                print(f"ehlpetsc: {error}", file=err, flush=True)
+            return NOT_CONVERGED if isinstance(error, Failed) else BAD_INPUT, str(error)
         finally:
             for name in entered:
                 self.options.delValue(name)
