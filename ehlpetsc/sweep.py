@@ -20,14 +20,14 @@ linearises; C and D are exact. Between two evaluations of A and B
   hardly answer to the film, so that this is safe; in the film itself it is not.
 
 A node that changes between oil and cavity stops at the change, where its derivatives jump, until the next
-evaluation. Over-relaxation takes less sweeps in the film and much less in the open gap, where pressures obey
-Poisson's equation. What the flow carries from node to node bears none, because each node would amplify it: void in
-cavities, and steady films, which also need more sweeps before coefficients are renewed. In a time step the
-storage of oil damps it, up to about 1.5.
+evaluation. Over-relaxation is for the open gap alone, where pressures obey Poisson's equation and it takes
+the sweeps to a half or less. What the flow carries from node to node bears none, for each node would
+amplify it: void in cavities, films in a steady contact. In a time step the storage of oil damps it; there
+1.3 in the film was quicker where little touches, but did not converge beside asperities of 3 GPa.
 
-The order of the nodes is the paper's, one after the other with the flow. That is no work for array operations, and
-plain Python takes 0.1 s a sweep: numba compiles it, and is needed by this scheme alone. Ranks do not share a
-sweep: each does the whole of it.
+The order of the nodes is the paper's, one after the other with the flow. That is no work for array
+operations, and plain Python takes a thousand times what compiled loops do: numba is needed, by this scheme
+alone. Ranks do not share a sweep: each does the whole of it.
 """
 import numpy as np
 from numba import njit
@@ -38,11 +38,11 @@ from ehlpetsc.contact import ContactProblem
 from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
-REACH, STEADY_REACH = 0.3, 2.0
+REACH, STEADY_REACH = 0.6, 2.0
 EVALUATIONS = 400  # before a solve is given up
 NEAR = 100  # nodes on either side whose pressures act at once
 OPEN = 4.0  # expected films: wider gaps are open
-IN_FILM, IN_OPEN_GAP, IN_CAVITY = 1.3, 1.85, 1.0  # relaxation factors
+OVER_RELAXATION = 1.85  # of pressures in the open gap
 APPROACH = 0.2  # of the change of h00 that the missing load asks for
 STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
 
@@ -143,8 +143,8 @@ class Sweeper:
         """F of the last solution at every node, shape (nx,)."""
         return self.flow
 
-    def solve(self, q, h, h00):
-        """Solve from the given start.
+    def solve(self, q, h, h00, max_it=None):
+        """Solve from the given start, with `max_it` evaluations instead of the usual number at most.
 
         Returns
         -------
@@ -158,7 +158,8 @@ class Sweeper:
         NotConverged
         """
         q, h = q.copy(), np.maximum(h, self.bound)
-        for iteration in range(EVALUATIONS):
+        most = max_it or EVALUATIONS
+        for iteration in range(most):
             p = self.problem.pressure(q)
             h00, still_open = self._correct(p, h, h00)
             norm = self._evaluate(q, h, h00)
@@ -167,7 +168,7 @@ class Sweeper:
             if not np.isfinite(norm):
                 raise NotConverged("NOT_FINITE", iteration)
             self._sweep(q, h, p, still_open)
-        raise NotConverged("MAX_IT", EVALUATIONS)
+        raise NotConverged("MAX_IT", most)
 
     def _correct(self, p, h, h00):
         """Balance the load by h00; put h of the open gap and the ends to the whole integral, in place."""
@@ -190,12 +191,12 @@ class Sweeper:
             return np.linalg.norm(rows)
 
     def _sweep(self, q, h, p, gap_is_open):
-        problem, steady = self.problem, self.problem.past is None
-        sweeps = max(1, round((STEADY_REACH if steady else REACH) / problem.dx))
+        problem = self.problem
+        sweeps = max(1, round((STEADY_REACH if problem.past is None else REACH) / problem.dx))
         fixed = 0.5 * problem.x**2 + problem.gap
         bend = self.distant(p)
         bend[1:-1] += self.stretch * (fixed[:-2] - 2.0 * fixed[1:-1] + fixed[2:])
-        relaxation = np.where(q > 0.0, np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM), IN_CAVITY)
+        relaxation = np.where(gap_is_open & (q > 0.0), OVER_RELAXATION, 1.0)
         then = q.copy(), h.copy()
         q[0] -= self.flow[0] / self.flow_by[0, 4]
         p[0] = max(q[0], 0.0)

@@ -1,0 +1,133 @@
+"""The paper's sweeps against Newton's method: two iterations that share nothing but the equations agree.
+
+The three time steps with contacts are of cases/table1_rough.toml as it stands; what goes before each is
+stored in rough_contacts.npz. After a change of that case ``python3 tests/verification/test_sweep.py`` writes
+it anew, in five minutes.
+"""
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from petsc4py import PETSc  # noqa: E402
+
+from ehlpetsc import sweep  # noqa: E402
+from ehlpetsc.case import load  # noqa: E402
+from ehlpetsc.march import March  # noqa: E402
+from ehlpetsc.options import UsageError  # noqa: E402
+from ehlpetsc.reynolds import Storage  # noqa: E402
+from ehlpetsc.roughness import Roughness  # noqa: E402
+from ehlpetsc.run import expected_film  # noqa: E402
+from ehlpetsc.scales import Scales  # noqa: E402
+from ehlpetsc.schemes import scheme, solver_of  # noqa: E402
+from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+
+CASES = Path(__file__).parents[2] / "cases"
+STORED = Path(__file__).with_name("rough_contacts.npz")
+CONTACTS = {974: [303, 304, 318], 1113: [314, 387, 420, 421], 1252: [303, 304, 411, 412]}
+
+
+def marches(name, *overrides):
+    """Newton's and the sweeps' march of one scene."""
+    set_defaults(PETSc.Options())
+    case = load(CASES / name, overrides)
+    scales = Scales.of(case)
+    film = expected_film(case, scales)
+    solvers = Solver(case, scales, film, PETSc.COMM_SELF), sweep.Sweeper(case, scales, film)
+    return [March(solver, scales, Roughness.of(case, scales), film) for solver in solvers]
+
+
+@pytest.fixture(scope="module")
+def rough():
+    return marches("table1_rough.toml")
+
+
+def assert_same(problem, newton, swept, rtol):
+    """Alike to `rtol` at every node: films over 1e-3 of the expected one, pressures over 1e-3 p0."""
+    floor = 1e-3 * rtol
+    np.testing.assert_allclose(swept[1], newton[1], rtol=rtol, atol=floor * problem.film_scale)
+    np.testing.assert_allclose(problem.pressure(swept[0]), problem.pressure(newton[0]), rtol=rtol, atol=floor)
+
+
+@pytest.mark.parametrize("step", CONTACTS)
+def test_same_film_pressure_and_contacts_as_newton(rough, step):
+    found = []
+    with np.load(STORED) as stored:
+        q, h, m, m_older = stored[f"levels_{step}"].astype(float)
+        h00, time, dt_older, dt = stored[f"scalars_{step}"]
+    for march in rough:
+        unit = march.scales.u / march.scales.a
+        march.set_gap(time + dt)
+        march.problem.past = Storage(m, m_older, dt * unit, dt_older * unit)
+        found.append(march.solver.solve(q, h, h00))
+    for _, film, _, _ in found:
+        np.testing.assert_array_equal(np.flatnonzero(film <= 0.0), CONTACTS[step])
+    assert_same(rough[0].problem, *found, rtol=1e-5)
+    assert found[1][2] == pytest.approx(found[0][2], rel=1e-5)
+
+
+def test_sweeps_march_from_their_own_start():
+    states = []
+    for march in marches("table1_rough.toml", "mesh.points_per_half_width=50"):
+        state = march.start(NotConverged)
+        for _ in range(5):
+            state = march.advance(state, NotConverged, march.scales.dt)
+        assert state.retries == 0
+        states.append((state.q, state.h))
+    assert_same(march.problem, *states, rtol=1e-5)
+
+
+def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
+    coarse = "mesh.points_per_half_width=50"
+    newton, swept = marches("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
+    states = [march.start(NotConverged) for march in (newton, swept)]
+    bound = swept.solver.bound
+    assert states[1].h.min() == bound
+    np.testing.assert_array_equal(states[1].h <= bound, states[0].h <= bound)
+    assert_same(swept.problem, *((state.q, state.h) for state in states), rtol=1e-5)
+    load = swept.problem.dx * swept.problem.pressure(states[1].q).sum()
+    assert load == pytest.approx(0.5 * np.pi, rel=1e-7)
+
+
+def test_gives_up_after_so_many_evaluations(monkeypatch):
+    monkeypatch.setattr(sweep, "EVALUATIONS", 2)
+    march = marches("table1_smooth.toml", "mesh.points_per_half_width=50")[1]
+    with pytest.raises(NotConverged, match="MAX_IT after 2 "):
+        march.solver.solve(np.ones(march.problem.n), np.ones(march.problem.n), 0.0)
+
+
+@pytest.mark.parametrize("name, value, message", [
+    ("table1_smooth.toml", "swept", "-ehl_scheme swept: allowed: newton, sweep"),
+    ("dry_hertz.toml", "sweep", "a dry contact has no Reynolds equation"),
+])
+def test_schemes_that_cannot_be(name, value, message):
+    options = PETSc.Options()
+    options["ehl_scheme"] = value
+    try:
+        case = load(CASES / name)
+        with pytest.raises(UsageError, match=message):
+            solver_of(case, Scales.of(case), 1.0, PETSc.COMM_SELF, options)
+    finally:
+        options.delValue("ehl_scheme")
+    assert scheme(options) == "newton"
+
+
+def store():
+    """Run the case to the steps of `CONTACTS` and keep what goes before each."""
+    march, _ = marches("table1_rough.toml")
+    kept, state = {}, march.start(NotConverged)
+    while state.step < max(CONTACTS):
+        before, state = state, march.advance(state, NotConverged, march.scales.dt)
+        if state.step in CONTACTS:
+            levels = before.q, before.h, before.m, before.m_older
+            kept[f"levels_{state.step}"] = np.array(levels, dtype=np.float32)
+            kept[f"scalars_{state.step}"] = before.h00, before.time, before.dt, state.dt
+            print(state.step, np.flatnonzero(state.h <= 0.0))
+    np.savez_compressed(STORED, **kept)
+
+
+if __name__ == "__main__":
+    store()
