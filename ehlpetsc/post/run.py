@@ -18,7 +18,7 @@ from ehlpetsc.post.settings import PostError, read_settings
 from ehlpetsc.post.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
 
-MEMORY = 400e6  # bytes of open histories, all processes together
+MEMORY = 1e9  # bytes of open histories, all processes together; too few and frames are gone through twice
 DEPTHS_AT_ONCE = 2  # share reading and transforms of the loads; more crowd each other out of the cache
 EVERY_LOSS = {2: (4, 5), 4: (18, 13), 8: (37, 24)}
 # % of a point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml at slide/roll
