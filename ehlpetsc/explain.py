@@ -8,8 +8,11 @@ from ehlpetsc.layout import CHUNK_BYTES, CHUNK_STEPS
 from ehlpetsc.roughness import Roughness, mesh_warnings
 from ehlpetsc.scales import Scales
 
-STEP_TIME = 25e-6  # s a node for a time step in full film on one rank: an order of magnitude, not a promise
-ROUGH_FACTOR = 3.0  # times that where asperities touch
+# measured on one rank: seconds a time step takes in full film, as such and for each node
+STEP_TIME, NODE_TIME = 4e-3, 7e-6
+MIXED_FACTOR = 2.5  # times that where asperities squeeze the film to nothing
+FULL_FILM = 3.0  # lambda ratio from which on they do not
+STEADY_STEPS = 20  # what a steady solution takes, in time steps
 
 
 def dowson_higginson(scales, alpha):
@@ -118,16 +121,23 @@ def _film(case, s, rough):
         f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3f} um",
     ]
     if rough and rough.rq > 0:
+        ratio = _lambda_ratio(case, s, rough)
         lines.append(
-            f"Lambda ratio: {h_min / rough.rq:.2f} "
-            f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(h_min / rough.rq)}"
+            f"Lambda ratio: {ratio:.2f} "
+            f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(ratio)}"
         )
     return lines
 
 
+def _lambda_ratio(case, s, rough):
+    """Expected smooth film over the combined root mean square height."""
+    film = dowson_higginson(s, case.fluid.pressure_viscosity)
+    return film / rough.rq if rough.rq > 0 else math.inf
+
+
 def _regime(ratio):
     """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
-    if ratio > 3:
+    if ratio > FULL_FILM:
         return "full film"
     return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
 
@@ -161,7 +171,10 @@ def _surfaces(rough):
 
 
 def _size(case, s, rough):
-    seconds = STEP_TIME * s.nx * (steps(s) if case.time else 20) * (ROUGH_FACTOR if rough else 1.0)
+    count = steps(s) if case.time else STEADY_STEPS
+    seconds = count * (STEP_TIME + NODE_TIME * s.nx)
+    if rough and (case.fluid is None or _lambda_ratio(case, s, rough) < FULL_FILM):
+        seconds *= MIXED_FACTOR
     return [
         f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
         f"{2 * s.nx + 1} unknowns",
