@@ -3,6 +3,7 @@
 import math
 
 from ehlpetsc import __version__, reference
+from ehlpetsc.case import members
 from ehlpetsc.fields import STEP_SCALARS
 from ehlpetsc.layout import CHUNK_BYTES, CHUNK_STEPS
 from ehlpetsc.roughness import Roughness, mesh_warnings
@@ -58,8 +59,7 @@ def explain(case):
         [f"Warning: {line}" for line in warnings(case, scales)],
     ]
     if case.series:
-        shown = ", ".join(str(value) for value in case.series.values)
-        sections.insert(1, [f"A series: {case.series.key} = {shown}; below, the base case."])
+        sections.insert(1, _series(case))
     return "\n".join(line for section in sections for line in section)
 
 
@@ -171,14 +171,32 @@ def _surfaces(rough):
 
 
 def _size(case, s, rough):
-    count = steps(s) if case.time else STEADY_STEPS
-    seconds = count * (STEP_TIME + NODE_TIME * s.nx)
-    if rough and (case.fluid is None or _lambda_ratio(case, s, rough) < FULL_FILM):
-        seconds *= MIXED_FACTOR
+    seconds = run_time(case, s, rough)
     return [
         f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
         f"{2 * s.nx + 1} unknowns",
         f"Expected run time on one rank: {_duration(seconds)}; result file: {_bytes(file_size(case, s))}",
+    ]
+
+
+def run_time(case, s, rough):
+    """Expected wall clock time on one rank [s], an order of magnitude."""
+    seconds = (steps(s) if case.time else STEADY_STEPS) * (STEP_TIME + NODE_TIME * s.nx)
+    mixed = rough and (case.fluid is None or _lambda_ratio(case, s, rough) < FULL_FILM)
+    return MIXED_FACTOR * seconds if mixed else seconds
+
+
+def _series(case):
+    """The members of a series and what they take together."""
+    shown = ", ".join(str(value) for value in case.series.values)
+    seconds = size = 0.0
+    for _, member in members(case):
+        scales = Scales.of(member)
+        seconds += run_time(member, scales, Roughness.of(member, scales))
+        size += file_size(member, scales)
+    return [
+        f"A series: {case.series.key} = {shown}; below, the base case.",
+        f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
     ]
 
 

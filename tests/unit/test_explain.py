@@ -80,7 +80,9 @@ def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides)
 
 
 def test_a_series_names_its_members():
-    assert "mesh.points_per_half_width = 100, 200, 300, 400" in lines("fig6.toml")[1]
+    told = lines("fig6.toml")
+    assert "mesh.points_per_half_width = 100, 200, 300, 400" in told[1]
+    assert told[2].startswith("All members on one rank: about ")
 
 
 def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
