@@ -13,7 +13,7 @@ HEAD = ("axis", "value", "converged", "steps", "retries", "newton", "h_min_um", 
         "mass_error", "viscosity_Pa_s", "seconds", "reason")
 COARSE = ("mesh.points_per_half_width=50",)
 NEAR = ("mesh.inlet=-1.2", "time.travel=1.0")  # a few steps carry the roughness into the contact
-EARLY = ("-ehl_time_limit", "0.01")  # minutes: the earlier run of a restart ends in its first steps
+EARLY = ("-ehl_time_limit", "0.04")  # minutes, of the earlier run of a restart
 
 
 def lines(short=False):

@@ -115,7 +115,7 @@ def _starts():
     both = {"fast": ground(0.15e-6), "slow": ground(0.15e-6, 2)}
 
     def before(line, *changed):  # stopped early, with a restart file
-        return (*line.overrides, *changed)
+        return (*line.overrides, "time.travel=1000.0", *changed)
 
     plain = rough("start", "", **both)
     thin = rough("start", "restart of eta0 0.01 at 0.002", "fluid.viscosity=0.002", **both)
@@ -129,8 +129,8 @@ def _starts():
         rough("start", "from smooth", **both),
         _restarted(thin, before(thin, "fluid.viscosity=0.01"), short=True),
         _restarted(thick, before(thick, "fluid.viscosity=0.002")),
-        _restarted(rough("start", "load suddenly 1.56 times", *heavier, **both), plain.overrides, short=True),
-        _restarted(rough("start", "load suddenly 0.64 times", *lighter, **both), plain.overrides),
+        _restarted(rough("start", "load suddenly 1.56 times", *heavier, **both), before(plain), short=True),
+        _restarted(rough("start", "load suddenly 0.64 times", *lighter, **both), before(plain)),
     ]
 
 

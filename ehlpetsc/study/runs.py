@@ -32,8 +32,10 @@ class Outcome:
         Least film [m], greatest pressure [Pa] and the viscosity there [Pa s] of all steps.
     load_error, mass_error : float
         Greatest of all steps, relative.
-    seconds : float
-        Wall clock time of the process.
+    seconds, wall : float
+        Wall clock time of the process, and of its steps alone [s].
+    result : Path or None
+        The result file, where a step was stored.
     """
 
     status: int
@@ -47,6 +49,7 @@ class Outcome:
     load_error: float = np.nan
     mass_error: float = np.nan
     seconds: float = 0.0
+    wall: float = 0.0
     result: Path | None = field(default=None, repr=False)
 
 
@@ -118,7 +121,7 @@ def _read_figures(path, case, outcome):
     try:
         with read_result(path) as result:
             steps = {name: np.asarray(result.steps(name)) for name in (
-                "newton", "retries", "h_min", "p_max", "load_error", "mass_error")}
+                "newton", "retries", "h_min", "p_max", "load_error", "mass_error", "wall")}
     except OutputError as error:
         outcome.words = f"{outcome.words} {error}".strip()
         return
@@ -127,6 +130,7 @@ def _read_figures(path, case, outcome):
     outcome.result, outcome.steps = path, len(steps["newton"]) - 1
     outcome.newton, outcome.retries = int(steps["newton"].sum()), int(steps["retries"].sum())
     outcome.h_min, outcome.p_max = steps["h_min"].min(), steps["p_max"].max()
+    outcome.wall = float(steps["wall"].sum())
     outcome.load_error, outcome.mass_error = steps["load_error"].max(), steps["mass_error"].max()
     if case.fluid:
         ratio = viscosity(np.array([outcome.p_max]), case.fluid)[0][0]

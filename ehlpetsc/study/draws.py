@@ -1,0 +1,123 @@
+"""Random cases within the ranges of the table of extremes: each ends in 0 or 3 and leaves a whole file."""
+import csv
+import math
+import random
+import tempfile
+from pathlib import Path
+
+from ehlpetsc.result import OutputError, read_result
+from ehlpetsc.study.lines import BARUS, MODULUS, PROFILES, RADIUS, ROELANDS, TABLE_1, inlet_of, load_of
+from ehlpetsc.study.rough_lines import ground, wave
+from ehlpetsc.study.runs import DONE, NOT_CONVERGED, run
+
+HEAD = ("number", "status", "steps", "retries", "newton", "file", "words", "overrides")
+STEPS = 50
+EVERY_SLIDING = (0.0, 0.1, 1.0, 1.9, 2.0, 4.0)
+
+
+def draw(rng):
+    """A case text and its overrides.
+
+    Parameters
+    ----------
+    rng : random.Random
+
+    Returns
+    -------
+    text : str
+    overrides : list of str
+    """
+    def between(low, high):  # evenly in the logarithm
+        return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+    text = rng.choice((TABLE_1, TABLE_1, BARUS, ROELANDS))
+    viscosity, speed, load = between(0.0005, 1.0), between(0.01, 50.0), load_of(1e9 * between(0.2, 3.0))
+    if text is BARUS:  # its pressures up to 1 GPa
+        load = load_of(1e9 * between(0.2, 1.0))
+    alpha = {TABLE_1: 11.1, BARUS: rng.uniform(5.0, 25.0), ROELANDS: rng.uniform(10.0, 25.0)}[text]
+    points, courant = int(between(25, 200)), between(0.05, 4.0)
+    inlet = inlet_of(load, viscosity, speed, alpha * 1e-9) if rng.random() < 0.5 else -rng.uniform(1.2, 6.0)
+    overrides = [
+        f"fluid.viscosity={viscosity:.4g}", f"fluid.pressure_viscosity={alpha:.3g}e-9",
+        f"motion.entrainment_speed={speed:.4g}",
+        f"motion.slide_roll_ratio={rng.choice((1, -1)) * rng.choice(EVERY_SLIDING)}",
+        f"contact.load={load:.6g}", f"mesh.points_per_half_width={points}",
+        f"mesh.inlet={max(inlet, -10.0):.3f}", f"mesh.near_field={rng.choice((5, 8, 20, 50, 100))}",
+        f"time.courant={courant:.3g}", f"time.travel={STEPS * courant / points:.6g}",
+    ]
+    if text is ROELANDS:
+        overrides.append(f"fluid.roelands_z={rng.uniform(0.4, 0.8):.3f}")
+    if rng.random() < 0.1:
+        first = rng.choice(("[3e9, 207e9]", "[600e9, 600e9]"))
+        overrides.append(f"contact.youngs_modulus={first}")
+    if rng.random() < 0.1:
+        overrides.append(f"fluid.inlet_film={between(0.02e-6, 1e-6):.3g}")
+    a = math.sqrt(8.0 * load * RADIUS / (math.pi * MODULUS))
+    for side in ("fast", "slow"):
+        overrides += _surface(rng, between, side, a, points)
+    return text, overrides
+
+
+def _surface(rng, between, side, a, points):
+    """One side: smooth, ground, waves, a spike, or the dusty profile."""
+    length = a * between(6.0 / points, 2.0)
+    kind = rng.choice(("smooth", "ground", "ground", "sine", "square", "ridge", "dust"))
+    if kind == "smooth":
+        return []
+    if kind == "dust":
+        return [f'surface.{side}.file="{PROFILES / "hommel_stylus_profile.csv"}"']
+    height = between(0.01e-6, 1e-6)
+    spec = ground(height, rng.randrange(1000), length) if kind == "ground" else wave(kind, height, length)
+    return [f"surface.{side}.synthetic={spec}"]
+
+
+def run_all(count, seed, path, limit, say=print):
+    """Run so many cases; each draw has its own seed, so that one can be run again alone.
+
+    Returns
+    -------
+    int
+        Cases that ended in another status than 0 and 3, or left a file that cannot be read.
+    """
+    wrong, converged = 0, 0
+    with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, HEAD)
+        writer.writeheader()
+        for number in range(count):
+            row = run_one(seed + number, Path(folder), limit)
+            converged += row["status"] == DONE
+            if row["status"] not in (DONE, NOT_CONVERGED) or row["file"] == "broken":
+                wrong += 1
+            writer.writerow(row)
+            file.flush()
+            if row["status"] != DONE:
+                say(f"{row['number']}: exit {row['status']}, {row['steps']} steps, file {row['file']}: "
+                    f"{row['words']} | {row['overrides']}")
+    say(f"{count} cases: {converged} converged, {count - converged - wrong} exit 3, {wrong} wrong")
+    return wrong
+
+
+def run_one(seed, folder, limit):
+    """Run the case of a seed; its row."""
+    text, overrides = draw(random.Random(seed))
+    case = folder / "case.toml"
+    case.write_text(text)
+    outcome = run(case, overrides, folder=folder, limit=limit)
+    return {
+        "number": seed, "status": outcome.status, "steps": outcome.steps, "retries": outcome.retries,
+        "newton": outcome.newton, "file": _whole(folder / "run.h5"), "words": outcome.words,
+        "overrides": "; ".join(overrides),
+    }
+
+
+def _whole(path):
+    """Whether a result file, where there is one, opens and has as many frames as it says."""
+    if not path.exists():
+        return "none"
+    try:
+        with read_result(path) as result:
+            frames = len(result.time)
+            result.frame("pressure", frames - 1)
+            return "whole" if frames else "broken"
+    except (OutputError, OSError, KeyError, IndexError):
+        return "broken"

@@ -1,0 +1,48 @@
+"""The edge of the ranges: the short form of the table of extremes, and random cases."""
+import math
+import os
+
+import pytest
+from running import SCRIPT
+
+from ehlpetsc.case import load
+from ehlpetsc.study.draws import run_all
+from ehlpetsc.study.extremes import lines, table
+from ehlpetsc.study.runs import NOT_CONVERGED
+
+
+@pytest.fixture(autouse=True)
+def environment(monkeypatch):
+    for name, value in SCRIPT.items():
+        monkeypatch.setenv(name, value)
+
+
+def test_short_table_of_extremes(tmp_path):
+    rows = table(tmp_path / "extremes.csv", short=True, limit=120, say=lambda text: None)
+    assert len(rows) == len(lines(short=True)) > 25
+    failed = [row for row in rows if row["converged"] != "yes"]
+    assert len(failed) <= 0.05 * len(rows), failed
+    for row in failed:
+        assert row["converged"] == f"no, exit {NOT_CONVERGED}" and row["reason"]
+    for row in rows:
+        if row not in failed:
+            assert float(row["h_min_um"]) >= 0.0
+            assert math.isfinite(float(row["p_max_GPa"])) and float(row["viscosity_Pa_s"]) > 0.0
+            assert float(row["load_error"]) < 1e-6
+    assert len((tmp_path / "extremes.csv").read_text().splitlines()) == len(rows) + 1
+
+
+def test_random_cases_end_in_0_or_3_and_leave_whole_files(tmp_path):
+    said = []
+    count = int(os.environ.get("EHL_DRAWS", "6"))
+    assert run_all(count, 1, tmp_path / "random.csv", 120, said.append) == 0, said
+
+
+def test_every_line_of_the_whole_table_is_a_case_that_loads(tmp_path):
+    whole = lines()
+    assert len({(line.axis, line.value) for line in whole}) == len(whole) > 100
+    for line in whole:
+        path = tmp_path / "case.toml"
+        path.write_text(line.text)
+        case = load(path, line.overrides)
+        assert case.title == "extreme"

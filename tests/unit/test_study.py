@@ -1,0 +1,107 @@
+"""Arithmetic of the studies: extrapolation, errors, inlets, last words, draws."""
+import random
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case import load
+from ehlpetsc.study import accuracy, lines
+from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertainty
+from ehlpetsc.study.draws import draw
+from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
+from ehlpetsc.study.picture import draw as draw_picture
+from ehlpetsc.study.reasons import why
+from ehlpetsc.study.runs import NOT_CONVERGED, TIMED_OUT, Outcome, last_words
+
+
+def figures(error, contact=0.0):
+    x, more = np.linspace(-1.5, 1.5, 31), 1 + error
+    return Figures(x, 0.2 * more * np.ones(31), 0.1 * more, 0.2 * more, 1e9 * (1 - error), contact)
+
+
+@pytest.fixture
+def table_1(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(TABLE_1)
+    return path
+
+
+def test_errors_are_relative_to_the_reference():
+    found = errors(figures(0.01), figures(0.0))
+    assert found["h_min"] == pytest.approx(0.01)
+    assert found["h_c"] == pytest.approx(0.01)
+    assert found["p_max"] == pytest.approx(0.01)
+    assert found["film"] == pytest.approx(0.01)
+    assert np.isnan(found["contact"]) and np.isnan(found["damage"])
+    assert errors(figures(0.0, 1.1), figures(0.0, 1.0))["contact"] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_uncertainty_is_the_error_of_a_reference_of_known_order(order):
+    error = 1e-4
+    estimate = uncertainty(*(figures(error * 2.0 ** (order * level)) for level in range(3)))
+    assert estimate["h_min"] == pytest.approx(error, rel=0.01)
+
+
+def test_plan_varies_one_setting_at_a_time_and_ends_in_a_finer_reference(table_1):
+    case = load(table_1, ["time.travel=1.0"])
+    references, runs = plan(case, (50, 100), (0.5, 1.0), (2,))
+    assert references[0].values[MESH] == 200 and references[0].values[STEP] == 0.25
+    assert [r.values[MESH] for r in references] == [200, 100, 50]
+    base = runs[0].values
+    for setting in runs[1:]:
+        changed = {key for key in {*base, *setting.values} if base.get(key) != setting.values.get(key)}
+        assert changed <= {setting.varied}
+    assert {r.value for r in runs if r.varied == "ranks"} == {1, 2}
+
+
+def test_a_steady_case_has_no_time_steps_to_vary(table_1):
+    _, runs = plan(load(table_1), (50, 100), (0.5,), (2,))
+    assert not any(r.varied == STEP for r in runs)
+    assert accuracy.NAMES[STEP] == "time step"
+
+
+def test_inlet_floods_and_is_further_out_for_thicker_films():
+    assert inlet_of(527e3, 0.002, 5.0) == -2.5
+    assert inlet_of(527e3, 1.0, 5.0) < inlet_of(527e3, 0.1, 5.0) < -2.5
+
+
+def test_load_of_table_1_from_its_pressure():
+    assert load_of(0.999455e9) == pytest.approx(527e3, rel=1e-4)
+
+
+def test_last_words_are_the_solvers():
+    told = "ehlpetsc: not converged: step 3: no. Last good state: x"
+    assert last_words(f"a\n{told}\nresult: f.h5\nehlpetsc: not converged steps=2\n") == "step 3: no. Last good state: x"
+    assert last_words("") == ""
+
+
+def test_reasons_are_told_in_words(table_1):
+    outcome = Outcome(NOT_CONVERGED, "SNES stopped", steps=4, h_min=5e-10, p_max=9e9)
+    reason = why(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
+    for words in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
+        assert words in reason
+    assert "time limit" in why(Outcome(TIMED_OUT, steps=4), table_1, [])
+
+
+def test_drawn_cases_load_and_come_again(tmp_path):
+    path = tmp_path / "case.toml"
+    for seed in range(60):
+        text, overrides = draw(random.Random(seed))
+        assert draw(random.Random(seed)) == (text, overrides)
+        path.write_text(text)
+        case = load(path, overrides)
+        assert 0.0005 <= case.fluid.viscosity <= 1.0 and 0.01 <= case.motion.entrainment_speed <= 50.0
+
+
+def test_picture_of_a_table(tmp_path):
+    rows = [
+        {"varied": "reference", "value": 1, "converged": "yes", "wall_s": 9.0, "newton": 50, "h_min": 1e-5},
+        {"varied": "", "value": "as it is", "converged": "yes", "wall_s": 1.0, "newton": 9, "h_min": 1e-3},
+        {"varied": "mesh", "value": 50, "converged": "yes", "wall_s": 0.3, "newton": 9, "h_min": 1e-2},
+        {"varied": "mesh", "value": 200, "converged": "exit 3", "wall_s": 0.0, "newton": 0, "h_min": np.nan},
+    ]
+    rows = [{**dict.fromkeys(accuracy.MEASURES, np.nan), **row} for row in rows]
+    draw_picture(rows, tmp_path / "study.png", "title")
+    assert (tmp_path / "study.png").stat().st_size > 10_000
+    assert lines.FLOODED > 1.0
