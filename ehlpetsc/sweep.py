@@ -41,7 +41,7 @@ from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
 REACH, STEADY_REACH = 0.6, 2.0
 EVALUATIONS = 400  # before a solve is given up
 NEAR = 100  # nodes on either side whose pressures act at once
-OPEN = 4.0  # expected films: wider gaps are open
+OPEN, LOW = 4.0, 0.1  # gaps wider than so many expected films, at pressures below this in p0, are open
 OVER_RELAXATION = 1.85  # of pressures in the open gap
 APPROACH = 0.2  # of the change of h00 that the missing load asks for
 STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
@@ -173,7 +173,7 @@ class Sweeper:
     def _correct(self, p, h, h00):
         """Balance the load by h00; put h of the open gap and the ends to the whole integral, in place."""
         h00 += APPROACH / STIFFNESS * (self.problem.dx * p.sum() - 0.5 * np.pi)
-        gap_is_open = h > OPEN * self.problem.film_scale
+        gap_is_open = (h > OPEN * self.problem.film_scale) & (p < LOW)
         gap_is_open[[0, -1]] = True
         h[gap_is_open] = np.maximum(self.problem.film(p, h00)[gap_is_open], self.bound)
         return h00, gap_is_open
