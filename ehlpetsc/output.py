@@ -204,9 +204,9 @@ class ResultWriter:
             fault = "it was computed on another mesh"
         elif set(old.fields) != set(self._frame_fields()):
             fault = f"it stores other fields ({', '.join(old.fields)})"
-        elif last is None or last < step:
+        elif last is not None and last < step:  # None: stopped before its first step
             fault = f"it ends at step {last}, before step {step} of the restart file"
-        elif count_from_file and last > step:
+        elif count_from_file and last is not None and last > step:
             fault = f"it goes on to step {last} and the contacts up to step {step} are not known"
         if fault:
             self._file.close()

@@ -107,6 +107,19 @@ def test_a_run_may_go_on_with_another_viscosity_and_says_so(stopped, tmp_path):
         assert np.all(np.diff(h_min) > 0)  # the thicker oil comes in
 
 
+def test_a_step_that_does_not_converge_is_named_and_leaves_its_last_good_state(stopped, tmp_path):
+    going_on = [*CASE, *settings("time.travel=0.2"), "-ehl_output", "f.h5", "-ehl_restart"]
+    never = ["-snes_atol", 1e-30, "-snes_rtol", 1e-30, "-snes_max_it", 4]
+    failed = run(*going_on, stopped, *never, cwd=tmp_path)
+    assert failed.returncode == 3
+    assert "ehlpetsc: not converged: step 11, time " in failed.stderr
+    assert "DIVERGED_MAX_IT" in failed.stderr
+    assert failed.stderr.rstrip().endswith("Last good state: f.restart.h5")
+    done = run(*going_on, "f.restart.h5", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert last_step(tmp_path / "f.h5") == (16, "done")
+
+
 @pytest.mark.parametrize("more, message", [
     (["mesh.points_per_half_width=41"], "has 113 nodes, the case 116; [mesh] must be as it was"),
     (["contact.load=400e3"], "its nodes lie from -0.503522 to 0.436386 mm, those of the case from -0.438"),

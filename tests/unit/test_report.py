@@ -60,6 +60,7 @@ def test_nothing_is_written_if_nothing_happened():
 
 def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.delenv("OMPI_COMM_WORLD_RANK", raising=False)
     monkeypatch.setenv("COLUMNS", "100")
     text = run(Terminal(), clock, seconds_a_step=1.0, steps=10)
     assert text.count("\n") == 1 and text.endswith("\n")
@@ -72,8 +73,18 @@ def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
     assert "." not in bars[-1].split("]")[0]
 
 
+@pytest.mark.parametrize("where, watched", [("/dev/pts/3", True), ("/a/log", False), ("pipe:[17]", False)])
+def test_under_mpirun_its_own_output_tells_whether_someone_watches(monkeypatch, where, watched):
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "0")
+    monkeypatch.setattr(report.os, "readlink", lambda path: where)
+    assert report.on_terminal(Terminal()) is watched
+    assert not report.on_terminal(io.StringIO())
+
+
 def test_narrow_terminal_is_not_overrun(clock, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.delenv("OMPI_COMM_WORLD_RANK", raising=False)
     monkeypatch.setenv("COLUMNS", "40")
     bars = run(Terminal(), clock, 1.0, steps=3).strip().split("\r")
     assert all(len(bar.removesuffix("\x1b[K")) < 40 for bar in bars)
