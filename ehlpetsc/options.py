@@ -1,8 +1,10 @@
 """The command line: the case file, own options (-ehl_*) and those handed on to PETSc."""
 import difflib
+import itertools
 import os
 import shlex
 from dataclasses import dataclass, field
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -61,11 +63,14 @@ def understand(arguments):
     Raises
     ------
     UsageError
-        Two case files, or none where one is needed.
+        Two case files, or none where one is needed; an options file that is not there.
     """
     command = Command()
     rest, sets = _without_sets(arguments)
-    environment, earlier = _without_sets(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
+    try:
+        environment, earlier = _without_sets(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
+    except ValueError as error:
+        raise UsageError(f"PETSC_OPTIONS: {error}") from None
     if earlier:
         os.environ["PETSC_OPTIONS"] = shlex.join(environment)
     command.overrides = earlier + sets
@@ -79,6 +84,9 @@ def understand(arguments):
         rest.remove(names[0])
     elif not {"-help", "--help", "-h"} & set(rest):
         raise UsageError(f"which case? {USAGE}; what there is: python3 -m ehlpetsc -help")
+    for word, name in itertools.pairwise(rest):
+        if word == "-options_file" and not Path(name).is_file():
+            raise UsageError(f"-options_file {name}: no such file")
     command.petsc = ["-help" if word in ("--help", "-h") else word for word in rest]
     return command
 

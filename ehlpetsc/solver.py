@@ -132,7 +132,10 @@ class Solver:
         self.snes = PETSc.SNES().create(self.comm)
         self.snes.setFunction(self._function, self.f)
         self.snes.setJacobian(self._jacobian, self.operator, self.matrix)
-        self.snes.setFromOptions()
+        try:
+            self.snes.setFromOptions()
+        except PETSc.Error as error:
+            raise UsageError(f"PETSc refuses an option: {str(error).splitlines()[-1].split('] ')[-1]}") from None
         kind = self.snes.getType()
         if kind == "vinewtonssls":
             raise UsageError("-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "

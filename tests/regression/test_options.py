@@ -98,6 +98,7 @@ def test_faults_of_single_names():
     ([], "which case?"),
     (["-snes_monitor"], "which case?"),
     (["a.toml", "b.toml"], "one case file at a time"),
+    (["a.toml", "-options_file", "nofile"], "-options_file nofile: no such file"),
 ])
 def test_the_case_must_be_named_once(arguments, message):
     with pytest.raises(UsageError, match=message):
@@ -111,6 +112,9 @@ def test_the_case_must_be_named_once(arguments, message):
     (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: result file not created, No such file or directory"),
     (["-ehl_restart", "none.h5"], "the case is steady"),
     (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls needs"),
+    (["-options_file", "nofile"], "-options_file nofile: no such file"),
+    (["-pc_type", "nosuch"], "PETSc refuses an option: Unable to find requested PC type nosuch"),
+    (["-ksp_rtol", "abc"], "PETSc refuses an option: Input string abc has no numeric value"),
     (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
 ])
 def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
