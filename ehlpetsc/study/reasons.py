@@ -39,6 +39,8 @@ def _findings(outcome, case, scales):
         found.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")
     if outcome.p_max > PLASTIC * 1e9:
         found.append(f"asperity pressures reached {1e-9 * outcome.p_max:.1f} GPa, beyond what steel carries")
-    if outcome.h_min < 1e-9 and outcome.steps:
+    if math.isinf(outcome.mass_error):
+        found.append("solids touch at the very inlet: put mesh.inlet further out")
+    elif outcome.h_min < 1e-9 and outcome.steps:
         found.append(f"the film fell to {1e9 * outcome.h_min:.2g} nm before solids touched")
     return found

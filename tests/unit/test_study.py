@@ -10,7 +10,7 @@ from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertain
 from ehlpetsc.study.draws import draw
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
 from ehlpetsc.study.picture import draw as draw_picture
-from ehlpetsc.study.reasons import why
+from ehlpetsc.study.reasons import why as reason_of
 from ehlpetsc.study.runs import NOT_CONVERGED, TIMED_OUT, Outcome, last_words
 
 
@@ -71,17 +71,18 @@ def test_load_of_table_1_from_its_pressure():
 
 
 def test_last_words_are_the_solvers():
-    told = "ehlpetsc: not converged: step 3: no. Last good state: x"
-    assert last_words(f"a\n{told}\nresult: f.h5\nehlpetsc: not converged steps=2\n") == "step 3: no. Last good state: x"
+    words = "step 3: no. Last good state: x"
+    printed = f"a\nehlpetsc: not converged: {words}\nresult: f.h5\nehlpetsc: not converged steps=2\n"
+    assert last_words(printed) == words
     assert last_words("") == ""
 
 
 def test_reasons_are_told_in_words(table_1):
     outcome = Outcome(NOT_CONVERGED, "SNES stopped", steps=4, h_min=5e-10, p_max=9e9)
-    reason = why(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
-    for words in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
-        assert words in reason
-    assert "time limit" in why(Outcome(TIMED_OUT, steps=4), table_1, [])
+    reason = reason_of(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
+    for part in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
+        assert part in reason
+    assert "time limit" in reason_of(Outcome(TIMED_OUT, steps=4), table_1, [])
 
 
 def test_drawn_cases_load_and_come_again(tmp_path):
