@@ -14,16 +14,16 @@ linearises; C and D are exact. Between two evaluations of A and B
 
 * pressures further away than `NEAR` nodes act on E by FFT with their values of the last evaluation;
 * h00 moves with the load that is missing, by a part of what Hertz' contact would need;
-* where the gap is open, that is beyond `OPEN` times the expected film, h is put to the whole integral of p,
-  as it is at the two ends in any case. Second differences alone tell a change of h00 or of a distant pressure
-  from node to node, which takes the square of their number in sweeps. In the open gap pressures
-  hardly answer to the film, so that this is safe; in the film itself it is not.
+* where the gap is open, wider than `OPEN` expected films and under less than `LOW` p0, h is put to the whole
+  integral of p, as it is at the two ends in any case. Second differences alone tell a change of h00 or of a
+  distant pressure from node to node, which takes the square of their number in sweeps. In the open
+  gap pressures hardly answer to the film, so that this is safe; in the film, or in valleys between
+  asperities, it is not.
 
 A node that changes between oil and cavity stops at the change, where its derivatives jump, until the next
-evaluation. Over-relaxation is for the open gap alone, where pressures obey Poisson's equation and it takes
-the sweeps to a half or less. What the flow carries from node to node bears none, for each node would
-amplify it: void in cavities, films in a steady contact. In a time step the storage of oil damps it; there
-1.3 in the film was quicker where little touches, but did not converge beside asperities of 3 GPa.
+evaluation. Over-relaxation takes the sweeps to a half in the film and to less in the open gap, where
+pressures obey Poisson's equation. What the flow carries from node to node bears none, for each node would
+amplify it: void in cavities, and films in a steady contact. In a time step the storage of oil damps it.
 
 The order of the nodes is the paper's, one after the other with the flow. That is no work for array
 operations, and plain Python takes a thousand times what compiled loops do: numba is needed, by this scheme
@@ -41,8 +41,8 @@ from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
 REACH, STEADY_REACH = 0.6, 2.0
 EVALUATIONS = 400  # before a solve is given up
 NEAR = 100  # nodes on either side whose pressures act at once
-OPEN, LOW = 4.0, 0.1  # gaps wider than so many expected films, at pressures below this in p0, are open
-OVER_RELAXATION = 1.85  # of pressures in the open gap
+OPEN, LOW = 3.0, 0.1  # gaps wider than so many expected films, at pressures below this in p0, are open
+IN_OPEN_GAP, IN_FILM = 1.85, 1.3  # over-relaxation there, and in the film of a time step
 APPROACH = 0.2  # of the change of h00 that the missing load asks for
 STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
 
@@ -191,12 +191,13 @@ class Sweeper:
             return np.linalg.norm(rows)
 
     def _sweep(self, q, h, p, gap_is_open):
-        problem = self.problem
-        sweeps = max(1, round((STEADY_REACH if problem.past is None else REACH) / problem.dx))
+        problem, steady = self.problem, self.problem.past is None
+        sweeps = max(1, round((STEADY_REACH if steady else REACH) / problem.dx))
         fixed = 0.5 * problem.x**2 + problem.gap
         bend = self.distant(p)
         bend[1:-1] += self.stretch * (fixed[:-2] - 2.0 * fixed[1:-1] + fixed[2:])
-        relaxation = np.where(gap_is_open & (q > 0.0), OVER_RELAXATION, 1.0)
+        relaxation = np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM)
+        relaxation[q <= 0.0] = 1.0
         then = q.copy(), h.copy()
         q[0] -= self.flow[0] / self.flow_by[0, 4]
         p[0] = max(q[0], 0.0)
