@@ -13,7 +13,8 @@ from pathlib import Path
 
 from ehlpetsc.case import members
 from ehlpetsc.dealing import Dealer
-from ehlpetsc.explain import dowson_higginson, steps, warnings
+from ehlpetsc.expected import dowson_higginson, steps
+from ehlpetsc.explain import warnings
 from ehlpetsc.march import Failed
 from ehlpetsc.options import UsageError, text_of
 from ehlpetsc.output import OutputError, load_restart, read_result

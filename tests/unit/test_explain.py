@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ehlpetsc import case
-from ehlpetsc.explain import dowson_higginson, explain, file_size, steps, warnings
+from ehlpetsc.expected import dowson_higginson, file_size, steps
+from ehlpetsc.explain import explain, warnings
 from ehlpetsc.fields import FIELDS
 from ehlpetsc.output import ResultWriter
 from ehlpetsc.scales import Scales
