@@ -38,7 +38,7 @@ from ehlpetsc.contact import ContactProblem
 from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
-REACH, STEADY_REACH = 0.6, 2.0
+REACH, STEADY_REACH = 0.6, 4.0
 EVALUATIONS = 400  # before a solve is given up
 NEAR = 100  # nodes on either side whose pressures act at once
 OPEN, LOW = 3.0, 0.1  # gaps wider than so many expected films, at pressures below this in p0, are open
