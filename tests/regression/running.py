@@ -40,14 +40,6 @@ def run(*words, cwd, ranks=0, tampered=(), **environment):
     )
 
 
-def start(*words, cwd, ranks=0, **environment):
-    """Start the program and do not wait."""
-    return subprocess.Popen(
-        command(*words, ranks=ranks), cwd=cwd, env=BARE | SCRIPT | environment, text=True,
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )
-
-
 def summary(text):
     """Figures of the last line of a run, as text by name."""
     line = text.strip().splitlines()[-1]
