@@ -1,8 +1,8 @@
 """A long run: ``python3 tests/benchmarks/endurance.py [STEPS]``, 100,000 steps by default.
 
 A wave on one surface passes a coarse contact in pure rolling, a whole number of steps a period. Memory of the
-process is read as it runs; load and oil content are compared at equal phases. Printed: memory after 1,000 steps
-and its greatest value later, and how far load and oil content move.
+process is read as it runs; load and oil content are compared at equal phases. Printed: memory after 1,000
+steps and its greatest value later, and how far load and oil content move.
 """
 import os
 import subprocess
@@ -66,7 +66,8 @@ def main(steps=100_000):
             if not first and steps_done(path) >= 1000:
                 first = now
             greatest = max(greatest, now)
-        print(f"exit {process.returncode}; memory after 1,000 steps {first:.1f} MB, greatest {greatest:.1f} MB")
+        print(f"exit {process.returncode}; memory after 1,000 steps {first:.1f} MB, "
+              f"greatest {greatest:.1f} MB")
         with read_result(path) as result:
             report(result)
 
