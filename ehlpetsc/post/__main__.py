@@ -158,6 +158,9 @@ def main(argv=None):
         for line in str(fault).splitlines():
             print(f"ehlpetsc.post: {path}: {line}", file=sys.stderr)
         return BAD_INPUT
+    except BrokenPipeError:  # as by `| head`: the reader went before all was done
+        sys.stdout = None
+        return STOPPED
     except OSError as fault:
         print(f"ehlpetsc.post: {fault}", file=sys.stderr)
         return BAD_INPUT
