@@ -4,12 +4,15 @@ import math
 import numpy as np
 
 from ehlpetsc.case import load
+from ehlpetsc.reference import moes_central_film
 from ehlpetsc.rheology import viscosity
 from ehlpetsc.scales import Scales
 from ehlpetsc.study.runs import BAD_INPUT, BUG, TIMED_OUT
 
 SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
 PLASTIC = 6.0  # GPa: asperities of hardened steel yield
+OPENING = 0.943  # 2 sqrt(2)/3: Hertz' gap beside the contact is this times (distance/a)^1.5, in a^2/R
+COARSE = 1.0  # films by which the gap may open within one node
 
 
 def why(outcome, path, overrides):
@@ -34,6 +37,8 @@ def why(outcome, path, overrides):
 def _findings(outcome, case, scales):
     found = []
     hertz = float(viscosity(np.array([scales.p0]), case.fluid)[0][0]) if case.fluid else 0.0
+    if case.fluid:
+        found += _too_coarse(case, scales)
     if hertz > SOLID:
         decades = hertz / math.log(10)
         found.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")
@@ -44,3 +49,14 @@ def _findings(outcome, case, scales):
     elif outcome.h_min < 1e-9 and outcome.steps:
         found.append(f"the film fell to {1e9 * outcome.h_min:.2g} nm before solids touched")
     return found
+
+
+def _too_coarse(case, scales):
+    """Whether the inlet sweep is lost between two nodes."""
+    film = moes_central_film(scales.moes_m, scales.moes_l) * math.pi / (8.0 * scales.moes_m)
+    opening = OPENING * case.mesh.points_per_half_width**-1.5 / film
+    if opening < COARSE:
+        return []
+    needed = math.ceil((OPENING / film) ** (2.0 / 3.0))
+    return [f"the mesh is too coarse for so thin a film: beside the contact the gap opens by {opening:.1f} "
+            f"films from one node to the next; try mesh.points_per_half_width={needed}"]

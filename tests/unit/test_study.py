@@ -82,6 +82,9 @@ def test_reasons_are_told_in_words(table_1):
     reason = reason_of(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
     for part in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
         assert part in reason
+    assert "mesh is too coarse" not in reason
+    slow = reason_of(outcome, table_1, ["motion.entrainment_speed=0.01"])
+    assert "mesh is too coarse" in slow and "points_per_half_width=" in slow
     assert "time limit" in reason_of(Outcome(TIMED_OUT, steps=4), table_1, [])
 
 
