@@ -146,6 +146,15 @@ def _collision(parts, at):
     return Collision(x, time, float(times.min()), float(times.max()), touching, film, pressure)
 
 
+def spread(points, count):
+    """At most `count` of the contact points, in turns from those that break down at each member."""
+    groups = {}
+    for point in points:
+        groups.setdefault(int(np.argmax(np.asarray(point.film) <= 0.0)), []).append(point)
+    turns = [(turn, first, point) for first, group in groups.items() for turn, point in enumerate(group)]
+    return [point for *_, point in sorted(turns, key=lambda t: t[:2])[:count]]
+
+
 def ranked(collisions):
     """Numbers of the collisions, those most worth a picture first.
 

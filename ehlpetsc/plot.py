@@ -111,7 +111,7 @@ def draw_collision(results, options):
 def draw_points(results, _options):
     """Figure of film and pressure at the points of contact against the swept value."""
     results, values, key = from_thick_to_thin(results)
-    points = collisions.contact_points(collisions.find(results))[:POINTS]
+    points = collisions.spread(collisions.contact_points(collisions.find(results)), POINTS)
     if not points:
         raise OutputError("no contact point with two full films before it and two members in contact")
     figure, axes = _two_panels()

@@ -58,6 +58,12 @@ def test_collisions_are_found_where_they_are(series):
     assert collisions.ranked([early, late]) == [1, 0]
 
 
+def test_points_are_spread_over_the_members():
+    one, two, three = (collisions.Collision(0, 0, 0, 0, (), film, ()) for film in ((1, 0), (1, 0), (2, 1, 0)))
+    assert collisions.spread([one, two, three], 2) == [one, three]
+    assert collisions.spread([one, two, three], 9) == [one, three, two]
+
+
 def test_report_of_a_series(tmp_path, series, capsys):
     index = {"members": [{"file": result.path.name} for result in series] + [{"file": "missing.h5"}]}
     (tmp_path / "s.series.json").write_text(json.dumps(index))
