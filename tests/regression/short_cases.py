@@ -45,8 +45,8 @@ RTOL = 1e-5
 other processors and numbers of ranks change them by 1e-13. No short form halves a step, where a change in
 the last digits may take another path."""
 
-NEWTON_SLACK = 1.25
-"""Iterations may grow by a quarter before it counts as a loss: they are a cost and no result."""
+NEWTON_SLACK = 1.25, 3
+"""Iterations may grow by a quarter and three before it counts as a loss: they are a cost and no result."""
 
 
 def scalars(path):
