@@ -221,11 +221,12 @@ def landing(state, nominal):
     """The step [s] to try next, such that a whole number of it ends on a multiple of the nominal step.
 
     So the run comes back after halved steps to the time levels that the members of a series share. The step
-    is at most a third longer than the one asked for, and within what BDF2 bears.
+    is at most a third longer than the one asked for, and within what BDF2 bears. After a step that had to be
+    halved it does not grow at once: where steps have just failed, the next longer one mostly fails too.
     """
     longest = min(state.dt_next or nominal, nominal)
     if longest < nominal and state.dt:
-        longest = min(1.334 * longest, 2.4 * state.dt)
+        longest = state.dt if state.retries else min(1.334 * longest, 2.4 * state.dt)
     left = nominal - state.time % nominal
     if left < LEVEL * nominal:
         left += nominal

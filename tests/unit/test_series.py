@@ -77,7 +77,8 @@ def test_halved_steps_come_back_to_the_levels_of_the_nominal_step(halvings):
             dt *= 0.5**halvings
         assert dt <= nominal * (1 + 1e-9) and dt <= 2.41 * state.dt
         time = state.time + dt
-        state = State(None, None, 0.0, time=time, dt=dt, dt_next=min(nominal, 1.5 * dt))
+        state = State(None, None, 0.0, time=time, dt=dt, dt_next=min(nominal, 1.5 * dt),
+                      retries=halvings if steps == 0 else 0)
         steps += 1
         if on_level(time, nominal):
             levels.append(round(time / nominal))
