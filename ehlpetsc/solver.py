@@ -28,21 +28,17 @@ DEFAULTS = {
     "snes_max_funcs": "100000",
     "ksp_type": "gmres",
     "ksp_rtol": "1e-6",
+    "ksp_pc_side": "right",
     "snes_max_linear_solve_fail": "1000",
     "ksp_max_it": "100",
     "ksp_gmres_restart": "100",
 }
-ONE_RANK = {
-    "pc_type": "lu",
-    "pc_factor_mat_ordering_type": "natural",
-    "pc_factor_shift_type": "nonzero",
-}
-# at these sizes a factorisation repeated on every rank is quicker than a distributed one
+ONE_RANK = {"pc_type": "python", "pc_python_type": "ehlpetsc.banded.BorderedBand"}
+# each rank factors its own block: the operator is exact, and GMRES makes up for what the blocks leave out
 MORE_RANKS = {
-    "pc_type": "redundant",
-    "redundant_pc_type": "lu",
-    "redundant_pc_factor_mat_ordering_type": "natural",
-    "redundant_pc_factor_shift_type": "nonzero",
+    "pc_type": "bjacobi",
+    "sub_pc_type": "python",
+    "sub_pc_python_type": "ehlpetsc.banded.BorderedBand",
 }
 
 
@@ -111,6 +107,7 @@ class Solver:
         self.bound = case.contact.minimum_film / scales.h
         self._create_bounds(self.bound)
         self._create_snes()
+        self.evaluated = None
 
     def _create_matrix(self, local):
         p, sizes = self.problem, ((local, 2 * self.n + 1),) * 2
@@ -160,14 +157,21 @@ class Solver:
             x[-1] = h00
 
     def _function(self, snes, x, f):
-        with np.errstate(over="ignore", invalid="ignore"):
-            f.array[:] = self.problem.residual(*self.gather(x))
+        f.array[:] = self._evaluate(*self.gather(x))
+
+    def _evaluate(self, q, h, h00):
+        """Residual; SNES asks for it two or three times at the same place."""
+        whole = np.concatenate([q, h, [h00]])
+        if self.evaluated is None or not np.array_equal(whole, self.evaluated):
+            with np.errstate(over="ignore", invalid="ignore"):
+                self.residual = self.problem.residual(q, h, h00)
+            self.evaluated = whole
+        return self.residual
 
     def _jacobian(self, snes, x, operator, matrix):
         p = self.problem
         q, h, h00 = self.gather(x)
-        with np.errstate(over="ignore", invalid="ignore"):
-            p.residual(q, h, h00)
+        self._evaluate(q, h, h00)
         # a node in contact and cavitated at once would leave its deflection row blind
         slope = np.where(h <= self.bound, 1.0, p.slope(q))
         mine = slice(self.first, self.first + self.local)
@@ -230,6 +234,7 @@ class Solver:
         ------
         NotConverged
         """
+        self.evaluated = None  # gap and past may have changed
         self.scatter(q, h, h00)
         usual = self.snes.max_it
         self.snes.max_it = max_it or usual

@@ -83,7 +83,9 @@ def steady(solver, film, not_converged):
     problem = solver.problem
     oil = None if problem.dry else problem.reynolds.inlet
     if oil is None:
-        return _Continuation(solver, not_converged).solve(hertz_start(problem, film))
+        # the set of dry nodes may have all of them to go
+        max_it = problem.n if problem.dry else None
+        return _Continuation(solver, not_converged, max_it).solve(hertz_start(problem, film))
     problem.reynolds.inlet = None
     try:
         q, h, h00, iterations = _Continuation(solver, not_converged).solve(hertz_start(problem, film))
@@ -118,26 +120,32 @@ class _Continuation:
     def solve(self, begin):
         """Returns q, h, h00 and the iterations spent."""
         try:
-            state = self._try(begin, 1.0)
-            if state is None:
-                state = self._grown(*self._easier(begin))
+            state = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
         finally:
-            self._set(1.0)
+            self._set(1.0, 1.0)
         return *state, self.spent
+
+    def _by_steps(self, begin):
+        """The smooth contact, its oil made stiff by steps; then the roughness grown under it."""
+        rough = self.gap.any()
+        state = self._try(begin, 1.0, 0.0) if rough else None
+        if state is None:
+            state = self._grown(*self._easier(begin), lambda share: (share, 0.0))
+        return self._grown(state, 0.0, lambda share: (1.0, share)) if rough else state
 
     def _easier(self, begin):
         share = 0.5
         while share >= LEAST_SHARE:
-            state = self._try(begin, share)
+            state = self._try(begin, share, 0.0)
             if state is not None:
                 return state, share
             share *= 0.5
         raise NoStart(self.failure, None, self.spent)
 
-    def _grown(self, state, share):
-        growth = share
+    def _grown(self, state, share, of):
+        growth = share or 0.5
         while share < 1.0:
-            nearer = self._try(state, min(share + growth, 1.0))
+            nearer = self._try(state, *of(min(share + growth, 1.0)))
             if nearer is not None:
                 state, share, growth = nearer, min(share + growth, 1.0), 1.5 * growth
                 continue
@@ -146,8 +154,8 @@ class _Continuation:
                 raise NoStart(self.failure, share, self.spent)
         return state
 
-    def _try(self, begin, share):
-        self._set(share)
+    def _try(self, begin, alpha, roughness):
+        self._set(alpha, roughness)
         try:
             *state, iterations = self.solver.solve(*begin, max_it=self.max_it)
         except self.not_converged as error:
@@ -156,8 +164,8 @@ class _Continuation:
         self.spent += iterations
         return state
 
-    def _set(self, share):
-        self.problem.gap = share * self.gap
+    def _set(self, alpha, roughness):
+        self.problem.gap = roughness * self.gap
         if self.fluid:
-            alpha = share * self.fluid.pressure_viscosity
+            alpha = alpha * self.fluid.pressure_viscosity
             self.problem.reynolds.fluid = self.fluid.copy(update={"pressure_viscosity": alpha})
