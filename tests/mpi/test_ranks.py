@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import petsc4py
+import pytest
 
 petsc4py.init([])
 
@@ -23,7 +24,8 @@ SHORT = ["mesh.inlet=-1.2", "mesh.outlet=1.3", "mesh.points_per_half_width=40", 
 
 def marched(comm):
     """Pressures, films and contacts of all steps; Newton iterations in all."""
-    set_defaults(PETSc.Options(), (), comm.size)
+    # blocks of the preconditioner depend on the ranks, and with them what the usual tolerances leave, some 1e-8
+    set_defaults(PETSc.Options(), {"snes_atol": "1e-10", "ksp_rtol": "1e-10"}, comm.size)
     case = load(CASE, SHORT)
     scales = Scales.of(case)
     film = expected_film(case, scales)
@@ -43,4 +45,4 @@ def test_a_rough_run_is_the_same_on_every_number_of_ranks():
     np.testing.assert_array_equal(touching, alone[2])
     np.testing.assert_allclose(pressure, alone[0], rtol=0, atol=1e-9)  # p0
     np.testing.assert_allclose(film, alone[1], rtol=0, atol=1e-9)  # a^2/R
-    assert np.abs(newton - alone[3]).max() <= 1  # the last digits may tip a residual over its tolerance
+    assert newton.sum() == pytest.approx(alone[3].sum(), rel=0.02)  # last digits may tip a residual over
