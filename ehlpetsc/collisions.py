@@ -36,7 +36,7 @@ class Collision:
     touching : tuple of bool
         For each member whether its surfaces touch anywhere in the collision.
     film, pressure : tuple of float
-        At the point, for each member [m, Pa].
+        At the point, for each member [m, Pa]; the film is 0 in contact, whatever its bound.
     """
 
     x: float
@@ -129,7 +129,9 @@ class _Reader:
     def __call__(self, x, time):
         frame = self.result.nearest_frame(time=time)
         node = int(np.argmin(np.abs(self.result.x - x)))
-        return float(self.result["film_thickness"][frame, node]), float(self.result["pressure"][frame, node])
+        film, pressure = (float(self.result[name][frame, node]) for name in ("film_thickness", "pressure"))
+        touching = "in_contact" in self.result and self.result["in_contact"][frame, node]
+        return 0.0 if touching else film, pressure
 
 
 def _collision(parts, at):

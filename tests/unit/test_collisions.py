@@ -14,7 +14,7 @@ SPEED = 5.0
 CASE = "[fluid]\nviscosity = {}\n"
 
 
-def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=()):
+def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=(), bound=0.0):
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
     writer = ResultWriter(
         path, case_text=case.format(viscosity), title="dips", x=X * A, every=1, precision="float64",
@@ -26,14 +26,14 @@ def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=()):
         for x, at, width, depth in dips:
             shape = np.maximum(1 - ((time - at) / width) ** 2, 0)
             film -= depth * shape * np.exp(-((X - x - SPEED * (time - at) / A) / 0.02) ** 2)
-        film = np.maximum(film, 0.0)
-        pressure += 2.0 * (film == 0.0) * (0.01 / viscosity)
+        film = np.maximum(film, bound)
+        pressure += 2.0 * (film == bound) * (0.01 / viscosity)
         for x, height in bumps:
             pressure += height * np.exp(-((X - x - SPEED * time / A) / 0.01) ** 2)
         values = {"pressure": 1e9 * pressure, "film_thickness": 1e-6 * film}
         least = 1e-6 * film.min() if number else 1e-5 * viscosity  # smooth films at the start
-        scalars = {"h_min": least, "contacts": (film == 0).sum(), "dt": step}
-        writer.append(number, time, values, scalars, film == 0.0)
+        scalars = {"h_min": least, "contacts": (film == bound).sum(), "dt": step}
+        writer.append(number, time, values, scalars, film == bound)
     writer.close("done")
     return read_result(path)
 
@@ -56,6 +56,11 @@ def test_collisions_are_found_where_they_are(series):
     assert early.begin < 10e-6 < early.end < 13e-6
     assert collisions.contact_points([early, late]) == [late]
     assert collisions.ranked([early, late]) == [1, 0]
+
+
+def test_contact_at_a_bound_above_zero_counts_as_no_film(tmp_path):
+    result = make(tmp_path / "b.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)], bound=1e-4)
+    assert all(c.film == (0.0,) for c in collisions.find([result]))
 
 
 def test_points_are_spread_over_the_members():
