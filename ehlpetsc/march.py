@@ -138,7 +138,7 @@ class March:
         level, way = levels[best], nodes[best]
         q = q0 + carried(level.q - q0, way)
         # where there was oil, the differences carried must not leave a cavity
-        least = np.minimum(*neighbours(level.q, way))
+        least = np.minimum(q0, np.minimum(*neighbours(level.q, way)))
         q = np.maximum(q, np.where(least > 0.0, 0.5 * least, -1.0 + 1e-3))
         return q, np.maximum(h0 * carried(level.h / h0, way), self.solver.bound)
 
