@@ -1,0 +1,54 @@
+"""Two measured surfaces in contact: the bound, its multiplier, load and mass at every step."""
+import numpy as np
+import pytest
+from driving import Scene
+
+from ehlpetsc.solver import NotConverged
+
+# the inlet near the contact, thin oil: the asperities touch within few steps
+SHORT = ("mesh.inlet=-1.3", "mesh.points_per_half_width=100", "time.travel=1.5", "fluid.viscosity=0.001")
+TOLERANCE = 1e-7  # of the residual
+
+
+@pytest.fixture(scope="module")
+def states():
+    scene = Scene("table1_rough.toml", *SHORT).start()
+    march, nominal, state = scene.march, scene.scales.dt, scene.state
+    found = []
+    while state.time < scene.scales.duration * (1.0 - 1e-9):
+        earlier, state = state, march.advance(state, NotConverged, nominal)
+        found.append((earlier, state))
+    return scene, found
+
+
+def test_contacts_occur_and_no_film_is_negative(states):
+    _, found = states
+    assert sum((state.h == 0.0).sum() for _, state in found) > 50
+    assert min(state.h.min() for _, state in found) == 0.0
+
+
+def test_flow_out_of_contact_nodes_is_not_negative(states):
+    """F >= 0 where h = 0, F = 0 elsewhere."""
+    _, found = states
+    for _, state in found:
+        touching = state.h == 0.0
+        assert state.flow[touching].min(initial=0.0) >= -TOLERANCE
+        assert np.linalg.norm(state.flow[~touching]) <= TOLERANCE
+
+
+def test_solids_in_contact_do_not_pull(states):
+    scene, found = states
+    for _, state in found:
+        assert scene.problem.pressure(state.q).min() >= 0.0
+
+
+def test_load_is_carried_at_every_step(states):
+    scene, found = states
+    for _, state in found:
+        carried = scene.problem.dx * scene.problem.pressure(state.q).sum()
+        assert carried == pytest.approx(np.pi / 2, rel=1e-10)
+
+
+def test_few_steps_are_halved(states):
+    _, found = states
+    assert sum(state.retries for _, state in found) <= 0.05 * len(found)
