@@ -9,6 +9,8 @@ LU repeats ordering and symbolic factorisation; LAPACK's band has none.
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 
+from ehlpetsc import log
+
 
 class _Layout:
     """Where the entries of a sparse matrix go in LAPACK's band and in the border."""
@@ -46,7 +48,10 @@ class BorderedBand:
     layout = None
 
     def setUp(self, pc):
-        matrix = pc.getOperators()[1]
+        with log.FACTOR:
+            self._factor(pc.getOperators()[1])
+
+    def _factor(self, matrix):
         pointers, columns, values = matrix.getValuesCSR()
         if self.layout is None or not self.layout.fits(pointers, columns):
             self.layout = _Layout(pointers, columns)
@@ -66,7 +71,8 @@ class BorderedBand:
 
     def apply(self, pc, x, y):
         b, out = x.array_r, y.array
-        inner = self._band_solve(b[:-1])
-        last = (b[-1] - self.row @ inner) / self.corner
-        out[:-1] = inner - last * self.column
-        out[-1] = last
+        with log.BACK_SOLVE:
+            inner = self._band_solve(b[:-1])
+            last = (b[-1] - self.row @ inner) / self.corner
+            out[:-1] = inner - last * self.column
+            out[-1] = last

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import shift
 
+from ehlpetsc import log
 from ehlpetsc.reynolds import Storage
 from ehlpetsc.start import NoStart, steady
 from ehlpetsc.traction import shear_stresses
@@ -108,7 +109,8 @@ class March:
     def set_gap(self, time):
         """Put the roughness where it is at `time` [s]."""
         if self.roughness is not None:
-            self.problem.gap = self.roughness.gap(self.scales.x * self.scales.a, time) / self.scales.h
+            with log.ROUGHNESS:
+                self.problem.gap = self.roughness.gap(self.scales.x * self.scales.a, time) / self.scales.h
 
     def start(self, not_converged):
         """Steady solution at time 0."""

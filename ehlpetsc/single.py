@@ -9,7 +9,7 @@ import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc import checkpoint
+from ehlpetsc import checkpoint, log
 from ehlpetsc.explain import banner, warnings
 from ehlpetsc.march import Failed, March
 from ehlpetsc.output import OutputError, ResultWriter
@@ -113,8 +113,9 @@ class Run:
         scalars, fields, in_contact = self.march.scalars(self.case, state, started)
         every = self.case.output.every
         frame = every == 1 or self.case.time is None or on_level(state.time, every * self.scales.dt)
-        on_root(self.comm, lambda: self.writer.append(state.step, state.time, fields, scalars, in_contact,
-                                                      frame))
+        with log.OUTPUT:
+            on_root(self.comm, lambda: self.writer.append(state.step, state.time, fields, scalars, in_contact,
+                                                          frame))
         t = self.totals
         t["newton"] += scalars["newton"]
         t["contacts"] += scalars["contacts"]
@@ -149,13 +150,15 @@ class Run:
             self.open_writer(state.step, count)
         else:
             self._follow("steady start")
-            state = self.march.start(NotConverged)
+            with log.START:
+                state = self.march.start(NotConverged)
             self._view()
             self.open_writer()
             self.store(state, begun)
         status = "done"
         if self.case.time is not None:
-            state, status = self._march(state)
+            with log.STEPS:
+                state, status = self._march(state)
         on_root(self.comm, lambda: self.writer.close(status))
         if self.root:
             self._report(state, status, clock.monotonic() - begun)

@@ -11,6 +11,7 @@ viscosity is exponential in p, and scaled as a whole, so that linear rows stay s
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc import log
 from ehlpetsc.contact import LEAK, ContactProblem
 from ehlpetsc.options import UsageError
 
@@ -80,7 +81,9 @@ class _Operator:
         s = self.solver
         s.matrix.mult(v, out)
         v_p = s.gather(v)[0] * s.slope
-        out.array[: 2 * s.local: 2] += s.problem.far_product(v_p) - s.leak * v.array_r[: 2 * s.local: 2]
+        with log.FAR_FIELD:
+            far = s.problem.far_product(v_p)
+        out.array[: 2 * s.local: 2] += far - s.leak * v.array_r[: 2 * s.local: 2]
 
 
 class Solver:
@@ -163,7 +166,7 @@ class Solver:
         """Residual; SNES asks for it two or three times at the same place."""
         whole = np.concatenate([q, h, [h00]])
         if self.evaluated is None or not np.array_equal(whole, self.evaluated):
-            with np.errstate(over="ignore", invalid="ignore"):
+            with log.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
                 self.residual = self.problem.residual(q, h, h00)
             self.evaluated = whole
         return self.residual
@@ -172,6 +175,13 @@ class Solver:
         p = self.problem
         q, h, h00 = self.gather(x)
         self._evaluate(q, h, h00)
+        with log.ASSEMBLY:
+            self._fill(q, h, matrix)
+            matrix.assemble()
+            operator.assemble()
+
+    def _fill(self, q, h, matrix):
+        p = self.problem
         # a node in contact and cavitated at once would leave its deflection row blind
         slope = np.where(h <= self.bound, 1.0, p.slope(q))
         mine = slice(self.first, self.first + self.local)
@@ -190,8 +200,6 @@ class Solver:
             set_rows(matrix, (2 * p.reynolds.rows + 1).astype(np.int32), p.reynolds.columns, p.flow_values)
             if p.inlet_values is not None:
                 matrix.setValues([1], [0, 1], p.inlet_values)
-        matrix.assemble()
-        operator.assemble()
 
     def _limit_step(self, x, y):
         now, step = x.array_r[: 2 * self.local: 2], y.array[: 2 * self.local: 2]
