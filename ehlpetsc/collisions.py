@@ -19,6 +19,7 @@ from .result import OutputError
 from .swept import from_thick_to_thin, open_all
 
 BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
+SAME = 1e-3  # of the interval between frames: times nearer than this are the same
 BLOCK = 256  # frames read at a time
 
 
@@ -29,8 +30,8 @@ class Collision:
     Attributes
     ----------
     x, time : float
-        A point of contact of the member that touches first of all [m, s]: of those the one at which most
-        members touch, and of these the one with the highest pressure in any.
+        A point of contact of the member that touches first of all [m, s]: of those at times that most members
+        have stored the one at which most touch, and of these the one with the highest pressure in any.
     begin, end : float
         Times of the first and last contact in any member [s].
     touching : tuple of bool
@@ -126,6 +127,11 @@ class _Reader:
     def __init__(self, result):
         self.result = result
 
+    def has(self, time):
+        """Whether a frame of just that time is stored: meshes share only some of their levels."""
+        stored = self.result.time
+        return bool(np.abs(stored - time).min() < SAME * np.diff(stored).max())
+
     def __call__(self, x, time):
         frame = self.result.nearest_frame(time=time)
         node = int(np.argmin(np.abs(self.result.x - x)))
@@ -137,10 +143,10 @@ class _Reader:
 def _collision(parts, at):
     touching = tuple(bool(len(t)) for t, _ in parts)
     first = touching.index(True)
-    best, chosen = (-1, -1.0), None
+    best, chosen = (-1, -1, -1.0), None
     for time, x in zip(*parts[first], strict=True):
         film, pressure = zip(*(read(x, time) for read in at), strict=True)
-        rank = (sum(h <= 0.0 for h in film), max(pressure))
+        rank = (sum(read.has(time) for read in at), sum(h <= 0.0 for h in film), max(pressure))
         if rank > best:
             best, chosen = rank, (float(x), float(time), film, pressure)
     x, time, film, pressure = chosen
