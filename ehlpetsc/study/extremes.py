@@ -7,13 +7,12 @@ from pathlib import Path
 from ehlpetsc.study.lines import steady_lines
 from ehlpetsc.study.reasons import why
 from ehlpetsc.study.rough_lines import time_lines
-from ehlpetsc.study.runs import DONE, STOPPED, run
+from ehlpetsc.study.runs import DONE, run
 
 HEAD = ("axis", "value", "converged", "steps", "retries", "newton", "h_min_um", "p_max_GPa", "load_error",
         "mass_error", "viscosity_Pa_s", "seconds", "reason")
 COARSE = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
-EARLY = ("-ehl_time_limit", "0.04")  # minutes, of the earlier run of a restart
 
 
 def lines(short=False):
@@ -27,7 +26,7 @@ def lines(short=False):
 def _shortened(line):
     keys = {override.partition("=")[0] for override in line.overrides}
     if line.before or "mesh.points_per_half_width" in keys:  # nodes where an earlier run has them
-        return (*line.overrides, "time.travel=0.3") if line.before else (*line.overrides, *BRIEF)
+        return (*line.overrides, *BRIEF)
     return (*line.overrides, *COARSE, *(BRIEF if "time.travel" in keys else ()))
 
 
@@ -70,9 +69,9 @@ def row(line, folder, limit):
     case.write_text(line.text)
     options = ()
     if line.before:
-        first = run(case, line.before, options=EARLY, folder=folder, name="before", limit=limit)
-        if first.status != STOPPED:
-            return _row(line, first, f"the run before: {first.words or 'ended too early'}")
+        first = run(case, line.before, folder=folder, name="before", limit=limit)
+        if first.status != DONE:
+            return _row(line, first, f"the run before: {first.words}")
         options = ("-ehl_restart", str(folder / "before.restart.h5"))
     outcome = run(case, line.overrides, options=options, folder=folder, limit=limit)
     return _row(line, outcome, "" if outcome.status == DONE else why(outcome, case, line.overrides))
