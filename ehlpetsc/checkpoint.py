@@ -33,7 +33,8 @@ def save(path, state, smooth, contact_count, totals, case, scales):
               "smooth_q": smooth[0], "smooth_h": smooth[1]}
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     if state.earlier:
-        arrays |= {f"earlier_{name}": np.array(each) for name, each in zip(Level._fields, zip(*state.earlier))}
+        for name in Level._fields:
+            arrays[f"earlier_{name}"] = np.array([getattr(level, name) for level in state.earlier])
     attributes = {"h00": state.h00, "time": state.time, "dt": state.dt or 0.0,
                   "dt_next": state.dt_next or 0.0, "step": state.step, "case": case.text}
     attributes |= {"p0": scales.p0, "h_scale": scales.h}

@@ -98,7 +98,8 @@ class ContactProblem:
         out[2 * (i - self.first)] = bend - self.exact(p)[i]
         for node in (0, self.n - 1):
             if self.first <= node < self.last:
-                out[2 * (node - self.first)] = self.end_scale * (fixed[node] - h00 - self._end_deflection(p, node))
+                rigid = fixed[node] - h00
+                out[2 * (node - self.first)] = self.end_scale * (rigid - self._end_deflection(p, node))
         if self.dry:
             flow = p[self.first:self.last]
         else:
@@ -139,8 +140,8 @@ class ContactProblem:
         pressure = -self.curvature[distance] * weight
         for end in (0, n - 1):
             if self.first <= end < self.last:
-                pressure[end - self.first] = (-self.end_scale * self.dx / np.pi) * self.logarithm[distance] * weight[
-                    end - self.first]
+                whole = (-self.end_scale * self.dx / np.pi) * self.logarithm[distance]
+                pressure[end - self.first] = whole * weight[end - self.first]
         diagonal = near
         pressure[:, diagonal] += np.where(slope[i] > 0.0, 0.0, LEAK)
         film_node = i[:, None] + np.array([-1, 0, 1])
@@ -153,7 +154,8 @@ class ContactProblem:
                 k = end - self.first
                 film[k], film_valid[k] = (0.0, self.end_scale, 0.0), (False, True, False)
                 approach[k], approach_value[k] = 2 * n, -self.end_scale
-        columns = np.hstack([np.where(valid, 2 * node, -1), np.where(film_valid, 2 * film_node + 1, -1), approach])
+        pressures, films = np.where(valid, 2 * node, -1), np.where(film_valid, 2 * film_node + 1, -1)
+        columns = np.hstack([pressures, films, approach])
         return columns.astype(np.int32), np.hstack([pressure, film, approach_value])
 
     def far_product(self, v_p):

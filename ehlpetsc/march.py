@@ -7,8 +7,8 @@ wide, and interpolating between the nodes is what a predictor loses most by: on 
 level alone cost 6.0 Newton iterations a step, the best of three 4.6 (over 5 a of travel). Extrapolation in
 time gained nothing more.
 
-A step that does not converge is halved and counted, and grows by 1.5 a step back to the nominal one, never beyond
-the BDF2 limit 2.4.
+A step that does not converge is halved and counted, and grows by 1.5 a step back to the nominal one, never
+beyond the BDF2 limit 2.4.
 """
 import time as clock
 from dataclasses import dataclass, field
@@ -75,8 +75,9 @@ class State:
 def carried(share, nodes):
     """Move what the roughness has changed of the smooth solution along by `nodes` nodes.
 
-    Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of asperities,
-    two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's method iterations.
+    Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of
+    asperities, two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's
+    method iterations.
     """
     moved = shift(share, nodes, order=3, mode="nearest")
     one, other = neighbours(share, nodes)
@@ -151,7 +152,8 @@ class March:
         while True:
             self.set_gap(state.time + dt)
             older = None if state.dt is None else state.dt * unit
-            self.problem.past = None if self.problem.dry else Storage(state.m, state.m_older, dt * unit, older)
+            if not self.problem.dry:
+                self.problem.past = Storage(state.m, state.m_older, dt * unit, older)
             guess = self.predict(state, dt) if retries == 0 else (state.q, state.h)
             try:
                 q, h, h00, iterations = self.solver.solve(*guess, state.h00)
@@ -161,8 +163,9 @@ class March:
                 dt *= 0.5
                 if dt < SMALLEST * nominal:
                     raise Failed(
-                        f"step {state.step + 1}, time {state.time:.6e} s: {error}, also with a step of {dt:.2e} s. "
-                        "Try a smaller time.courant, a finer mesh or a higher viscosity") from error
+                        f"step {state.step + 1}, time {state.time:.6e} s: {error}, also with a step of "
+                        f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
+                    ) from error
         return State(q, h, h00, m=self._mass(q, h), m_older=state.m, time=state.time + dt, dt=dt,
                      dt_next=min(nominal, GROWTH * dt), step=state.step + 1, newton=newton + iterations,
                      retries=retries, flow=self._flow(),

@@ -1,7 +1,8 @@
 r"""Discrete Reynolds equation with mass-conserving cavitation and direct contact.
 
 .. math:: F \equiv \frac{\partial \rho h(1-\theta)}{\partial t}
-   + \frac{\partial}{\partial x}\Big[\rho u h(1-\theta) - \frac{\rho h^3 S}{12\eta}\frac{\partial p}{\partial x}\Big],
+   + \frac{\partial}{\partial x}\Big[\rho u h(1-\theta)
+   - \frac{\rho h^3 S}{12\eta}\frac{\partial p}{\partial x}\Big],
    \qquad h\ge0,\quad F\ge0,\quad hF=0
 
 (Holmes et al. 2005, eq. (1), its sign turned; where h = 0 it is left out, eq. (11)). One unknown q a
@@ -104,7 +105,6 @@ class Reynolds:
 
     def _faces(self, q, h, mass):
         """Mass flux through each face and its derivatives: (q, h) x (behind, left, right)."""
-        s = self.scales
         m, m_q, m_h = mass
         b, le, r = self.behind, self.left, self.right
         flux, by_left, by_behind = positive_extrapolation(m[le], m[b], self.second_order)
@@ -127,7 +127,7 @@ class Reynolds:
         )
 
     def _conductance(self, p, h, slope):
-        r"""Mass flow per pressure gradient :math:`\rho h^3S/(12\eta)` of nodes beside faces of given gradient.
+        r"""Mass flow per pressure gradient :math:`\rho h^3S/(12\eta)` of the nodes beside faces.
 
         Returns value and derivatives with respect to p, h and slope.
         """

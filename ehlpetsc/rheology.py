@@ -55,7 +55,9 @@ def density(p, fluid):
 
 
 def poiseuille_factor(sigma):
-    r"""Eyring factor without sliding, :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3`, and its derivative.
+    r"""Eyring factor without sliding, :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3`.
+
+    Returns value and derivative.
 
     Conry, Wang & Cusano 1987; series :math:`3\sum 2n\,\Sigma^{2n-2}/(2n+1)!` near zero.
     """

@@ -135,7 +135,8 @@ class Solver:
         try:
             self.snes.setFromOptions()
         except PETSc.Error as error:
-            raise UsageError(f"PETSc refuses an option: {str(error).splitlines()[-1].split('] ')[-1]}") from None
+            reason = str(error).splitlines()[-1].split("] ")[-1]
+            raise UsageError(f"PETSc refuses an option: {reason}") from None
         kind = self.snes.getType()
         if kind == "vinewtonssls":
             raise UsageError("-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
@@ -172,7 +173,6 @@ class Solver:
         return self.residual
 
     def _jacobian(self, snes, x, operator, matrix):
-        p = self.problem
         q, h, h00 = self.gather(x)
         self._evaluate(q, h, h00)
         with log.ASSEMBLY:
@@ -206,7 +206,8 @@ class Solver:
         pressure = self.problem.pressure
         change = np.abs(pressure(now - step) - pressure(now))
         film, film_step = x.array_r[1: 2 * self.local: 2], y.array_r[1: 2 * self.local: 2]
-        change[(film <= self.bound) & (film - film_step <= self.bound)] = 0.0  # in contact there is no viscosity
+        stays = (film <= self.bound) & (film - film_step <= self.bound)
+        change[stays] = 0.0  # in contact there is no viscosity
         largest = change.max(initial=0.0)
         largest = self.comm.tompi4py().allreduce(largest, max)
         if largest > STEP_LIMIT:
@@ -218,7 +219,8 @@ class Solver:
         step[refilled] = now[refilled] - REFILLED
         # a void takes at most a part of the oil left: at q = -1 on a closed gap every derivative is zero
         cavity = now - step < 0.0
-        step[cavity] = np.minimum(step[cavity], now[cavity] + 1.0 - OIL_KEPT * (1.0 + np.minimum(now[cavity], 0.0)))
+        kept = OIL_KEPT * (1.0 + np.minimum(now[cavity], 0.0))
+        step[cavity] = np.minimum(step[cavity], now[cavity] + 1.0 - kept)
         films = slice(1, 2 * self.local, 2)
         closed = cavity & (x.array_r[films] - y.array[films] <= self.bound)
         step[closed] = now[closed] - REFILLED  # solids that touch are not held apart by a void

@@ -3,11 +3,11 @@ r"""The steady solution that every run begins with, and how a hard one is reache
 From Hertz' pressure, smoothed, under a film 1.3 times Moes' central one, Newton's method takes 4 to 7
 iterations for most oils and loads. Where it does not arrive, pressures of the exit spike swing: beyond about
 :math:`\alpha p_0=20` the flow out of a node at high pressure hardly depends on that pressure any more, and
-shorter steps or other film thicknesses only swing elsewhere. What leads there is continuation: the same contact
-with a share s of the pressure-viscosity coefficient (and of the roughness, where it lies under the film from
-the start) is solved first, s halved until that succeeds, and s then grows back to 1, each solution the start
-of the next. It took Barus' law to :math:`\alpha p_0=267`; steps in pseudo-time, tried on the same
-contacts, cost three times the iterations and did not always arrive.
+shorter steps or other film thicknesses only swing elsewhere. What leads there is continuation: the same
+contact with a share s of the pressure-viscosity coefficient is solved first, s halved until that succeeds,
+and s then grows back to 1, each solution the start of the next; roughness that lies under the film from the
+start is left out meanwhile and then grown likewise. It took Barus' law to :math:`\alpha p_0=267`; steps in
+pseudo-time, tried on the same contacts, cost three times the iterations and did not always arrive.
 
 A starved inlet needs another start: the meniscus moves one node per iteration, so that the void is put where
 the gap is wider than the oil film. Whether a contact starves at all, the flooded solution tells: it does if

@@ -8,6 +8,7 @@ import sys
 
 from ehlpetsc.__main__ import guarded
 from ehlpetsc.environment import prepare
+from ehlpetsc.options import understand
 
 
 def tamper(accident, rank, step):
@@ -30,5 +31,8 @@ def tamper(accident, rank, step):
 if __name__ == "__main__":
     accident, rank, step, *rest = sys.argv[1:]
     prepare()
+    import petsc4py
+
+    petsc4py.init([sys.argv[0], *understand(rest).petsc])  # what is tampered with imports PETSc
     tamper(accident, int(rank), int(step))
     sys.exit(guarded([sys.argv[0], *rest]))

@@ -42,7 +42,9 @@ def test_table_1_film_within_0_3_percent(eta0, u, xi, h_min, h_c):
     assert film[np.argmin(np.abs(s.x))] == pytest.approx(h_c, rel=3e-3)
 
 
-@pytest.mark.parametrize("eta0, u, xi", [(0.01, 5.0, 0.25), (0.005, 5.0, 0.25), (0.002, 5.0, 0.25), (0.005, 25.0, 0.1)])
+@pytest.mark.parametrize("eta0, u, xi", [
+    (0.01, 5.0, 0.25), (0.005, 5.0, 0.25), (0.002, 5.0, 0.25), (0.005, 25.0, 0.1),
+])
 def test_default_start_converges_in_10_iterations(eta0, u, xi):
     *_, state = steady("table1_smooth.toml", f"fluid.viscosity={eta0}", f"motion.entrainment_speed={u}",
                        f"motion.slide_roll_ratio={xi}")
@@ -53,7 +55,8 @@ def test_default_start_converges_in_10_iterations(eta0, u, xi):
     (100, 0.141250, 0.161532), (200, 0.141722, 0.162430), (400, 0.141839, 0.162654),
 ])
 def test_film_on_short_domain_within_0_3_percent(points, h_min, h_c):
-    s, problem, state = steady("table1_smooth.toml", "mesh.inlet=-2.5", f"mesh.points_per_half_width={points}")
+    s, problem, state = steady("table1_smooth.toml", "mesh.inlet=-2.5",
+                               f"mesh.points_per_half_width={points}")
     film = state.h * s.h * 1e6
     assert film.min() == pytest.approx(h_min, rel=3e-3)
     assert film[np.argmin(np.abs(s.x))] == pytest.approx(h_c, rel=3e-3)
