@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 from running import ROOT, run, settings
 
+sys.path.insert(0, str(ROOT))  # also when called as a command, outside pytest
+
 from ehlpetsc.result import read_result
 
 EXPECTED = Path(__file__).with_name("expected.json")
