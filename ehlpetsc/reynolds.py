@@ -27,9 +27,9 @@ STENCIL = 4  # nodes i-2 .. i+1 in row i
 def positive_extrapolation(m, behind, k):
     r"""Extrapolate m from the values at `behind` and here, kept positive for m > 0.
 
-    :math:`y=m+k(m-m_b)` while that is at least m/2, else :math:`m^2/4k(m_b-m)`: continuous with its
-    derivatives, homogeneous of degree one. Plain extrapolation of a film that goes to zero is
-    negative, which empties the next cell and starts a cascade of false contacts.
+    :math:`\max[m+k(m-m_b),\ m/2]`. Plain extrapolation of a film that goes to zero is negative, which empties
+    the next cell and starts a cascade of false contacts. At m = 0 the slope is a half and not zero: a node
+    that is to leave contact must feel its film, or Newton's method stalls there at any time step.
 
     Returns
     -------
@@ -37,11 +37,9 @@ def positive_extrapolation(m, behind, k):
     """
     y = m + k * (m - behind)
     limited = y < 0.5 * m
-    drop = np.where(limited, k * (behind - m), 1.0)
-    ratio = m / drop
-    value = np.where(limited, 0.25 * m * ratio, y)
-    d_m = np.where(limited, 0.5 * ratio + 0.25 * k * ratio**2, 1.0 + k)
-    d_behind = np.where(limited, -0.25 * k * ratio**2, -k)
+    value = np.where(limited, 0.5 * m, y)
+    d_m = np.where(limited, 0.5, 1.0 + k)
+    d_behind = np.where(limited, 0.0, -k)
     return value, d_m, d_behind
 
 
