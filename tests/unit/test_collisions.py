@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from made_results import A
 
-from ehlpetsc import collisions, entrapment, swept
+from ehlpetsc import collisions, entrapment, plot, swept
 from ehlpetsc.output import ResultWriter
 from ehlpetsc.result import OutputError, read_result
 
@@ -134,7 +134,6 @@ def test_a_peak_that_is_not_between_is_no_entrapment(series):
 
 @pytest.mark.parametrize("kind", ["--collision", "--points"])
 def test_pictures_of_a_series(tmp_path, series, kind):
-    plot = pytest.importorskip("ehlpetsc.plot")
     picture = tmp_path / "picture.svg"
     assert plot.main([*(str(result.path) for result in series), kind, "-o", str(picture)]) == 0
     lines = picture.read_text().count('<path')
@@ -142,7 +141,6 @@ def test_pictures_of_a_series(tmp_path, series, kind):
 
 
 def test_picture_of_an_entrapment(tmp_path, capsys):
-    plot = pytest.importorskip("ehlpetsc.plot")
     dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
     make(tmp_path / "e.h5", 0.01, dips, bumps=[(-SPEED * 20e-6 / A, 6.0)]).close()
     assert plot.main([str(tmp_path / "e.h5"), "--entrapment"]) == 0

@@ -91,8 +91,8 @@ def test_provenance_is_complete(tmp_path):
 
 
 def test_xarray_reads_coordinates_and_units(tmp_path):
-    xarray = pytest.importorskip("xarray")
-    pytest.importorskip("h5netcdf")
+    import xarray
+
     path = written(tmp_path / "r.h5", range(5), every=2)
     with xarray.open_dataset(path, engine="h5netcdf") as data:
         assert data["pressure"].dims == ("time", "x")

@@ -2,13 +2,11 @@
 import numpy as np
 import pytest
 from made_results import A, make_result
+from PIL import Image as image
 
-pytest.importorskip("matplotlib")
-image = pytest.importorskip("PIL.Image")
-
-from ehlpetsc import drawing, plot, swept  # noqa: E402
-from ehlpetsc.output import ResultWriter  # noqa: E402
-from ehlpetsc.result import read_result  # noqa: E402
+from ehlpetsc import drawing, plot, swept
+from ehlpetsc.output import ResultWriter
+from ehlpetsc.result import read_result
 
 
 @pytest.fixture

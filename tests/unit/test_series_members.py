@@ -3,8 +3,6 @@ import numpy as np
 import pytest
 from made_results import make_result
 
-pytest.importorskip("petsc4py")
-
 from ehlpetsc.case import load, members
 from ehlpetsc.march import State
 from ehlpetsc.series import Member, Named, added
