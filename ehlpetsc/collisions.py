@@ -8,15 +8,13 @@ compared.
 ``python3 -m ehlpetsc.collisions OUTPUT.series.json`` lists them and says how film and pressure go with the
 swept value (Holmes et al. 2005, figure 4).
 """
-import argparse
-import contextlib
 import sys
 from dataclasses import dataclass
 
 import numpy as np
 
 from .result import OutputError
-from .swept import from_thick_to_thin, open_all
+from .swept import command, from_thick_to_thin
 
 BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
 SAME = 1e-3  # of the interval between frames: times nearer than this are the same
@@ -281,16 +279,7 @@ def share(flags):
 
 def main(arguments=None):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    about = __doc__.split("\n")[0]
-    parser = argparse.ArgumentParser(prog="python3 -m ehlpetsc.collisions", description=about)
-    parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or its result files")
-    try:
-        with contextlib.ExitStack() as stack:
-            print("\n".join(report(open_all(parser.parse_args(arguments).results, stack))))
-    except OutputError as error:
-        print(f"ehlpetsc.collisions: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return command("ehlpetsc.collisions", __doc__.split("\n")[0], report, arguments)
 
 
 if __name__ == "__main__":

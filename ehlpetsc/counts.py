@@ -4,15 +4,12 @@ A line each: contacts per millisecond and node (Q of Holmes et al. 2005, figure 
 its inlet quarter and in its exit half, and in proportion to the first result; and what does not grow with the
 number of nodes and steps: the length in contact and the load carried there, both means over time.
 """
-import argparse
-import contextlib
 import sys
 
 import numpy as np
 
 from .collisions import points_in_contact
-from .result import OutputError
-from .swept import in_order, open_all, series_values
+from .swept import command, in_order, series_values
 
 
 def mean_rate(result, low=-1.0, high=1.0):
@@ -65,15 +62,8 @@ def report(results):
 
 def main(arguments=None):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    parser = argparse.ArgumentParser(prog="python3 -m ehlpetsc.counts", description=__doc__.split("\n")[0])
-    parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
-    try:
-        with contextlib.ExitStack() as stack:
-            print("\n".join(report(in_order(open_all(parser.parse_args(arguments).results, stack)))))
-    except OutputError as error:
-        print(f"ehlpetsc.counts: {error}", file=sys.stderr)
-        return 2
-    return 0
+    about = __doc__.split("\n")[0]
+    return command("ehlpetsc.counts", about, lambda results: report(in_order(results)), arguments)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 """Results that belong together: the members of a series opened, and sorted by their swept value."""
+import argparse
+import contextlib
 import json
+import sys
 import tomllib
 from pathlib import Path
 
@@ -23,6 +26,35 @@ def open_all(paths, stack):
         A file cannot be read, or no member of a series has one.
     """
     return [stack.enter_context(read_result(file)) for path in paths for file in _files(Path(path))]
+
+
+def command(name, about, report, arguments):
+    """Run a command that prints the lines of a report on results.
+
+    Parameters
+    ----------
+    name : str
+        Module of the command.
+    about : str
+        What it is for.
+    report : callable
+        Takes the opened results, returns lines.
+    arguments : list of str or None
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, 2 bad input.
+    """
+    parser = argparse.ArgumentParser(prog=f"python3 -m {name}", description=about)
+    parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
+    try:
+        with contextlib.ExitStack() as stack:
+            print("\n".join(report(open_all(parser.parse_args(arguments).results, stack))))
+    except OutputError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 2
+    return 0
 
 
 def _files(path):

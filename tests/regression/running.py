@@ -1,6 +1,7 @@
 """Running the program as its users do: as processes of their own, under mpirun or without."""
 import re
 import subprocess
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -38,6 +39,14 @@ def run(*words, cwd, ranks=0, tampered=(), **environment):
         command(*words, ranks=ranks, tampered=tampered), cwd=cwd, env=BARE | SCRIPT | environment,
         capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
     )
+
+
+def wait_for(path, process):
+    """Until the file is there or the process has ended, a minute at most."""
+    for _ in range(1200):
+        time.sleep(0.05)
+        if path.exists() or process.poll() is not None:
+            break
 
 
 def summary(text):

@@ -2,9 +2,8 @@
 import os
 import signal
 import subprocess
-import time
 
-from running import BARE, ROOT, SHORT, settings
+from running import BARE, ROOT, SHORT, settings, wait_for
 
 from ehlpetsc.result import read_result
 
@@ -28,10 +27,7 @@ def test_a_job_stopped_before_its_time_is_over_goes_on_when_queued_again(tmp_pat
     job = subprocess.Popen(
         [*JOB, *settings("time.travel=3.0")], cwd=tmp_path, env=environment, start_new_session=True, **pipes
     )
-    for _ in range(600):
-        time.sleep(0.05)
-        if result.exists() or job.poll() is not None:
-            break
+    wait_for(result, job)
     job.send_signal(signal.SIGUSR1)
     text, _ = job.communicate(timeout=120)
     assert job.returncode == 4, text

@@ -2,11 +2,10 @@
 import json
 import signal
 import subprocess
-import time
 
 import numpy as np
 import pytest
-from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, summary
+from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, summary, wait_for
 
 from ehlpetsc.compare import compare
 from ehlpetsc.result import read_result
@@ -157,10 +156,7 @@ def test_the_script_hands_sigterm_on(tmp_path):
     process = subprocess.Popen(words, cwd=tmp_path, env=BARE, **pipes)
     result = tmp_path / "table1_rough.h5"
     try:
-        for _ in range(600):
-            time.sleep(0.1)
-            if result.exists() or process.poll() is not None:
-                break
+        wait_for(result, process)
         process.send_signal(signal.SIGTERM)
         output, errors = process.communicate(timeout=120)
     finally:
