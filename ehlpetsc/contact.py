@@ -52,6 +52,7 @@ class ContactProblem:
         self.gap, self.past = np.zeros(self.n), None
         self._kernels()
         self._pattern()
+        self._deflection_rows()
 
     @property
     def load_is_local(self):
@@ -128,35 +129,32 @@ class ContactProblem:
         self.pattern_rows = np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int32)
         self.pattern_columns = np.concatenate(rows).astype(np.int32)
 
-    def deflection_rows(self, slope):
-        """Row pointers, columns and values of the local deflection rows, near field."""
+    def _deflection_rows(self):
+        """Columns and values of the local deflection rows in oil, near field; column -1: no entry."""
         n, near = self.n, self.near
-        i = np.arange(self.first, self.last)
-        node = i[:, None] + np.arange(-near, near + 1)
-        valid = (node >= 0) & (node < n)
-        safe = np.clip(node, 0, n - 1)
-        distance = np.abs(np.arange(-near, near + 1))
-        weight = np.maximum(slope, 0.0)[safe]
-        pressure = -self.curvature[distance] * weight
-        for end in (0, n - 1):
-            if self.first <= end < self.last:
-                whole = (-self.end_scale * self.dx / np.pi) * self.logarithm[distance]
-                pressure[end - self.first] = whole * weight[end - self.first]
-        diagonal = near
-        pressure[:, diagonal] += np.where(slope[i] > 0.0, 0.0, LEAK)
-        film_node = i[:, None] + np.array([-1, 0, 1])
-        film = np.tile((np.pi / self.dx) * np.array([1.0, -2.0, 1.0]), (len(i), 1))
-        film_valid = (film_node >= 0) & (film_node < n)
-        approach = np.full((len(i), 1), -1)
-        approach_value = np.zeros((len(i), 1))
+        i = np.arange(self.first, self.last)[:, None]
+        distance = np.arange(-near, near + 1)
+        self.near_nodes = np.clip(i + distance, 0, n - 1)
+        pressures = np.where(self.near_nodes == i + distance, 2 * self.near_nodes, -1)
+        by_pressure = np.tile(-self.curvature[np.abs(distance)], (len(i), 1))
+        films = i + np.array([-1, 0, 1])
+        films = np.where((films >= 0) & (films < n), 2 * films + 1, -1)
+        by_film = np.tile((np.pi / self.dx) * np.array([1.0, -2.0, 1.0]), (len(i), 1))
+        approach, by_approach = np.full((len(i), 1), -1), np.full((len(i), 1), -self.end_scale)
         for end in (0, n - 1):
             if self.first <= end < self.last:
                 k = end - self.first
-                film[k], film_valid[k] = (0.0, self.end_scale, 0.0), (False, True, False)
-                approach[k], approach_value[k] = 2 * n, -self.end_scale
-        pressures, films = np.where(valid, 2 * node, -1), np.where(film_valid, 2 * film_node + 1, -1)
-        columns = np.hstack([pressures, films, approach])
-        return columns.astype(np.int32), np.hstack([pressure, film, approach_value])
+                by_pressure[k] = (-self.end_scale * self.dx / np.pi) * self.logarithm[np.abs(distance)]
+                films[k], by_film[k], approach[k] = (-1, 2 * end + 1, -1), self.end_scale, 2 * n
+        self.deflection_columns = np.hstack([pressures, films, approach]).astype(np.int32)
+        self.in_oil = np.hstack([by_pressure, by_film, by_approach])
+
+    def deflection_rows(self, slope):
+        """Values of the local deflection rows at ``deflection_columns``, near field; `slope` is dp/dq."""
+        values, width = self.in_oil.copy(), 2 * self.near + 1
+        values[:, :width] *= slope[self.near_nodes]
+        values[:, self.near] += np.where(slope[self.first:self.last] > 0.0, 0.0, LEAK)
+        return values
 
     def far_product(self, v_p):
         """What the matrix lacks of the deflection rows: local nodes x (row of v_p = dp)."""

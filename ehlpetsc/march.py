@@ -24,6 +24,7 @@ from ehlpetsc.traction import shear_stresses
 
 SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
 GROWTH = 1.5
+THIN = 1e-3  # of the expected film, the least smooth film: also that one may touch, on a coarse mesh
 AGE = 0.03  # nodes off a whole number that a level one step younger makes up for
 
 
@@ -121,7 +122,7 @@ class March:
             q, h, h00, newton = steady(self.solver, self.film, not_converged)
         except NoStart as error:
             raise Failed(f"steady start: {error}") from error
-        self.smooth = (q, h)
+        self.smooth = (q, np.maximum(h, THIN * self.film))  # films of the predictor are ratios to it
         return State(q, h, h00, m=self._mass(q, h), newton=newton, flow=self._flow())
 
     def _mass(self, q, h):

@@ -77,12 +77,14 @@ class Reynolds:
         self.fluid, self.scales, self.film_scale = fluid, scales, film_scale
         n = scales.nx
         self.rows = np.arange(max(first, 1), last)
-        self.has_inlet = first == 0
+        self.has_inlet, self.has_outlet = first == 0, last == n
         self.dx = scales.x[1] - scales.x[0]
         j = np.arange(self.rows[0] - 1, self.rows[-1] + 1)  # face j lies between nodes j and j+1
-        self.behind, self.left, self.right = np.maximum(j - 1, 0), j, np.minimum(j + 1, n - 1)
-        self.inner = j + 1 < n  # beyond the outlet: same film, no pressure
+        self.nodes = slice(max(j[0] - 1, 0), min(last + 1, n))  # all that the local rows need
+        j = j - self.nodes.start
+        self.behind, self.sides = np.maximum(j - 1, 0), np.array([j, j + 1])
         self.second_order = np.where(j >= 1, 0.5, 0.0)
+        self.here = slice(j[1], j[-1] + 1)  # the rows' own nodes among them
         self.sliding = scales.u1 - scales.u2
         self.inlet = None if fluid.inlet_film is None else fluid.inlet_film / scales.h
         self.columns = self._columns(n)
@@ -95,47 +97,50 @@ class Reynolds:
 
     def mass(self, q, h):
         r"""Film content :math:`\rho h(1-\theta)` and its derivatives with respect to q and h."""
-        full = q > 0.0
-        p = np.where(full, q, 0.0) * self.scales.p0
-        rho, drho = rheology.density(p, self.fluid)
+        return self._content(q, h, rheology.density(np.maximum(q, 0.0) * self.scales.p0, self.fluid))
+
+    def _content(self, q, h, density):
+        full, (rho, drho) = q > 0.0, density
         left = np.where(full, 1.0, 1.0 + q)
         return rho * left * h, np.where(full, drho * self.scales.p0, 1.0) * h, rho * left
 
-    def _faces(self, q, h, mass):
-        """Mass flux through each face and its derivatives: (q, h) x (behind, left, right)."""
-        m, m_q, m_h = mass
-        b, le, r = self.behind, self.left, self.right
-        flux, by_left, by_behind = positive_extrapolation(m[le], m[b], self.second_order)
+    def _faces(self, q, h):
+        """Mass flux through each face and its derivatives, (q, h) x (behind, left, right); film contents."""
+        if self.has_outlet:  # beyond the outlet: same film, no pressure
+            q, h = np.append(q, 0.0), np.append(h, h[-1])
         p, dp = np.maximum(q, 0.0), (q > 0.0) * 1.0
-        p_right, h_right = self.inner * p[r], np.where(self.inner, h[r], h[le])
+        density = rheology.density(p * self.scales.p0, self.fluid)
+        m, m_q, m_h = mass = self._content(q, h, density)
+        b, le, r = self.behind, *self.sides
+        flux, by_left, by_behind = positive_extrapolation(m[le], m[b], self.second_order)
         per_length = self.scales.p0 / (self.scales.a * self.dx)
-        slope = per_length * (p_right - p[le])
-        left = self._conductance(p[le], h[le], slope)
-        right = self._conductance(p_right, h_right, slope)
-        mean = 0.5 * (left[0] + right[0])
+        slope = per_length * (p[r] - p[le])
+        value, by_p, by_h, by_slope = self._conductance(p, h, slope, density)
+        mean = 0.5 * (value[0] + value[1])
         flux = flux - mean * slope
-        by_slope = -(mean + 0.5 * (left[3] + right[3]) * slope) * per_length
-        by_p_left, by_p_right = -0.5 * slope * left[1], -0.5 * slope * right[1]
-        by_h_left, by_h_right = -0.5 * slope * left[2], -0.5 * slope * right[2]
-        by_h_left = by_h_left + np.where(self.inner, 0.0, by_h_right)
+        by_slope = (mean + 0.5 * (by_slope[0] + by_slope[1]) * slope) * per_length
+        by_p, by_h = -0.5 * slope * by_p, -0.5 * slope * by_h
+        if self.has_outlet:
+            by_h[0, -1] += by_h[1, -1]
         return flux, (
             by_behind * m_q[b], by_behind * m_h[b],
-            by_left * m_q[le] + (by_p_left - by_slope) * dp[le], by_left * m_h[le] + by_h_left,
-            (by_p_right + by_slope) * self.inner * dp[r], by_h_right * self.inner,
-        )
+            by_left * m_q[le] + (by_p[0] + by_slope) * dp[le], by_left * m_h[le] + by_h[0],
+            (by_p[1] - by_slope) * dp[r], by_h[1],
+        ), mass
 
-    def _conductance(self, p, h, slope):
-        r"""Mass flow per pressure gradient :math:`\rho h^3S/(12\eta)` of the nodes beside faces.
+    def _conductance(self, p, h, slope, density):
+        r"""Mass flow per pressure gradient :math:`\rho h^3S/(12\eta)` of the nodes on both sides of faces.
 
-        Returns value and derivatives with respect to p, h and slope.
+        Returns value and derivatives with respect to p, h and slope, shape (2, faces).
         """
-        s = self.scales
+        s, sides, (rho, drho) = self.scales, self.sides, density
         ln_eta, dln_eta = rheology.viscosity(s.p0 * p, self.fluid)
-        rho, drho = rheology.density(s.p0 * p, self.fluid)
-        mob, mob_h, mob_slope, mob_eta = rheology.mobility(s.h * h, slope, ln_eta, self.fluid, self.sliding)
+        mob, mob_h, mob_slope, mob_eta = rheology.mobility(
+            s.h * h[sides], slope, ln_eta[sides], self.fluid, self.sliding)
         unit = 1.0 / (s.u * s.h)
-        by_p = unit * s.p0 * (drho * mob + rho * mob_eta * dln_eta)
-        return unit * rho * mob, by_p, unit * s.h * rho * mob_h, unit * rho * mob_slope
+        carried = (unit * rho)[sides]
+        by_p = (unit * s.p0 * drho)[sides] * mob + (s.p0 * dln_eta)[sides] * carried * mob_eta
+        return carried * mob, by_p, s.h * carried * mob_h, carried * mob_slope
 
     def evaluate(self, q, h, past):
         """Residual of the local rows and its derivatives.
@@ -154,9 +159,8 @@ class Reynolds:
         inlet : tuple of float or None
             d(row 0)/dq and d/dh where node 0 is local.
         """
-        mass = self.mass(q, h)
-        flux, d = self._faces(q, h, mass)
-        rows = self.rows
+        flux, d, (m, m_q, m_h) = self._faces(q[self.nodes], h[self.nodes])
+        rows, here = self.rows, self.here
         residual = np.diff(flux)
         values = np.zeros((len(rows), 2 * STENCIL))
         for side in (0, 1):  # q, then h
@@ -165,10 +169,10 @@ class Reynolds:
             values[:, 4 + side] = d[2 + side][1:] - d[4 + side][:-1]
             values[:, 6 + side] = d[4 + side][1:]
         if past is not None:
-            stored, d_m, _ = positive_extrapolation(mass[0][rows], past.m[rows], past.k)
+            stored, d_m, _ = positive_extrapolation(m[here], past.m[rows], past.k)
             residual += (stored - past.w[rows]) * (self.dx / past.dt)
-            values[:, 4] += d_m * mass[1][rows] * (self.dx / past.dt)
-            values[:, 5] += d_m * mass[2][rows] * (self.dx / past.dt)
+            values[:, 4] += d_m * m_q[here] * (self.dx / past.dt)
+            values[:, 5] += d_m * m_h[here] * (self.dx / past.dt)
         residual /= self.film_scale
         values /= self.film_scale
         if not self.has_inlet:

@@ -54,35 +54,36 @@ def density(p, fluid):
     return (1.0 + fluid.gamma * p) / below, (fluid.gamma - fluid.lambda_) / below**2
 
 
-def poiseuille_factor(sigma):
-    r"""Eyring factor without sliding, :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3`.
+def flow_factors(sigma):
+    r"""Eyring factors of rolling and sliding.
 
-    Returns value and derivative.
+    :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3` and :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`
+    (Conry, Wang & Cusano 1987); near zero their series, :math:`S_0=3\sum 2n\,\Sigma^{2n-2}/(2n+1)!`.
 
-    Conry, Wang & Cusano 1987; series :math:`3\sum 2n\,\Sigma^{2n-2}/(2n+1)!` near zero.
+    Returns
+    -------
+    s0, ds0, el, del_ : ndarray
+        Both with their derivatives, shape of `sigma`.
     """
     small = np.abs(sigma.real) < SERIES_LIMIT
     s = np.where(small, 1.0, sigma)
-    sinh, cosh = np.sinh(s), np.cosh(s)
-    value = 3.0 * (s * cosh - sinh) / s**3
-    slope = 3.0 * sinh / s**2 - 3.0 * value / s
-    t = sigma**2
-    series = 1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560)))
-    dseries = sigma * (1 / 5 + t * (1 / 70 + t * (1 / 2520 + t / 166320)))
-    return np.where(small, series, value), np.where(small, dseries, slope)
-
-
-def sliding_factor(sigma):
-    r"""Eyring factor of the sliding term, :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`, and its derivative."""
-    small = np.abs(sigma.real) < SERIES_LIMIT
-    s = np.where(small, 1.0, sigma)
-    tanh = np.tanh(s)
-    value = 3.0 * (s / tanh - 1.0) / s**2
-    slope = 3.0 * (1.0 / tanh - s * (1.0 / tanh**2 - 1.0)) / s**2 - 2.0 * value / s
-    t = sigma**2
-    series = 1.0 + t * (-1 / 15 + t * (2 / 315 + t * (-1 / 1575 + t * 2 / 31185)))
-    dseries = sigma * (-2 / 15 + t * (8 / 315 + t * (-6 / 1575 + t * 16 / 31185)))
-    return np.where(small, series, value), np.where(small, dseries, slope)
+    over, grown = 1.0 / s, np.exp(s)  # one exponential for sinh, cosh and coth
+    sinh, cosh = 0.5 * (grown - 1.0 / grown), 0.5 * (grown + 1.0 / grown)
+    coth = 1.0 + 2.0 / (grown * grown - 1.0)
+    square = 3.0 * over * over
+    s0 = square * (cosh - sinh * over)
+    ds0 = square * sinh - 3.0 * s0 * over
+    el = square * (s * coth - 1.0)
+    del_ = square * (coth - s * (coth * coth - 1.0)) - 2.0 * el * over
+    if not small.any():
+        return s0, ds0, el, del_
+    x = sigma[small]
+    t = x**2
+    s0[small] = 1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560)))
+    ds0[small] = x * (1 / 5 + t * (1 / 70 + t * (1 / 2520 + t / 166320)))
+    el[small] = 1.0 + t * (-1 / 15 + t * (2 / 315 + t * (-1 / 1575 + t * 2 / 31185)))
+    del_[small] = x * (-2 / 15 + t * (8 / 315 + t * (-6 / 1575 + t * 16 / 31185)))
+    return s0, ds0, el, del_
 
 
 def mobility(h, slope, ln_eta, fluid, sliding):
@@ -111,24 +112,25 @@ def mobility(h, slope, ln_eta, fluid, sliding):
         value = h**3 * fluidity / 12.0
         return value, h**2 * fluidity / 4.0, np.zeros_like(value), -value
     tau0 = fluid.eyring_stress
-    sigma = h * slope / (2.0 * tau0)
-    s0, ds0 = poiseuille_factor(sigma)
-    newton = h**3 * fluidity
-    rolling = newton * s0
-    rolling_sigma = newton * ds0
-    if sliding == 0.0:
-        value, by_sigma, by_h, by_eta = rolling, rolling_sigma, 3.0 * h**2 * fluidity * s0, -rolling
-    else:
-        el, del_ = sliding_factor(sigma)
+    per_film = slope * (0.5 / tau0)
+    sigma = h * per_film
+    s0, ds0, el, del_ = flow_factors(sigma)
+    square = h * h
+    cube = h * square * fluidity
+    rolling = cube * s0
+    by_sigma, by_h, by_eta = cube * ds0, 3.0 * square * fluidity * s0, -rolling
+    value = rolling
+    if sliding != 0.0:
         drag = abs(sliding) / tau0
-        slip = drag * h**2 * el
-        value = np.sqrt(rolling**2 + slip**2)
-        safe = np.where(value == 0.0, 1.0, value)
-        by_sigma = (rolling * rolling_sigma + slip * drag * h**2 * del_) / safe
-        by_h = (rolling * 3.0 * h**2 * fluidity * s0 + slip * 2.0 * drag * h * el) / safe
-        by_eta = -(rolling**2) / safe
-    d_h = by_h + by_sigma * slope / (2.0 * tau0)
-    d_slope = by_sigma * h / (2.0 * tau0)
+        slip = drag * square * el
+        value = np.sqrt(rolling * rolling + slip * slip)
+        safe = 1.0 / np.where(value == 0.0, 1.0, value)
+        rolls, slips = rolling * safe, slip * safe
+        by_sigma = rolls * by_sigma + slips * drag * square * del_
+        by_h = rolls * by_h + 2.0 * slips * drag * h * el
+        by_eta = rolls * by_eta
+    d_h = by_h + by_sigma * per_film
+    d_slope = by_sigma * h * (0.5 / tau0)
     return value / 12.0, d_h / 12.0, d_slope / 12.0, by_eta / 12.0
 
 

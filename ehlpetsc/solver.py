@@ -188,9 +188,8 @@ class Solver:
         if self.cavitated is None or not np.array_equal(slope, self.slope):
             self.slope, self.cavitated = slope, slope == 0.0
             self.leak = np.where(slope[mine] > 0.0, 0.0, LEAK)
-            columns, values = p.deflection_rows(slope)
             rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32)
-            set_rows(matrix, rows, columns, values)
+            set_rows(matrix, rows, p.deflection_columns, p.deflection_rows(slope))
             if p.load_is_local:
                 matrix.setValues([2 * self.n], 2 * np.arange(self.n, dtype=np.int32), p.dx * slope)
         if p.dry:

@@ -3,11 +3,15 @@ r"""The steady solution that every run begins with, and how a hard one is reache
 From Hertz' pressure, smoothed, under a film 1.3 times Moes' central one, Newton's method takes 4 to 7
 iterations for most oils and loads. Where it does not arrive, pressures of the exit spike swing: beyond about
 :math:`\alpha p_0=20` the flow out of a node at high pressure hardly depends on that pressure any more, and
-shorter steps or other film thicknesses only swing elsewhere. What leads there is continuation: the same
-contact with a share s of the pressure-viscosity coefficient is solved first, s halved until that succeeds,
-and s then grows back to 1, each solution the start of the next; roughness that lies under the film from the
-start is left out meanwhile and then grown likewise. It took Barus' law to :math:`\alpha p_0=267`; steps in
-pseudo-time, tried on the same contacts, cost three times the iterations and did not always arrive.
+shorter steps or other film thicknesses only swing elsewhere. Thick films fail otherwise: Eyring's flow is
+exponential in :math:`hp_x/\tau_0`, which at the start may be in the hundreds.
+
+What leads there is continuation: the same contact with a share s of the pressure-viscosity coefficient and
+with :math:`\tau_0/s^4`, nearly Newtonian, is solved first, s halved until that succeeds; s then grows back
+to 1, each solution the start of the next; roughness that lies under the film from the start is left out
+meanwhile and then grown likewise. It took Barus' law to :math:`\alpha p_0=267`, and thick films from first
+residuals of 1e50; steps in pseudo-time, tried on contacts of the first kind, cost three times the iterations
+and did not always arrive.
 
 A starved inlet needs another start: the meniscus moves one node per iteration, so that the void is put where
 the gap is wider than the oil film. Whether a contact starves at all, the flooded solution tells: it does if
@@ -20,6 +24,7 @@ SMOOTHED = 0.2
 AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
 LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
 LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
+ITERATIONS = 200  # what is exponential in the unknowns falls by one exponent an iteration
 
 
 class NoStart(Exception):
@@ -84,7 +89,7 @@ def steady(solver, film, not_converged):
     oil = None if problem.dry else problem.reynolds.inlet
     if oil is None:
         # the set of dry nodes may have all of them to go
-        max_it = problem.n if problem.dry else None
+        max_it = problem.n if problem.dry else ITERATIONS
         return _Continuation(solver, not_converged, max_it).solve(hertz_start(problem, film))
     problem.reynolds.inlet = None
     try:
@@ -110,7 +115,7 @@ class _Continuation:
         Newton iterations, those of failed attempts too.
     """
 
-    def __init__(self, solver, not_converged, max_it=None):
+    def __init__(self, solver, not_converged, max_it=ITERATIONS):
         self.solver, self.problem = solver, solver.problem
         self.not_converged, self.max_it = not_converged, max_it
         self.gap = self.problem.gap
@@ -154,8 +159,8 @@ class _Continuation:
                 raise NoStart(self.failure, share, self.spent)
         return state
 
-    def _try(self, begin, alpha, roughness):
-        self._set(alpha, roughness)
+    def _try(self, begin, share, roughness):
+        self._set(share, roughness)
         try:
             *state, iterations = self.solver.solve(*begin, max_it=self.max_it)
         except self.not_converged as error:
@@ -164,8 +169,10 @@ class _Continuation:
         self.spent += iterations
         return state
 
-    def _set(self, alpha, roughness):
+    def _set(self, share, roughness):
         self.problem.gap = roughness * self.gap
         if self.fluid:
-            alpha = alpha * self.fluid.pressure_viscosity
-            self.problem.reynolds.fluid = self.fluid.copy(update={"pressure_viscosity": alpha})
+            change = {"pressure_viscosity": share * self.fluid.pressure_viscosity}
+            if self.fluid.eyring_stress is not None:
+                change["eyring_stress"] = self.fluid.eyring_stress / share**4
+            self.problem.reynolds.fluid = self.fluid.copy(update=change)

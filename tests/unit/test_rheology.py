@@ -40,10 +40,10 @@ def test_dowson_higginson_density():
 def test_eyring_factor(sigma, zeta, factor):
     fluid, h = oil(), 1e-7
     eta = 0.5
-    ln_eta = np.array(np.log(eta / fluid.viscosity))
-    slope = np.array(2.0 * fluid.eyring_stress * sigma / h)
+    ln_eta = np.array([np.log(eta / fluid.viscosity)])
+    slope = np.array([2.0 * fluid.eyring_stress * sigma / h])
     sliding = zeta * fluid.eyring_stress * h / eta
-    value = rheology.mobility(np.array(h), slope, ln_eta, fluid, sliding)[0]
+    value = rheology.mobility(np.array([h]), slope, ln_eta, fluid, sliding)[0]
     assert value * 12.0 * eta / h**3 == pytest.approx(factor, rel=1e-9)
 
 
