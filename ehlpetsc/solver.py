@@ -28,7 +28,8 @@ DEFAULTS = {
     "snes_stol": "0",
     "snes_max_funcs": "100000",
     "ksp_type": "gmres",
-    "ksp_rtol": "1e-6",
+    "ksp_rtol": "1e-8",  # so that the answer is that of any other number of ranks, to some 1e-10 p0
+    "ksp_atol": "1e-10",
     "ksp_pc_side": "right",
     "snes_max_linear_solve_fail": "1000",
     "ksp_max_it": "100",

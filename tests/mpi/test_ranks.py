@@ -24,8 +24,7 @@ SHORT = ["mesh.inlet=-1.2", "mesh.outlet=1.3", "mesh.points_per_half_width=40", 
 
 def marched(comm):
     """Pressures, films and contacts of all steps; Newton iterations in all."""
-    # blocks of the preconditioner depend on the ranks, and with them the 1e-8 that usual tolerances leave
-    set_defaults(PETSc.Options(), {"snes_atol": "1e-10", "ksp_rtol": "1e-10"}, comm.size)
+    set_defaults(PETSc.Options(), ranks=comm.size)
     case = load(CASE, SHORT)
     scales = Scales.of(case)
     film = expected_film(case, scales)
