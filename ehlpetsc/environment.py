@@ -1,11 +1,13 @@
 """What must be there before anything is imported: Debian's PETSc on the path, one thread a rank."""
 import importlib.util
 import os
+import shlex
 import sys
 from pathlib import Path
 
 DEBIAN = Path("/usr/lib/petscdir")
-NEEDED = ("numpy", "scipy", "h5py", "pydantic", "tomlkit", "mpi4py", "petsc4py")
+NUMERICS = ("numpy", "scipy", "h5py")
+NEEDED = (*NUMERICS, "pydantic", "tomlkit", "mpi4py", "petsc4py")
 RANK = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
 
 
@@ -25,6 +27,17 @@ def prepare():
         found = sorted(DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages"))
         sys.path += map(str, found[-1:])
     return [name for name in NEEDED if importlib.util.find_spec(name) is None]
+
+
+def require_numerics():
+    """End a command (exit 2) that this Python cannot import, saying which one can."""
+    missing = [name for name in NUMERICS if importlib.util.find_spec(name) is None]
+    if missing and "ehlpetsc" not in sys.orig_argv:  # a run itself says more: all that it needs
+        command = shlex.join(sys.orig_argv[1:])
+        print(f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(missing)}\n"
+              f"type: /usr/bin/python3 {command}   (./run_mpi.sh installs on Debian 12 what is missing)",
+              file=sys.stderr)
+        sys.exit(2)
 
 
 def advice(missing, arguments):

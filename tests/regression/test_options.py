@@ -191,6 +191,18 @@ def test_a_python_without_the_packages_is_told_what_to_type(case, tmp_path):
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
 
 
+@pytest.mark.parametrize("command", ["compare", "plot", "post", "study", "counts", "collisions"])
+def test_every_command_tells_a_python_without_the_packages(tmp_path, command):
+    done = subprocess.run(
+        [PYTHON, "-S", "-m", f"ehlpetsc.{command}", "a b.h5"], cwd=tmp_path, capture_output=True, text=True,
+        env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)},
+    )
+    assert done.returncode == 2
+    told, typed = done.stderr.splitlines()
+    assert told.endswith("does not have numpy, scipy, h5py")
+    assert f"type: /usr/bin/python3 -S -m ehlpetsc.{command} 'a b.h5' " in typed
+
+
 def test_explain_runs_nothing_and_speaks_once(case, tmp_path):
     done = run("--explain", case, cwd=tmp_path, ranks=2)
     assert done.returncode == 0
