@@ -4,6 +4,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from ehlpetsc.post import plots
@@ -17,6 +18,9 @@ from ehlpetsc.post.stress import stress
 matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "font.size": 9})
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
+TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
+    "telling", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
+)
 LAYER = 0.2  # half widths of depth in a picture of several results: damage under asperities ends above
 
 
@@ -91,6 +95,7 @@ def damage_picture(result, surface):
     )
     _bar(figure, plots.damage_contours(main, result, surface, length, plots.decades(largest)), [top, main])
     main.set_xlabel("along the surface [half widths]")
+    figure.align_ylabels([top, main])
     return figure
 
 
@@ -105,11 +110,12 @@ def stacked_picture(results, surface):
     plots.profile(axes[0], start[0], surface, length)
     contours = None
     for row, result in zip(axes[1:], start, strict=True):
-        drawn = plots.damage_contours(row, result, surface, length, levels, LAYER)
+        drawn = plots.damage_contours(row, result, surface, length, levels, LAYER, gap=0.1)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
     axes[-1].set_xlabel(f"along the {surface} surface [half widths]")
     _bar(figure, contours, list(axes))
+    figure.align_ylabels(axes)
     return figure
 
 
@@ -126,7 +132,7 @@ def _aligned(result, surface, results):
 
 
 def _colours(count):
-    return [matplotlib.colormaps["viridis"](0.9 * k / max(count - 1, 1)) for k in range(count)]
+    return [TELLING(k / max(count - 1, 1)) for k in range(count)]
 
 
 def depth_picture(result):

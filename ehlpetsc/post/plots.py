@@ -46,12 +46,15 @@ def shown_length(result, surface, longest=None):
     return min(length, longest) if longest else length
 
 
-def damage_contours(axes, result, surface, length, levels, deepest=np.inf):
-    """Filled contours of log10 D over body point and depth, whose axis shows the root of the depth."""
+def damage_contours(axes, result, surface, length, levels, deepest=np.inf, gap=0.07):
+    """Filled contours of log10 D over body point and depth, whose axis shows the root of the depth.
+
+    Ticks are `gap` of the axis or more apart.
+    """
     complete = result.complete[surface]
     z = result.z[result.z <= max(deepest, result.z[:2].max())]
     x, values = _along(result, surface, result.s[complete]), result.damage[surface][: z.size, complete]
-    depth, ticks = _depth_axis(z)
+    depth, ticks = _depth_axis(z, gap)
     axes.set_yticks(depth[ticks], [f"{place:g}" for place in z[ticks]])
     axes.set_ylim(depth[-1], depth[0])
     axes.set_xlim(0, length)
@@ -65,10 +68,10 @@ def damage_contours(axes, result, surface, length, levels, deepest=np.inf):
     return axes.contourf(x, depth, shown, levels=levels, cmap="inferno_r", extend="min")
 
 
-def _depth_axis(z):
+def _depth_axis(z, gap):
     """Square root of depth, which opens up the layer near the surface, and ticks that do not crowd."""
     depth = np.sqrt(z)
-    gap = 0.07 * (depth[-1] - depth[0] or 1.0)
+    gap *= depth[-1] - depth[0] or 1.0
     ticks = []
     for k, place in enumerate(depth):
         if not ticks or place - depth[ticks[-1]] >= gap:
@@ -95,11 +98,12 @@ def finish_exceedance(axes, title):
     low, high = np.log10(axes.get_xlim())
     axes.set_xlim(10 ** np.floor(low), 10 ** np.ceil(high))
     axes.xaxis.set_major_locator(LogLocator(10, numticks=12))
-    axes.xaxis.set_minor_locator(NullLocator())
+    few = np.ceil(high) - np.floor(low) <= 3
+    axes.xaxis.set_minor_locator(LogLocator(10, subs=range(2, 10)) if few else NullLocator())
     axes.set_ylim(0, 1)
     axes.set_xlabel("damage D of one pass")
     axes.set_ylabel("share of asperities above D")
-    axes.grid(color="0.92")
+    axes.grid(color="0.92", which="both")
     axes.set_title(title, fontsize=9)
     axes.legend(fontsize=8, frameon=False)
 
