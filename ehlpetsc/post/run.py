@@ -20,7 +20,7 @@ from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
 
 MEMORY = 1e9  # bytes of open histories, all processes together; too few and frames are gone through twice
 DEPTHS_AT_ONCE = 2  # share reading and transforms of the loads; more crowd each other out of the cache
-EVERY_LOSS = {2: (5, 6), 4: (19, 13), 8: (36, 24)}
+EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
 # thinned by tests/benchmarks/post_every.py
 

@@ -1,9 +1,9 @@
 """Damage lost by storing every 2nd, 4th, 8th step: ``python3 tests/benchmarks/post_every.py RESULT.h5``.
 
 RESULT.h5 is stored with every = 1; its frames are thinned, each way from two first frames. Prints per surface
-and depth the median over the points of the share lost, and the share of the mean damage. The figures that
-python3 -m ehlpetsc.post names in its warning are the medians, both surfaces together, of
-cases/table1_damage.toml.
+and depth the median over the points of the share lost, and the share of the mean damage, in the end of both
+surfaces together: these medians of cases/table1_damage.toml are the figures that python3 -m ehlpetsc.post
+names in its warning.
 """
 
 import os
@@ -39,11 +39,15 @@ def processed(path, output):
     return PostResult(output)
 
 
-def lost(whole, part, surface, depth):
-    """Shares of the damage lost: of each point, and of the mean."""
+def pairs(whole, part, surface, depth):
+    """Damage of each point that passed in both, shape (2, points): from all frames, from the thinned."""
     full = np.interp(part.s, whole.s, whole.damage[surface][depth])
     both = part.complete[surface] & np.isfinite(full)
-    full, kept = full[both], part.damage[surface][depth][both]
+    return np.stack([full[both], part.damage[surface][depth][both]])
+
+
+def lost(full, kept):
+    """Shares of the damage lost: of the median point, and of the mean."""
     return np.median(1 - kept / full), 1 - kept.mean() / full.mean()
 
 
@@ -58,13 +62,18 @@ def main(source):
                 thin(source, path, every, start)
                 parts.append(processed(path, f"{path}.post"))
                 path.unlink()
-            for surface in whole.surfaces:
-                for k, depth in enumerate(DEPTHS):
-                    losses = 100 * np.mean([lost(whole, part, surface, k) for part in parts], axis=0)
-                    print(
-                        f"every {every}, {surface} surface, z/a = {depth:<4g}: {losses[0]:5.1f} % of a "
-                        f"point's damage, {losses[1]:5.1f} % of the mean"
-                    )
+            for k, depth in enumerate(DEPTHS):
+                found = [[pairs(whole, part, name, k) for name in whole.surfaces] for part in parts]
+                for j, name in enumerate(whole.surfaces):
+                    show(every, f"{name} surface", depth, [lost(*of_part[j]) for of_part in found])
+                show(every, "both surfaces", depth, [lost(*np.concatenate(each, axis=1)) for each in found])
+
+
+def show(every, what, depth, losses):
+    """Print a line: the mean over the two ways to thin."""
+    point, mean = 100 * np.mean(losses, axis=0)
+    place = f"every {every}, {what}, z/a = {depth:<4g}"
+    print(f"{place}: {point:5.1f} % of a point's damage, {mean:5.1f} % of the mean")
 
 
 if __name__ == "__main__":
