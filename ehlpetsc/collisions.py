@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .result import OutputError
-from .swept import command, from_thick_to_thin
+from .swept import WITH_FILM, command, from_thick_to_thin
 
 BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
 SAME = 1e-3  # of the interval between frames: times nearer than this are the same
@@ -242,7 +242,7 @@ def report(results):
         marks = "".join("x" if touches else "." for touches in c.touching)
         pairs = " ".join(f"{1e6 * h:.4f},{1e-9 * p:.2f}" for h, p in zip(c.film, c.pressure, strict=True))
         lines.append(f"{number:6d} {c.x / a:8.4f} {1e6 * c.time:10.3f}  {marks}  {pairs}")
-    return lines + breakdown(found, values, smooth_films(results))
+    return lines + (breakdown(found, values, smooth_films(results)) if key in WITH_FILM else [])
 
 
 def smooth_films(results):

@@ -10,6 +10,8 @@ import numpy as np
 
 from .result import OutputError, read_result
 
+WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
+
 
 def open_all(paths, stack):
     """Results of the files named; a series' index (.series.json) stands for those members that have a file.
@@ -121,6 +123,5 @@ def from_thick_to_thin(results):
     key, _ = series_values(results)
     if key is None:
         raise OutputError("not a series: the case files differ in no single number")
-    falling = key in ("fluid.viscosity", "motion.entrainment_speed")
-    ordered = in_order(results)[:: -1 if falling else 1]
+    ordered = in_order(results)[:: -1 if key in WITH_FILM else 1]
     return ordered, series_values(ordered)[1], key

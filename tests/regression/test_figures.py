@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from running import ROOT, run, settings
 
-from ehlpetsc import collisions, counts
+from ehlpetsc import collisions, counts, entrapment
+from ehlpetsc.result import read_result
 from ehlpetsc.swept import from_thick_to_thin, in_order, open_all
 
 SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
@@ -96,3 +97,17 @@ def test_meshes_agree_on_collisions(tmp_path):
         shared = [c for c in found if all(c.touching)]
         assert len(shared) >= 2 and len(shared) >= 0.4 * len(found)
         assert 0.4 < counts.mean_rate(fine) / counts.mean_rate(coarse) < 1.8
+
+
+def test_oil_is_trapped_between_two_contacts(tmp_path):
+    """Figure 5, at twice the time step and up to the collision alone."""
+    short = settings("mesh.outlet=1.2", "time.travel=1.7", "time.courant=1.0")
+    done = run(ROOT / "cases" / "fig5.toml", *short, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    with read_result(tmp_path / "fig5.h5") as result:
+        best = entrapment.find(result)[0]
+        assert best.excess > 2.0  # over the higher of both contacts
+        assert result.x[best.peak] / result.attrs["a"] == pytest.approx(-0.9625, abs=0.003)
+        film = result.frame("film_thickness", best.frame)[best.left : best.right + 1]
+        assert film[0] == film[-1] == 0.0 and film[1:-1].min() > 0.0
+        assert len(entrapment.instants(result, best)) == 4
