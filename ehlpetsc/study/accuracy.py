@@ -19,8 +19,8 @@ from ehlpetsc.study.runs import DONE, run
 MEASURES = ("h_min", "h_c", "p_max", "film", "contact", "damage")
 MESH, STEP, NEAR = "mesh.points_per_half_width", "time.courant", "mesh.near_field"
 ATOL, RTOL = "-snes_atol", "-ksp_rtol"
-TOLERANCES = {ATOL: (1e-2, 1e-3, 1e-4, 1e-5, 1e-7), RTOL: (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)}
-TIGHT = {ATOL: 1e-9, RTOL: 1e-8}
+TOLERANCES = {ATOL: (1e-2, 1e-3, 1e-4, 1e-5, 1e-7), RTOL: (1e-1, 1e-2, 1e-4, 1e-6, 1e-8)}
+TIGHT = {ATOL: 1e-9, RTOL: 1e-10}
 NEAR_FIELDS = (5, 10, 20, 40)
 NAMES = {MESH: "mesh", STEP: "time step", NEAR: "near field", ATOL: "Newton tolerance",
          RTOL: "Krylov tolerance", "ranks": "ranks"}
