@@ -109,12 +109,12 @@ def _film(case, s, rough):
     lines = [
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
-        f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3f} um",
+        f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3g} um",
     ]
     if rough and rough.rq > 0:
         ratio = lambda_ratio(case, s, rough)
         lines.append(
-            f"Lambda ratio: {ratio:.2f} "
+            f"Lambda ratio: {ratio:.2g} "
             f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(ratio)}"
         )
     return lines
