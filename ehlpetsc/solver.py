@@ -36,12 +36,13 @@ DEFAULTS = {
     "ksp_gmres_restart": "100",
 }
 ONE_RANK = {"pc_type": "python", "pc_python_type": "ehlpetsc.banded.BorderedBand"}
-# each rank factors its own block: the operator is exact, and GMRES makes up for what the blocks leave out
-MORE_RANKS = {
+# the operator is exact, and GMRES makes up for what the blocks leave out
+TWO_RANKS = {
     "pc_type": "bjacobi",
     "sub_pc_type": "python",
     "sub_pc_python_type": "ehlpetsc.banded.BorderedBand",
 }
+MORE_RANKS = {"pc_type": "python", "pc_python_type": "ehlpetsc.banded.OverlappingBand"}
 
 
 class NotConverged(Exception):
@@ -64,7 +65,7 @@ def set_defaults(options, extra=(), ranks=1):
     for name, value in dict(extra).items():
         if not options.hasName(name):
             options[name] = value
-    factoring = ONE_RANK if ranks == 1 else MORE_RANKS
+    factoring = {1: ONE_RANK, 2: TWO_RANKS}.get(ranks, MORE_RANKS)
     for name, value in (DEFAULTS | ({} if options.hasName("pc_type") else factoring)).items():
         if not options.hasName(name):
             options[name] = value
