@@ -132,11 +132,11 @@ def _warn(loads, motions, report):
 def _tasks(job, missing, motions):
     """Split the missing depths into tasks, enough for all processes, the longest first."""
     at_once = min(DEPTHS_AT_ONCE, -(-sum(map(len, missing.values())) // job.jobs))
-    tasks = [
-        Task(job, surface, tuple(depths[k : k + at_once]))
-        for surface, depths in missing.items()
-        for k in range(0, len(depths), at_once)
-    ]
+    tasks = []
+    for surface, depths in missing.items():
+        number = -(-len(depths) // at_once)
+        # each from top to bottom: near the surface there are more cycles to count
+        tasks += [Task(job, surface, tuple(depths[k::number])) for k in range(number)]
     return sorted(tasks, key=lambda task: -len(task.depths) * motions[task.surface].complete.sum())
 
 
