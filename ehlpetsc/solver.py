@@ -17,6 +17,8 @@ from ehlpetsc.options import UsageError
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
 REFILLED = 1e-9  # pressure in p0 that a cavity gets in the iteration that fills it
+LINEAR_ATOL = 1e-3  # of Newton's absolute tolerance: where a linear residual is small enough
+LONGER_START = 7  # times the iterations of a time step
 OIL_KEPT = 0.2  # of the oil in a cavity that one iteration must leave
 DEFAULTS = {
     "snes_type": "vinewtonrsls",
@@ -29,7 +31,6 @@ DEFAULTS = {
     "snes_max_funcs": "100000",
     "ksp_type": "gmres",
     "ksp_rtol": "1e-8",  # so that the answer is that of any other number of ranks, to some 1e-10 p0
-    "ksp_atol": "1e-10",
     "ksp_pc_side": "right",
     "snes_max_linear_solve_fail": "1000",
     "ksp_max_it": "100",
@@ -139,6 +140,7 @@ class Solver:
         except PETSc.Error as error:
             reason = str(error).splitlines()[-1].split("] ")[-1]
             raise UsageError(f"PETSc refuses an option: {reason}") from None
+        self.follows = not PETSc.Options().hasName("ksp_atol")
         kind = self.snes.getType()
         if kind == "vinewtonssls":
             raise UsageError("-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
@@ -227,6 +229,11 @@ class Solver:
         step[closed] = now[closed] - REFILLED  # solids that touch are not held apart by a void
         return True
 
+    @property
+    def start_iterations(self):
+        """Iterations that a steady start may take: what is exponential falls by one exponent in each."""
+        return LONGER_START * self.snes.max_it
+
     def flow_rows(self):
         """F of the last solution at every node, shape (nx,)."""
         self.snes.computeFunction(self.x, self.f)
@@ -249,6 +256,8 @@ class Solver:
         self.scatter(q, h, h00)
         usual = self.snes.max_it
         self.snes.max_it = max_it or usual
+        if self.follows:
+            self.snes.ksp.setTolerances(atol=LINEAR_ATOL * self.snes.atol)
         self.snes.solve(None, self.x)
         self.snes.max_it = usual
         reason, iterations = self.snes.getConvergedReason(), self.snes.getIterationNumber()

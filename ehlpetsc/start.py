@@ -24,7 +24,6 @@ SMOOTHED = 0.2
 AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
 LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
 LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
-ITERATIONS = 200  # what is exponential in the unknowns falls by one exponent an iteration
 
 
 class NoStart(Exception):
@@ -89,7 +88,7 @@ def steady(solver, film, not_converged):
     oil = None if problem.dry else problem.reynolds.inlet
     if oil is None:
         # the set of dry nodes may have all of them to go
-        max_it = problem.n if problem.dry else ITERATIONS
+        max_it = problem.n if problem.dry else None
         return _Continuation(solver, not_converged, max_it).solve(hertz_start(problem, film))
     problem.reynolds.inlet = None
     try:
@@ -115,9 +114,9 @@ class _Continuation:
         Newton iterations, those of failed attempts too.
     """
 
-    def __init__(self, solver, not_converged, max_it=ITERATIONS):
+    def __init__(self, solver, not_converged, max_it=None):
         self.solver, self.problem = solver, solver.problem
-        self.not_converged, self.max_it = not_converged, max_it
+        self.not_converged, self.max_it = not_converged, max_it or solver.start_iterations
         self.gap = self.problem.gap
         self.fluid = None if self.problem.dry else self.problem.reynolds.fluid
         self.spent, self.failure = 0, None

@@ -127,6 +127,8 @@ class Sweeper:
         Of all solves so far.
     """
 
+    start_iterations = EVALUATIONS
+
     def __init__(self, case, scales, film_scale):
         self.problem = p = ContactProblem(case, scales, film_scale, 0, scales.nx)
         self.bound = case.contact.minimum_film / scales.h
