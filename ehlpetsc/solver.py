@@ -17,7 +17,7 @@ from ehlpetsc.options import UsageError
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
 REFILLED = 1e-9  # pressure in p0 that a cavity gets in the iteration that fills it
-LINEAR_ATOL = 1e-3  # of Newton's absolute tolerance: where a linear residual is small enough
+LINEAR_ATOL = 1e-4  # of Newton's absolute tolerance: where a linear residual is small enough
 LONGER_START = 7  # times the iterations of a time step
 OIL_KEPT = 0.2  # of the oil in a cavity that one iteration must leave
 DEFAULTS = {
