@@ -34,7 +34,7 @@ def thin_ones_and_collisions(stack, index):
 @pytest.fixture(scope="module")
 def figure_4(tmp_path_factory):
     values = [0.010, 0.0085, 0.007, 0.0055, 0.004, 0.0025, 0.001]
-    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.4, values)
+    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values)
 
 
 def test_films_reach_zero_where_extrapolation_says(figure_4):
@@ -56,8 +56,7 @@ def test_pressure_grows_once_the_film_is_gone(figure_4):
     with ExitStack() as stack:
         _, _, found = thin_ones_and_collisions(stack, figure_4)
         changes = [collisions.pressure_steps(c.film, c.pressure) for c in collisions.contact_points(found)]
-        # at full length 76 of 78 points; of the nine or so of this coarse form one more or less is a tenth
-        assert sum(np.prod(1 + change) <= 1 for change in changes) <= 1
+        assert np.mean([np.prod(1 + change) > 1 for change in changes]) >= 0.9
         assert np.mean(np.concatenate(changes) > 0) >= 0.75
 
 
@@ -74,7 +73,7 @@ def test_thinner_oil_touches_wherever_thicker_does(figure_4):
 
 def test_little_contact_at_high_speed(figure_4, tmp_path):
     """Figure 3: at 25 m/s contact comes at lower viscosities than at 5 m/s."""
-    index = series(tmp_path, "fig3", 80, 1.4, [0.007, 0.004, 0.001])
+    index = series(tmp_path, "fig3", 80, 1.7, [0.007, 0.004, 0.001])
     with ExitStack() as stack:
         fast, values, found = thin_ones_and_collisions(stack, index)
         slow, slow_values, _ = thin_ones_and_collisions(stack, figure_4)
