@@ -8,7 +8,7 @@ from ehlpetsc.expected import FULL_FILM, dowson_higginson, file_size, lambda_rat
 from ehlpetsc.roughness import Roughness, mesh_warnings
 from ehlpetsc.scales import Scales
 
-WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 three quarters of it
+WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 0.8 to 0.9 of it
 
 
 def explain(case):

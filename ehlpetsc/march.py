@@ -24,7 +24,7 @@ from ehlpetsc.traction import shear_stresses
 
 SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
 GROWTH = 1.5
-THIN = 1e-3  # of the expected film, the least smooth film: also that one may touch, on a coarse mesh
+THIN = 1e-3  # of the expected film, least divisor of films: on a coarse mesh the smooth one may touch too
 AGE = 0.03  # nodes off a whole number that a level one step younger makes up for
 
 
@@ -122,7 +122,7 @@ class March:
             q, h, h00, newton = steady(self.solver, self.film, not_converged)
         except NoStart as error:
             raise Failed(f"steady start: {error}") from error
-        self.smooth = (q, np.maximum(h, THIN * self.film))  # films of the predictor are ratios to it
+        self.smooth = (q, h)
         return State(q, h, h00, m=self._mass(q, h), newton=newton, flow=self._flow())
 
     def _mass(self, q, h):
@@ -138,7 +138,7 @@ class March:
         levels = (Level(state.time, state.q, state.h), *state.earlier)
         nodes = [self.scales.u * (state.time + dt - level.time) / self.scales.dx for level in levels]
         best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + AGE * k)
-        q0, h0 = self.smooth
+        q0, h0 = self.smooth[0], np.maximum(self.smooth[1], THIN * self.film)
         level, way = levels[best], nodes[best]
         q = q0 + carried(level.q - q0, way)
         # where there was oil, the differences carried must not leave a cavity

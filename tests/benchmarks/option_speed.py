@@ -37,16 +37,16 @@ MORE_RANKS = (
 
 
 def start(case, folder):
-    """Restart file at travel BEGIN."""
+    """Run to travel BEGIN; the name of the restart file."""
     sets = settings(f"time.travel={BEGIN}", "output.checkpoint=1e-5", "output.every=100000")
     done = run(*case, *sets, "-ehl_output", "begin.h5", cwd=folder)
     assert done.returncode == 0, done.stderr
     return "begin.restart.h5"
 
 
-def advance(case, options, ranks, folder):
+def advance(case, options, ranks, folder, restart):
     """Seconds, Newton iterations, halved steps, contact node-steps and last pressures; None if it failed."""
-    words = [*case, "-ehl_restart", "begin.restart.h5", "-ehl_output", "run.h5", *options.split()]
+    words = [*case, "-ehl_restart", restart, "-ehl_output", "run.h5", *options.split()]
     done = run(*words, cwd=folder, ranks=ranks if ranks > 1 else 0)
     if done.returncode:
         return None
@@ -62,13 +62,13 @@ def main(ranks, points, steps, repeats):
         folder = Path(name)
         mesh = f"mesh.points_per_half_width={points}"
         case = [ROOT / "cases" / "table1_rough.toml", *settings(mesh)]
-        start(case, folder)
+        restart = start(case, folder)
         case += settings(f"time.travel={BEGIN + 0.5 * steps / points}", f"output.every={steps}")
         found = {recipe: [] for recipe in recipes}
         for _ in range(repeats):
             for recipe in recipes:
                 if not found[recipe] or found[recipe][-1] is not None:
-                    found[recipe].append(advance(case, recipe, ranks, folder))
+                    found[recipe].append(advance(case, recipe, ranks, folder, restart))
     base = statistics.median(out[0] for out in found[""])
     *_, touching, pressure = found[""][0]
     print(f"a/{points}, {ranks} rank(s), {steps} steps with {touching} contact node-steps, defaults "
