@@ -124,7 +124,7 @@ class Mesh(Table):
     inlet: float = Field(..., ge=-100, lt=-1, unit="half widths", description="first node")
     outlet: float = Field(..., gt=1, le=100, unit="half widths", description="last node")
     points_per_half_width: int = Field(..., ge=4, le=100_000, description="at most 200000 nodes in all")
-    near_field: int = Field(8, ge=2, le=1000, description="nodes of deflection in the matrix, each side")
+    near_field: int = Field(3, ge=2, le=1000, description="nodes of deflection in the matrix, each side")
 
     @validator("points_per_half_width")
     def _affordable(cls, value, values):

@@ -10,12 +10,12 @@ Unknowns (q_0, h_0, q_1, h_1, ..., h00); rows in the same places, as SNESVI pair
 * last the load, :math:`\sum p\,\Delta x=\pi/2`.
 
 The matrix holds the near field of the deflection, the residual and the operator of the Krylov method
-the whole of it: the matrix is the operator's preconditioner.
+the whole of it.
 """
 import numpy as np
 
 from ehlpetsc import elasticity
-from ehlpetsc.reynolds import Reynolds
+from ehlpetsc.reynolds import OWN, STENCIL, Reynolds
 
 LEAK = 1e-3  # of dp/dq at cavitated nodes, in the preconditioner alone: a pivot that is never zero
 
@@ -61,10 +61,10 @@ class ContactProblem:
     def _kernels(self):
         n, near = self.n, self.near
         self.curvature = elasticity.curvature_kernel(n)
-        self.exact = elasticity.SymmetricToeplitz(self.curvature)
+        self.exact = elasticity.SymmetricToeplitz(self.curvature, self.first, self.last)
         far = self.curvature.copy()
         far[: near + 1] = 0.0
-        self.far = elasticity.SymmetricToeplitz(far)
+        self.far = elasticity.SymmetricToeplitz(far, self.first, self.last)
         self.logarithm = elasticity.deflection_kernel(n) - np.log(self.dx)
         self.end_scale = 1.0 / self.dx
         self.inside = np.arange(max(self.first, 1), min(self.last, n - 1))
@@ -85,9 +85,21 @@ class ContactProblem:
         """Film of the integral form, in a^2/R."""
         return h00 + 0.5 * self.x**2 + self.gap + self.deflection(p)
 
-    def _end_deflection(self, p, node):
+    def end_row(self, node):
+        """Under every pressure in the deflection row of an end node, shape (nx,)."""
         kernel = self.logarithm if node == 0 else self.logarithm[::-1]
-        return (self.dx / np.pi) * (kernel @ p)
+        return (-self.end_scale * self.dx / np.pi) * kernel
+
+    def flow_stencil(self):
+        """Entries of the local flow rows, shape (nodes, 8): q and h of the nodes i-2 .. i+1."""
+        rows = np.zeros((self.last - self.first, 2 * STENCIL))
+        if self.dry:
+            rows[:, OWN] = 1.0
+            return rows
+        rows[self.reynolds.rows - self.first] = self.flow_values
+        if self.inlet_values is not None:
+            rows[0, OWN:OWN + 2] = self.inlet_values
+        return rows
 
     def residual(self, q, h, h00):
         """Local rows, interleaved, of the whole state; shape of the local part of the vector."""
@@ -96,11 +108,11 @@ class ContactProblem:
         i = self.inside
         fixed = h - 0.5 * self.x**2 - self.gap  # the parabola's second difference is dx^2 exactly
         bend = (np.pi / self.dx) * (fixed[i - 1] - 2 * fixed[i] + fixed[i + 1])
-        out[2 * (i - self.first)] = bend - self.exact(p)[i]
+        out[2 * (i - self.first)] = bend - self.exact(p)[i - self.first]
         for node in (0, self.n - 1):
             if self.first <= node < self.last:
-                rigid = fixed[node] - h00
-                out[2 * (node - self.first)] = self.end_scale * (rigid - self._end_deflection(p, node))
+                rigid = self.end_scale * (fixed[node] - h00)
+                out[2 * (node - self.first)] = rigid + self.end_row(node) @ p
         if self.dry:
             flow = p[self.first:self.last]
         else:
@@ -144,7 +156,7 @@ class ContactProblem:
         for end in (0, n - 1):
             if self.first <= end < self.last:
                 k = end - self.first
-                by_pressure[k] = (-self.end_scale * self.dx / np.pi) * self.logarithm[np.abs(distance)]
+                by_pressure[k] = self.end_row(end)[self.near_nodes[k]]
                 films[k], by_film[k], approach[k] = (-1, 2 * end + 1, -1), self.end_scale, 2 * n
         self.deflection_columns = np.hstack([pressures, films, approach]).astype(np.int32)
         self.in_oil = np.hstack([by_pressure, by_film, by_approach])
@@ -158,11 +170,10 @@ class ContactProblem:
 
     def far_product(self, v_p):
         """What the matrix lacks of the deflection rows: local nodes x (row of v_p = dp)."""
-        local = -self.far(v_p)[self.first:self.last]
+        local = -self.far(v_p)
         for end in (0, self.n - 1):
             if self.first <= end < self.last:
-                kernel = self.logarithm if end == 0 else self.logarithm[::-1]
-                near = slice(0, self.near + 1) if end == 0 else slice(self.n - 1 - self.near, self.n)
-                whole = kernel @ v_p - kernel[near] @ v_p[near]
-                local[end - self.first] = -self.end_scale * self.dx / np.pi * whole
+                row = self.end_row(end)
+                far = slice(self.near + 1, self.n) if end == 0 else slice(0, self.n - 1 - self.near)
+                local[end - self.first] = row[far] @ v_p[far]
         return local

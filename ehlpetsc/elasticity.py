@@ -47,16 +47,19 @@ class SymmetricToeplitz:
     ----------
     kernel : ndarray, shape (n,)
         Value at distance 0 .. n-1 nodes.
+    first, last : int, optional
+        Rows wanted, all by default; fewer take shorter transforms.
     """
 
-    def __init__(self, kernel):
-        self.n = len(kernel)
-        self.length = next_fast_len(2 * self.n, real=True)
+    def __init__(self, kernel, first=0, last=None):
+        n = len(kernel)
+        self.count = (n if last is None else last) - first
+        self.length = next_fast_len(n + self.count - 1, real=True)
         circulant = np.zeros(self.length)
-        circulant[: self.n] = kernel
-        circulant[-self.n + 1:] = kernel[:0:-1]
+        distance = np.arange(first - n + 1, first + self.count)
+        circulant[distance - first] = kernel[np.abs(distance)]
         self.spectrum = rfft(circulant)
 
     def __call__(self, p):
-        """Return the product with `p`, shape (n,)."""
-        return irfft(self.spectrum * rfft(p, self.length), self.length)[: self.n]
+        """Return the wanted rows of the product with `p` (n,)."""
+        return irfft(self.spectrum * rfft(p, self.length), self.length)[: self.count]

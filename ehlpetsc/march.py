@@ -87,8 +87,8 @@ def carried(share, nodes):
 
 def neighbours(v, nodes):
     """Values of the two nodes that a point moved by `nodes` nodes has come from between."""
-    whole = int(np.floor(nodes))
-    return tuple(shift(v, k, order=0, mode="nearest") for k in (whole, whole + 1))
+    source = np.arange(len(v)) - int(np.floor(nodes))
+    return v.take(source, mode="clip"), v.take(source - 1, mode="clip")
 
 
 class March:

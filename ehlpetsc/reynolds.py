@@ -22,6 +22,7 @@ import numpy as np
 from ehlpetsc import rheology
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
+OWN = 4  # place of q_i in a row, before h_i
 
 
 def positive_extrapolation(m, behind, k):

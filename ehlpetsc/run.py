@@ -54,7 +54,7 @@ def run(path, overrides):
         return BAD_INPUT
     try:
         if case and options.hasName("help"):
-            set_defaults(options, case.petsc, comm.size)
+            set_defaults(options, case.petsc)
             Run(comm, case, options, stop, "none.h5")  # PETSc's own objects tell theirs as they are made
         if options.hasName("help"):
             PETSc.Sys.Print(help_text())
@@ -69,7 +69,7 @@ def run(path, overrides):
 
 def run_single(comm, case, options, stop, output):
     """A case that is no series, on all ranks. Returns the exit status."""
-    entered = set_defaults(options, case.petsc, comm.size)
+    entered = set_defaults(options, case.petsc)
     try:
         this = Run(comm, case, options, stop, output)
         this.announce()

@@ -148,7 +148,7 @@ class Series:
     def _run(self, member):
         """Run one member on this group; its exit status and why it failed."""
         group = self.dealer.group
-        entered = set_defaults(self.options, member.case.petsc, group.size)
+        entered = set_defaults(self.options, member.case.petsc)
         if self.case.series.key.startswith("petsc."):
             entered.append(self.case.series.key.partition(".")[2])
         out, err = Named(member.name, sys.stdout), Named(member.name, sys.stderr)

@@ -20,19 +20,19 @@ from running import ROOT, run, settings  # noqa: E402
 from ehlpetsc.result import read_result  # noqa: E402
 
 BEGIN = 2.5  # half widths travelled before
-BAND = "-sub_pc_type python -sub_pc_python_type ehlpetsc.banded.BorderedBand"
-OVERLAPPING = "-pc_type python -pc_python_type ehlpetsc.banded.OverlappingBand"
+NEAR = "-ehl_set mesh.near_field=8"  # what is best without the far field in the preconditioner
 ONE_RANK = (
-    "", "-snes_atol 1e-5", "-snes_atol 1e-10", "-ksp_rtol 1e-4", "-ksp_rtol 1e-6", "-ksp_rtol 1e-10",
-    "-ehl_set mesh.near_field=4", "-ehl_set mesh.near_field=16", "-ehl_set mesh.near_field=40",
-    "-pc_type lu", "-pc_type lu -pc_factor_mat_solver_type mumps", "-pc_type ilu -pc_factor_levels 1",
+    "", "-snes_atol 1e-5", "-snes_atol 1e-10", "-ksp_rtol 1e-2", "-ksp_rtol 1e-4", "-ksp_rtol 1e-8",
+    f"-pc_type lu {NEAR}", "-pc_type lu", "-pc_type lu -ehl_set mesh.near_field=20",
+    f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}", f"-pc_type ilu -pc_factor_levels 1 {NEAR}",
     "-ksp_type fgmres", "-ksp_type bcgs", "-snes_linesearch_type bt", "-snes_linesearch_type l2",
 )
 MORE_RANKS = (
-    "", OVERLAPPING, f"-pc_type asm -pc_asm_overlap 8 {BAND}",
-    "-pc_type bjacobi -sub_pc_type lu", "-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu",
-    "-pc_type lu -pc_factor_mat_solver_type mumps", "-pc_type lu -pc_factor_mat_solver_type superlu_dist",
-    "-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1",
+    "", *(f"{pc} {NEAR}" for pc in (
+        "-pc_type bjacobi -sub_pc_type lu", "-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu",
+        "-pc_type lu -pc_factor_mat_solver_type mumps", "-pc_type lu -pc_factor_mat_solver_type superlu_dist",
+        "-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1",
+    )),
 )
 
 

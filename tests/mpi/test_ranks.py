@@ -24,7 +24,7 @@ SHORT = ["mesh.inlet=-1.2", "mesh.outlet=1.3", "mesh.points_per_half_width=40", 
 
 def marched(comm):
     """Pressures, films and contacts of all steps; Newton iterations in all."""
-    set_defaults(PETSc.Options(), ranks=comm.size)
+    set_defaults(PETSc.Options())
     case = load(CASE, SHORT)
     scales = Scales.of(case)
     film = expected_film(case, scales)

@@ -50,7 +50,7 @@ def test_every_case_of_the_project_loads_and_says_what_it_is_for(path):
 def test_sections_left_out_are_none_or_default():
     c = case.load(SMOOTH)
     assert (c.time, c.series, c.surface.fast, c.surface.slow) == (None,) * 4
-    assert (c.mesh.near_field, c.output.every, c.output.precision) == (8, 1, "float64")
+    assert (c.mesh.near_field, c.output.every, c.output.precision) == (3, 1, "float64")
     assert tuple(c.output.fields) == FIELDS
     dry = case.load(CASES / "dry_hertz.toml")
     assert (dry.fluid, dry.motion) == (None, None)

@@ -1,0 +1,33 @@
+"""The near-exact inverse of a contact's matrix as a PETSc preconditioner, on any number of ranks.
+
+Use: ``-pc_type python -pc_python_type ehlpetsc.preconditioner.FarFieldBand`` (the default).
+
+The band of :mod:`ehlpetsc.extended`, far deflection included, split between ranks by :mod:`ehlpetsc.split`.
+What GMRES has left to do is the error of three exponentials, the same on any number of ranks.
+"""
+from ehlpetsc import log
+
+
+class FarFieldBand:
+    """PETSc calls `setUp` for a new matrix and `apply` for every right-hand side.
+
+    Attributes
+    ----------
+    solver : solver.Solver
+        The one whose solve this is, set by itself: the matrix that PETSc hands over is without the films in
+        contact, and without the far deflection.
+    """
+
+    solver = None
+
+    def setUp(self, pc):
+        with log.FACTOR:
+            self.kept, touching = self.solver.in_system()
+            self.solver.split.factor(self.solver.slope, self.solver.problem.flow_stencil(), touching)
+
+    def apply(self, pc, x, y):
+        b, out, count = x.array_r, y.array, len(self.kept)
+        with log.BACK_SOLVE:
+            solution, approach = self.solver.split.solve(b[:count], self.kept, b[count:].sum())
+            out[:count] = solution[self.kept]
+            out[count:] = approach  # on the last rank
