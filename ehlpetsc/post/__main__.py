@@ -58,7 +58,7 @@ def arguments(argv=None):
     )
     add("--mean-stress", choices=MEAN_STRESSES, default="none")
     add("--regression", choices=REGRESSIONS, default="x on y", help="of the median ranks")
-    add("--jobs", type=_jobs, default=1, metavar="N", help="processes (default 1)")
+    add("--jobs", type=_jobs, default=1, metavar="N", help="threads (default 1)")
     add(
         "--pictures",
         nargs="?",

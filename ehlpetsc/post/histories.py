@@ -6,8 +6,6 @@ damage near the surface, which rises with about the eleventh power. Here the loa
 (:mod:`ehlpetsc.post.between`), and their kernels are evaluated at the offset of the body's points from the
 nodes, one offset a frame: their spectra are polynomials in the offset, through Chebyshev points, so that an
 offset costs a sum of a few tables.
-
-A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
 """
 
 import numpy as np
@@ -17,11 +15,9 @@ from ehlpetsc.post.between import hermite_spectra, limited_slopes
 from ehlpetsc.post.jit import njit
 from ehlpetsc.post.stress import padded_length
 
-BATCH = 32  # frames transformed together: spectra and stresses stay in the cache
+BATCH = 48  # frames transformed together: spectra and stresses stay in the cache
 QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single precision on this grid, so that the
 #                     rounding noise of the transforms in an unloaded stretch is no cycle
-
-
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements, even about one half
 
 
@@ -54,7 +50,7 @@ def parity_tables(nx, depth):
 
 
 def parity_weights(offset):
-    """Weights (frames, 6) of the rows of :func:`parity_tables` at offsets (frames,)."""
+    """Weights (frames, 6) of the rows of :func:`parity_tables` at offsets (frames,) right of the nodes."""
     weights = offset_weights(offset)
     left, right = weights[:, :3], weights[:, :2:-1]
     return np.concatenate([left + right, left - right], axis=1)
@@ -83,23 +79,6 @@ def _spectra(tables, weights, loads, out):
             out[frame, 2, f] = b * p[f] + c * q[f] + db * dp[f] + dc * dq[f]
 
 
-@njit(cache=True, nogil=True)
-def _gather(stress, begin, first, last, shift, enter, leave, quantum, ring):
-    """Move the stresses of frames begin .. into the histories of points first .. last-1, point by point."""
-    frames = stress.shape[0]
-    for j in range(first, last):
-        history = ring[j % ring.shape[0]]
-        start, stop = max(begin, enter[j]), min(begin + frames, leave[j] + 1)
-        for part in range(3):
-            if start == enter[j]:
-                history[part, 0] = 0.0
-            for k in range(start, stop):
-                value = np.floor(stress[k - begin, part, j + shift[k]] / quantum + 0.5) * quantum
-                history[part, k - enter[j] + 1] = value
-            if stop == leave[j] + 1:
-                history[part, stop - enter[j] + 1] = 0.0
-
-
 class BodyStress:
     """Stresses at body points in a batch of frames, one depth at a time.
 
@@ -114,7 +93,6 @@ class BodyStress:
         self.n = padded_length(nx)
         self.tables = [parity_tables(nx, depth) for depth in depths]
         self._half = half_element(nx)
-        self._out = np.empty((BATCH, 3, self.n // 2 + 1), complex)
 
     def transform(self, pressure, shear):
         """Spectra (4, frames, f) of the loads (frames, nx) and their slopes, shifted by half an element.
@@ -129,79 +107,11 @@ class BodyStress:
         spectra *= self._half
         return spectra
 
-    def __call__(self, depth, spectra, offset):
-        """Stresses (frames, 3, n) of depth number `depth`, `offset` (frames,) elements right of the nodes."""
-        out = self._out[: len(offset)]
-        _spectra(self.tables[depth], parity_weights(offset), spectra, out)
+    def __call__(self, depth, spectra, weights):
+        """Stresses (frames, 3, n) of depth number `depth` at offsets with these :func:`parity_weights`."""
+        out = np.empty((len(weights), 3, self.n // 2 + 1), complex)
+        _spectra(self.tables[depth], weights, spectra, out)
         return fft.irfft(out, self.n, overwrite_x=True)
-
-
-def blocks(motion, memory, depths):
-    """Split the complete points into runs whose open histories fit in `memory` bytes: (points, slots)."""
-    points = np.flatnonzero(motion.complete)
-    room = max(1, int(memory / (12 * depths * (motion.samples() + 2))))
-    slots = _slots(points, motion)
-    if slots <= room:
-        return [(points, slots)]
-    return [(part, _slots(part, motion)) for part in np.array_split(points, -(-points.size // room))]
-
-
-def _slots(points, motion):
-    """Most points of a run under way in any one batch of frames."""
-    begins = np.arange(motion.enter[points].min(), motion.leave[points].max() + 1, BATCH)
-    enter, leave = np.sort(motion.enter[points]), np.sort(motion.leave[points])
-    entered = np.searchsorted(enter, begins + BATCH, "left")
-    gone = np.searchsorted(leave, begins, "left")
-    return int((entered - gone).max())
-
-
-def sweep(loads, surface, motion, points, slots, depths, quantum, finish, advance=None):
-    """Run through the frames that `points` need and hand over each history once it is whole.
-
-    Parameters
-    ----------
-    loads : ehlpetsc.post.loads.Loads
-    surface : str
-    motion : ehlpetsc.post.bodies.Passage
-    points : ndarray of int
-        Consecutive complete points.
-    slots : int
-        Histories under way at once, from :func:`blocks`.
-    depths : ndarray
-        In elements.
-    quantum : float
-        Pa.
-    finish : callable(depth, first, last, histories)
-        Gets histories (points, 3, samples) of points first .. last-1, of which the first leave - enter + 3
-        samples count.
-    advance : callable(frames), optional
-    """
-    stress = BodyStress(loads.x.size, depths)
-    rings = np.empty((len(depths), slots, 3, motion.samples() + 2), np.float32)
-    enter, leave = motion.enter, motion.leave
-    end = leave[points].max() + 1
-    for begin in range(enter[points].min(), end, BATCH):
-        stop = min(begin + BATCH, end)
-        spectra = stress.transform(*loads.read(surface, begin, stop))
-        active = points[(enter[points] < stop) & (leave[points] >= begin)]
-        done = active[leave[active] < stop]
-        for depth, ring in enumerate(rings):
-            fields = stress(depth, spectra, motion.offset[begin:stop])
-            if active.size:
-                _gather(fields, begin, active[0], active[-1] + 1, motion.shift, enter, leave, quantum, ring)
-            _hand_over(depth, ring, done, finish)
-        if advance:
-            advance(stop - begin)
-
-
-def _hand_over(depth, ring, done, finish):
-    """Give the finished points in stretches that are consecutive in the ring."""
-    slots = ring.shape[0]
-    while done.size:
-        slot = done[0] % slots
-        count = min(done.size, slots - slot)
-        finish(depth, done[0], done[0] + count, ring[slot : slot + count])
-        done = done[count:]
 
 
 def history_at(loads, surface, s, depth, quantum=0.0):
@@ -214,7 +124,7 @@ def history_at(loads, surface, s, depth, quantum=0.0):
         frames = inside[begin : begin + BATCH]
         node = np.floor(place[frames]).astype(int)
         spectra = stress.transform(*loads.read(surface, frames[0], frames[-1] + 1))
-        fields = stress(0, spectra, place[frames] - node)
+        fields = stress(0, spectra, parity_weights(place[frames] - node))
         values[:, begin + 1 : begin + 1 + frames.size] = fields[np.arange(frames.size), :, node].T
     if quantum:
         values = np.floor(values / quantum + 0.5) * quantum

@@ -136,7 +136,7 @@ class Loads:
 
     def _finite(self, name, first, last):
         try:
-            rows = self._dataset(name)[first:last].astype(float)
+            rows = self._dataset(name)[first:last].astype(float, copy=False)
         except OSError as fault:
             raise PostError(f"dataset {name}: frames {first} to {last - 1} cannot be read: {fault}") from None
         if not np.isfinite(rows).all():

@@ -1,25 +1,21 @@
-"""From a result file to a post-processing result: tasks over surfaces and depths, in one process or more."""
+"""From a result file to a post-processing result: tasks over surfaces and depths."""
 
-import multiprocessing
-import os
-import signal
-import threading
-import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.post.accumulate import Counter, Counting
 from ehlpetsc.post.bodies import body_points, passage
-from ehlpetsc.post.histories import QUANTUM, blocks, sweep
+from ehlpetsc.post.gathering import Sweep, blocks
+from ehlpetsc.post.histories import QUANTUM
 from ehlpetsc.post.loads import SURFACES, Loads
 from ehlpetsc.post.settings import PostError, read_settings
 from ehlpetsc.post.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
 
-MEMORY = 1e9  # bytes of open histories, all processes together; too few and frames are gone through twice
-DEPTHS_AT_ONCE = 2  # share reading and transforms of the loads; more crowd each other out of the cache
+MEMORY = 1e9  # bytes of open histories; too few and frames are gone through twice
+DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
 EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
 # thinned by tests/benchmarks/post_every.py
@@ -79,7 +75,7 @@ def run(job, report=None, progress=None):
     parts = Parts(job.output, mark)
     missing = {surface: [d for d in settings.depths if parts.load(surface, d) is None] for surface in motions}
     try:
-        _work_off(_tasks(job, missing, motions), job.jobs, parts, progress or (lambda done, of: None))
+        _work_off(_tasks(job, missing), parts, progress or (lambda done, of: None))
     except PostError:
         parts.remove()  # unlike an interruption, nothing to go on from
         raise
@@ -129,52 +125,24 @@ def _warn(loads, motions, report):
             report(f"warning: no point of the {surface} surface passed the whole contact: its damage is nan")
 
 
-def _tasks(job, missing, motions):
-    """Split the missing depths into tasks, enough for all processes, the longest first."""
-    at_once = min(DEPTHS_AT_ONCE, -(-sum(map(len, missing.values())) // job.jobs))
+def _tasks(job, missing):
+    """Split the missing depths into tasks of about as many each."""
     tasks = []
     for surface, depths in missing.items():
-        number = -(-len(depths) // at_once)
-        # each from top to bottom: near the surface there are more cycles to count
-        tasks += [Task(job, surface, tuple(depths[k::number])) for k in range(number)]
-    return sorted(tasks, key=lambda task: -len(task.depths) * motions[task.surface].complete.sum())
+        number = -(-len(depths) // DEPTHS_AT_ONCE)
+        tasks += [Task(job, surface, tuple(part)) for part in np.array_split(depths, number) if number]
+    return tasks
 
 
-def _work_off(tasks, jobs, parts, progress):
+def _work_off(tasks, parts, progress):
     total = sum(len(task.depths) for task in tasks)
     done = 0
-    if jobs == 1 or len(tasks) < 2:
-        for task in tasks:
+    for task in tasks:
 
-            def share(part, done=done, task=task):
-                progress(done + part * len(task.depths), total)
+        def share(part, done=done, task=task):
+            progress(done + part * len(task.depths), total)
 
-            done += _keep(task, solve(task, share), parts)
-        return
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("fork"), _attend, (os.getpid(),))
-    try:
-        futures = {pool.submit(solve, task): task for task in tasks}
-        for future in as_completed(futures):
-            done += _keep(futures[future], future.result(), parts)
-            progress(done, total)
-    except BaseException:
-        for process in multiprocessing.active_children():
-            process.terminate()
-        raise
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _attend(parent):
-    """Set up a process of the pool: quiet when interrupted, and gone when the parent was killed."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the parent says that the run was interrupted
-    threading.Thread(target=_watch, args=(parent,), daemon=True).start()
-
-
-def _watch(parent):
-    while os.getppid() == parent:
-        time.sleep(0.5)
-    os._exit(1)
+        done += _keep(task, solve(task, share), parts)
 
 
 def _keep(task, values, parts):
@@ -194,12 +162,11 @@ def solve(task, share=None):
         if not motion.complete.any():
             return out
         lengths = motion.leave - motion.enter + 3
-        counter = Counter(material, job.counting, motion.samples() + 2)
-        runs = blocks(motion, MEMORY / job.jobs, len(task.depths))
+        runs = blocks(motion, MEMORY, len(task.depths), job.jobs)
         frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points, _ in runs)
         done = 0
 
-        def finish(depth, first, last, histories):
+        def finish(counter, depth, first, last, histories):
             counter(histories, lengths[first:last], out[depth, first:last])
 
         def advance(count):
@@ -208,9 +175,12 @@ def solve(task, share=None):
             if share:
                 share(done / frames)
 
+        counters = [Counter(material, job.counting, motion.samples() + 2) for _ in range(job.jobs)]
         depths = np.array(task.depths) * loads.a / loads.dx
+        sweep = Sweep(loads, surface, motion, depths, QUANTUM * loads.p0,
+                      [partial(finish, counter) for counter in counters], advance)
         for points, slots in runs:
-            sweep(loads, surface, motion, points, slots, depths, QUANTUM * loads.p0, finish, advance)
+            sweep(points, slots)
         return out
 
 

@@ -3,7 +3,6 @@ r"""Damage at asperity peaks and its Weibull distribution (Holmes et al. 2005, s
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import find_peaks
 
 PROMINENCE = 0.1  # of Rq: lower bumps are noise of the measurement, not asperities
 REGRESSIONS = ("x on y", "y on x")
@@ -38,6 +37,8 @@ def asperities(profile, s, complete):
     """
     if profile is None or not complete.any():
         return Asperities(np.empty(0), np.empty(0), np.empty(0, int))
+    from scipy.signal import find_peaks  # a third of what the package takes to import
+
     places, heights = profile
     passed = s[complete]
     inside = (places >= passed[0]) & (places <= passed[-1])

@@ -3,7 +3,7 @@
 Ratios: FFT stress against direct summation of the same kernels, rainflow with damage against the pure-Python
 `rainflow` of PyPI (counting alone; left out where it is not installed). ``--full`` adds a run from a result
 file of 0.8 GB: 20,000 body points (4 depths x 5,000) of 6,000 samples each, counted three ways (max3), on one
-process and two.
+thread and two.
 """
 
 import argparse
@@ -95,7 +95,7 @@ def counting_speed(points=2000, samples=6000):
 
 
 def post(path, jobs):
-    """Wall and processor time (user and system, all processes) of one run of the command, s."""
+    """Wall and processor time (user and system) of one run of the command, s."""
     output = path.with_name("out.post.h5")
     command = [sys.executable, "-m", "ehlpetsc.post", path, "-o", output, "--surface", "slow"]
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
@@ -112,19 +112,19 @@ def run_speed(folder):
     write(path, scene, depths=(0.0, 0.01, 0.05, 0.5))
     print(f"file: {path.stat().st_size / 1e6:.0f} MB, {scene.time.size} frames of {scene.x.size} nodes")
     walls, works = {1: [], 2: []}, {1: [], 2: []}
-    for jobs in (1, 2) * 3:  # in turns: the load of the machine changes
+    for jobs in (1, 2) * 5:  # in turns: the load of the machine changes
         wall, work = post(path, jobs)
         walls[jobs].append(wall)
         works[jobs].append(work)
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
         print(
-            f"--jobs {jobs}: {wall:.1f} s, processor {work:.1f} s, largest process so far {peak:.2f} GB",
+            f"--jobs {jobs}: {wall:.1f} s, processor {work:.1f} s, memory up to {peak:.2f} GB so far",
             flush=True,
         )
     pairs = ", ".join(f"{one / two:.2f}" for one, two in zip(walls[1], walls[2], strict=True))
     share = np.median(works[1]) / np.median(walls[1])
     print(
-        f"speed-up of two processes over one, pair by pair: {pairs}; "
+        f"speed-up of two threads over one, pair by pair: {pairs}; "
         f"one had {100 * share:.0f} % of a processor\n"
         f"processor time of two over one: {np.median(works[2]) / np.median(works[1]):.2f} (1: nothing lost)"
     )

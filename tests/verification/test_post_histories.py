@@ -7,7 +7,7 @@ from post_result_file import P0, A, Scene, write
 from ehlpetsc.post import Material, damage, stress
 from ehlpetsc.post.accumulate import Counting
 from ehlpetsc.post.bodies import passage
-from ehlpetsc.post.histories import QUANTUM, BodyStress, history_at
+from ehlpetsc.post.histories import QUANTUM, BodyStress, history_at, parity_weights
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.postresult import PostResult
 from ehlpetsc.post.run import Job, run
@@ -119,7 +119,7 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
         for depth, z in enumerate((0.0, 2.0)):
             exact = stress(fine, z, load(fine), 0.1 * load(fine), 0.3)
             for offset in (0.0, 0.25, 0.4375):
-                found = body(depth, spectra, np.array([offset]))[0, :, 100:300]
+                found = body(depth, spectra, parity_weights(np.array([offset])))[0, :, 100:300]
                 at = np.rint((x[100:300] + offset) * 16).astype(int)
                 worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact, strict=True)))
         errors.append(worst)
