@@ -81,7 +81,8 @@ class Sweep:
     def __init__(self, loads, surface, motion, depths, quantum, finish, advance=None):
         self.loads, self.surface, self.motion = loads, surface, motion
         self.quantum, self.finish, self.advance = quantum, finish, advance
-        self.stress = BodyStress(loads.x.size, depths)
+        with ThreadPoolExecutor(len(finish)) as pool:
+            self.stress = BodyStress(loads.x.size, depths, pool.map)
         self.depths, self.weights = len(depths), parity_weights(motion.offset)
         np.empty(LARGEST_KEPT, np.uint8)  # freed at once, which glibc takes for a hint
 

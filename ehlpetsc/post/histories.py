@@ -8,6 +8,8 @@ nodes, one offset a frame: their spectra are polynomials in the offset, through 
 offset costs a sum of a few tables.
 """
 
+from functools import partial
+
 import numpy as np
 from scipy import fft
 
@@ -87,11 +89,13 @@ class BodyStress:
     nx : int
     depths : ndarray, shape (nz,)
         In elements.
+    spread : callable, optional
+        Used as `map` for what is prepared for each depth.
     """
 
-    def __init__(self, nx, depths):
+    def __init__(self, nx, depths, spread=map):
         self.n = padded_length(nx)
-        self.tables = [parity_tables(nx, depth) for depth in depths]
+        self.tables = list(spread(partial(parity_tables, nx), depths))
         self._half = half_element(nx)
 
     def transform(self, pressure, shear):
