@@ -88,9 +88,9 @@ class SplitBand:
         matrix.flat[::order + 1] = 1.0
         matrix[-1, -1] = 0.0
         matrix[self.inner:-1, -1] = -self.end_scale
-        for (unknowns, own, kept), tips in zip(self.of_rank, self._everyone(columns), strict=True):
+        for (unknowns, own, outer), tips in zip(self.of_rank, self._everyone(columns), strict=True):
             tips = tips[:, :len(unknowns)]
-            matrix[own[:, None], unknowns] += tips[kept]
+            matrix[own[:, None], unknowns] += tips[outer]
             matrix[self.inner:, unknowns] += tips[-BORDER:]
         self.coupled, self.coupled_pivots, singular = dgetrf(matrix, overwrite_a=True)
         if singular:
@@ -115,8 +115,8 @@ class SplitBand:
         tips[-1] -= load
         everyone = self._everyone(tips)
         right = np.zeros(self.inner + BORDER)
-        for (_, own, kept), part in zip(self.of_rank, everyone, strict=True):
-            right[own] = part[kept]
+        for (_, own, outer), part in zip(self.of_rank, everyone, strict=True):
+            right[own] = part[outer]
         right[self.inner:] = everyone[:, -BORDER:].sum(axis=0)
         w = dgetrs(self.coupled, self.coupled_pivots, right, overwrite_b=True)[0]
         return y[e.place] - self.spread @ w[self.of_rank[self.ranks.rank][0]], w[-1]

@@ -130,7 +130,7 @@ def _tasks(job, missing):
     tasks = []
     for surface, depths in missing.items():
         number = -(-len(depths) // DEPTHS_AT_ONCE)
-        tasks += [Task(job, surface, tuple(part)) for part in np.array_split(depths, number) if number]
+        tasks += [Task(job, surface, tuple(depths[k::number])) for k in range(number)]
     return tasks
 
 

@@ -89,7 +89,7 @@ def arrays(path):
         }
 
 
-def test_two_processes_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
+def test_two_threads_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
     run(Job(str(result), str(tmp_path / "one.h5")))
     run(Job(str(result), str(tmp_path / "two.h5"), jobs=2))
     monkeypatch.setattr(runner, "MEMORY", 2e5)  # some tens of histories at a time
@@ -102,14 +102,15 @@ def test_two_processes_and_small_memory_give_the_same(result, tmp_path, monkeypa
             )
 
 
-def test_goes_on_after_an_interruption(result, tmp_path, monkeypatch):
+@pytest.mark.parametrize("done", [2, 3], ids=["within a surface", "between surfaces"])
+def test_goes_on_after_an_interruption(done, result, tmp_path, monkeypatch):
     whole, output = tmp_path / "whole.h5", tmp_path / "out.h5"
     run(Job(str(result), str(whole)))
     monkeypatch.setattr(runner, "DEPTHS_AT_ONCE", 1)
     solve, solved = runner.solve, []
 
     def interrupted(task, share=None):
-        if len(solved) == 2:
+        if len(solved) == done:
             raise KeyboardInterrupt
         solved.append(task)
         return solve(task, share)
@@ -117,15 +118,15 @@ def test_goes_on_after_an_interruption(result, tmp_path, monkeypatch):
     monkeypatch.setattr(runner, "solve", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(Job(str(result), str(output)))
-    assert not output.exists() and len(list(tmp_path.glob("out.h5.parts/*.npy"))) == 2
+    assert not output.exists() and len(list(tmp_path.glob("out.h5.parts/*.npy"))) == done
     again = []
     monkeypatch.setattr(runner, "solve", lambda task, share=None: again.append(task) or solve(task, share))
     run(Job(str(result), str(output)))
-    assert len(again) == 4
+    assert len(again) == 6 - done
     for name, values in arrays(output).items():
         np.testing.assert_allclose(values, arrays(whole)[name], rtol=1e-9)
     run(Job(str(result), str(output)))  # finished: nothing to do
-    assert len(again) == 4
+    assert len(again) == 6 - done
 
 
 def test_parts_of_other_choices_are_not_used(result, tmp_path):
