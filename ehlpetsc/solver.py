@@ -36,7 +36,7 @@ DEFAULTS = {
     "snes_rtol": "0",  # the first residual of a thick film may be 1e17: a share of it says nothing
     "snes_stol": "0",
     "snes_max_funcs": "100000",
-    "ksp_type": "gmres",
+    "ksp_type": "fgmres",  # keeps what the preconditioner gave: one application less than gmres
     "ksp_rtol": "1e-4",  # more gains nothing, less costs Newton iterations
     "ksp_pc_side": "right",
     "snes_max_linear_solve_fail": "1000",
