@@ -36,6 +36,8 @@ class ContactProblem:
     ----------
     gap : ndarray, shape (nx,)
         What the roughness adds to the gap, in a^2/R; set before each solve.
+    ends : list of int
+        Local ones of the two end nodes.
     past : reynolds.Storage or None
         Previous time levels; None: steady.
     """
@@ -68,6 +70,7 @@ class ContactProblem:
         self.logarithm = elasticity.deflection_kernel(n) - np.log(self.dx)
         self.end_scale = 1.0 / self.dx
         self.inside = np.arange(max(self.first, 1), min(self.last, n - 1))
+        self.ends = [end for end in (0, n - 1) if self.first <= end < self.last]
 
     def pressure(self, q):
         """Pressure in p0."""
@@ -109,10 +112,9 @@ class ContactProblem:
         fixed = h - 0.5 * self.x**2 - self.gap  # the parabola's second difference is dx^2 exactly
         bend = (np.pi / self.dx) * (fixed[i - 1] - 2 * fixed[i] + fixed[i + 1])
         out[2 * (i - self.first)] = bend - self.exact(p)[i - self.first]
-        for node in (0, self.n - 1):
-            if self.first <= node < self.last:
-                rigid = self.end_scale * (fixed[node] - h00)
-                out[2 * (node - self.first)] = rigid + self.end_row(node) @ p
+        for end in self.ends:
+            rigid = self.end_scale * (fixed[end] - h00)
+            out[2 * (end - self.first)] = rigid + self.end_row(end) @ p
         if self.dry:
             flow = p[self.first:self.last]
         else:
@@ -153,11 +155,10 @@ class ContactProblem:
         films = np.where((films >= 0) & (films < n), 2 * films + 1, -1)
         by_film = np.tile((np.pi / self.dx) * np.array([1.0, -2.0, 1.0]), (len(i), 1))
         approach, by_approach = np.full((len(i), 1), -1), np.full((len(i), 1), -self.end_scale)
-        for end in (0, n - 1):
-            if self.first <= end < self.last:
-                k = end - self.first
-                by_pressure[k] = self.end_row(end)[self.near_nodes[k]]
-                films[k], by_film[k], approach[k] = (-1, 2 * end + 1, -1), self.end_scale, 2 * n
+        for end in self.ends:
+            k = end - self.first
+            by_pressure[k] = self.end_row(end)[self.near_nodes[k]]
+            films[k], by_film[k], approach[k] = (-1, 2 * end + 1, -1), self.end_scale, 2 * n
         self.deflection_columns = np.hstack([pressures, films, approach]).astype(np.int32)
         self.in_oil = np.hstack([by_pressure, by_film, by_approach])
 
@@ -171,9 +172,7 @@ class ContactProblem:
     def far_product(self, v_p):
         """What the matrix lacks of the deflection rows: local nodes x (row of v_p = dp)."""
         local = -self.far(v_p)
-        for end in (0, self.n - 1):
-            if self.first <= end < self.last:
-                row = self.end_row(end)
-                far = slice(self.near + 1, self.n) if end == 0 else slice(0, self.n - 1 - self.near)
-                local[end - self.first] = row[far] @ v_p[far]
+        for end in self.ends:
+            far = slice(self.near + 1, self.n) if end == 0 else slice(0, self.n - 1 - self.near)
+            local[end - self.first] = self.end_row(end)[far] @ v_p[far]
         return local

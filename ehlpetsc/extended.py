@@ -105,7 +105,7 @@ class ExtendedBand:
             self.base[self._at(row, self._film(inner + k))] = np.pi / p.dx * value
         sums = self._group(inner)[:, None] * self.size + np.arange(len(self.rates))
         self.base[self._at(row[:, None], sums)] = -self.weights
-        for end in self._ends():
+        for end in p.ends:
             self.base[self._at(self._film(end) - 1, self._film(end))] = p.end_scale
 
     def _under_pressures(self):
@@ -121,7 +121,7 @@ class ExtendedBand:
             nodes.append(inner[near] + k)
             far = np.exp(-np.outer(apart[near], self.rates)) @ self.weights
             values.append(far - p.curvature[abs(k)])
-        for end in self._ends():
+        for end in p.ends:
             near = self._beside(end)
             rows.append(np.full(len(near), self._film(end) - 1))
             nodes.append(near)
@@ -133,17 +133,13 @@ class ExtendedBand:
     def _inner(self):
         return self.nodes[(self.nodes > 0) & (self.nodes < self.problem.n - 1)]
 
-    def _ends(self):
-        p = self.problem
-        return [end for end in (0, p.n - 1) if p.first <= end < p.last]
-
     def _dense_rows(self):
         """Under the local pressures: what the band lacks of the end nodes' deflection, and the load."""
         p = self.problem
         rows = np.empty((3, len(self.nodes)))
         for k, end in enumerate((0, p.n - 1)):
             rows[k] = p.end_row(end)[self.nodes]
-            if end in self._ends():
+            if end in p.ends:
                 rows[k, self._beside(end) - p.first] = 0.0
         rows[2] = p.dx
         return rows

@@ -37,7 +37,7 @@ DEFAULTS = {
     "snes_stol": "0",
     "snes_max_funcs": "100000",
     "ksp_type": "fgmres",  # keeps what the preconditioner gave: one application less than gmres
-    "ksp_rtol": "1e-4",  # more gains nothing, less costs Newton iterations
+    "ksp_rtol": "1e-4",  # tighter gains nothing, looser costs Newton iterations
     "ksp_pc_side": "right",
     "snes_max_linear_solve_fail": "1000",
     "ksp_max_it": "100",
@@ -142,7 +142,8 @@ class Solver:
             reason = str(error).splitlines()[-1].split("] ")[-1]
             raise UsageError(f"PETSc refuses an option: {reason}") from None
         # SNES copies the rows in the system of what it hands to the preconditioner: spare it where not needed
-        own = self.snes.ksp.pc.getType() == "python"
+        pc = self.snes.ksp.pc
+        own = pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
         self.snes.setJacobian(self._jacobian, self.operator, self.operator if own else self.matrix)
         self.follows = not PETSc.Options().hasName("ksp_atol")
         kind = self.snes.getType()
@@ -189,12 +190,12 @@ class Solver:
         q, h, h00 = self.gather(x)
         self._evaluate(q, h, h00)
         with log.ASSEMBLY:
-            self._fill(q, h, self.matrix)
+            self._fill(q, h)
             self.matrix.assemble()
             operator.assemble()
 
-    def _fill(self, q, h, matrix):
-        p = self.problem
+    def _fill(self, q, h):
+        p, matrix = self.problem, self.matrix
         # a node in contact and cavitated at once would leave its deflection row blind
         slope = np.where(h <= self.bound, 1.0, p.slope(q))
         mine = slice(self.first, self.first + self.local)

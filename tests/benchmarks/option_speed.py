@@ -22,7 +22,7 @@ from ehlpetsc.result import read_result  # noqa: E402
 BEGIN = 2.5  # half widths travelled before
 NEAR = "-ehl_set mesh.near_field=8"  # what is best without the far field in the preconditioner
 ONE_RANK = (
-    "", "-snes_atol 1e-5", "-snes_atol 1e-10", "-ksp_rtol 1e-2", "-ksp_rtol 1e-4", "-ksp_rtol 1e-8",
+    "", "-snes_atol 1e-5", "-snes_atol 1e-10", "-ksp_rtol 1e-2", "-ksp_rtol 1e-8",
     f"-pc_type lu {NEAR}", "-pc_type lu", "-pc_type lu -ehl_set mesh.near_field=20",
     f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}", f"-pc_type ilu -pc_factor_levels 1 {NEAR}",
     "-ksp_type gmres", "-ksp_type bcgs", "-snes_linesearch_type bt", "-snes_linesearch_type l2",
