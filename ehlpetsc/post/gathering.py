@@ -4,12 +4,13 @@ A point is unstressed before it enters and after it leaves: each history starts 
 """
 
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from ehlpetsc.post.histories import BATCH, BodyStress, parity_weights
+from ehlpetsc.post.histories import BATCH, BodyStress, in_cache, parity_weights
 from ehlpetsc.post.jit import njit
 
 LARGEST_KEPT = 31 << 20  # bytes of a block that malloc keeps: new pages for every batch cost a third more
@@ -57,6 +58,16 @@ def _call(work):
     return work()
 
 
+@contextmanager
+def workers(count):
+    """Something to use as `map` on `count` threads, which starts at once; for one thread map itself."""
+    if count == 1:
+        yield map
+        return
+    with ThreadPoolExecutor(count) as pool:
+        yield pool.map
+
+
 class Sweep:
     """Goes through frames and hands over the history of each point once it is whole.
 
@@ -75,14 +86,15 @@ class Sweep:
     finish : list of callable(depth, first, last, histories)
         One a worker. Gets histories (points, 3, samples) of points first .. last-1, of which the first
         leave - enter + 3 samples count.
+    spread : callable
+        Of :func:`workers`, as many as `finish`.
     advance : callable(frames), optional
     """
 
-    def __init__(self, loads, surface, motion, depths, quantum, finish, advance=None):
+    def __init__(self, loads, surface, motion, depths, quantum, finish, spread=map, advance=None):
         self.loads, self.surface, self.motion = loads, surface, motion
-        self.quantum, self.finish, self.advance = quantum, finish, advance
-        with ThreadPoolExecutor(len(finish)) as pool:
-            self.stress = BodyStress(loads.x.size, depths, pool.map)
+        self.quantum, self.finish, self.spread, self.advance = quantum, finish, spread, advance
+        self.stress = BodyStress(loads.x.size, depths, spread)
         self.depths, self.weights = len(depths), parity_weights(motion.offset)
         np.empty(LARGEST_KEPT, np.uint8)  # freed at once, which glibc takes for a hint
 
@@ -92,22 +104,20 @@ class Sweep:
         rings = np.empty((self.depths, slots, 3, self.motion.samples() + 2), np.float32)
         workers, step = len(self.finish), BATCH * len(self.finish)
         computing = counting = before = ()
-        with ThreadPoolExecutor(workers) as pool:
-            spread = pool.map if workers > 1 else map
-            for begin in range(enter.min(), leave.max() + 1, step):
-                stop = min(begin + step, leave.max() + 1)
-                loads = self.loads.read(self.surface, begin, stop)
-                active = points[(enter < stop) & (leave >= begin)]
-                parts = pairwise(np.linspace(begin, stop, workers + 1).astype(int))
-                work = [partial(self._frames, loads, begin, *part, active, rings) for part in parts]
-                under_way = spread(_call, work)
-                list(computing), list(counting)
-                counting = spread(_call, self._counts(rings, before))
-                computing, before = under_way, active[self.motion.leave[active] < stop]
-                if self.advance:
-                    self.advance(stop - begin)
+        for begin in range(enter.min(), leave.max() + 1, step):
+            stop = min(begin + step, leave.max() + 1)
+            loads = self.loads.read(self.surface, begin, stop)
+            active = points[(enter < stop) & (leave >= begin)]
+            parts = pairwise(np.linspace(begin, stop, workers + 1).astype(int))
+            work = [partial(self._frames, loads, begin, *part, active, rings) for part in parts]
+            under_way = self.spread(_call, work)
             list(computing), list(counting)
-            list(spread(_call, self._counts(rings, before)))
+            counting = self.spread(_call, self._counts(rings, before))
+            computing, before = under_way, active[self.motion.leave[active] < stop]
+            if self.advance:
+                self.advance(stop - begin)
+        list(computing), list(counting)
+        list(self.spread(_call, self._counts(rings, before)))
 
     def _counts(self, rings, points):
         """Each worker's share in handing over points whose histories are whole."""
@@ -119,11 +129,14 @@ class Sweep:
         m = self.motion
         pressure, shear = (load[first - begin : last - begin] for load in loads)
         spectra = self.stress.transform(pressure, shear)
+        if not points.size:
+            return
+        begin, end = points[0], points[-1] + 1
         for depth, ring in enumerate(rings):
-            fields = self.stress(depth, spectra, self.weights[first:last])
-            if points.size:
+            for part in in_cache(last - first):
+                fields = self.stress(depth, spectra[:, part], self.weights[first:last][part])
                 _gather(
-                    fields, first, points[0], points[-1] + 1, m.shift, m.enter, m.leave, self.quantum, ring
+                    fields, first + part.start, begin, end, m.shift, m.enter, m.leave, self.quantum, ring
                 )
 
     def _hand_over(self, rings, points, finish):

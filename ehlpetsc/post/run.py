@@ -7,7 +7,7 @@ import numpy as np
 
 from ehlpetsc.post.accumulate import Counter, Counting
 from ehlpetsc.post.bodies import body_points, passage
-from ehlpetsc.post.gathering import Sweep, blocks
+from ehlpetsc.post.gathering import Sweep, blocks, workers
 from ehlpetsc.post.histories import QUANTUM
 from ehlpetsc.post.loads import SURFACES, Loads
 from ehlpetsc.post.settings import PostError, read_settings
@@ -74,11 +74,12 @@ def run(job, report=None, progress=None):
         return
     parts = Parts(job.output, mark)
     missing = {surface: [d for d in settings.depths if parts.load(surface, d) is None] for surface in motions}
-    try:
-        _work_off(_tasks(job, missing), parts, progress or (lambda done, of: None))
-    except PostError:
-        parts.remove()  # unlike an interruption, nothing to go on from
-        raise
+    with workers(job.jobs) as spread:
+        try:
+            _work_off(_tasks(job, missing), parts, spread, progress or (lambda done, of: None))
+        except PostError:
+            parts.remove()  # unlike an interruption, nothing to go on from
+            raise
     results = {surface: np.stack([parts.load(surface, d) for d in settings.depths]) for surface in motions}
     _store(job, loads, settings, s, motions, results, mark, report)
     parts.remove()
@@ -134,7 +135,7 @@ def _tasks(job, missing):
     return tasks
 
 
-def _work_off(tasks, parts, progress):
+def _work_off(tasks, parts, spread, progress):
     total = sum(len(task.depths) for task in tasks)
     done = 0
     for task in tasks:
@@ -142,7 +143,7 @@ def _work_off(tasks, parts, progress):
         def share(part, done=done, task=task):
             progress(done + part * len(task.depths), total)
 
-        done += _keep(task, solve(task, share), parts)
+        done += _keep(task, solve(task, spread, share), parts)
 
 
 def _keep(task, values, parts):
@@ -151,7 +152,7 @@ def _keep(task, values, parts):
     return len(task.depths)
 
 
-def solve(task, share=None):
+def solve(task, spread=map, share=None):
     """Damage, cycles and peak range (depths, points, 3) of a task; nan at points that did not pass."""
     job, surface = task.job, task.surface
     with Loads(job.path) as loads:
@@ -175,10 +176,10 @@ def solve(task, share=None):
             if share:
                 share(done / frames)
 
-        counters = [Counter(material, job.counting, motion.samples() + 2) for _ in range(job.jobs)]
+        counters = spread(partial(Counter, material, job.counting), [motion.samples() + 2] * job.jobs)
         depths = np.array(task.depths) * loads.a / loads.dx
         sweep = Sweep(loads, surface, motion, depths, QUANTUM * loads.p0,
-                      [partial(finish, counter) for counter in counters], advance)
+                      [partial(finish, counter) for counter in counters], spread, advance)
         for points, slots in runs:
             sweep(points, slots)
         return out

@@ -109,18 +109,18 @@ def test_goes_on_after_an_interruption(done, result, tmp_path, monkeypatch):
     monkeypatch.setattr(runner, "DEPTHS_AT_ONCE", 1)
     solve, solved = runner.solve, []
 
-    def interrupted(task, share=None):
+    def interrupted(task, *others):
         if len(solved) == done:
             raise KeyboardInterrupt
         solved.append(task)
-        return solve(task, share)
+        return solve(task, *others)
 
     monkeypatch.setattr(runner, "solve", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(Job(str(result), str(output)))
     assert not output.exists() and len(list(tmp_path.glob("out.h5.parts/*.npy"))) == done
     again = []
-    monkeypatch.setattr(runner, "solve", lambda task, share=None: again.append(task) or solve(task, share))
+    monkeypatch.setattr(runner, "solve", lambda task, *others: again.append(task) or solve(task, *others))
     run(Job(str(result), str(output)))
     assert len(again) == 6 - done
     for name, values in arrays(output).items():
