@@ -14,9 +14,9 @@ Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart
 END
 }
 
-run_packages="python3 python3-numpy python3-scipy python3-pydantic python3-tomlkit python3-mpi4py
+run_packages="python3 python3-numpy python3-scipy python3-numba python3-pydantic python3-tomlkit python3-mpi4py
     python3-h5py-mpi python3-petsc4py-real openmpi-bin"
-post_packages="python3-numba python3-matplotlib"
+post_packages="python3-matplotlib"
 test_packages="$post_packages python3-pytest python3-hypothesis python3-xarray python3-h5netcdf python3-pip"
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)

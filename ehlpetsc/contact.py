@@ -15,7 +15,8 @@ the whole of it.
 import numpy as np
 
 from ehlpetsc import elasticity
-from ehlpetsc.reynolds import OWN, STENCIL, Reynolds
+from ehlpetsc.finite_volumes import OWN, STENCIL
+from ehlpetsc.reynolds import Reynolds
 
 LEAK = 1e-3  # of dp/dq at cavitated nodes, in the preconditioner alone: a pivot that is never zero
 
@@ -40,6 +41,8 @@ class ContactProblem:
         Local ones of the two end nodes.
     past : reynolds.Storage or None
         Previous time levels; None: steady.
+    flow_values : ndarray, shape (local nodes, 8)
+        Entries of the flow rows of the last residual: q and h of the nodes i-2 .. i+1.
     """
 
     def __init__(self, case, scales, film_scale, first, last):
@@ -49,7 +52,10 @@ class ContactProblem:
         self.near = min(case.mesh.near_field, self.n - 1)
         self.dry = case.fluid is None
         self.film_scale = film_scale
-        if not self.dry:
+        if self.dry:
+            self.flow_values = np.zeros((last - first, 2 * STENCIL))
+            self.flow_values[:, OWN] = 1.0
+        else:
             self.reynolds = Reynolds(case.fluid, scales, film_scale, first, last)
         self.gap, self.past = np.zeros(self.n), None
         self._kernels()
@@ -93,17 +99,6 @@ class ContactProblem:
         kernel = self.logarithm if node == 0 else self.logarithm[::-1]
         return (-self.end_scale * self.dx / np.pi) * kernel
 
-    def flow_stencil(self):
-        """Entries of the local flow rows, shape (nodes, 8): q and h of the nodes i-2 .. i+1."""
-        rows = np.zeros((self.last - self.first, 2 * STENCIL))
-        if self.dry:
-            rows[:, OWN] = 1.0
-            return rows
-        rows[self.reynolds.rows - self.first] = self.flow_values
-        if self.inlet_values is not None:
-            rows[0, OWN:OWN + 2] = self.inlet_values
-        return rows
-
     def residual(self, q, h, h00):
         """Local rows, interleaved, of the whole state; shape of the local part of the vector."""
         p = self.pressure(q)
@@ -118,7 +113,7 @@ class ContactProblem:
         if self.dry:
             flow = p[self.first:self.last]
         else:
-            flow, self.flow_values, self.inlet_values = self.reynolds.evaluate(q, h, self.past)
+            flow, self.flow_values = self.reynolds.evaluate(q, h, self.past)
         out[1: 2 * (self.last - self.first): 2] = flow
         if self.load_is_local:
             out[-1] = self.dx * p.sum() - 0.5 * np.pi
@@ -133,10 +128,10 @@ class ContactProblem:
             films = [i] if i in (0, n - 1) else [i - 1, i, i + 1]
             extra = [2 * n] if i in (0, n - 1) else []
             rows.append(np.concatenate([2 * nodes, 2 * np.array(films) + 1, extra]))
-            if self.dry or i == 0:
+            if self.dry:
                 rows.append(np.array([2 * i, 2 * i + 1]))
             else:
-                c = self.reynolds.columns[i - self.reynolds.rows[0]]
+                c = self.reynolds.columns[i - self.first]
                 rows.append(c[c >= 0])
         if self.load_is_local:
             rows.append(np.append(2 * np.arange(n), 2 * n))

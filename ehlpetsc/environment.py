@@ -7,7 +7,7 @@ from pathlib import Path
 
 DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
-NEEDED = (*NUMERICS, "pydantic", "tomlkit", "mpi4py", "petsc4py")
+NEEDED = (*NUMERICS, "numba", "pydantic", "tomlkit", "mpi4py", "petsc4py")
 RANK = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
 
 

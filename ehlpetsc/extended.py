@@ -8,7 +8,7 @@ of the entries that reach into its neighbours' groups one block at either end.
 import numpy as np
 
 from ehlpetsc.contact import LEAK
-from ehlpetsc.reynolds import OWN
+from ehlpetsc.finite_volumes import OWN
 from ehlpetsc.tail import GROUP, exponentials
 
 

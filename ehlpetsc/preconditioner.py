@@ -23,7 +23,7 @@ class FarFieldBand:
     def setUp(self, pc):
         with log.FACTOR:
             self.kept, touching = self.solver.in_system()
-            self.solver.split.factor(self.solver.slope, self.solver.problem.flow_stencil(), touching)
+            self.solver.split.factor(self.solver.slope, self.solver.problem.flow_values, touching)
 
     def apply(self, pc, x, y):
         b, out, count = x.array_r, y.array, len(self.kept)

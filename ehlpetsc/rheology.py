@@ -1,9 +1,11 @@
 r"""Lubricant laws: viscosity, density and the Eyring flow factor, each with its derivative.
 
-Every law is a pure function of arrays in SI units; complex arguments are carried through, so
-that the derivatives can be checked by complex step.
+Every law is a pure function in SI units, of arrays or, where it is called in compiled loops over nodes, of
+numbers; complex arguments are carried through, so that the derivatives can be checked by complex step.
 """
 import numpy as np
+
+from ehlpetsc.compiled import compiled
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 
@@ -54,84 +56,72 @@ def density(p, fluid):
     return (1.0 + fluid.gamma * p) / below, (fluid.gamma - fluid.lambda_) / below**2
 
 
+@compiled
 def flow_factors(sigma):
-    r"""Eyring factors of rolling and sliding.
+    r"""Eyring factors of rolling and sliding, of one number.
 
     :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3` and :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`
     (Conry, Wang & Cusano 1987); near zero their series, :math:`S_0=3\sum 2n\,\Sigma^{2n-2}/(2n+1)!`.
 
     Returns
     -------
-    s0, ds0, el, del_ : ndarray
-        Both with their derivatives, shape of `sigma`.
+    s0, ds0, el, del_ : float
+        Both with their derivatives.
     """
-    small = np.abs(sigma.real) < SERIES_LIMIT
-    s = np.where(small, 1.0, sigma)
+    s = sigma
+    if abs(s.real) < SERIES_LIMIT:
+        t = s * s
+        return (
+            1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560))),
+            s * (1 / 5 + t * (1 / 70 + t * (1 / 2520 + t / 166320))),
+            1.0 + t * (-1 / 15 + t * (2 / 315 + t * (-1 / 1575 + t * 2 / 31185))),
+            s * (-2 / 15 + t * (8 / 315 + t * (-6 / 1575 + t * 16 / 31185))),
+        )
     over, grown = 1.0 / s, np.exp(s)  # one exponential for sinh, cosh and coth
-    sinh, cosh = 0.5 * (grown - 1.0 / grown), 0.5 * (grown + 1.0 / grown)
+    shrunk = 1.0 / grown
+    sinh, cosh = 0.5 * (grown - shrunk), 0.5 * (grown + shrunk)
     coth = 1.0 + 2.0 / (grown * grown - 1.0)
     square = 3.0 * over * over
     s0 = square * (cosh - sinh * over)
     ds0 = square * sinh - 3.0 * s0 * over
     el = square * (s * coth - 1.0)
-    del_ = square * (coth - s * (coth * coth - 1.0)) - 2.0 * el * over
-    if not small.any():
-        return s0, ds0, el, del_
-    x = sigma[small]
-    t = x**2
-    s0[small] = 1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560)))
-    ds0[small] = x * (1 / 5 + t * (1 / 70 + t * (1 / 2520 + t / 166320)))
-    el[small] = 1.0 + t * (-1 / 15 + t * (2 / 315 + t * (-1 / 1575 + t * 2 / 31185)))
-    del_[small] = x * (-2 / 15 + t * (8 / 315 + t * (-6 / 1575 + t * 16 / 31185)))
-    return s0, ds0, el, del_
+    return s0, ds0, el, square * (coth - s * (coth * coth - 1.0)) - 2.0 * el * over
 
 
-def mobility(h, slope, ln_eta, fluid, sliding):
-    r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, as one quantity.
+@compiled
+def mobility(h, slope, fluidity, stress, slip):
+    r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, as one quantity; of numbers.
 
     :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
     :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987). It stays finite both for
     :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`.
-    Without Eyring stress :math:`S=1`.
 
     Parameters
     ----------
-    h, slope, ln_eta : ndarray
-        Film [m], pressure gradient [Pa/m], :math:`\ln(\eta/\eta_0)` [1] at the same places.
-    fluid : case.Fluid
-    sliding : float
-        :math:`u_1-u_2` [m/s].
+    h, slope, fluidity : float
+        Film [m], pressure gradient [Pa/m], :math:`1/\eta` [1/(Pa s)] at the same place.
+    stress, slip : float
+        :math:`\tau_0` [Pa], infinite for a Newtonian fluid, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
 
     Returns
     -------
-    value, d_h, d_slope, d_ln_eta : ndarray
-        M [m^3/(Pa s)] and its derivatives with respect to the three arguments.
+    value, d_h, d_slope, d_ln_eta : float
+        M [m^3/(Pa s)] and its derivatives with respect to h, slope and :math:`\ln\eta`.
     """
-    fluidity = np.exp(-ln_eta) / fluid.viscosity
-    if fluid.eyring_stress is None:
-        value = h**3 * fluidity / 12.0
-        return value, h**2 * fluidity / 4.0, np.zeros_like(value), -value
-    tau0 = fluid.eyring_stress
-    per_film = slope * (0.5 / tau0)
-    sigma = h * per_film
-    s0, ds0, el, del_ = flow_factors(sigma)
+    per_film = slope * (0.5 / stress)
+    s0, ds0, el, del_ = flow_factors(h * per_film)
     square = h * h
     cube = h * square * fluidity
-    rolling = cube * s0
-    by_sigma, by_h, by_eta = cube * ds0, 3.0 * square * fluidity * s0, -rolling
-    value = rolling
-    if sliding != 0.0:
-        drag = abs(sliding) / tau0
-        slip = drag * square * el
-        value = np.sqrt(rolling * rolling + slip * slip)
-        safe = 1.0 / np.where(value == 0.0, 1.0, value)
-        rolls, slips = rolling * safe, slip * safe
-        by_sigma = rolls * by_sigma + slips * drag * square * del_
-        by_h = rolls * by_h + 2.0 * slips * drag * h * el
-        by_eta = rolls * by_eta
-    d_h = by_h + by_sigma * per_film
-    d_slope = by_sigma * h * (0.5 / tau0)
-    return value / 12.0, d_h / 12.0, d_slope / 12.0, by_eta / 12.0
+    rolling, sliding = cube * s0, slip * square * el
+    value = np.sqrt(rolling * rolling + sliding * sliding)
+    safe = 1.0 / value if value != 0.0 else 1.0
+    rolls, slides = rolling * safe, sliding * safe
+    by_sigma = rolls * cube * ds0 + slides * slip * square * del_
+    by_h = rolls * 3.0 * square * fluidity * s0 + 2.0 * slides * slip * h * el
+    return (
+        value / 12.0, (by_h + by_sigma * per_film) / 12.0, by_sigma * h * (0.5 / stress) / 12.0,
+        -rolls * rolling / 12.0,
+    )
 
 
 def wall_shear(h, slope, ln_eta, fluid, sliding):

@@ -1,6 +1,7 @@
 """Which iteration solves the equations of a time step: ``-ehl_scheme``."""
 from ehlpetsc.options import UsageError, text_of
 from ehlpetsc.solver import Solver
+from ehlpetsc.sweep import Sweeper
 
 ALLOWED = ("newton", "sweep")
 
@@ -25,14 +26,10 @@ def solver_of(case, scales, film_scale, comm, options):
     Raises
     ------
     options.UsageError
-        Sweeps are asked for, but the contact is dry or numba missing.
+        Sweeps are asked for, but the contact is dry.
     """
     if scheme(options) == "newton":
         return Solver(case, scales, film_scale, comm)
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
-    try:
-        from ehlpetsc.sweep import Sweeper
-    except ImportError as error:
-        raise UsageError("-ehl_scheme sweep needs numba; Debian: apt-get install python3-numba") from error
     return Sweeper(case, scales, film_scale)

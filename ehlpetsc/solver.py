@@ -210,9 +210,8 @@ class Solver:
             rows = np.arange(self.first, self.first + self.local, dtype=np.int32)
             set_rows(matrix, 2 * rows + 1, 2 * rows[:, None], np.ones((self.local, 1)))
         else:
-            set_rows(matrix, (2 * p.reynolds.rows + 1).astype(np.int32), p.reynolds.columns, p.flow_values)
-            if p.inlet_values is not None:
-                matrix.setValues([1], [0, 1], p.inlet_values)
+            rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32) + 1
+            set_rows(matrix, rows, p.reynolds.columns, p.flow_values)
 
     def in_system(self):
         """Local (q, h) that SNES has kept in the linear system, and the local nodes whose film it has not."""

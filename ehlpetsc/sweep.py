@@ -26,14 +26,13 @@ pressures obey Poisson's equation. What the flow carries from node to node bears
 amplify it: void in cavities, and films in a steady contact. In a time step the storage of oil damps it.
 
 The order of the nodes is the paper's, one after the other with the flow. That is no work for array
-operations, and plain Python takes a thousand times what compiled loops do: numba is needed, by this scheme
-alone. Ranks do not share a sweep: each does the whole of it.
+operations; the loops are compiled. Ranks do not share a sweep: each does the whole of it.
 """
 import numpy as np
-from numba import njit
 from petsc4py import PETSc
 
 from ehlpetsc import elasticity
+from ehlpetsc.compiled import compiled
 from ehlpetsc.contact import ContactProblem
 from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
 
@@ -47,7 +46,7 @@ APPROACH = 0.2  # of the change of h00 that the missing load asks for
 STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@compiled(fastmath=True)
 def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, relaxation):
     r"""Update every pair once, in the direction of flow, in place.
 
@@ -103,7 +102,7 @@ def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, 
         p[i] = max(q[i], 0.0)
 
 
-@njit(cache=True)
+@compiled
 def limited(q, then):
     """A pair's new q, kept to where the coefficients of the last evaluation hold."""
     if then > 0.0:
@@ -186,9 +185,7 @@ class Sweeper:
         with np.errstate(over="ignore", invalid="ignore"):
             rows = problem.residual(q, h, h00)
             self.flow = rows[1:-1:2].copy()
-            self.flow_by = np.zeros((problem.n, 8))
-            self.flow_by[1:] = problem.flow_values
-            self.flow_by[0, 4:6] = problem.inlet_values
+            self.flow_by = problem.flow_values
             rows[1:-1:2][(h <= self.bound) & (self.flow > 0.0)] = 0.0
             return np.linalg.norm(rows)
 

@@ -1,5 +1,8 @@
 """numba where it is installed; without it the same functions run as plain Python, slowly, to the same bit."""
 
+import os
+
+os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output
 try:
     from numba import njit
 

@@ -52,7 +52,7 @@ def dense(problem, slope):
         matrix[2 * end, [2 * end + 1, 2 * n]] = problem.end_scale, -problem.end_scale
     matrix[: 2 * n: 2, : 2 * n: 2] *= slope
     matrix[range(0, 2 * n, 2), range(0, 2 * n, 2)] += np.where(slope > 0.0, 0.0, LEAK)
-    for i, row in enumerate(problem.flow_stencil()):
+    for i, row in enumerate(problem.flow_values):
         for k, node in enumerate(range(i - 2, i + 2)):
             if 0 <= node < n:
                 matrix[2 * i + 1, [2 * node, 2 * node + 1]] = row[[2 * k, 2 * k + 1]]
@@ -77,7 +77,7 @@ def test_it_solves_its_matrix():
     touching = TOUCHING[(TOUCHING >= first) & (TOUCHING < last)] - first
     kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * touching + 1)
     for _ in range(2):  # the second time on what the first has left
-        split.factor(slope, part.flow_stencil(), touching)
+        split.factor(slope, part.flow_values, touching)
         found, approach = split.solve(right[2 * first:2 * last][kept], kept, right[-1] if last == n else 0.0)
     matrix = dense(whole, slope)
     expected = np.linalg.solve(matrix, right)

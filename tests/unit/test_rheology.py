@@ -38,12 +38,10 @@ def test_dowson_higginson_density():
     (5.0, 3.0, 7.268422125), (20.0, 1e6, 1734265.348),
 ])
 def test_eyring_factor(sigma, zeta, factor):
-    fluid, h = oil(), 1e-7
-    eta = 0.5
-    ln_eta = np.array([np.log(eta / fluid.viscosity)])
-    slope = np.array([2.0 * fluid.eyring_stress * sigma / h])
+    fluid, h, eta = oil(), 1e-7, 0.5
+    slope = 2.0 * fluid.eyring_stress * sigma / h
     sliding = zeta * fluid.eyring_stress * h / eta
-    value = rheology.mobility(np.array([h]), slope, ln_eta, fluid, sliding)[0]
+    value = rheology.mobility(h, slope, 1.0 / eta, fluid.eyring_stress, sliding / fluid.eyring_stress)[0]
     assert value * 12.0 * eta / h**3 == pytest.approx(factor, rel=1e-9)
 
 
@@ -62,16 +60,23 @@ def test_derivatives_of_viscosity_and_density(law):
         np.testing.assert_allclose(exact, function(p + 1j * STEP, oil(law=law))[0].imag / STEP, rtol=1e-12)
 
 
-@pytest.mark.parametrize("eyring", [10e6, None])
-@pytest.mark.parametrize("sliding", [0.0, 1.25, -6.0])
-def test_derivatives_of_mobility(eyring, sliding):
-    fluid = oil(eyring_stress=eyring)
+@pytest.mark.parametrize("stress", [10e6, np.inf])
+@pytest.mark.parametrize("sliding", [0.0, 1.25, 6.0])
+def test_derivatives_of_mobility(stress, sliding):
+    mobility = np.vectorize(rheology.mobility)
     rng = np.random.default_rng(3)
     h, ln_eta = 10.0 ** rng.uniform(-8, -6, 200), rng.uniform(0.0, 20.0, 200)
     slope = 10.0 ** rng.uniform(11, 14.5, 200) * rng.choice([-1.0, 1.0], 200)
-    exact = rheology.mobility(h, slope, ln_eta, fluid, sliding)[1:]
-    for k, derivative in enumerate(exact):
-        at = [h + 0j, slope + 0j, ln_eta + 0j]
-        at[k] = at[k] + 1j * STEP
-        step = rheology.mobility(*at, fluid, sliding)[0].imag / STEP
+    fluidity, slip = np.exp(-ln_eta) / 0.005, sliding / stress
+    value, *exact = mobility(h, slope, fluidity, stress, slip)
+    if stress == np.inf:
+        np.testing.assert_allclose(value, h**3 * fluidity / 12.0, rtol=1e-14)
+    step = 1j * STEP
+    stepped = (
+        mobility(h + step, slope + 0j, fluidity + 0j, stress, slip),
+        mobility(h + 0j, slope + step, fluidity + 0j, stress, slip),
+        mobility(h + 0j, slope + 0j, fluidity * (1.0 - step), stress, slip),  # of ln(eta)
+    )
+    for derivative, values in zip(exact, stepped, strict=True):
+        step = values[0].imag / STEP
         np.testing.assert_allclose(derivative, step, rtol=2e-7, atol=1e-9 * np.abs(step).max())
