@@ -6,8 +6,7 @@ plus the far field by FFT, applied matrix-free in GMRES, so that Newton converge
 its preconditioner (:mod:`ehlpetsc.preconditioner`) has the far field too, by exponentials. Other
 preconditioners (``-pc_type lu`` ...) get the near-field matrix alone.
 
-Newton's steps are limited in the line search's pre-check to `STEP_LIMIT` p0 in any pressure, because the
-viscosity is exponential in p, and scaled as a whole, so that linear rows stay satisfied.
+Newton's steps are limited in the line search's pre-check (:mod:`ehlpetsc.step`).
 """
 from functools import cached_property
 
@@ -20,13 +19,11 @@ from ehlpetsc.extended import ExtendedBand
 from ehlpetsc.options import UsageError
 from ehlpetsc.preconditioner import FarFieldBand
 from ehlpetsc.split import SplitBand
+from ehlpetsc.step import STEP_LIMIT, keep_oil, largest_change, let_overlaps_touch
 from ehlpetsc.tail import GROUP
 
-STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
-REFILLED = 1e-9  # pressure in p0 that a cavity, or a gap, gets in the iteration that closes it
 LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is small enough
 LONGER_START = 7  # times the iterations of a time step
-OIL_KEPT = 0.2  # of the oil in a cavity that one iteration must leave
 DEFAULTS = {
     "snes_type": "vinewtonrsls",
     "snes_linesearch_type": "basic",
@@ -224,31 +221,13 @@ class Solver:
         return kept, np.flatnonzero(touching[1::2])
 
     def _limit_step(self, x, y):
-        now, step = x.array_r[: 2 * self.local: 2], y.array[: 2 * self.local: 2]
-        pressure = self.problem.pressure
-        change = np.abs(pressure(now - step) - pressure(now))
-        film, film_step = x.array_r[1: 2 * self.local: 2], y.array_r[1: 2 * self.local: 2]
-        stays = (film <= self.bound) & (film - film_step <= self.bound)
-        change[stays] = 0.0  # in contact there is no viscosity
-        largest = change.max(initial=0.0)
-        largest = self.comm.tompi4py().allreduce(largest, max)
+        pairs, local = slice(0, 2 * self.local), (self.local, 2)
+        now, step = x.array_r[pairs].reshape(local), y.array[pairs].reshape(local)
+        change = largest_change(now, step, self.bound, -np.inf if self.problem.dry else 0.0)
+        largest = self.comm.tompi4py().allreduce(change, max)
         if largest > STEP_LIMIT:
             y.scale(STEP_LIMIT / largest)
-        step = y.array[: 2 * self.local: 2]
-        films = slice(1, 2 * self.local, 2)
-        if self.problem.dry:
-            # where solids would overlap SNES puts h = 0 and goes by the sign of F = p, which is rounding
-            overlap = x.array_r[films] - y.array[films] < self.bound
-            step[overlap] = np.minimum(step[overlap], now[overlap] - REFILLED)
-            return True
-        refilled = (now < 0.0) & (now - step > REFILLED)
-        step[refilled] = now[refilled] - REFILLED
-        # a void takes at most a part of the oil left: at q = -1 on a closed gap every derivative is zero
-        cavity = now - step < 0.0
-        kept = OIL_KEPT * (1.0 + np.minimum(now[cavity], 0.0))
-        step[cavity] = np.minimum(step[cavity], now[cavity] + 1.0 - kept)
-        closed = cavity & (x.array_r[films] - y.array[films] <= self.bound)
-        step[closed] = now[closed] - REFILLED  # solids that touch are not held apart by a void
+        (let_overlaps_touch if self.problem.dry else keep_oil)(now, y.array[pairs].reshape(local), self.bound)
         return True
 
     @property

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs, dgetrf, dgetrs
 
 BORDER = 3  # far deflection of the first and of the last node, h00
+CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
 
 
 class SplitBand:
@@ -33,6 +34,7 @@ class SplitBand:
         self.of_rank = [self._numbers(rank) for rank in range(ranks.size)]
         self.widest = max(len(unknowns) for unknowns, _, _ in self.of_rank)
         self.b = np.zeros(extended.order)
+        self.factored = None
 
     def _numbers(self, rank):
         """What a rank has to do with w: columns of its G, its outer groups in w, and these in its tips."""
@@ -45,7 +47,13 @@ class SplitBand:
         return np.concatenate([before, after]).astype(int), own, slice(first, others)
 
     def factor(self, slope, flow, touching):
-        """Factor for one state; arguments as of :meth:`ehlpetsc.extended.ExtendedBand.fill`; collective."""
+        """Factor for one state, unless that of the last call was nearly the same; collective.
+
+        Arguments as of :meth:`ehlpetsc.extended.ExtendedBand.fill`.
+        """
+        if self.ranks.allreduce(self._still_good(slope, flow, touching), min):
+            return
+        self.factored = slope, touching, flow, CLOSE * np.abs(flow).max(axis=1, keepdims=True)
         e = self.extended
         band, left, right = e.fill(slope, flow, touching)
         self.lu, self.pivots, singular = dgbtrf(band, e.half, e.half, overwrite_ab=True)
@@ -63,6 +71,14 @@ class SplitBand:
             tips[:, column] = self._tips_of(y)
         self._couple(tips)
         self.spread = g[e.place]
+
+    def _still_good(self, slope, flow, touching):
+        """Whether this rank's factors are nearly those of the given state."""
+        if self.factored is None:
+            return False
+        before, untouched, rows, change = self.factored
+        return (np.array_equal(touching, untouched) and np.array_equal(slope, before)
+                and bool((np.abs(flow - rows) <= change).all()))
 
     def _own_solve(self, b):
         half = self.extended.half

@@ -34,7 +34,8 @@ from petsc4py import PETSc
 from ehlpetsc import elasticity
 from ehlpetsc.compiled import compiled
 from ehlpetsc.contact import ContactProblem
-from ehlpetsc.solver import OIL_KEPT, REFILLED, STEP_LIMIT, NotConverged
+from ehlpetsc.solver import NotConverged
+from ehlpetsc.step import OIL_KEPT, REFILLED, STEP_LIMIT
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
 REACH, STEADY_REACH = 0.6, 4.0
