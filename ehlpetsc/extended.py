@@ -30,6 +30,10 @@ class ExtendedBand:
         Half-bandwidth.
     place : ndarray, shape (2 nodes,)
         Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
+    backwards : bool
+        Whether the band numbers the local unknowns from the last to the first, so that the last rank's
+        neighbour is where its elimination ends, as the first one's is: what comes from there is then solved
+        for without forward substitution.
     dense : ndarray, shape (3, nodes)
         Of the state last filled in: what the band lacks of both end nodes' deflection, and the load, under
         the local q.
@@ -46,6 +50,7 @@ class ExtendedBand:
         self.order = self.groups * self.size
         self.half = self.size + 2 * (GROUP - 1)
         self.height = 3 * self.half + 1
+        self.backwards = problem.first > 0 and problem.last == problem.n
         self.place = np.stack([self._film(self.nodes) - 1, self._film(self.nodes)], axis=1).ravel()
         self.beside = self._in_other_rows()
         self.base = np.zeros(self.height * self.order + 2 * self.size**2 + 1)
@@ -74,7 +79,10 @@ class ExtendedBand:
     def _at(self, row, column):
         """Place of an entry among `base`: the band, the block to the left, that to the right, nowhere."""
         left, right = self.height * self.order, self.height * self.order + self.size**2
-        in_band = column * self.height + 2 * self.half + row - column
+        if self.backwards:
+            in_band = (self.order - 1 - column) * self.height + 2 * self.half + column - row
+        else:
+            in_band = column * self.height + 2 * self.half + row - column
         to_left = left + row * self.size + column + self.size
         to_right = right + (row - (self.order - self.size)) * self.size + column - self.order
         place = np.where(column < 0, to_left, np.where(column < self.order, in_band, to_right))

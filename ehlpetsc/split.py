@@ -9,7 +9,9 @@ the solution in the groups beside the cuts, for both ends of the mesh what the b
 and h00. The columns of G are solved for with every matrix; w obeys a small system that every rank holds.
 """
 import numpy as np
-from scipy.linalg.lapack import dgbtrf, dgbtrs, dgetrf, dgetrs
+from scipy.linalg.lapack import dgbtrf, dgetrf, dgetrs
+
+from ehlpetsc.substitution import substitute
 
 BORDER = 3  # far deflection of the first and of the last node, h00
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
@@ -33,7 +35,7 @@ class SplitBand:
         self.inner = 2 * size * last  # of w, beside the cuts: groups to the left and to the right of each
         self.of_rank = [self._numbers(rank) for rank in range(ranks.size)]
         self.widest = max(len(unknowns) for unknowns, _, _ in self.of_rank)
-        self.b = np.zeros(extended.order)
+        self.b = np.zeros((1, extended.order))
         self.factored = None
 
     def _numbers(self, rank):
@@ -63,14 +65,16 @@ class SplitBand:
             left = _unit(e.size, e.place[0])
         if self.ranks.rank == self.ranks.size - 1:
             right = _unit(e.size, e.place[-2] - (e.order - e.size))
-        g = np.zeros((e.order, left.shape[1] + right.shape[1]), order="F")
-        g[:e.size, :left.shape[1]], g[-e.size:, left.shape[1]:] = left, right
-        g = self._own_solve(g)
+        g = np.zeros((left.shape[1] + right.shape[1], e.order))
+        from_left, from_right = g[:left.shape[1]], g[left.shape[1]:]
+        from_left[:, :e.size], from_right[:, -e.size:] = left.T, right.T
+        self._own_solve(from_left, 0, e.size)
+        self._own_solve(from_right, e.order - e.size, e.order)
         tips = np.zeros((2 * e.size + BORDER, self.widest))
-        for column, y in enumerate(g.T):
+        for column, y in enumerate(g):
             tips[:, column] = self._tips_of(y)
         self._couple(tips)
-        self.spread = g[e.place]
+        self.spread = g[:, e.place]
 
     def _still_good(self, slope, flow, touching):
         """Whether this rank's factors are nearly those of the given state."""
@@ -80,9 +84,14 @@ class SplitBand:
         return (np.array_equal(touching, untouched) and np.array_equal(slope, before)
                 and bool((np.abs(flow - rows) <= change).all()))
 
-    def _own_solve(self, b):
-        half = self.extended.half
-        return dgbtrs(self.lu, half, half, b, self.pivots, overwrite_b=True)[0]
+    def _own_solve(self, b, first, last):
+        """Solve in place for right-hand sides (any number, order) that are zero but in first .. last-1."""
+        e = self.extended
+        if not e.backwards:
+            return substitute(self.lu.T, self.pivots, b, first)
+        turned = b[:, ::-1].copy()
+        substitute(self.lu.T, self.pivots, turned, e.order - last)
+        b[:] = turned[:, ::-1]
 
     def _tips_of(self, y):
         """What the others need of a local solution: both outer groups, and its part of the dense rows."""
@@ -125,8 +134,9 @@ class SplitBand:
         """
         e = self.extended
         self.b[:] = 0.0
-        self.b[e.place[kept]] = b
-        y = self._own_solve(self.b)
+        y = self.b[0]
+        y[e.place[kept]] = b
+        self._own_solve(self.b, 0, e.order)
         tips = self._tips_of(y)
         tips[-1] -= load
         everyone = self._everyone(tips)
@@ -135,7 +145,7 @@ class SplitBand:
             right[own] = part[outer]
         right[self.inner:] = everyone[:, -BORDER:].sum(axis=0)
         w = dgetrs(self.coupled, self.coupled_pivots, right, overwrite_b=True)[0]
-        return y[e.place] - self.spread @ w[self.of_rank[self.ranks.rank][0]], w[-1]
+        return y[e.place] - w[self.of_rank[self.ranks.rank][0]] @ self.spread, w[-1]
 
 
 def _unit(size, place):
