@@ -70,9 +70,8 @@ class SplitBand:
         from_left[:, :e.size], from_right[:, -e.size:] = left.T, right.T
         self._own_solve(from_left, 0, e.size)
         self._own_solve(from_right, e.order - e.size, e.order)
-        tips = np.zeros((2 * e.size + BORDER, self.widest))
-        for column, y in enumerate(g):
-            tips[:, column] = self._tips_of(y)
+        tips = np.zeros((self.widest, 2 * e.size + BORDER))
+        tips[:len(g)] = self._tips_of(g)
         self._couple(tips)
         self.spread = g[:, e.place]
 
@@ -94,9 +93,9 @@ class SplitBand:
         b[:] = turned[:, ::-1]
 
     def _tips_of(self, y):
-        """What the others need of a local solution: both outer groups, and its part of the dense rows."""
+        """What the others need of local solutions: both outer groups, and their part of the dense rows."""
         e = self.extended
-        return np.concatenate([y[:e.size], y[-e.size:], e.dense @ y[e.place[::2]]])
+        return np.hstack([y[:, :e.size], y[:, -e.size:], y[:, e.place[::2]] @ e.dense.T])
 
     def _everyone(self, tips):
         """The same array of every rank."""
@@ -114,7 +113,7 @@ class SplitBand:
         matrix[-1, -1] = 0.0
         matrix[self.inner:-1, -1] = -self.end_scale
         for (unknowns, own, outer), tips in zip(self.of_rank, self._everyone(columns), strict=True):
-            tips = tips[:, :len(unknowns)]
+            tips = tips[:len(unknowns)].T
             matrix[own[:, None], unknowns] += tips[outer]
             matrix[self.inner:, unknowns] += tips[-BORDER:]
         self.coupled, self.coupled_pivots, singular = dgetrf(matrix, overwrite_a=True)
@@ -137,7 +136,7 @@ class SplitBand:
         y = self.b[0]
         y[e.place[kept]] = b
         self._own_solve(self.b, 0, e.order)
-        tips = self._tips_of(y)
+        tips = self._tips_of(self.b)[0]
         tips[-1] -= load
         everyone = self._everyone(tips)
         right = np.zeros(self.inner + BORDER)
