@@ -157,12 +157,16 @@ class ContactProblem:
         self.deflection_columns = np.hstack([pressures, films, approach]).astype(np.int32)
         self.in_oil = np.hstack([by_pressure, by_film, by_approach])
 
-    def deflection_rows(self, slope):
-        """Values of the local deflection rows at ``deflection_columns``, near field; `slope` is dp/dq."""
-        values, width = self.in_oil.copy(), 2 * self.near + 1
-        values[:, :width] *= slope[self.near_nodes]
-        values[:, self.near] += np.where(slope[self.first:self.last] > 0.0, 0.0, LEAK)
+    def deflection_rows(self, slope, rows):
+        """Values of some local deflection rows at ``deflection_columns``, near field; `slope` is dp/dq."""
+        values, width = self.in_oil[rows], 2 * self.near + 1
+        values[:, :width] *= slope[self.near_nodes[rows]]
+        values[:, self.near] += np.where(slope[self.first + rows] > 0.0, 0.0, LEAK)
         return values
+
+    def near_rows(self, changed):
+        """Local rows of the near field that `changed`, bool of shape (nx,), has nodes of."""
+        return np.flatnonzero(changed[self.near_nodes].any(axis=1))
 
     def far_product(self, v_p):
         """What the matrix lacks of the deflection rows: local nodes x (row of v_p = dp)."""

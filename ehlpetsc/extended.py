@@ -60,7 +60,7 @@ class ExtendedBand:
         self._under_flow()
         self.under_pressure = self._dense_rows()
         self.values = np.empty_like(self.base)  # kept: new pages cost as much as filling them
-        self.slope = None
+        self.slope = np.full(problem.n, np.nan)
 
     def _in_other_rows(self):
         """Of a group: the sums, every pressure, and the films of two nodes (upwind) or one."""
@@ -184,11 +184,15 @@ class ExtendedBand:
         left, right : ndarray, shape (size, len(beside))
             What the first and last group take from their neighbours on other ranks.
         """
-        if self.slope is None or not np.array_equal(slope, self.slope):
-            self.slope = slope.copy()
-            self.base[self.pressure_place] = self.by_pressure * slope[self.pressure_nodes]
-            self.base[self.diagonal] += np.where(slope[self.nodes] > 0.0, 0.0, LEAK)
+        changed = slope != self.slope
+        if changed.any():
+            some = np.flatnonzero(changed[self.pressure_nodes])
+            node = self.pressure_nodes[some]
+            self.base[self.pressure_place[some]] = self.by_pressure[some] * slope[node]
+            local = np.flatnonzero(changed[self.nodes])
+            self.base[self.diagonal[local]] += np.where(slope[self.nodes[local]] > 0.0, 0.0, LEAK)
             self.dense = self.under_pressure * slope[self.nodes]
+            self.slope = slope.copy()
         if len(touching):
             flow = flow.copy()
             flow[touching] = 0.0

@@ -122,7 +122,7 @@ class Solver:
         self.matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_LOCATION_ERR, True)
         self.operator = PETSc.Mat().createPython(sizes, _Operator(self), comm=self.comm)
         self.operator.setUp()
-        self.slope = None  # dp/dq of the rows in the matrix
+        self.slope = np.full(self.n, np.nan)  # dp/dq of the rows in the matrix
 
     def _create_bounds(self, minimum_film):
         self.lower, self.upper = self.x.duplicate(), self.x.duplicate()
@@ -196,11 +196,13 @@ class Solver:
         # a node in contact and cavitated at once would leave its deflection row blind
         slope = np.where(h <= self.bound, 1.0, p.slope(q))
         mine = slice(self.first, self.first + self.local)
-        if self.slope is None or not np.array_equal(slope, self.slope):
+        changed = slope != self.slope
+        if changed.any():
             self.slope = slope
             self.leak = np.where(slope[mine] > 0.0, 0.0, LEAK)
-            rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32)
-            set_rows(matrix, rows, p.deflection_columns, p.deflection_rows(slope))
+            rows = p.near_rows(changed)
+            numbers = (2 * (self.first + rows)).astype(np.int32)
+            set_rows(matrix, numbers, p.deflection_columns[rows], p.deflection_rows(slope, rows))
             if p.load_is_local:
                 matrix.setValues([2 * self.n], 2 * np.arange(self.n, dtype=np.int32), p.dx * slope)
         if p.dry:
