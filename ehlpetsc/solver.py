@@ -112,7 +112,7 @@ class Solver:
         self.bound = case.contact.minimum_film / scales.h
         self._create_bounds(self.bound)
         self._create_snes()
-        self.evaluated = None
+        self.evaluated = self.inactive = None
 
     def _create_matrix(self, local):
         p, sizes = self.problem, ((local, 2 * self.n + 1),) * 2
@@ -160,7 +160,9 @@ class Solver:
     def gather(self, v):
         """The whole vector on every rank, as q, h (shape (nx,)) and h00."""
         self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        whole = self.all.array_r
+        return self._parts(self.all.array_r)
+
+    def _parts(self, whole):
         return whole[: 2 * self.n: 2].copy(), whole[1: 2 * self.n: 2].copy(), whole[2 * self.n]
 
     def scatter(self, q, h, h00):
@@ -172,22 +174,22 @@ class Solver:
             x[-1] = h00
 
     def _function(self, snes, x, f):
-        f.array[:] = self._evaluate(*self.gather(x))
+        self._evaluate(x)
+        f.array[:] = self.residual
 
-    def _evaluate(self, q, h, h00):
-        """Residual; SNES asks for it two or three times at the same place."""
-        whole = np.concatenate([q, h, [h00]])
-        if self.evaluated is None or not np.array_equal(whole, self.evaluated):
+    def _evaluate(self, x):
+        """Residual and q, h of all nodes at x; SNES asks two or three times at the same place."""
+        self.to_all.scatter(x, self.all, mode=PETSc.ScatterMode.FORWARD)
+        if self.evaluated is None or not np.array_equal(self.all.array_r, self.evaluated):
+            self.evaluated = self.all.array_r.copy()
+            self.whole = q, h, h00 = self._parts(self.evaluated)
             with log.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
                 self.residual = self.problem.residual(q, h, h00)
-            self.evaluated = whole
-        return self.residual
 
     def _jacobian(self, snes, x, operator, preconditioner):
-        q, h, h00 = self.gather(x)
-        self._evaluate(q, h, h00)
+        self._evaluate(x)
         with log.ASSEMBLY:
-            self._fill(q, h)
+            self._fill(*self.whole[:2])
             self.matrix.assemble()
             operator.assemble()
 
@@ -216,11 +218,14 @@ class Solver:
         """Local (q, h) that SNES has kept in the linear system, and the local nodes whose film it has not."""
         if not self.bounded:
             return np.arange(2 * self.local), np.arange(0)
-        inactive = self.snes.getVIInactiveSet().indices - self.x.owner_range[0]
-        kept = inactive[:len(inactive) - self.problem.load_is_local]
-        touching = np.ones(2 * self.local, dtype=bool)
-        touching[kept] = False
-        return kept, np.flatnonzero(touching[1::2])
+        inactive = self.snes.getVIInactiveSet().indices
+        if not np.array_equal(inactive, self.inactive):
+            self.inactive = inactive.copy()
+            self.kept = inactive[:len(inactive) - self.problem.load_is_local] - self.x.owner_range[0]
+            films = np.ones(self.local, dtype=bool)
+            films[self.kept[self.kept % 2 == 1] // 2] = False
+            self.touching = np.flatnonzero(films)
+        return self.kept, self.touching
 
     def _limit_step(self, x, y):
         pairs, local = slice(0, 2 * self.local), (self.local, 2)
