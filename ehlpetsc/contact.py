@@ -16,7 +16,7 @@ import numpy as np
 
 from ehlpetsc import elasticity
 from ehlpetsc.finite_volumes import OWN, STENCIL
-from ehlpetsc.reynolds import Reynolds
+from ehlpetsc.reynolds import Reynolds, full_of_oil
 
 LEAK = 1e-3  # of dp/dq at cavitated nodes, in the preconditioner alone: a pivot that is never zero
 
@@ -84,7 +84,7 @@ class ContactProblem:
 
     def slope(self, q):
         """dp/dq."""
-        return np.ones_like(q) if self.dry else (q > 0.0) * 1.0
+        return np.ones_like(q) if self.dry else full_of_oil(q) * 1.0
 
     def deflection(self, p):
         r"""Elastic deflection :math:`-\frac1\pi\int p\ln|x-s|ds` at every node, in a^2/R."""

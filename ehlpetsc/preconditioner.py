@@ -22,8 +22,11 @@ class FarFieldBand:
 
     def setUp(self, pc):
         with log.FACTOR:
-            self.kept, touching = self.solver.in_system()
-            self.solver.split.factor(self.solver.slope, self.solver.problem.flow_values, touching)
+            s = self.solver
+            self.kept, touching = s.in_system()
+            # in every solve anew, so that a run that was stopped goes on as if it had not been
+            first = s.snes.getIterationNumber() == 0
+            s.split.factor(s.slope, s.problem.flow_values, touching, anew=first)
 
     def apply(self, pc, x, y):
         b, out, count = x.array_r, y.array, len(self.kept)

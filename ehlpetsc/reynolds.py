@@ -17,6 +17,13 @@ import numpy as np
 from ehlpetsc import rheology
 from ehlpetsc.finite_volumes import OWN, STENCIL, M, balance, extrapolated, nodal
 
+ROUNDING = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
+
+
+def full_of_oil(q):
+    """Nodes with a pressure and no void; which side of zero rounding is on must not matter."""
+    return q > -ROUNDING
+
 
 class Storage:
     r"""Film contents of the previous time levels: what BDF2 needs of the past.
@@ -71,8 +78,8 @@ class Reynolds:
         return self._content(q, h, rheology.density(np.maximum(q, 0.0) * self.scales.p0, self.fluid))
 
     def _content(self, q, h, density):
-        full, (rho, drho) = q > 0.0, density
-        left = np.where(full, 1.0, 1.0 + q)
+        full, (rho, drho) = full_of_oil(q), density
+        left = 1.0 + np.minimum(q, 0.0)
         return rho * left * h, np.where(full, drho * self.scales.p0, 1.0) * h, rho * left
 
     def _at(self, q, h):
@@ -83,8 +90,8 @@ class Reynolds:
         s, p = self.scales, np.maximum(q, 0.0)
         rho, drho = density = rheology.density(p * s.p0, self.fluid)
         ln_eta, dln_eta = rheology.viscosity(p * s.p0, self.fluid)
-        unit = 1.0 / (s.u * s.h)
-        return nodal(p, q > 0.0, s.h * h, *self._content(q, h, density), unit * rho, unit * s.p0 * drho,
+        unit, content = 1.0 / (s.u * s.h), self._content(q, h, density)
+        return nodal(p, full_of_oil(q), s.h * h, *content, unit * rho, unit * s.p0 * drho,
                      np.exp(-ln_eta) / self.fluid.viscosity, s.p0 * dln_eta)
 
     def evaluate(self, q, h, past):

@@ -120,6 +120,7 @@ class Solver:
         zeros = np.zeros(len(p.pattern_columns))
         self.matrix.setPreallocationCSR((p.pattern_rows, p.pattern_columns, zeros))
         self.matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_LOCATION_ERR, True)
+        self.matrix.setOption(PETSc.Mat.Option.NO_OFF_PROC_ENTRIES, True)  # nothing to exchange at assembly
         self.operator = PETSc.Mat().createPython(sizes, _Operator(self), comm=self.comm)
         self.operator.setUp()
         self.slope = np.full(self.n, np.nan)  # dp/dq of the rows in the matrix

@@ -36,7 +36,6 @@ class SplitBand:
         self.of_rank = [self._numbers(rank) for rank in range(ranks.size)]
         self.widest = max(len(unknowns) for unknowns, _, _ in self.of_rank)
         self.b = np.zeros((1, extended.order))
-        self.factored = None
 
     def _numbers(self, rank):
         """What a rank has to do with w: columns of its G, its outer groups in w, and these in its tips."""
@@ -48,12 +47,12 @@ class SplitBand:
         own = 2 * size * (rank - 1) + size + np.arange(first, others)
         return np.concatenate([before, after]).astype(int), own, slice(first, others)
 
-    def factor(self, slope, flow, touching):
-        """Factor for one state, unless that of the last call was nearly the same; collective.
+    def factor(self, slope, flow, touching, anew=True):
+        """Factor for one state; unless `anew`, not where the last factors are nearly its own; collective.
 
-        Arguments as of :meth:`ehlpetsc.extended.ExtendedBand.fill`.
+        Other arguments as of :meth:`ehlpetsc.extended.ExtendedBand.fill`.
         """
-        if self.ranks.allreduce(self._still_good(slope, flow, touching), min):
+        if not anew and self.ranks.allreduce(self._still_good(slope, flow, touching), min):
             return
         self.factored = slope, touching, flow, CLOSE * np.abs(flow).max(axis=1, keepdims=True)
         e = self.extended
@@ -77,8 +76,6 @@ class SplitBand:
 
     def _still_good(self, slope, flow, touching):
         """Whether this rank's factors are nearly those of the given state."""
-        if self.factored is None:
-            return False
         before, untouched, rows, change = self.factored
         return (np.array_equal(touching, untouched) and np.array_equal(slope, before)
                 and bool((np.abs(flow - rows) <= change).all()))
