@@ -1,0 +1,83 @@
+"""Reynolds' rows: their derivatives, and that a part of the mesh has the rows of the whole."""
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case import load
+from ehlpetsc.reynolds import ROUNDING, Reynolds, Storage
+from ehlpetsc.scales import Scales
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
+MESH = ["mesh.points_per_half_width=32", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
+FILM = 5e-4  # a^2/R
+
+
+def rows_of(extra, first=0, last=None):
+    case = load(CASE, MESH + extra)
+    scales = Scales.of(case)
+    return Reynolds(case.fluid, scales, FILM, first, last or scales.nx), scales
+
+
+def state(n):
+    """Oil with a cavity behind, an uneven film, a past with a limited slope here and there."""
+    rng = np.random.default_rng(5)
+    q = 0.6 * rng.uniform(0.2, 1.0, n)
+    q[3 * n // 4:] = rng.uniform(-0.8, -0.1, n)[3 * n // 4:]
+    return q, FILM * rng.uniform(0.3, 3.0, n)
+
+
+def past_of(reynolds, q, h):
+    rng = np.random.default_rng(6)
+    m = reynolds.mass(q, h)[0]
+    return Storage(m * rng.uniform(0.6, 1.6, len(m)), m * rng.uniform(0.6, 1.6, len(m)), 0.01, 0.012)
+
+
+@pytest.mark.parametrize("transient", [False, True], ids=["steady", "transient"])
+@pytest.mark.parametrize("extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]],
+                         ids=["seed", "barus", "starved"])
+def test_derivatives(extra, transient):
+    reynolds, scales = rows_of(extra)
+    n = scales.nx
+    q, h = state(n)
+    past = past_of(reynolds, q, h) if transient else None
+    values = reynolds.evaluate(q, h, past)[1]
+    for side, vector in enumerate((q, h)):
+        for column in range(n):
+            step = 1e-6 * abs(vector[column])
+            changed = []
+            for sign in (1, -1):
+                kept, vector[column] = vector[column], vector[column] + sign * step
+                changed.append(reynolds.evaluate(q, h, past)[0])
+                vector[column] = kept
+            expected = (changed[0] - changed[1]) / (2 * step)
+            found = np.zeros(n)
+            for i in range(max(column - 1, 0), min(column + 3, n)):
+                if i or column == 0:
+                    found[i] = values[i, 2 * (column - i + 2) + side]
+            np.testing.assert_allclose(found, expected, rtol=2e-6, atol=1e-7 * np.abs(values[column]).max())
+
+
+def test_a_part_has_the_rows_of_the_whole():
+    reynolds, scales = rows_of([])
+    n = scales.nx
+    q, h = state(n)
+    past = past_of(reynolds, q, h)
+    residual, values = reynolds.evaluate(q, h, past)
+    for first, last in ((0, 20), (20, 44), (44, n)):
+        part = rows_of([], first, last)[0]
+        some, entries = part.evaluate(q, h, past)
+        np.testing.assert_array_equal(some, residual[first:last])
+        np.testing.assert_array_equal(entries, values[first:last])
+        np.testing.assert_array_equal(part.columns, reynolds.columns[first:last])
+
+
+def test_the_sign_of_rounding_does_not_matter():
+    reynolds, scales = rows_of([])
+    q, h = state(scales.nx)
+    rows = []
+    for rounding in (0.0, 1e-20, -0.5 * ROUNDING):
+        q[0] = rounding
+        rows.append(reynolds.evaluate(q, h, None)[1])
+    np.testing.assert_allclose(rows[1], rows[0], rtol=1e-12)
+    np.testing.assert_allclose(rows[2], rows[0], rtol=1e-9)
