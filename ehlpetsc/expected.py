@@ -6,7 +6,7 @@ from ehlpetsc.fields import STEP_SCALARS
 from ehlpetsc.layout import CHUNK_BYTES, CHUNK_STEPS
 
 # measured on one rank: seconds a time step takes in full film, as such and for each node
-STEP_TIME, NODE_TIME = 2.9e-3, 3.0e-6
+STEP_TIME, NODE_TIME = 2.0e-3, 2.0e-6
 MIXED_FACTOR = 2.0  # times that where asperities squeeze the film to nothing
 FULL_FILM = 3.0  # lambda ratio from which on they do not
 STEADY_STEPS = 20  # what a steady solution takes, in time steps
