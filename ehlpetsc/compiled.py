@@ -1,4 +1,7 @@
-"""numba's compiler as the solver uses it: loops over nodes, kept on disk between runs."""
+"""numba's compiler as the solver uses it: loops over nodes, kept on disk between runs.
+
+(ehlpetsc.post has its own: it stands alone, and does without numba.)
+"""
 import os
 
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output

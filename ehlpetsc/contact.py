@@ -41,8 +41,8 @@ class ContactProblem:
         Local ones of the two end nodes.
     past : reynolds.Storage or None
         Previous time levels; None: steady.
-    flow_values : ndarray, shape (local nodes, 8)
-        Entries of the flow rows of the last residual: q and h of the nodes i-2 .. i+1.
+    flow_columns, flow_values : ndarray, shape (local nodes, 8)
+        Entries of the flow rows of the last residual: q and h of the nodes i-2 .. i+1; column -1: none.
     """
 
     def __init__(self, case, scales, film_scale, first, last):
@@ -53,10 +53,14 @@ class ContactProblem:
         self.dry = case.fluid is None
         self.film_scale = film_scale
         if self.dry:
-            self.flow_values = np.zeros((last - first, 2 * STENCIL))
+            own = 2 * np.arange(first, last, dtype=np.int32)
+            self.flow_columns = np.full((last - first, 2 * STENCIL), -1, dtype=np.int32)
+            self.flow_columns[:, OWN], self.flow_columns[:, OWN + 1] = own, own + 1
+            self.flow_values = np.zeros(self.flow_columns.shape)
             self.flow_values[:, OWN] = 1.0
         else:
             self.reynolds = Reynolds(case.fluid, scales, film_scale, first, last)
+            self.flow_columns = self.reynolds.columns
         self.gap, self.past = np.zeros(self.n), None
         self._kernels()
         self._pattern()
@@ -128,11 +132,8 @@ class ContactProblem:
             films = [i] if i in (0, n - 1) else [i - 1, i, i + 1]
             extra = [2 * n] if i in (0, n - 1) else []
             rows.append(np.concatenate([2 * nodes, 2 * np.array(films) + 1, extra]))
-            if self.dry:
-                rows.append(np.array([2 * i, 2 * i + 1]))
-            else:
-                c = self.reynolds.columns[i - self.first]
-                rows.append(c[c >= 0])
+            flow = self.flow_columns[i - self.first]
+            rows.append(flow[flow >= 0])
         if self.load_is_local:
             rows.append(np.append(2 * np.arange(n), 2 * n))
         self.pattern_rows = np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int32)

@@ -34,8 +34,10 @@ class ExtendedBand:
         Whether the band numbers the local unknowns from the last to the first, so that the last rank's
         neighbour is where its elimination ends, as the first one's is: what comes from there is then solved
         for without forward substitution.
+    slope : ndarray, shape (nx,)
+        Of the state last filled in.
     dense : ndarray, shape (3, nodes)
-        Of the state last filled in: what the band lacks of both end nodes' deflection, and the load, under
+        Of the same: what the band lacks of both end nodes' deflection, and the load, under
         the local q.
     beside : tuple of ndarray
         Unknowns of the last group to the left, and of the first to the right, that local rows contain.

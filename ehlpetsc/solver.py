@@ -208,12 +208,8 @@ class Solver:
             set_rows(matrix, numbers, p.deflection_columns[rows], p.deflection_rows(slope, rows))
             if p.load_is_local:
                 matrix.setValues([2 * self.n], 2 * np.arange(self.n, dtype=np.int32), p.dx * slope)
-        if p.dry:
-            rows = np.arange(self.first, self.first + self.local, dtype=np.int32)
-            set_rows(matrix, 2 * rows + 1, 2 * rows[:, None], np.ones((self.local, 1)))
-        else:
-            rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32) + 1
-            set_rows(matrix, rows, p.reynolds.columns, p.flow_values)
+        rows = 2 * np.arange(self.first, self.first + self.local, dtype=np.int32) + 1
+        set_rows(matrix, rows, p.flow_columns, p.flow_values)
 
     def in_system(self):
         """Local (q, h) that SNES has kept in the linear system, and the local nodes whose film it has not."""

@@ -54,7 +54,7 @@ class SplitBand:
         """
         if not anew and self.ranks.allreduce(self._still_good(slope, flow, touching), min):
             return
-        self.factored = slope, touching, flow, CLOSE * np.abs(flow).max(axis=1, keepdims=True)
+        self.factored = touching, flow, CLOSE * np.abs(flow).max(axis=1, keepdims=True)
         e = self.extended
         band, left, right = e.fill(slope, flow, touching)
         self.lu, self.pivots, singular = dgbtrf(band, e.half, e.half, overwrite_ab=True)
@@ -76,8 +76,8 @@ class SplitBand:
 
     def _still_good(self, slope, flow, touching):
         """Whether this rank's factors are nearly those of the given state."""
-        before, untouched, rows, change = self.factored
-        return (np.array_equal(touching, untouched) and np.array_equal(slope, before)
+        held, rows, change = self.factored
+        return (np.array_equal(touching, held) and np.array_equal(slope, self.extended.slope)
                 and bool((np.abs(flow - rows) <= change).all()))
 
     def _own_solve(self, b, first, last):

@@ -54,7 +54,10 @@ def hertz_start(problem, film, thick=1.3):
 
 
 def smoothed(p, width):
-    """Mean of p, zero beyond its ends, under a Gaussian of so many nodes."""
+    """Mean of p, zero beyond its ends, under a Gaussian of so many nodes.
+
+    (scipy.ndimage has it, but loads 14 MB, which a smooth contact has no other need of.)
+    """
     reach = int(4.0 * width + 0.5)
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
     return np.convolve(p, weights / weights.sum())[reach:reach + len(p)]

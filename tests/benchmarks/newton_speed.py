@@ -6,7 +6,7 @@
 3. time a step against nodes, a/100 to a/1600: the exponent;
 4. Newton iterations a step.
 
-Each pair is timed in turns in this process, medians; CPU time but for the parts of 1, from PETSc's log.
+Each pair is timed in turns in this process, medians: CPU time, and for the parts and SNES of 1 wall time.
 """
 import argparse
 import statistics
