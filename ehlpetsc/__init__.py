@@ -1,4 +1,5 @@
 """Transient mixed lubrication and contact of rough line contacts on PETSc."""
+
 import sys
 
 __version__ = "0.1.0"

@@ -1,18 +1,20 @@
 """``mpirun -n N python3 -m ehlpetsc CASE.toml [options]``: run a case; ``-help`` lists the options."""
+
 import sys
 
 
 def main(argv):
     """Run the command; returns its exit status."""
     from ehlpetsc import environment
+    from ehlpetsc.errors import UsageError
 
     missing = environment.prepare()
     if missing:
         return refuse(environment.advice(missing, argv[1:]))
-    from ehlpetsc.options import UsageError, understand
+    from ehlpetsc.run.command_line import parse_command_line
 
     try:
-        command = understand(argv[1:])
+        command = parse_command_line(argv[1:])
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
     if command.explain:
@@ -20,16 +22,17 @@ def main(argv):
     import petsc4py
 
     petsc4py.init([argv[0], *command.petsc])
-    from ehlpetsc.run import run
+    from ehlpetsc.run.command import run
 
     return run(command.case, command.overrides)
 
 
 def explain(command):
     """Print the scene in words."""
-    from ehlpetsc.case import CaseError, load
+    from ehlpetsc.case.loading import load
     from ehlpetsc.environment import first_rank
-    from ehlpetsc.explain import explain as words
+    from ehlpetsc.errors import CaseError
+    from ehlpetsc.run.describe import explain as words
 
     try:
         text = words(load(command.case, command.overrides))

@@ -2,6 +2,7 @@
 
 (ehlpetsc.post has its own: it stands alone, and does without numba.)
 """
+
 import os
 
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output

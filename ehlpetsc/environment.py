@@ -1,4 +1,5 @@
 """What must be there before anything is imported: Debian's PETSc on the path, one thread a rank."""
+
 import importlib.util
 import os
 import shlex
@@ -34,9 +35,11 @@ def require_numerics():
     missing = [name for name in NUMERICS if importlib.util.find_spec(name) is None]
     if missing and "ehlpetsc" not in sys.orig_argv:  # a run itself says more: all that it needs
         command = shlex.join(sys.orig_argv[1:])
-        print(f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(missing)}\n"
-              f"type: /usr/bin/python3 {command}   (./run_mpi.sh installs on Debian 12 what is missing)",
-              file=sys.stderr)
+        print(
+            f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(missing)}\n"
+            f"type: /usr/bin/python3 {command}   (./run_mpi.sh installs on Debian 12 what is missing)",
+            file=sys.stderr,
+        )
         sys.exit(2)
 
 

@@ -1,4 +1,5 @@
 """What all tests share: the marker of tests under mpirun."""
+
 from pathlib import Path
 
 import pytest

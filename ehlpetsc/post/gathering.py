@@ -135,9 +135,7 @@ class Sweep:
         for depth, ring in enumerate(rings):
             for part in in_cache(last - first):
                 fields = self.stress(depth, spectra[:, part], self.weights[first:last][part])
-                _gather(
-                    fields, first + part.start, begin, end, m.shift, m.enter, m.leave, self.quantum, ring
-                )
+                _gather(fields, first + part.start, begin, end, m.shift, m.enter, m.leave, self.quantum, ring)
 
     def _hand_over(self, rings, points, finish):
         """Give the finished points in stretches that are consecutive in the ring."""

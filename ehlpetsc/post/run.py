@@ -178,8 +178,16 @@ def solve(task, spread=map, share=None):
 
         counters = spread(partial(Counter, material, job.counting), [motion.samples() + 2] * job.jobs)
         depths = np.array(task.depths) * loads.a / loads.dx
-        sweep = Sweep(loads, surface, motion, depths, QUANTUM * loads.p0,
-                      [partial(finish, counter) for counter in counters], spread, advance)
+        sweep = Sweep(
+            loads,
+            surface,
+            motion,
+            depths,
+            QUANTUM * loads.p0,
+            [partial(finish, counter) for counter in counters],
+            spread,
+            advance,
+        )
         for points, slots in runs:
             sweep(points, slots)
         return out

@@ -3,25 +3,45 @@
 ``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
 at the edge of the ranges. ``--random N``: N random cases within the ranges, which must end in 0 or 3.
 """
+
 import argparse
 import sys
 import tempfile
 from pathlib import Path
 
 from ehlpetsc import environment
+from ehlpetsc.errors import CaseError
 
 
 def arguments():
     """The command line."""
-    parser = argparse.ArgumentParser(prog="python3 -m ehlpetsc.study", description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python3 -m ehlpetsc.study",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("case", nargs="?", help="case file")
-    parser.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE",
-                        help="change of the case that all runs share; may be repeated")
-    parser.add_argument("--meshes", type=int, nargs="+", default=[50, 100, 200, 400],
-                        help="points per half width (default: 50 100 200 400)")
-    parser.add_argument("--courant", type=float, nargs="+", default=[0.5, 1.0, 2.0, 4.0],
-                        help="time steps (default: 0.5 1 2 4)")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="TABLE.KEY=VALUE",
+        help="change of the case that all runs share; may be repeated",
+    )
+    parser.add_argument(
+        "--meshes",
+        type=int,
+        nargs="+",
+        default=[50, 100, 200, 400],
+        help="points per half width (default: 50 100 200 400)",
+    )
+    parser.add_argument(
+        "--courant",
+        type=float,
+        nargs="+",
+        default=[0.5, 1.0, 2.0, 4.0],
+        help="time steps (default: 0.5 1 2 4)",
+    )
     parser.add_argument("--ranks", type=int, nargs="+", default=[2], help="ranks besides one (default: 2)")
     parser.add_argument("--damage", action="store_true", help="the error in damage too")
     parser.add_argument("--extremes", action="store_true", help="run the table of extremes")
@@ -72,7 +92,6 @@ def random_cases(chosen):
 
 def accuracy(chosen):
     """Error against run time."""
-    from ehlpetsc.case import CaseError
     from ehlpetsc.study.accuracy import Study, plan
     from ehlpetsc.study.picture import draw
 

@@ -4,6 +4,7 @@ The reference has twice the finest mesh, half the least Courant number and the t
 tried. Its own error is estimated by Richardson extrapolation from two runs with 2 and 4 times its mesh and
 time step: :math:`e=|f_1-f_2|/(2^p-1)`, p the order that the three show, held within 0.5 and 2.
 """
+
 import csv
 import subprocess
 import sys
@@ -12,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.case import load
-from ehlpetsc.result import read_result
+from ehlpetsc.case.loading import load
+from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.runs import DONE, run
 
 MEASURES = ("h_min", "h_c", "p_max", "film", "contact", "damage")
@@ -22,8 +23,14 @@ ATOL, RTOL = "-snes_atol", "-ksp_rtol"
 TOLERANCES = {ATOL: (1e-2, 1e-3, 1e-4, 1e-5, 1e-7), RTOL: (1e-1, 1e-2, 1e-4, 1e-6, 1e-8)}
 TIGHT = {ATOL: 1e-9, RTOL: 1e-10}
 NEAR_FIELDS = (5, 10, 20, 40)
-NAMES = {MESH: "mesh", STEP: "time step", NEAR: "near field", ATOL: "Newton tolerance",
-         RTOL: "Krylov tolerance", "ranks": "ranks"}
+NAMES = {
+    MESH: "mesh",
+    STEP: "time step",
+    NEAR: "near field",
+    ATOL: "Newton tolerance",
+    RTOL: "Krylov tolerance",
+    "ranks": "ranks",
+}
 HEAD = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
 
 
@@ -113,17 +120,26 @@ def figures(path, damage=False):
         h = np.asarray(result.frame("film_thickness", -1))
         dt = np.asarray(result.steps("dt"))
         contact = (result.steps("contacts") * dt).sum() / dt.sum() if dt.sum() else 0.0
-        return Figures(x, h, float(result.steps("h_min").min()), float(h[np.argmin(np.abs(x))]),
-                       float(result.steps("p_max").max()), float(contact * (x[1] - x[0])),
-                       _damage(path) if damage else None)
+        return Figures(
+            x,
+            h,
+            float(result.steps("h_min").min()),
+            float(h[np.argmin(np.abs(x))]),
+            float(result.steps("p_max").max()),
+            float(contact * (x[1] - x[0])),
+            _damage(path) if damage else None,
+        )
 
 
 def _damage(path):
     import h5py
 
     output = Path(path).with_suffix(".post.h5")
-    subprocess.run([sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", "slow"],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", "slow"],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     with h5py.File(output) as file:
         return float(np.log10(np.nanmax(file["damage/slow"])))
 
@@ -184,10 +200,21 @@ class Study:
         fields = '["pressure", "film_thickness"]'
         if self.damage:
             fields = '["pressure", "film_thickness", "shear_stress_fast", "shear_stress_slow"]'
-        overrides = [*self.overrides, *setting.overrides(), f"output.fields={fields}",
-                     f"output.every={1 if self.damage else self._steps(setting)}"]
-        outcome = run(self.path, overrides, options=setting.options(), ranks=setting.ranks,
-                      folder=self.folder, name=f"run{number}", limit=self.limit)
+        overrides = [
+            *self.overrides,
+            *setting.overrides(),
+            f"output.fields={fields}",
+            f"output.every={1 if self.damage else self._steps(setting)}",
+        ]
+        outcome = run(
+            self.path,
+            overrides,
+            options=setting.options(),
+            ranks=setting.ranks,
+            folder=self.folder,
+            name=f"run{number}",
+            limit=self.limit,
+        )
         found = figures(outcome.result, self.damage) if outcome.status == DONE else None
         self._known[known] = outcome, found
         return outcome, found
@@ -221,14 +248,19 @@ class Study:
 def row(setting, outcome, measured):
     """One row of the table."""
     return {
-        "varied": NAMES.get(setting.varied, setting.varied), "value": setting.value,
-        "converged": "yes" if outcome.status == DONE else f"exit {outcome.status}", "wall_s": outcome.wall,
-        "newton": outcome.newton, "steps": outcome.steps, **measured,
+        "varied": NAMES.get(setting.varied, setting.varied),
+        "value": setting.value,
+        "converged": "yes" if outcome.status == DONE else f"exit {outcome.status}",
+        "wall_s": outcome.wall,
+        "newton": outcome.newton,
+        "steps": outcome.steps,
+        **measured,
     }
 
 
 def text(row):
     """A row for the eye."""
+
     def shown(value):
         return f"{value:.2e}" if isinstance(value, float) else str(value)
 

@@ -1,11 +1,13 @@
 """Random cases within the ranges of the table of extremes: each ends in 0 or 3 and leaves a whole file."""
+
 import csv
 import math
 import random
 import tempfile
 from pathlib import Path
 
-from ehlpetsc.result import OutputError, read_result
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.lines import BARUS, MODULUS, PROFILES, RADIUS, ROELANDS, TABLE_1, inlet_of, load_of
 from ehlpetsc.study.rough_lines import ground, wave
 from ehlpetsc.study.runs import DONE, NOT_CONVERGED, run
@@ -27,6 +29,7 @@ def draw(rng):
     text : str
     overrides : list of str
     """
+
     def between(low, high):  # evenly in the logarithm
         return math.exp(rng.uniform(math.log(low), math.log(high)))
 
@@ -38,12 +41,16 @@ def draw(rng):
     points, courant = int(between(25, 200)), between(0.05, 4.0)
     inlet = inlet_of(load, viscosity, speed, alpha * 1e-9) if rng.random() < 0.5 else -rng.uniform(1.2, 6.0)
     overrides = [
-        f"fluid.viscosity={viscosity:.4g}", f"fluid.pressure_viscosity={alpha:.3g}e-9",
+        f"fluid.viscosity={viscosity:.4g}",
+        f"fluid.pressure_viscosity={alpha:.3g}e-9",
         f"motion.entrainment_speed={speed:.4g}",
         f"motion.slide_roll_ratio={rng.choice((1, -1)) * rng.choice(EVERY_SLIDING)}",
-        f"contact.load={load:.6g}", f"mesh.points_per_half_width={points}",
-        f"mesh.inlet={max(inlet, -10.0):.3f}", f"mesh.near_field={rng.choice((5, 8, 20, 50, 100))}",
-        f"time.courant={courant:.3g}", f"time.travel={STEPS * courant / points:.6g}",
+        f"contact.load={load:.6g}",
+        f"mesh.points_per_half_width={points}",
+        f"mesh.inlet={max(inlet, -10.0):.3f}",
+        f"mesh.near_field={rng.choice((5, 8, 20, 50, 100))}",
+        f"time.courant={courant:.3g}",
+        f"time.travel={STEPS * courant / points:.6g}",
     ]
     if text is ROELANDS:
         overrides.append(f"fluid.roelands_z={rng.uniform(0.4, 0.8):.3f}")
@@ -91,8 +98,10 @@ def run_all(count, seed, path, limit, say=print):
             writer.writerow(row)
             file.flush()
             if row["status"] != DONE:
-                say(f"{row['number']}: exit {row['status']}, {row['steps']} steps, file {row['file']}: "
-                    f"{row['words']} | {row['overrides']}")
+                say(
+                    f"{row['number']}: exit {row['status']}, {row['steps']} steps, file {row['file']}: "
+                    f"{row['words']} | {row['overrides']}"
+                )
     say(f"{count} cases: {converged} converged, {count - converged - wrong} exit 3, {wrong} wrong")
     return wrong
 
@@ -104,8 +113,13 @@ def run_one(seed, folder, limit):
     case.write_text(text)
     outcome = run(case, overrides, folder=folder, limit=limit)
     return {
-        "number": seed, "status": outcome.status, "steps": outcome.steps, "retries": outcome.retries,
-        "newton": outcome.newton, "file": _whole(folder / "run.h5"), "words": outcome.words,
+        "number": seed,
+        "status": outcome.status,
+        "steps": outcome.steps,
+        "retries": outcome.retries,
+        "newton": outcome.newton,
+        "file": _whole(folder / "run.h5"),
+        "words": outcome.words,
         "overrides": "; ".join(overrides),
     }
 

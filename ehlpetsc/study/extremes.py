@@ -1,4 +1,5 @@
 """The table of extremes: each line run by itself, told in a line, and in a CSV file."""
+
 import csv
 import tempfile
 from dataclasses import replace
@@ -9,8 +10,21 @@ from ehlpetsc.study.reasons import why
 from ehlpetsc.study.rough_lines import time_lines
 from ehlpetsc.study.runs import DONE, run
 
-HEAD = ("axis", "value", "converged", "steps", "retries", "newton", "h_min_um", "p_max_GPa", "load_error",
-        "mass_error", "viscosity_Pa_s", "seconds", "reason")
+HEAD = (
+    "axis",
+    "value",
+    "converged",
+    "steps",
+    "retries",
+    "newton",
+    "h_min_um",
+    "p_max_GPa",
+    "load_error",
+    "mass_error",
+    "viscosity_Pa_s",
+    "seconds",
+    "reason",
+)
 COARSE = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
 
@@ -79,12 +93,19 @@ def row(line, folder, limit):
 
 def _row(line, o, reason):
     return {
-        "axis": line.axis, "value": line.value,
+        "axis": line.axis,
+        "value": line.value,
         "converged": "yes" if o.status == DONE else f"no, exit {o.status}",
-        "steps": o.steps, "retries": o.retries, "newton": o.newton, "h_min_um": f"{1e6 * o.h_min:.4g}",
-        "p_max_GPa": f"{1e-9 * o.p_max:.4g}", "load_error": f"{o.load_error:.1e}",
-        "mass_error": f"{o.mass_error:.1e}", "viscosity_Pa_s": f"{o.viscosity:.1e}",
-        "seconds": f"{o.seconds:.1f}", "reason": reason,
+        "steps": o.steps,
+        "retries": o.retries,
+        "newton": o.newton,
+        "h_min_um": f"{1e6 * o.h_min:.4g}",
+        "p_max_GPa": f"{1e-9 * o.p_max:.4g}",
+        "load_error": f"{o.load_error:.1e}",
+        "mass_error": f"{o.mass_error:.1e}",
+        "viscosity_Pa_s": f"{o.viscosity:.1e}",
+        "seconds": f"{o.seconds:.1f}",
+        "reason": reason,
     }
 
 
@@ -93,5 +114,7 @@ WIDTHS = (13, 42, 10, 6, 7, 7, 9, 9, 10, 10, 14, 7, 0)
 
 def _text(row):
     cells = (str(row[name]) for name in HEAD)
-    return " ".join(f"{cell:<{w}}" if i < 3 else f"{cell:>{w}}" for i, (cell, w) in enumerate(
-        zip(cells, WIDTHS, strict=True))).rstrip()
+    return " ".join(
+        f"{cell:<{w}}" if i < 3 else f"{cell:>{w}}"
+        for i, (cell, w) in enumerate(zip(cells, WIDTHS, strict=True))
+    ).rstrip()

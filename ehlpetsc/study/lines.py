@@ -1,9 +1,10 @@
 """The lines of the table of extremes: what a user may ask for at the edge of the ranges."""
+
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from ehlpetsc.reference import moes_central_film
+from ehlpetsc.physics.film_formulas import moes_central_film
 
 PROFILES = Path(__file__).parents[2] / "cases" / "profiles"
 FLOODED = 20.0  # central films in the undeformed gap at the inlet: further out the film does not feel it
@@ -100,9 +101,15 @@ def _viscosity():
 
 def _load():
     return [
-        Line("load", f"p0 {p:g} GPa", (f"contact.load={load_of(p * 1e9):.6g}",
-                                       f"mesh.inlet={inlet_of(load_of(p * 1e9), 0.005, SPEED)}"),
-             short=p in (0.2, 3.0))
+        Line(
+            "load",
+            f"p0 {p:g} GPa",
+            (
+                f"contact.load={load_of(p * 1e9):.6g}",
+                f"mesh.inlet={inlet_of(load_of(p * 1e9), 0.005, SPEED)}",
+            ),
+            short=p in (0.2, 3.0),
+        )
         for p in (0.2, 0.5, 1.0, 2.0, 3.0)
     ]
 
@@ -115,22 +122,35 @@ def _moes():
         viscosity = two_u * MODULUS * RADIUS / (2.0 * SPEED)
         for m in (5.0, 20.0, 100.0, 500.0, 2000.0):
             load = m * MODULUS * RADIUS * math.sqrt(two_u)
-            overrides = (f"contact.load={load:.8g}", f"fluid.viscosity={viscosity:.8g}",
-                         "fluid.pressure_viscosity=22e-9",
-                         f"mesh.inlet={inlet_of(load, viscosity, SPEED, 22e-9)}")
+            overrides = (
+                f"contact.load={load:.8g}",
+                f"fluid.viscosity={viscosity:.8g}",
+                "fluid.pressure_viscosity=22e-9",
+                f"mesh.inlet={inlet_of(load, viscosity, SPEED, 22e-9)}",
+            )
             if m >= 500.0:  # the inlet sweep is the narrower the heavier the load
                 overrides += ("mesh.points_per_half_width=400",)
             p0 = math.sqrt(load * MODULUS / (2.0 * math.pi * RADIUS)) * 1e-9
-            lines.append(Line("Moes", f"M {m:g}, L {ell:g} (p0 {p0:.2g} GPa)", overrides, MOES,
-                              m in (5.0, 100.0) and ell == 5.0))
+            lines.append(
+                Line(
+                    "Moes",
+                    f"M {m:g}, L {ell:g} (p0 {p0:.2g} GPa)",
+                    overrides,
+                    MOES,
+                    m in (5.0, 100.0) and ell == 5.0,
+                )
+            )
     return lines
 
 
 def _speed():
     return [
-        Line("speed", f"u {u:g} m/s",
-             (f"motion.entrainment_speed={u}", f"mesh.inlet={inlet_of(LOAD, 0.005, u)}"),
-             short=u in (0.01, 50.0))
+        Line(
+            "speed",
+            f"u {u:g} m/s",
+            (f"motion.entrainment_speed={u}", f"mesh.inlet={inlet_of(LOAD, 0.005, u)}"),
+            short=u in (0.01, 50.0),
+        )
         for u in (0.01, 0.1, 1.0, 10.0, 50.0)
     ]
 
@@ -142,8 +162,14 @@ def _materials():
         overrides = [f"contact.youngs_modulus={first}"]
         if modulus == 3:  # a polymer carries a tenth of the load
             overrides += ["contact.load=20e3", f"mesh.inlet={inlet_of(20e3, 0.005, SPEED, modulus=6.5e9)}"]
-        lines.append(Line("materials", f"E {modulus} GPa" + " on steel" * (modulus == 3), tuple(overrides),
-                          short=modulus == 3))
+        lines.append(
+            Line(
+                "materials",
+                f"E {modulus} GPa" + " on steel" * (modulus == 3),
+                tuple(overrides),
+                short=modulus == 3,
+            )
+        )
     return lines
 
 
@@ -157,7 +183,11 @@ def _sliding():
 def _starved():
     flooded = 0.165e-6  # central film of TABLE_1
     return [
-        Line("starvation", f"inlet film {share:g} of the flooded one",
-             (f"fluid.inlet_film={share * flooded:.4g}",), short=share == 0.2)
+        Line(
+            "starvation",
+            f"inlet film {share:g} of the flooded one",
+            (f"fluid.inlet_film={share * flooded:.4g}",),
+            short=share == 0.2,
+        )
         for share in (2.0, 1.0, 0.6, 0.4, 0.2)
     ]

@@ -1,4 +1,5 @@
 """The log-log picture of a study: error against wall time and against Newton iterations."""
+
 import numpy as np
 
 MARKERS = "osD^vP"
@@ -21,10 +22,17 @@ def draw(rows, path, title):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    measures = [m for m in ("h_min", "h_c", "p_max", "film", "contact", "damage")
-                if any(r[m] > 0.0 for r in rows[1:])]
-    figure, axes = plt.subplots(2, len(measures), figsize=(3.4 * len(measures), 6.6), sharey="col",
-                                squeeze=False, layout="constrained")
+    measures = [
+        m for m in ("h_min", "h_c", "p_max", "film", "contact", "damage") if any(r[m] > 0.0 for r in rows[1:])
+    ]
+    figure, axes = plt.subplots(
+        2,
+        len(measures),
+        figsize=(3.4 * len(measures), 6.6),
+        sharey="col",
+        squeeze=False,
+        layout="constrained",
+    )
     figure.suptitle(title)
     for column, measure in enumerate(measures):
         for axis, cost in zip(axes[:, column], ("wall_s", "newton"), strict=True):
@@ -49,8 +57,14 @@ def _panel(axis, rows, measure, cost):
     for number, name in enumerate(varied):
         chosen = [r for r in rows if r["varied"] == name and r["converged"] == "yes"]
         chosen.sort(key=lambda r: float(r["value"]))
-        axis.plot([r[cost] for r in chosen], [_shown(r[measure]) for r in chosen],
-                  marker=MARKERS[number % len(MARKERS)], ms=4, lw=0.8, label=name)
+        axis.plot(
+            [r[cost] for r in chosen],
+            [_shown(r[measure]) for r in chosen],
+            marker=MARKERS[number % len(MARKERS)],
+            ms=4,
+            lw=0.8,
+            label=name,
+        )
     axis.plot(base[cost], _shown(base[measure]), "k*", ms=11, label="the case as it is")
     axis.axhline(_shown(rows[0][measure]), color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
     axis.set_xscale("log")

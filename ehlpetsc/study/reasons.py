@@ -1,12 +1,13 @@
 """Why a contact did not converge, in words of the field rather than of the solver."""
+
 import math
 
 import numpy as np
 
-from ehlpetsc.case import load
-from ehlpetsc.reference import moes_central_film
-from ehlpetsc.rheology import viscosity
-from ehlpetsc.scales import Scales
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.film_formulas import moes_central_film
+from ehlpetsc.physics.rheology import viscosity
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.study.runs import BAD_INPUT, BUG, TIMED_OUT
 
 SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
@@ -58,5 +59,7 @@ def _too_coarse(case, scales):
     if opening < COARSE:
         return []
     needed = math.ceil((OPENING / film) ** (2.0 / 3.0))
-    return [f"the mesh is too coarse for so thin a film: beside the contact the gap opens by {opening:.1f} "
-            f"films from one node to the next; try mesh.points_per_half_width={needed}"]
+    return [
+        f"the mesh is too coarse for so thin a film: beside the contact the gap opens by {opening:.1f} "
+        f"films from one node to the next; try mesh.points_per_half_width={needed}"
+    ]

@@ -1,4 +1,5 @@
 """The lines of the table of extremes that take time steps: roughness, mesh, domain, starts."""
+
 from dataclasses import replace
 
 from ehlpetsc.study.lines import PROFILES, TABLE_1, Line
@@ -34,8 +35,13 @@ def time_lines():
 
 def _roughness():
     lines = [
-        rough("roughness", f"Ra {ra * 1e6:g} um, both surfaces", fast=ground(ra), slow=ground(ra, 2),
-              short=ra in (0.01e-6, 0.3e-6))
+        rough(
+            "roughness",
+            f"Ra {ra * 1e6:g} um, both surfaces",
+            fast=ground(ra),
+            slow=ground(ra, 2),
+            short=ra in (0.01e-6, 0.3e-6),
+        )
         for ra in (0.01e-6, 0.1e-6, 0.3e-6, 1.0e-6)
     ]
     lines += [
@@ -49,16 +55,28 @@ def _features():
     lines = [
         rough("roughness", f"sine 0.1 um, wavelength {name}", slow=wave("sine", 0.1e-6, length))
         for name, length in (
-            ("6 nodes", 0.06 * A), ("12 nodes", 0.12 * A), ("0.5 a", 0.5 * A), ("2 a", 2 * A))
+            ("6 nodes", 0.06 * A),
+            ("12 nodes", 0.12 * A),
+            ("0.5 a", 0.5 * A),
+            ("2 a", 2 * A),
+        )
     ]
     lines += [
-        rough("roughness", f"square steps {height:g} um, wavelength {name}",
-              slow=wave("square", height * 0.5e-6, length), short=height == 0.5)
+        rough(
+            "roughness",
+            f"square steps {height:g} um, wavelength {name}",
+            slow=wave("square", height * 0.5e-6, length),
+            short=height == 0.5,
+        )
         for height, name, length in ((0.2, "0.5 a", 0.5 * A), (0.5, "0.5 a", 0.5 * A), (1.0, "2 a", 2 * A))
     ]
     lines += [
-        rough("roughness", f"single spike of 1 um, {width} um wide, {side}",
-              **{side: wave("ridge", 1e-6, width * 1e-6)}, short=width == 20)
+        rough(
+            "roughness",
+            f"single spike of 1 um, {width} um wide, {side}",
+            **{side: wave("ridge", 1e-6, width * 1e-6)},
+            short=width == 20,
+        )
         for width, side in ((10, "slow"), (20, "slow"), (20, "fast"), (60, "slow"))
     ]
     return [*lines, rough("roughness", "single dent of 1 um, 60 um wide", slow=wave("dent", 1e-6, 60e-6))]
@@ -72,9 +90,16 @@ def _measured():
         rough("roughness", "dusty stylus profile, eta0 0.002", dusty, "fluid.viscosity=0.002"),
     ]
     lines += [
-        rough("roughness", f"measured profile x {scale:g}, both, eta0 {eta:g}", f"fluid.viscosity={eta}",
-              *(f'surface.{side}.{key}' for side in ("fast", "slow") for key in (
-                  f'file="{meander}"', f"scale={scale}")))
+        rough(
+            "roughness",
+            f"measured profile x {scale:g}, both, eta0 {eta:g}",
+            f"fluid.viscosity={eta}",
+            *(
+                f"surface.{side}.{key}"
+                for side in ("fast", "slow")
+                for key in (f'file="{meander}"', f"scale={scale}")
+            ),
+        )
         for scale, eta in ((0.2, 0.01), (0.5, 0.002), (1.0, 0.003), (0.5, 0.0005))
     ]
     return lines
@@ -82,8 +107,14 @@ def _measured():
 
 def _rough_sliding():
     return [
-        rough("rough sliding", f"xi {xi:g}, Ra 0.15 um, both", f"motion.slide_roll_ratio={xi}",
-              fast=ground(0.15e-6), slow=ground(0.15e-6, 2), short=xi in (2.0, -4.0))
+        rough(
+            "rough sliding",
+            f"xi {xi:g}, Ra 0.15 um, both",
+            f"motion.slide_roll_ratio={xi}",
+            fast=ground(0.15e-6),
+            slow=ground(0.15e-6, 2),
+            short=xi in (2.0, -4.0),
+        )
         for xi in (0.0, 1.0, -1.0, 1.9, 2.0, -2.0, 4.0, -4.0)
     ]
 
@@ -95,8 +126,14 @@ def _domain():
         for inlet in (-1.5, -2.5, -6.0)
     ]
     lines += [
-        rough("mesh", f"a/{points}", f"mesh.points_per_half_width={points}", travel=travel,
-              short=points == 25, **both)
+        rough(
+            "mesh",
+            f"a/{points}",
+            f"mesh.points_per_half_width={points}",
+            travel=travel,
+            short=points == 25,
+            **both,
+        )
         for points, travel in ((25, 2.5), (50, 2.5), (200, 1.5), (400, 1.0), (800, 0.7))
     ]
     lines += [
@@ -104,8 +141,14 @@ def _domain():
         for nodes in (5, 50, 100)
     ]
     lines += [
-        rough("time step", f"courant {courant:g}", f"time.courant={courant}",
-              travel=0.8 if courant < 0.1 else 2.5, short=courant == 4, **both)
+        rough(
+            "time step",
+            f"courant {courant:g}",
+            f"time.courant={courant}",
+            travel=0.8 if courant < 0.1 else 2.5,
+            short=courant == 4,
+            **both,
+        )
         for courant in (0.05, 0.2, 1.0, 2.0, 4.0)
     ]
     return lines
@@ -121,10 +164,20 @@ def _starts():
     thin = rough("start", "restart of eta0 0.01 at 0.002", "fluid.viscosity=0.002", **both)
     thick = rough("start", "restart of eta0 0.002 at 0.01", "fluid.viscosity=0.01", **both)
     # the same nodes [m] under 1.5625 times the load: a is 1.25 times what it was
-    heavier = (f"contact.load={1.5625 * 527e3}", "mesh.inlet=-1.2", "mesh.outlet=1.04",
-               "mesh.points_per_half_width=125", "time.travel=2.0")
-    lighter = (f"contact.load={527e3 / 1.5625}", "mesh.inlet=-1.875", "mesh.outlet=1.625",
-               "mesh.points_per_half_width=80", "time.travel=3.0")
+    heavier = (
+        f"contact.load={1.5625 * 527e3}",
+        "mesh.inlet=-1.2",
+        "mesh.outlet=1.04",
+        "mesh.points_per_half_width=125",
+        "time.travel=2.0",
+    )
+    lighter = (
+        f"contact.load={527e3 / 1.5625}",
+        "mesh.inlet=-1.875",
+        "mesh.outlet=1.625",
+        "mesh.points_per_half_width=80",
+        "time.travel=3.0",
+    )
     return [
         rough("start", "from smooth", **both),
         _restarted(thin, before(thin, "fluid.viscosity=0.01"), short=True),

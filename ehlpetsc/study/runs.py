@@ -1,4 +1,5 @@
 """One run of a case as its own process, with a time limit: figures, exit status, last words."""
+
 import os
 import signal
 import subprocess
@@ -9,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.case import load
-from ehlpetsc.result import OutputError, read_result
-from ehlpetsc.rheology import viscosity
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import OutputError
+from ehlpetsc.physics.rheology import viscosity
+from ehlpetsc.results.reader import read_result
 
 DONE, BUG, BAD_INPUT, NOT_CONVERGED, STOPPED, TIMED_OUT = 0, 1, 2, 3, 4, -1
 
@@ -99,8 +101,9 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
 
 
 def _wait(words, stream, limit):
-    process = subprocess.Popen(words, stdout=stream, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-                               start_new_session=True)
+    process = subprocess.Popen(
+        words, stdout=stream, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True
+    )
     try:
         return process.wait(limit)
     except subprocess.TimeoutExpired:
@@ -120,8 +123,10 @@ def _read_figures(path, case, outcome):
     """Enter the figures of a result file; a file that cannot be read is told in the words."""
     try:
         with read_result(path) as result:
-            steps = {name: np.asarray(result.steps(name)) for name in (
-                "newton", "retries", "h_min", "p_max", "load_error", "mass_error", "wall")}
+            steps = {
+                name: np.asarray(result.steps(name))
+                for name in ("newton", "retries", "h_min", "p_max", "load_error", "mass_error", "wall")
+            }
     except OutputError as error:
         outcome.words = f"{outcome.words} {error}".strip()
         return

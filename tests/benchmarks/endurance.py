@@ -4,6 +4,7 @@ A wave on one surface passes a coarse contact in pure rolling, a whole number of
 process is read as it runs; load and oil content are compared at equal phases. Printed: memory after 1,000
 steps and its greatest value later, and how far load and oil content move.
 """
+
 import os
 import subprocess
 import sys
@@ -14,11 +15,12 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
-import numpy as np  # noqa: E402
+import numpy as np
 
-from ehlpetsc.case import load  # noqa: E402
-from ehlpetsc.result import OutputError, read_result  # noqa: E402
-from ehlpetsc.scales import Scales  # noqa: E402
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import OutputError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.reader import read_result
 
 POINTS, COURANT = 20, 0.5
 PERIOD = round(POINTS / COURANT)  # steps in which the wave moves by its length a
@@ -29,10 +31,17 @@ def overrides(steps):
     a = Scales.of(load(CASE)).a
     frames = max(steps // (20 * PERIOD), 1) * PERIOD
     wave = f'{{ kind = "sine", amplitude = 0.03e-6, wavelength = {a!r} }}'
-    return [f"surface.slow.synthetic={wave}", "motion.slide_roll_ratio=0.0", "mesh.inlet=-1.5",
-            f"mesh.points_per_half_width={POINTS}", "mesh.near_field=5", f"time.courant={COURANT}",
-            f"time.travel={steps * COURANT / POINTS}", f"output.every={frames}",
-            'output.fields=["pressure", "film_thickness"]']
+    return [
+        f"surface.slow.synthetic={wave}",
+        "motion.slide_roll_ratio=0.0",
+        "mesh.inlet=-1.5",
+        f"mesh.points_per_half_width={POINTS}",
+        "mesh.near_field=5",
+        f"time.courant={COURANT}",
+        f"time.travel={steps * COURANT / POINTS}",
+        f"output.every={frames}",
+        'output.fields=["pressure", "film_thickness"]',
+    ]
 
 
 def steps_done(path):
@@ -66,8 +75,9 @@ def main(steps=100_000):
             if not first and steps_done(path) >= 1000:
                 first = now
             greatest = max(greatest, now)
-        print(f"exit {process.returncode}; memory after 1,000 steps {first:.1f} MB, "
-              f"greatest {greatest:.1f} MB")
+        print(
+            f"exit {process.returncode}; memory after 1,000 steps {first:.1f} MB, greatest {greatest:.1f} MB"
+        )
         with read_result(path) as result:
             report(result)
 
@@ -76,10 +86,12 @@ def report(result):
     """Steps, and drift of load and oil content."""
     steps = {name: result.steps(name) for name in ("newton", "retries", "wall", "load_error", "mass_error")}
     count = len(steps["newton"]) - 1
-    print(f"{count} steps, {steps['newton'].sum() / count:.2f} Newton iterations a step, "
-          f"{steps['retries'].sum()} halved, {1e3 * steps['wall'].sum() / count:.2f} ms a step")
+    print(
+        f"{count} steps, {steps['newton'].sum() / count:.2f} Newton iterations a step, "
+        f"{steps['retries'].sum()} halved, {1e3 * steps['wall'].sum() / count:.2f} ms a step"
+    )
     for name in ("load_error", "mass_error"):
-        late = steps[name][-count // 10:]
+        late = steps[name][-count // 10 :]
         print(f"{name}: greatest {steps[name].max():.1e}, of the last tenth {late.max():.1e}")
     # from the second frame on: in the first the wave has not yet been everywhere
     content = np.array([result.frame("film_thickness", k).sum() for k in range(2, len(result.time))])

@@ -8,6 +8,7 @@
 
 Each pair is timed in turns in this process, medians: CPU time, and for the parts and SNES of 1 wall time.
 """
+
 import argparse
 import statistics
 import time
@@ -16,7 +17,7 @@ import numpy as np
 from scenes import PETSc, rough, scene
 from scipy.linalg import lapack
 
-from ehlpetsc import log
+from ehlpetsc.nonlinear import events as log
 
 HALF_BAND = 30  # nodes
 
@@ -69,10 +70,14 @@ def against_lapack(points):
         iterations.append(1e3 * np.array([spent[:-1].sum(), spent[-1], whole]) / newton)
         solves.append(1e3 * cpu(lambda: lapack_solve(band, width, right), 3))
     mine, theirs = np.median(iterations, axis=0), statistics.median(solves)
-    print(f"1. a/{points}, {ours.solver.n} nodes: LAPACK's banded solve (half band {width}) {theirs:.2f} ms; "
-          "Newton iteration: residual, assembly, factors, solve with far field {:.2f} ms, ratio {:.2f}; "
-          "all of SNES {:.2f}, {:.2f}; of the time step, with its predictor, {:.2f}, {:.2f}".format(
-              *np.stack([mine, mine / theirs], axis=1).ravel()), flush=True)
+    print(
+        f"1. a/{points}, {ours.solver.n} nodes: LAPACK's banded solve (half band {width}) {theirs:.2f} ms; "
+        "Newton iteration: residual, assembly, factors, solve with far field {:.2f} ms, ratio {:.2f}; "
+        "all of SNES {:.2f}, {:.2f}; of the time step, with its predictor, {:.2f}, {:.2f}".format(
+            *np.stack([mine, mine / theirs], axis=1).ravel()
+        ),
+        flush=True,
+    )
 
 
 def dense_iteration(solver, state):
@@ -86,7 +91,7 @@ def dense_iteration(solver, state):
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
     matrix[np.repeat(np.arange(2 * n + 1), np.diff(pointers)), columns] = values
     distance = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    matrix[2:2 * n - 2:2, 0:2 * n:2] = -problem.curvature[distance][1:-1]
+    matrix[2 : 2 * n - 2 : 2, 0 : 2 * n : 2] = -problem.curvature[distance][1:-1]
     return np.linalg.solve(matrix, residual)
 
 
@@ -99,8 +104,11 @@ def against_dense(points=200):
         steps.append(seconds / 10)
         dense.append(newton / 10 * cpu(lambda: dense_iteration(made.solver, made.state), 1))
     mine, theirs = statistics.median(steps), statistics.median(dense)
-    print(f"2. a/{points}: time step {1e3 * mine:.1f} ms, dense Newton step {1e3 * theirs:.0f} ms, "
-          f"{theirs / mine:.0f} times", flush=True)
+    print(
+        f"2. a/{points}: time step {1e3 * mine:.1f} ms, dense Newton step {1e3 * theirs:.0f} ms, "
+        f"{theirs / mine:.0f} times",
+        flush=True,
+    )
 
 
 def exponent(meshes):

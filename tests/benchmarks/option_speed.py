@@ -5,6 +5,7 @@ restart file, with one option changed: wall clock time of the steps over that of
 medians; Newton's iterations, halved steps, and the greatest change of pressure in p0. With more than one rank
 the preconditioners that PETSc has for it take the options' place.
 """
+
 import argparse
 import statistics
 import sys
@@ -15,24 +16,40 @@ import numpy as np
 
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1] / "regression")]
-from running import ROOT, run, settings  # noqa: E402
+from running import ROOT, run, settings
 
-from ehlpetsc.result import read_result  # noqa: E402
+from ehlpetsc.results.reader import read_result
 
 BEGIN = 2.5  # half widths travelled before
 NEAR = "-ehl_set mesh.near_field=8"  # what is best without the far field in the preconditioner
 ONE_RANK = (
-    "", "-snes_atol 1e-5", "-snes_atol 1e-10", "-ksp_rtol 1e-2", "-ksp_rtol 1e-8",
-    f"-pc_type lu {NEAR}", "-pc_type lu", "-pc_type lu -ehl_set mesh.near_field=20",
-    f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}", f"-pc_type ilu -pc_factor_levels 1 {NEAR}",
-    "-ksp_type gmres", "-ksp_type bcgs", "-snes_linesearch_type bt", "-snes_linesearch_type l2",
+    "",
+    "-snes_atol 1e-5",
+    "-snes_atol 1e-10",
+    "-ksp_rtol 1e-2",
+    "-ksp_rtol 1e-8",
+    f"-pc_type lu {NEAR}",
+    "-pc_type lu",
+    "-pc_type lu -ehl_set mesh.near_field=20",
+    f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}",
+    f"-pc_type ilu -pc_factor_levels 1 {NEAR}",
+    "-ksp_type gmres",
+    "-ksp_type bcgs",
+    "-snes_linesearch_type bt",
+    "-snes_linesearch_type l2",
 )
 MORE_RANKS = (
-    "", *(f"{pc} {NEAR}" for pc in (
-        "-pc_type bjacobi -sub_pc_type lu", "-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu",
-        "-pc_type lu -pc_factor_mat_solver_type mumps", "-pc_type lu -pc_factor_mat_solver_type superlu_dist",
-        "-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1",
-    )),
+    "",
+    *(
+        f"{pc} {NEAR}"
+        for pc in (
+            "-pc_type bjacobi -sub_pc_type lu",
+            "-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu",
+            "-pc_type lu -pc_factor_mat_solver_type mumps",
+            "-pc_type lu -pc_factor_mat_solver_type superlu_dist",
+            "-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1",
+        )
+    ),
 )
 
 
@@ -71,8 +88,10 @@ def main(ranks, points, steps, repeats):
                     found[recipe].append(advance(case, recipe, ranks, folder, restart))
     base = statistics.median(out[0] for out in found[""])
     *_, touching, pressure = found[""][0]
-    print(f"a/{points}, {ranks} rank(s), {steps} steps with {touching} contact node-steps, defaults "
-          f"{1e3 * base / steps:.1f} ms a step\n  time  newton  halved  change/p0  options")
+    print(
+        f"a/{points}, {ranks} rank(s), {steps} steps with {touching} contact node-steps, defaults "
+        f"{1e3 * base / steps:.1f} ms a step\n  time  newton  halved  change/p0  options"
+    )
     for recipe, outs in found.items():
         if outs[-1] is None:
             print(f"     -       -       -          -  {recipe}: did not converge")

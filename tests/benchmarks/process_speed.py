@@ -5,6 +5,7 @@
 with ``--ranks``: one rank against two at a/200 and a/800, wall time of the steps, in turns; it means
 something on a machine with two cores to itself.
 """
+
 import argparse
 import os
 import re
@@ -40,17 +41,23 @@ def case(name, folder, *overrides):
 
 def steady(folder, repeats=5):
     """Figure 5."""
-    bare = [sys.executable, "-c",
-            "from ehlpetsc import environment; environment.prepare(); import petsc4py; petsc4py.init(); "
-            "import ehlpetsc.run"]
+    bare = [
+        sys.executable,
+        "-c",
+        "from ehlpetsc import environment; environment.prepare(); import petsc4py; petsc4py.init(); "
+        "import ehlpetsc.run.command",
+    ]
     imports, whole = [], []
     for _ in range(repeats):
         imports.append(usage(bare, folder)[1])
         whole.append(usage([*PYTHON, *case("table1_smooth", folder)], folder))
     seconds = statistics.median(w[1] for w in whole)
     before = statistics.median(imports)
-    print(f"5. smooth steady at a/200: CPU {seconds:.2f} s, {seconds - before:.2f} s of it after imports, "
-          f"{max(w[2] for w in whole):.0f} MB", flush=True)
+    print(
+        f"5. smooth steady at a/200: CPU {seconds:.2f} s, {seconds - before:.2f} s of it after imports, "
+        f"{max(w[2] for w in whole):.0f} MB",
+        flush=True,
+    )
 
 
 def output(folder, repeats=5):
@@ -63,8 +70,11 @@ def output(folder, repeats=5):
             words = [*PYTHON, *case("table1_rough", folder, *run, *(() if on else off))]
             times[on].append(usage(words, folder)[1])
     on, without = (statistics.median(times[key]) for key in (True, False))
-    print(f"6. fields of every step stored {on:.2f} s CPU, none {without:.2f} s: "
-          f"{100 * (on / without - 1):.1f} % more", flush=True)
+    print(
+        f"6. fields of every step stored {on:.2f} s CPU, none {without:.2f} s: "
+        f"{100 * (on / without - 1):.1f} % more",
+        flush=True,
+    )
 
 
 def ranks(folder, points, travel, repeats=3):

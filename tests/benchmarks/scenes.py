@@ -1,4 +1,5 @@
 """Scenes of the benchmarks: a solver with a state in the middle of a rough run."""
+
 import os
 import sys
 import time
@@ -8,20 +9,20 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
-from ehlpetsc import environment  # noqa: E402
+from ehlpetsc import environment
 
 environment.prepare()
-import petsc4py  # noqa: E402
+import petsc4py
 
 petsc4py.init(sys.argv[:1])
-from petsc4py import PETSc  # noqa: E402
+from petsc4py import PETSc
 
-from ehlpetsc.case import load  # noqa: E402
-from ehlpetsc.march import March  # noqa: E402
-from ehlpetsc.roughness import Roughness  # noqa: E402
-from ehlpetsc.run import expected_film  # noqa: E402
-from ehlpetsc.scales import Scales  # noqa: E402
-from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+from ehlpetsc.case.loading import load
+from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.surfaces.roughness import Roughness
 
 FAST = 8.0  # nominal steps in one, on the way to where time is taken
 # measured profile at a fifth of its height under a thick film: never any contact
@@ -44,7 +45,7 @@ class Scene:
         """Newton iterations and CPU seconds of so many steps."""
         newton, begun = 0, time.process_time()
         for _ in range(steps):
-            self.state = self.march.advance(self.state, NotConverged, self.step)
+            self.state = self.march.advance(self.state, self.step)
             newton += self.state.newton
         return newton, time.process_time() - begun
 
@@ -57,7 +58,7 @@ def scene(name, *overrides):
     film = expected_film(case, scales)
     solver = Solver(case, scales, film, PETSc.COMM_SELF)
     march = March(solver, scales, Roughness.of(case, scales), film)
-    return Scene(march, march.start(NotConverged), scales.dt)
+    return Scene(march, march.start(), scales.dt)
 
 
 def rough(points, inlet=-2.5, *more):

@@ -5,6 +5,7 @@ the machine does falls on both. Two ratios, 2 being ideal: of wall clock times, 
 cores that are free; and of processor times, that of the one rank over that of the busier of two, which shows
 what the dealing is worth on any machine.
 """
+
 import os
 import statistics
 import sys
@@ -14,7 +15,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1] / "regression")]
-import running  # noqa: E402
+import running
 
 RANK = "--rank"  # first argument of this file where it stands for one rank of the program
 
@@ -53,11 +54,14 @@ def main(travel="1.0", pairs="3"):
         found[ranks].append(times(ranks, travel))
         wall, processor = found[ranks][-1]
         print(f"{ranks} rank(s): {wall:.1f} s, processor {processor:.1f} s", flush=True)
-    for name, one, two in zip(("wall clock", "processor"), zip(*found[1], strict=True),
-                              zip(*found[2], strict=True), strict=True):
+    for name, one, two in zip(
+        ("wall clock", "processor"), zip(*found[1], strict=True), zip(*found[2], strict=True), strict=True
+    ):
         ratios = [a / b for a, b in zip(one, two, strict=True)]
-        print(f"{name}: {statistics.median(one):.1f} s over {statistics.median(two):.1f} s, "
-              f"ratio of the pairs {statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})")
+        print(
+            f"{name}: {statistics.median(one):.1f} s over {statistics.median(two):.1f} s, "
+            f"ratio of the pairs {statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+        )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Pieces of work are dealt once each, to whoever is free, and no group waits for ever."""
+
 import time
 
-from ehlpetsc.dealing import Dealer
+from ehlpetsc.run.work_queue import Dealer
 
 
 def deal(ranks, pieces, ending_after=None):
@@ -36,7 +37,7 @@ def test_ranks_of_a_group_get_the_same_pieces():
     mine, told, _ = deal(2, list(range(7)))
     assert told == list(range(7))
     for first in range(0, MPI.COMM_WORLD.size, 2):
-        assert all(other == mine[first] for other in mine[first:first + 2])
+        assert all(other == mine[first] for other in mine[first : first + 2])
 
 
 def test_nothing_more_is_dealt_once_a_group_is_to_stop():

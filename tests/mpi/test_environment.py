@@ -1,4 +1,5 @@
 """The ranks that mpirun started are one communicator, on a PETSc of real double precision."""
+
 import os
 
 import numpy as np

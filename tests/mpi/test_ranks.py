@@ -1,4 +1,5 @@
 """The solution does not depend on the number of ranks: a rough run with contact, on all ranks and on one."""
+
 from pathlib import Path
 
 import numpy as np
@@ -7,19 +8,24 @@ import pytest
 
 petsc4py.init([])
 
-from petsc4py import PETSc  # noqa: E402
+from petsc4py import PETSc
 
-from ehlpetsc.case import load  # noqa: E402
-from ehlpetsc.march import March  # noqa: E402
-from ehlpetsc.roughness import Roughness  # noqa: E402
-from ehlpetsc.run import expected_film  # noqa: E402
-from ehlpetsc.scales import Scales  # noqa: E402
-from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+from ehlpetsc.case.loading import load
+from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.surfaces.roughness import Roughness
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
 # the inlet near the contact, thin oil: the asperities touch within few steps
-SHORT = ["mesh.inlet=-1.2", "mesh.outlet=1.3", "mesh.points_per_half_width=40", "time.travel=0.7",
-         "fluid.viscosity=0.001"]
+SHORT = [
+    "mesh.inlet=-1.2",
+    "mesh.outlet=1.3",
+    "mesh.points_per_half_width=40",
+    "time.travel=0.7",
+    "fluid.viscosity=0.001",
+]
 
 
 def marched(comm):
@@ -29,12 +35,16 @@ def marched(comm):
     scales = Scales.of(case)
     film = expected_film(case, scales)
     march = March(Solver(case, scales, film, comm), scales, Roughness.of(case, scales), film)
-    states = [march.start(NotConverged)]
+    states = [march.start()]
     while states[-1].time < scales.duration:
-        states.append(march.advance(states[-1], NotConverged, scales.dt))
+        states.append(march.advance(states[-1]))
     bound = march.solver.bound
-    return (np.array([march.problem.pressure(s.q) for s in states]), np.array([s.h for s in states]),
-            np.array([s.h <= bound for s in states]), np.array([s.newton for s in states]))
+    return (
+        np.array([march.problem.pressure(s.q) for s in states]),
+        np.array([s.h for s in states]),
+        np.array([s.h <= bound for s in states]),
+        np.array([s.newton for s in states]),
+    )
 
 
 def test_a_rough_run_is_the_same_on_every_number_of_ranks():

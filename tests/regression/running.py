@@ -1,4 +1,5 @@
 """Running the program as its users do: as processes of their own, under mpirun or without."""
+
 import re
 import subprocess
 import time
@@ -10,9 +11,15 @@ TAMPERED = str(Path(__file__).with_name("tampered.py"))
 # what run_mpi.sh sets; the tests of a bare environment leave out the first two
 DEBIAN = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real"
 SCRIPT = {
-    "PETSC_DIR": DEBIAN, "PYTHONPATH": f"{ROOT}:{DEBIAN}/lib/python3/dist-packages", "OMP_NUM_THREADS": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_btl": "self,vader",
-    "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "PMIX_MCA_psec": "native", "PMIX_MCA_gds": "hash",
+    "PETSC_DIR": DEBIAN,
+    "PYTHONPATH": f"{ROOT}:{DEBIAN}/lib/python3/dist-packages",
+    "OMP_NUM_THREADS": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_btl": "self,vader",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "PMIX_MCA_psec": "native",
+    "PMIX_MCA_gds": "hash",
     "OMPI_MCA_mpi_yield_when_idle": "1",  # the cores may be fewer than the ranks, and not ours alone
 }
 BARE = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "TERM": "dumb"}
@@ -36,8 +43,13 @@ def command(*words, ranks=0, tampered=()):
 def run(*words, cwd, ranks=0, tampered=(), **environment):
     """Run the program to its end; output and error output as text."""
     return subprocess.run(
-        command(*words, ranks=ranks, tampered=tampered), cwd=cwd, env=BARE | SCRIPT | environment,
-        capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL,
+        command(*words, ranks=ranks, tampered=tampered),
+        cwd=cwd,
+        env=BARE | SCRIPT | environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        stdin=subprocess.DEVNULL,
     )
 
 
@@ -54,4 +66,3 @@ def summary(text):
     line = text.strip().splitlines()[-1]
     assert line.startswith("ehlpetsc: "), text
     return dict(re.findall(r"(\w+)=(\S+)", line))
-

@@ -6,6 +6,7 @@ Refresh after a change that is meant to move results, and say in the commit why 
 
 It prints what moved and writes expected.json.
 """
+
 import json
 import sys
 import tempfile
@@ -16,7 +17,7 @@ from running import ROOT, run, settings
 
 sys.path.insert(0, str(ROOT))  # also when called as a command, outside pytest
 
-from ehlpetsc.result import read_result
+from ehlpetsc.results.reader import read_result
 
 EXPECTED = Path(__file__).with_name("expected.json")
 

@@ -2,17 +2,18 @@
 
 ACCIDENT is "raise", an error in the code, or the name of a signal that the rank gets during the step.
 """
+
 import os
 import signal
 import sys
 
 from ehlpetsc.__main__ import guarded
 from ehlpetsc.environment import prepare
-from ehlpetsc.options import understand
+from ehlpetsc.run.command_line import parse_command_line
 
 
 def tamper(accident, rank, step):
-    from ehlpetsc.march import March
+    from ehlpetsc.stepping.time_stepping import March
 
     advance = March.advance
 
@@ -33,6 +34,6 @@ if __name__ == "__main__":
     prepare()
     import petsc4py
 
-    petsc4py.init([sys.argv[0], *understand(rest).petsc])  # what is tampered with imports PETSc
+    petsc4py.init([sys.argv[0], *parse_command_line(rest).petsc])  # what is tampered with imports PETSc
     tamper(accident, int(rank), int(step))
     sys.exit(guarded([sys.argv[0], *rest]))

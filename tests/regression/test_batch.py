@@ -1,11 +1,12 @@
 """The batch script, with a stand-in for Slurm: stopped in time, queued again, it goes on and ends."""
+
 import os
 import signal
 import subprocess
 
 from running import BARE, ROOT, SHORT, settings, wait_for
 
-from ehlpetsc.result import read_result
+from ehlpetsc.results.reader import read_result
 
 JOB = ["/bin/bash", ROOT / "cases" / "batch.slurm", ROOT / "cases" / "table1_rough.toml", *settings(*SHORT)]
 

@@ -1,4 +1,5 @@
 """Every case of cases/ in its short form gives the figures stored; see short_cases.py for refreshing them."""
+
 import json
 
 import pytest

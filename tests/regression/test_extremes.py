@@ -1,11 +1,12 @@
 """The edge of the ranges: the short form of the table of extremes, and random cases."""
+
 import math
 import os
 
 import pytest
 from running import SCRIPT
 
-from ehlpetsc.case import load
+from ehlpetsc.case.loading import load
 from ehlpetsc.study.draws import run_all
 from ehlpetsc.study.extremes import lines, table
 from ehlpetsc.study.runs import NOT_CONVERGED

@@ -3,6 +3,7 @@
 The mesh is coarser and the roughness has only just come into the contact; the figures of the full lengths are
 in the README.
 """
+
 import json
 from contextlib import ExitStack
 
@@ -10,9 +11,10 @@ import numpy as np
 import pytest
 from running import ROOT, run, settings
 
-from ehlpetsc import collisions, counts, entrapment
-from ehlpetsc.result import read_result
-from ehlpetsc.swept import from_thick_to_thin, in_order, open_all
+from ehlpetsc.analysis import collisions, entrapment
+from ehlpetsc.analysis import contact_statistics as counts
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.series_index import from_thick_to_thin, in_order, open_all
 
 SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
 

@@ -1,11 +1,14 @@
 """The command line: where options come from, what is refused, what -help and -options_left say."""
+
 import subprocess
 
 import pytest
 from running import BARE, PYTHON, ROOT, SCRIPT, run, settings, summary
 
-from ehlpetsc.options import OWN, UsageError, faults, understand
-from ehlpetsc.result import read_result
+from ehlpetsc.errors import UsageError
+from ehlpetsc.nonlinear.options import OWN, faults
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.run.command_line import parse_command_line
 
 SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
 MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]
@@ -63,7 +66,7 @@ def test_an_options_file_counts_where_it_stands(case, tmp_path):
 
 def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
     monkeypatch.setenv("PETSC_OPTIONS", "-ehl_set a.b=1 -snes_monitor -ehl_set 'title=two words'")
-    command = understand(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
+    command = parse_command_line(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
     assert command.overrides == ["a.b=1", "title=two words", "c.d=2", "a.b=3"]
     assert command.petsc == ["-ksp_view"]
     assert command.case == "x.toml"
@@ -94,29 +97,35 @@ def test_faults_of_single_names():
     assert faults(["ehl_outputs", "ehloutput"])[1].endswith("did you mean -ehl_output?")
 
 
-@pytest.mark.parametrize("arguments, message", [
-    ([], "which case?"),
-    (["-snes_monitor"], "which case?"),
-    (["a.toml", "b.toml"], "one case file at a time"),
-    (["a.toml", "-options_file", "nofile"], "-options_file nofile: no such file"),
-])
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ([], "which case?"),
+        (["-snes_monitor"], "which case?"),
+        (["a.toml", "b.toml"], "one case file at a time"),
+        (["a.toml", "-options_file", "nofile"], "-options_file nofile: no such file"),
+    ],
+)
 def test_the_case_must_be_named_once(arguments, message):
     with pytest.raises(UsageError, match=message):
-        understand(arguments)
+        parse_command_line(arguments)
 
 
-@pytest.mark.parametrize("words, message", [
-    (["-ehl_output"], "-ehl_output stands without a value; allowed: -ehl_output FILE.h5"),
-    (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: allowed: a number > 0"),
-    (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: allowed: a number > 0"),
-    (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: result file not created, No such file or directory"),
-    (["-ehl_restart", "none.h5"], "the case is steady"),
-    (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls needs"),
-    (["-options_file", "nofile"], "-options_file nofile: no such file"),
-    (["-pc_type", "nosuch"], "PETSc refuses an option: Unable to find requested PC type nosuch"),
-    (["-ksp_rtol", "abc"], "PETSc refuses an option: Input string abc has no numeric value"),
-    (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
-])
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["-ehl_output"], "-ehl_output stands without a value; allowed: -ehl_output FILE.h5"),
+        (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: allowed: a number > 0"),
+        (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: allowed: a number > 0"),
+        (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: result file not created, No such file or directory"),
+        (["-ehl_restart", "none.h5"], "the case is steady"),
+        (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls needs"),
+        (["-options_file", "nofile"], "-options_file nofile: no such file"),
+        (["-pc_type", "nosuch"], "PETSc refuses an option: Unable to find requested PC type nosuch"),
+        (["-ksp_rtol", "abc"], "PETSc refuses an option: Input string abc has no numeric value"),
+        (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
+    ],
+)
 def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
     done = run(case, *words, cwd=tmp_path)
     assert done.returncode == 2
@@ -170,8 +179,12 @@ def test_views_come_once_and_monitors_are_headed(tmp_path):
 def test_a_bare_environment_will_do(case, tmp_path):
     bare = {name: value for name, value in SCRIPT.items() if name not in ("PETSC_DIR", "OMP_NUM_THREADS")}
     done = subprocess.run(
-        ["mpirun", "-q", "-n", "2", PYTHON, "-m", "ehlpetsc", case], cwd=tmp_path, timeout=120,
-        env=BARE | bare | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+        ["mpirun", "-q", "-n", "2", PYTHON, "-m", "ehlpetsc", case],
+        cwd=tmp_path,
+        timeout=120,
+        env=BARE | bare | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
@@ -181,8 +194,11 @@ def test_a_bare_environment_will_do(case, tmp_path):
 def test_a_python_without_the_packages_is_told_what_to_type(case, tmp_path):
     done = subprocess.run(
         ["mpirun", "-q", "-n", "2", PYTHON, "-S", "-m", "ehlpetsc", "case.toml", "-snes_monitor"],
-        cwd=tmp_path, env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)}, timeout=120,
-        capture_output=True, text=True,
+        cwd=tmp_path,
+        env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)},
+        timeout=120,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 2
     lines = done.stderr.splitlines()
@@ -194,7 +210,10 @@ def test_a_python_without_the_packages_is_told_what_to_type(case, tmp_path):
 @pytest.mark.parametrize("command", ["compare", "plot", "post", "study", "counts", "collisions"])
 def test_every_command_tells_a_python_without_the_packages(tmp_path, command):
     done = subprocess.run(
-        [PYTHON, "-S", "-m", f"ehlpetsc.{command}", "a b.h5"], cwd=tmp_path, capture_output=True, text=True,
+        [PYTHON, "-S", "-m", f"ehlpetsc.{command}", "a b.h5"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
         env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)},
     )
     assert done.returncode == 2
@@ -208,4 +227,3 @@ def test_explain_runs_nothing_and_speaks_once(case, tmp_path):
     assert done.returncode == 0
     assert done.stdout.count("Table 1, smooth and steady") == 1
     assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
-

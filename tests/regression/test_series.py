@@ -1,10 +1,11 @@
 """Series through the command: every member once, failures named, reruns that do only what is missing."""
+
 import json
 
 import pytest
 from running import ROOT, SHORT, run, settings, summary
 
-from ehlpetsc.result import read_result
+from ehlpetsc.results.reader import read_result
 
 CASE = ROOT / "cases" / "fig4.toml"
 VALUES = (0.01, 0.006, 0.003)
@@ -49,8 +50,13 @@ def test_every_member_has_its_file(finished):
 
 def test_a_member_is_what_the_case_alone_gives(finished, tmp_path):
     folder, _ = finished
-    alone = run(ROOT / "cases" / "table1_rough.toml", "-ehl_output", "alone.h5",
-                *settings(*QUICK, "fluid.viscosity=0.003"), cwd=tmp_path)
+    alone = run(
+        ROOT / "cases" / "table1_rough.toml",
+        "-ehl_output",
+        "alone.h5",
+        *settings(*QUICK, "fluid.viscosity=0.003"),
+        cwd=tmp_path,
+    )
     assert alone.returncode == 0, alone.stderr
     with read_result(tmp_path / "alone.h5") as a, read_result(folder / "out_viscosity_0.003.h5") as b:
         assert (a.steps("p_max") == b.steps("p_max")).all() and (a.steps("time") == b.steps("time")).all()

@@ -1,4 +1,5 @@
 """Accidents, stops and restarts: what is left is whole, and going on equals an uninterrupted run."""
+
 import json
 import signal
 import subprocess
@@ -7,8 +8,8 @@ import numpy as np
 import pytest
 from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, summary, wait_for
 
-from ehlpetsc.compare import compare
-from ehlpetsc.result import read_result
+from ehlpetsc.analysis.compare import compare
+from ehlpetsc.results.reader import read_result
 
 CASE = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT)]
 
@@ -119,11 +120,17 @@ def test_a_step_that_does_not_converge_is_named_and_leaves_its_last_good_state(s
     assert last_step(tmp_path / "f.h5") == (16, "done")
 
 
-@pytest.mark.parametrize("more, message", [
-    (["mesh.points_per_half_width=41"], "has 113 nodes, the case 116; [mesh] must be as it was"),
-    (["contact.load=400e3"], "its nodes lie from -0.503522 to 0.436386 mm, those of the case from -0.438"),
-    (["mesh.inlet=-1.6", "mesh.outlet=1.2"], "its nodes lie from"),
-])
+@pytest.mark.parametrize(
+    "more, message",
+    [
+        (["mesh.points_per_half_width=41"], "has 113 nodes, the case 116; [mesh] must be as it was"),
+        (
+            ["contact.load=400e3"],
+            "its nodes lie from -0.503522 to 0.436386 mm, those of the case from -0.438",
+        ),
+        (["mesh.inlet=-1.6", "mesh.outlet=1.2"], "its nodes lie from"),
+    ],
+)
 def test_a_restart_file_of_another_mesh_is_refused(stopped, tmp_path, more, message):
     done = run(*CASE, *settings(*more), "-ehl_restart", stopped, cwd=tmp_path)
     assert done.returncode == 2

@@ -1,8 +1,9 @@
 """Result files with made-up but plausible values, for tests of what reads them."""
+
 import numpy as np
 
-from ehlpetsc.fields import FIELDS
-from ehlpetsc.output import ResultWriter
+from ehlpetsc.results.quantities import FIELDS
+from ehlpetsc.results.writer import ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
 TABLE_1 = 'title = "made up"\n[fluid]\nviscosity = {viscosity}\n'
@@ -34,15 +35,28 @@ def make_result(
     x = np.linspace(-2.5, 1.5, nodes)
     attrs = dict(a=A, p0=P0, h_scale=A**2 / RADIUS, u1=5.6, u2=4.4, ranks=1, petsc_options="")
     writer = ResultWriter(
-        path, case_text=TABLE_1.format(viscosity=viscosity), title="made up", x=x * A, scalars_attrs=attrs,
-        fields=list(fields), every=every, precision="float64", profiles={},
+        path,
+        case_text=TABLE_1.format(viscosity=viscosity),
+        title="made up",
+        x=x * A,
+        scalars_attrs=attrs,
+        fields=list(fields),
+        every=every,
+        precision="float64",
+        profiles={},
     )
     for step, time in enumerate(np.linspace(0, 40e-6, steps)):
         values, contact = fields_at(x, time, viscosity)
         values["pressure"] = factor * values["pressure"]
         scalars = dict(
-            dt=0.0 if steps == 1 else 40e-6 / (steps - 1), newton=5, h_min=values["film_thickness"].min(),
-            p_max=values["pressure"].max(), contacts=contact.sum(), load=527e3, approach=-1e-6, wall=0.02,
+            dt=0.0 if steps == 1 else 40e-6 / (steps - 1),
+            newton=5,
+            h_min=values["film_thickness"].min(),
+            p_max=values["pressure"].max(),
+            contacts=contact.sum(),
+            load=527e3,
+            approach=-1e-6,
+            wall=0.02,
         )
         writer.append(step, time, values, scalars, contact)
     writer.close(status)

@@ -1,4 +1,5 @@
 """Bad input from the command line to the exit status: what is said, and that nothing is left behind."""
+
 import subprocess
 import sys
 from pathlib import Path
@@ -24,8 +25,12 @@ def run(tmp_path, monkeypatch):
             (tmp_path / "p.csv").write_text(profile)
         before = set(tmp_path.iterdir())
         done = subprocess.run(
-            [sys.executable, "-m", "ehlpetsc", "my.toml", *words], cwd=tmp_path, capture_output=True,
-            text=True, timeout=120, stdin=subprocess.DEVNULL,
+            [sys.executable, "-m", "ehlpetsc", "my.toml", *words],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            stdin=subprocess.DEVNULL,
         )
         return done, {path.name for path in set(tmp_path.iterdir()) - before}
 
@@ -47,16 +52,27 @@ def refused(run, text, profile=None):
     return done.stderr.splitlines()
 
 
-@pytest.mark.parametrize("text, words", [
-    (replaced("radius = 0.0191", "radios = 0.0191"),
-     ["contact.radius is missing", "contact.radios", '"radius"?']),
-    (replaced("load = 527e3", "# "), ["contact.load is missing", "allowed: a number >"]),
-    (replaced("radius = 0.0191", "radius = 'big'"), ['contact.radius = "big"', "allowed: a number >"]),
-    (replaced("viscosity = 0.005", "viscosity = nan"), ["fluid.viscosity = nan", "allowed: a number >"]),
-    (replaced("radius = 0.0191", "radius = -0.0191"), ["contact.radius = -0.0191", "allowed: a number >"]),
-    (replaced("entrainment_speed = 5.0", "entrainment_speed = 0.0"),
-     ["motion.entrainment_speed = 0.0", "allowed: a number", "not zero"]),
-], ids=["unknown key", "missing key", "wrong type", "nan", "negative radius", "zero entrainment"])
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        (
+            replaced("radius = 0.0191", "radios = 0.0191"),
+            ["contact.radius is missing", "contact.radios", '"radius"?'],
+        ),
+        (replaced("load = 527e3", "# "), ["contact.load is missing", "allowed: a number >"]),
+        (replaced("radius = 0.0191", "radius = 'big'"), ['contact.radius = "big"', "allowed: a number >"]),
+        (replaced("viscosity = 0.005", "viscosity = nan"), ["fluid.viscosity = nan", "allowed: a number >"]),
+        (
+            replaced("radius = 0.0191", "radius = -0.0191"),
+            ["contact.radius = -0.0191", "allowed: a number >"],
+        ),
+        (
+            replaced("entrainment_speed = 5.0", "entrainment_speed = 0.0"),
+            ["motion.entrainment_speed = 0.0", "allowed: a number", "not zero"],
+        ),
+    ],
+    ids=["unknown key", "missing key", "wrong type", "nan", "negative radius", "zero entrainment"],
+)
 def test_a_bad_key(run, text, words):
     said = "\n".join(refused(run, text))
     assert said.startswith("my.toml: ")
@@ -64,12 +80,16 @@ def test_a_bad_key(run, text, words):
         assert word in said
 
 
-@pytest.mark.parametrize("profile, words", [
-    (None, "no such file"),
-    (LEVEL + "8e-6,high\n", "line 9: '8e-6,high'; allowed: two numbers a line"),
-    (LEVEL + "6.5e-6,0\n", "x falls after x = 7e-06; allowed: x increasing"),
-    (LEVEL + "7e-6,1e-7\n", "x = 7e-06 stands twice; allowed: every x once"),
-], ids=["missing", "text", "unsorted", "duplicate"])
+@pytest.mark.parametrize(
+    "profile, words",
+    [
+        (None, "no such file"),
+        (LEVEL + "8e-6,high\n", "line 9: '8e-6,high'; allowed: two numbers a line"),
+        (LEVEL + "6.5e-6,0\n", "x falls after x = 7e-06; allowed: x increasing"),
+        (LEVEL + "7e-6,1e-7\n", "x = 7e-06 stands twice; allowed: every x once"),
+    ],
+    ids=["missing", "text", "unsorted", "duplicate"],
+)
 def test_a_bad_roughness_file(run, profile, words):
     said = refused(run, SMOOTH + SURFACE, profile)
     assert len(said) == 1
@@ -79,15 +99,25 @@ def test_a_bad_roughness_file(run, profile, words):
 def test_everything_wrong_is_told_at_once(run):
     text = SMOOTH + SURFACE + "[surface.slow]\nfile = 'nowhere.csv'\n"
     for old, new in (
-        ("radius = 0.0191", "radius = -1"), ("viscosity = 0.005", "viscosity = inf"),
-        ("load = 527e3", "laod = 527e3"), ("entrainment_speed = 5.0", "entrainment_speed = 0"),
+        ("radius = 0.0191", "radius = -1"),
+        ("viscosity = 0.005", "viscosity = inf"),
+        ("load = 527e3", "laod = 527e3"),
+        ("entrainment_speed = 5.0", "entrainment_speed = 0"),
         ("outlet = 1.5", "outlet = true"),
     ):
         assert text.count(old) == 1
         text = text.replace(old, new)
     said = refused(run, text, LEVEL + "7e-6,0\n")
-    for key in ("contact.radius =", "fluid.viscosity =", "contact.laod =", "contact.load is missing",
-                "motion.entrainment_speed =", "mesh.outlet =", "surface.fast.file =", "surface.slow.file ="):
+    for key in (
+        "contact.radius =",
+        "fluid.viscosity =",
+        "contact.laod =",
+        "contact.load is missing",
+        "motion.entrainment_speed =",
+        "mesh.outlet =",
+        "surface.fast.file =",
+        "surface.slow.file =",
+    ):
         assert sum(line.startswith(f"my.toml: {key}") for line in said) == 1, key
     assert len(said) == 8
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from ehlpetsc import case
-from ehlpetsc.case import CaseError
-from ehlpetsc.case_keys import FIELDS
+from ehlpetsc.case import loading as case
+from ehlpetsc.case.schema import FIELDS
+from ehlpetsc.errors import CaseError
 
 CASES = Path(__file__).parents[2] / "cases"
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"

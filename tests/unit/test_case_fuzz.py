@@ -2,6 +2,7 @@
 
 EHL_FUZZ=10000 in the environment draws that many; EHL_FUZZ_SEED another series of them.
 """
+
 import os
 import random
 import tomllib
@@ -9,21 +10,53 @@ from pathlib import Path
 
 import pytest
 
-from ehlpetsc import case, explain
-from ehlpetsc.case import CaseError
-from ehlpetsc.profiles import ProfileError
-from ehlpetsc.roughness import Roughness
-from ehlpetsc.scales import Scales
+from ehlpetsc.case import loading as case
+from ehlpetsc.errors import CaseError, ProfileError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run import describe as explain
+from ehlpetsc.surfaces.roughness import Roughness
 
 CASES = Path(__file__).parents[2] / "cases"
 DRAWS = int(os.environ.get("EHL_FUZZ", "400"))
 SEED = int(os.environ.get("EHL_FUZZ_SEED", "1"))
 VALUES = (
-    "nan", "-inf", "0", "-1", "1e400", "-1e-300", "-0.0", "5e-324", "1_000", "+1", "0b1", "1.", "_", "true",
-    "10" * 60, "0x" + "f" * 5000, "9" * 5000, '""', '"\\u0000"', '"a"', "'''\n'''", "\t", "# x",
-    "[]", "[[]]", "[1, 'x']", "[" * 2000, "{}", "{a = {b = []}}", "1979-05-27T07:32:00Z", "07:32:00",
-    "{ kind = 'ridge' }", "{ kind = [] }", "{ kind = 'ground', ra = nan, seed = -1 }",
-    "'../'", "'/dev/zero'", '"profiles"',
+    "nan",
+    "-inf",
+    "0",
+    "-1",
+    "1e400",
+    "-1e-300",
+    "-0.0",
+    "5e-324",
+    "1_000",
+    "+1",
+    "0b1",
+    "1.",
+    "_",
+    "true",
+    "10" * 60,
+    "0x" + "f" * 5000,
+    "9" * 5000,
+    '""',
+    '"\\u0000"',
+    '"a"',
+    "'''\n'''",
+    "\t",
+    "# x",
+    "[]",
+    "[[]]",
+    "[1, 'x']",
+    "[" * 2000,
+    "{}",
+    "{a = {b = []}}",
+    "1979-05-27T07:32:00Z",
+    "07:32:00",
+    "{ kind = 'ridge' }",
+    "{ kind = [] }",
+    "{ kind = 'ground', ra = nan, seed = -1 }",
+    "'../'",
+    "'/dev/zero'",
+    '"profiles"',
 )
 
 
@@ -48,7 +81,7 @@ def _lines(text, rng, change):
     rows = [n for n, line in enumerate(lines) if "=" in line and not line.startswith("#")]
     if rows:
         n = rng.choice(rows)
-        lines[n:n + 1] = change(lines[n])
+        lines[n : n + 1] = change(lines[n])
     return "\n".join(lines)
 
 
@@ -78,7 +111,7 @@ def _table(text, rng):
 
 def _cut(text, rng):
     start = rng.randrange(len(text) + 1)
-    return text[:start] + text[start + rng.randrange(200):]
+    return text[:start] + text[start + rng.randrange(200) :]
 
 
 def _used(loaded):
@@ -117,9 +150,21 @@ def test_corrupted_files_end_in_case_errors(tmp_path):
 def test_corrupted_overrides_end_in_case_errors():
     rng = random.Random(SEED)
     keys = [
-        "contact.radius", "fluid", "surface.slow.synthetic", "series.values", "petsc.x", "x", "", ".",
-        "time.travel", "surface.fast.file", "contact.radius.x", "title", "output.fields",
-        "contact.youngs_modulus", "mesh..inlet",
+        "contact.radius",
+        "fluid",
+        "surface.slow.synthetic",
+        "series.values",
+        "petsc.x",
+        "x",
+        "",
+        ".",
+        "time.travel",
+        "surface.fast.file",
+        "contact.radius.x",
+        "title",
+        "output.fields",
+        "contact.youngs_modulus",
+        "mesh..inlet",
     ]
     for _ in range(DRAWS):
         overrides = [

@@ -1,13 +1,17 @@
 """Collisions are found where they were put, matched by time and place, and judged by exact figures."""
+
 import json
 
 import numpy as np
 import pytest
 from made_results import A
 
-from ehlpetsc import collisions, entrapment, plot, swept
-from ehlpetsc.output import ResultWriter
-from ehlpetsc.result import OutputError, read_result
+from ehlpetsc.analysis import collisions, entrapment
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.results import series_index as swept
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.writer import ResultWriter
 
 X = np.linspace(-1.5, 1.5, 301)
 SPEED = 5.0
@@ -17,19 +21,26 @@ CASE = "[fluid]\nviscosity = {}\n"
 def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=(), bound=0.0):
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
     writer = ResultWriter(
-        path, case_text=case.format(viscosity), title="dips", x=X * A, every=1, precision="float64",
-        fields=["pressure", "film_thickness", "in_contact"], profiles={},
-        scalars_attrs={"a": A, "p0": 1e9, "u1": SPEED, "u2": SPEED})
+        path,
+        case_text=case.format(viscosity),
+        title="dips",
+        x=X * A,
+        every=1,
+        precision="float64",
+        fields=["pressure", "film_thickness", "in_contact"],
+        profiles={},
+        scalars_attrs={"a": A, "p0": 1e9, "u1": SPEED, "u2": SPEED},
+    )
     for number in range(steps + 1):
         time = number * step
         film, pressure = np.full(len(X), 0.3), np.ones(len(X))
         for x, at, width, depth in dips:
             shape = np.maximum(1 - ((time - at) / width) ** 2, 0)
-            film -= depth * shape * np.exp(-((X - x - SPEED * (time - at) / A) / 0.02) ** 2)
+            film -= depth * shape * np.exp(-(((X - x - SPEED * (time - at) / A) / 0.02) ** 2))
         film = np.maximum(film, bound)
         pressure += 2.0 * (film == bound) * (0.01 / viscosity)
         for x, height in bumps:
-            pressure += height * np.exp(-((X - x - SPEED * time / A) / 0.01) ** 2)
+            pressure += height * np.exp(-(((X - x - SPEED * time / A) / 0.01) ** 2))
         values = {"pressure": 1e9 * pressure, "film_thickness": 1e-6 * film}
         least = 1e-6 * film.min() if number else 1e-5 * viscosity  # smooth films at the start
         scalars = {"h_min": least, "contacts": (film == bound).sum(), "dt": step}
@@ -43,8 +54,12 @@ def series(tmp_path):
     """Films 0.3 um less a dip that deepens by 0.05 um a member: contact from the third one on."""
     depths = {0.010: 0.2, 0.008: 0.25, 0.006: 0.3001, 0.004: 0.35}
     finer = {0.004: dict(step=0.25e-6, steps=160)}
-    return [make(tmp_path / f"{v}.h5", v, [(-0.2, 20e-6, 6e-6, depth), (0.5, 10e-6, 3e-6, 0.4)],
-                 **finer.get(v, {})) for v, depth in depths.items()]
+    return [
+        make(
+            tmp_path / f"{v}.h5", v, [(-0.2, 20e-6, 6e-6, depth), (0.5, 10e-6, 3e-6, 0.4)], **finer.get(v, {})
+        )
+        for v, depth in depths.items()
+    ]
 
 
 def test_collisions_are_found_where_they_are(series):
@@ -136,7 +151,7 @@ def test_a_peak_that_is_not_between_is_no_entrapment(series):
 def test_pictures_of_a_series(tmp_path, series, kind):
     picture = tmp_path / "picture.svg"
     assert plot.main([*(str(result.path) for result in series), kind, "-o", str(picture)]) == 0
-    lines = picture.read_text().count('<path')
+    lines = picture.read_text().count("<path")
     assert lines > 30
 
 

@@ -1,10 +1,11 @@
 """Counts, lengths and loads of contact against the same taken from the made-up fields directly."""
+
 import numpy as np
 import pytest
 from made_results import A, make_result
 
-from ehlpetsc import counts
-from ehlpetsc.result import read_result
+from ehlpetsc.analysis import contact_statistics as counts
+from ehlpetsc.results.reader import read_result
 
 
 @pytest.fixture

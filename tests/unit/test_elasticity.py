@@ -1,10 +1,11 @@
 """Products with the deflection's kernels by transforms."""
+
 import numpy as np
 import pytest
 from scipy.fft import next_fast_len
 from scipy.linalg import toeplitz
 
-from ehlpetsc.elasticity import SymmetricToeplitz, curvature_kernel, fast_length
+from ehlpetsc.discretisation.elasticity import SymmetricToeplitz, curvature_kernel, fast_length
 
 
 def test_fast_length_is_that_of_scipy():

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehlpetsc import case
-from ehlpetsc.expected import dowson_higginson, file_size, steps
-from ehlpetsc.explain import explain, warnings
-from ehlpetsc.fields import FIELDS
-from ehlpetsc.output import ResultWriter
-from ehlpetsc.scales import Scales
+from ehlpetsc.case import loading as case
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.quantities import FIELDS
+from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.run.describe import explain, warnings
+from ehlpetsc.run.forecast import dowson_higginson, file_size, steps
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -61,17 +61,31 @@ def test_parts_switched_off_are_named():
     assert starting(full, "Switched off") == ["Switched off: nothing"]
 
 
-@pytest.mark.parametrize("overrides", [
-    ["time.travel=0.75"],
-    ["time.travel=6.0", "output.every=8", "output.precision='float32'",
-     "output.fields=['pressure', 'in_contact']"],
-])
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["time.travel=0.75"],
+        [
+            "time.travel=6.0",
+            "output.every=8",
+            "output.precision='float32'",
+            "output.fields=['pressure', 'in_contact']",
+        ],
+    ],
+)
 def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides):
     c = case.load(CASES / "table1_rough.toml", overrides)
     s = Scales.of(c)
     writer = ResultWriter(
-        tmp_path / "r.h5", case_text=c.text, title=c.title, x=s.x, scalars_attrs={}, fields=c.output.fields,
-        every=c.output.every, precision=c.output.precision, profiles={},
+        tmp_path / "r.h5",
+        case_text=c.text,
+        title=c.title,
+        x=s.x,
+        scalars_attrs={},
+        fields=c.output.fields,
+        every=c.output.every,
+        precision=c.output.precision,
+        profiles={},
     )
     nothing = np.zeros(s.nx)
     for step in range(steps(s) + 1):

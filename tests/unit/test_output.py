@@ -1,4 +1,5 @@
 """Result and restart files: what is in them, and that a fault leaves them whole."""
+
 import contextlib
 import json
 import os
@@ -12,8 +13,9 @@ import h5py
 import numpy as np
 import pytest
 
-from ehlpetsc.fields import FIELDS, STEP_SCALARS
-from ehlpetsc.output import OutputError, ResultWriter, load_restart, read_result, save_restart
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.quantities import FIELDS, STEP_SCALARS
+from ehlpetsc.results.writer import ResultWriter, load_restart, read_result, save_restart
 
 NX = 40
 X = np.linspace(-2.5, 1.5, NX) * 3.3e-4
@@ -22,7 +24,12 @@ SCALARS = dict.fromkeys(STEP_SCALARS, 1)
 
 def make_writer(path, **changes):
     arguments = dict(
-        case_text='title = "ä"\n', title="ä", x=X, fields=list(FIELDS), every=1, precision="float64",
+        case_text='title = "ä"\n',
+        title="ä",
+        x=X,
+        fields=list(FIELDS),
+        every=1,
+        precision="float64",
         scalars_attrs=dict(a=3.3e-4, p0=1e9, h_scale=5.7e-6, u1=5.6, u2=4.4, ranks=2, petsc_options="-x 1"),
         profiles={"fast": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "slow": None},
     )

@@ -1,12 +1,15 @@
 """Pictures: each kind is drawn, the right instant is chosen, and faults are told."""
+
 import numpy as np
 import pytest
 from made_results import A, make_result
 from PIL import Image as image
 
-from ehlpetsc import drawing, plot, swept
-from ehlpetsc.output import ResultWriter
-from ehlpetsc.result import read_result
+from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.plot import frames as drawing
+from ehlpetsc.results import series_index as swept
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.writer import ResultWriter
 
 
 @pytest.fixture
@@ -83,8 +86,15 @@ def test_instant_is_the_one_with_most_contacts(result):
 def test_instant_is_that_of_the_highest_pressure_if_nothing_touches(tmp_path):
     x = np.linspace(-1, 1, 11)
     writer = ResultWriter(
-        tmp_path / "r.h5", case_text="", title="", x=x * A, fields=["pressure", "film_thickness"], every=2,
-        scalars_attrs={"a": A, "p0": 1e9}, precision="float64", profiles={},
+        tmp_path / "r.h5",
+        case_text="",
+        title="",
+        x=x * A,
+        fields=["pressure", "film_thickness"],
+        every=2,
+        scalars_attrs={"a": A, "p0": 1e9},
+        precision="float64",
+        profiles={},
     )
     for step, highest in enumerate([1.0, 9.0, 3.0, 8.0, 2.0]):  # the odd steps are not stored
         values = {"pressure": np.full(11, highest), "film_thickness": np.ones(11)}

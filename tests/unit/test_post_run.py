@@ -15,7 +15,7 @@ from ehlpetsc.post.__main__ import main
 from ehlpetsc.post.run import Job, run
 
 ROOT = Path(__file__).resolve().parents[2]
-FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.solver", "ehlpetsc.march", "ehlpetsc.case", "ehlpetsc.output")
+FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.case", "ehlpetsc.run")
 
 
 @pytest.fixture(scope="module")

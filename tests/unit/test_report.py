@@ -1,10 +1,11 @@
 """Progress lines, the bar, and the summary line."""
+
 import io
 import re
 
 import pytest
 
-from ehlpetsc import report
+from ehlpetsc.run import progress as report
 
 SCALARS = dict(dt=1.5e-7, newton=4, contacts=2, h_min=0.1234e-6, p_max=1.25e9)
 
@@ -108,12 +109,25 @@ def test_durations_read_well(seconds, text):
 
 def test_summary_line_can_be_grepped_and_read_back():
     line = report.summary_line(
-        "done", steps=120, newton=600, h_min=0.0, p_max=1.23456789e9, contacts=27, load_error=2.5e-12,
-        mass_error=3e-4, wall=12.34,
+        "done",
+        steps=120,
+        newton=600,
+        h_min=0.0,
+        p_max=1.23456789e9,
+        contacts=27,
+        load_error=2.5e-12,
+        mass_error=3e-4,
+        wall=12.34,
     )
     assert line.startswith("ehlpetsc: done steps=")
     values = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", line)}
     assert values == dict(
-        steps=120, newton=600, h_min=0, p_max=1.23456789e9, contacts=27, load_error=2.5e-12, mass_error=3e-4,
+        steps=120,
+        newton=600,
+        h_min=0,
+        p_max=1.23456789e9,
+        contacts=27,
+        load_error=2.5e-12,
+        mass_error=3e-4,
         wall=12.3,
     )

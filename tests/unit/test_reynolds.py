@@ -1,12 +1,13 @@
 """Reynolds' rows: their derivatives, and that a part of the mesh has the rows of the whole."""
+
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ehlpetsc.case import load
-from ehlpetsc.reynolds import ROUNDING, Reynolds, Storage
-from ehlpetsc.scales import Scales
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.reynolds import ROUNDING, Reynolds, Storage
+from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 MESH = ["mesh.points_per_half_width=32", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
@@ -23,7 +24,7 @@ def state(n):
     """Oil with a cavity behind, an uneven film, a past with a limited slope here and there."""
     rng = np.random.default_rng(5)
     q = 0.6 * rng.uniform(0.2, 1.0, n)
-    q[3 * n // 4:] = rng.uniform(-0.8, -0.1, n)[3 * n // 4:]
+    q[3 * n // 4 :] = rng.uniform(-0.8, -0.1, n)[3 * n // 4 :]
     return q, FILM * rng.uniform(0.3, 3.0, n)
 
 
@@ -34,8 +35,9 @@ def past_of(reynolds, q, h):
 
 
 @pytest.mark.parametrize("transient", [False, True], ids=["steady", "transient"])
-@pytest.mark.parametrize("extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]],
-                         ids=["seed", "barus", "starved"])
+@pytest.mark.parametrize(
+    "extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]], ids=["seed", "barus", "starved"]
+)
 def test_derivatives(extra, transient):
     reynolds, scales = rows_of(extra)
     n = scales.nx

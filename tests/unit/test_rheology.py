@@ -1,28 +1,42 @@
 """Lubricant laws: check values and derivatives against the complex step."""
+
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from ehlpetsc import rheology
+from ehlpetsc.physics import rheology
 
 STEP = 1e-30
 
 
 def oil(**changes):
-    keys = dict(viscosity=0.005, law="seed", pressure_viscosity=11.1e-9, kappa=63.2e-6, chi=5.1e-9,
-                roelands_z=0.68, roelands_pressure=0.196e9, density="dowson-higginson", gamma=2.27e-9,
-                lambda_=1.68e-9, eyring_stress=10e6)
+    keys = dict(
+        viscosity=0.005,
+        law="seed",
+        pressure_viscosity=11.1e-9,
+        kappa=63.2e-6,
+        chi=5.1e-9,
+        roelands_z=0.68,
+        roelands_pressure=0.196e9,
+        density="dowson-higginson",
+        gamma=2.27e-9,
+        lambda_=1.68e-9,
+        eyring_stress=10e6,
+    )
     return SimpleNamespace(**{**keys, **changes})
 
 
 GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
 
 
-@pytest.mark.parametrize("eta0, values", [
-    (0.005, [0.005, 0.2333503, 2.962664, 132.4506, 33651.48]),
-    (0.001, [0.001, 0.113767, 6.14164, 7115.26, 1.63311e9]),
-])
+@pytest.mark.parametrize(
+    "eta0, values",
+    [
+        (0.005, [0.005, 0.2333503, 2.962664, 132.4506, 33651.48]),
+        (0.001, [0.001, 0.113767, 6.14164, 7115.26, 1.63311e9]),
+    ],
+)
 def test_seed_viscosity(eta0, values):
     ln_eta, _ = rheology.viscosity(GPA, oil(viscosity=eta0))
     np.testing.assert_allclose(eta0 * np.exp(ln_eta), values, rtol=5e-6)
@@ -33,10 +47,17 @@ def test_dowson_higginson_density():
     np.testing.assert_allclose(rho, [1.0, 1.160326, 1.220149, 1.270642, 1.305699], rtol=5e-7)
 
 
-@pytest.mark.parametrize("sigma, zeta, factor", [
-    (0.0, 10.0, 10.04987562), (1.0, 0.0, 1.103638324), (1.0, 3.0, 3.025771941), (5.0, 0.0, 7.124316769),
-    (5.0, 3.0, 7.268422125), (20.0, 1e6, 1734265.348),
-])
+@pytest.mark.parametrize(
+    "sigma, zeta, factor",
+    [
+        (0.0, 10.0, 10.04987562),
+        (1.0, 0.0, 1.103638324),
+        (1.0, 3.0, 3.025771941),
+        (5.0, 0.0, 7.124316769),
+        (5.0, 3.0, 7.268422125),
+        (20.0, 1e6, 1734265.348),
+    ],
+)
 def test_eyring_factor(sigma, zeta, factor):
     fluid, h, eta = oil(), 1e-7, 0.5
     slope = 2.0 * fluid.eyring_stress * sigma / h

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehlpetsc import case
-from ehlpetsc.profiles import ProfileError, high_pass, levelled, read_profile
-from ehlpetsc.roughness import RAMP, Profile, Roughness, mesh_warnings
-from ehlpetsc.scales import Scales
+from ehlpetsc.case import loading as case
+from ehlpetsc.errors import ProfileError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.surfaces.profile_files import high_pass, levelled, read_profile
+from ehlpetsc.surfaces.roughness import RAMP, Profile, Roughness, mesh_warnings
 
 CASES = Path(__file__).parents[2] / "cases"
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"

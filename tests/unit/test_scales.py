@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehlpetsc import case
-from ehlpetsc.scales import Scales, moes_groups, reduced_modulus
+from ehlpetsc.case import loading as case
+from ehlpetsc.physics.scales import Scales, moes_groups, reduced_modulus
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -1,18 +1,20 @@
 """Members of a series: names, order, sums; time levels that members share."""
+
 import numpy as np
 import pytest
 from made_results import make_result
 
-from ehlpetsc.case import load, members
-from ehlpetsc.march import State
-from ehlpetsc.series import Member, Named, added
-from ehlpetsc.single import landing, on_level
+from ehlpetsc.case.loading import load, members
+from ehlpetsc.run.series import Member, Named, added
+from ehlpetsc.stepping.step_control import next_step, on_level
 
 
 def series(tmp_path, *overrides):
     case = load("cases/fig4.toml", overrides)
-    return [Member(n, case.series.key, value, member, tmp_path / "out.h5")
-            for n, (value, member) in enumerate(members(case))]
+    return [
+        Member(n, case.series.key, value, member, tmp_path / "out.h5")
+        for n, (value, member) in enumerate(members(case))
+    ]
 
 
 def test_files_are_named_after_output_and_value(tmp_path):
@@ -52,7 +54,8 @@ def test_sums_and_extremes_of_the_whole():
     one = dict(steps=3, newton=10, h_min=1e-7, p_max=1e9, contacts=2, load_error=1e-9, mass_error=0.1)
     two = dict(steps=4, newton=20, h_min=0.0, p_max=2e9, contacts=5, load_error=1e-8, mass_error=0.0)
     assert added([one, None, two]) == dict(
-        steps=7, newton=30, h_min=0.0, p_max=2e9, contacts=7, load_error=1e-8, mass_error=0.1)
+        steps=7, newton=30, h_min=0.0, p_max=2e9, contacts=7, load_error=1e-8, mass_error=0.1
+    )
     assert added([None])["steps"] == 0
 
 
@@ -67,19 +70,17 @@ def test_lines_are_named(capsys):
 @pytest.mark.parametrize("halvings", [1, 2, 5, 9])
 def test_halved_steps_come_back_to_the_levels_of_the_nominal_step(halvings):
     nominal = 0.37e-6
-    state = State(None, None, 0.0, time=7 * nominal, dt=nominal, dt_next=nominal)
+    time, dt, retries = 7 * nominal, nominal, 0
     levels, steps = [], 0
     for _ in range(60):
-        dt = landing(state, nominal)
+        longest, dt = 2.0 * dt, next_step(time, dt, retries, nominal)
         if steps == 0:
             dt *= 0.5**halvings
-        assert dt <= nominal * (1 + 1e-9) and dt <= 2.41 * state.dt
-        time = state.time + dt
-        state = State(None, None, 0.0, time=time, dt=dt, dt_next=min(nominal, 1.5 * dt),
-                      retries=halvings if steps == 0 else 0)
+        assert dt <= nominal * (1 + 1e-9) and dt <= longest * (1 + 1e-9)
+        time, retries = time + dt, halvings if steps == 0 else 0
         steps += 1
         if on_level(time, nominal):
             levels.append(round(time / nominal))
     np.testing.assert_array_equal(levels, np.arange(8, 8 + len(levels)))
-    assert state.dt == pytest.approx(nominal)
+    assert dt == pytest.approx(nominal)
     assert steps - len(levels) <= 2.5 * halvings

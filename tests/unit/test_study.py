@@ -1,10 +1,11 @@
 """Arithmetic of the studies: extrapolation, errors, inlets, last words, draws."""
+
 import random
 
 import numpy as np
 import pytest
 
-from ehlpetsc.case import load
+from ehlpetsc.case.loading import load
 from ehlpetsc.study import accuracy, lines
 from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertainty
 from ehlpetsc.study.draws import draw

@@ -1,9 +1,10 @@
 """Substitution with LAPACK's banded factors against LAPACK's own."""
+
 import numpy as np
 import pytest
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 
-from ehlpetsc.substitution import substitute
+from ehlpetsc.nonlinear.preconditioner.substitution import substitute
 
 
 @pytest.mark.parametrize("order, half", [(5, 2), (40, 7), (200, 17), (12, 17)])

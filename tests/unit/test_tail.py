@@ -1,9 +1,10 @@
 """The far kernel as exponentials, and as the solution of their recurrences."""
+
 import numpy as np
 import pytest
 
-from ehlpetsc.elasticity import curvature_kernel
-from ehlpetsc.tail import GROUP, exponentials, grouped_kernel
+from ehlpetsc.discretisation.elasticity import curvature_kernel
+from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials, grouped_kernel
 
 
 @pytest.mark.parametrize("points, error", [(50, 0.15), (200, 0.11), (800, 0.3)])
@@ -25,8 +26,9 @@ def test_recurrence_sums_an_exponential():
     matrix[0, 0] -= np.exp(-rate)
     matrix[-1, -1] -= np.exp(-rate)
     distance = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    np.testing.assert_allclose(np.linalg.solve(matrix, 2 * np.sinh(rate) * p), np.exp(-rate * distance) @ p,
-                               rtol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.solve(matrix, 2 * np.sinh(rate) * p), np.exp(-rate * distance) @ p, rtol=1e-12
+    )
 
 
 def test_grouped_kernel_is_the_mean_over_pairs_of_nodes():

@@ -1,4 +1,5 @@
 """Driving a scene of the project from a test, without files, and fitting observed orders."""
+
 from pathlib import Path
 
 import numpy as np
@@ -6,14 +7,14 @@ import petsc4py
 
 petsc4py.init([])
 
-from petsc4py import PETSc  # noqa: E402
+from petsc4py import PETSc
 
-from ehlpetsc.case import load  # noqa: E402
-from ehlpetsc.march import March  # noqa: E402
-from ehlpetsc.roughness import Roughness  # noqa: E402
-from ehlpetsc.run import expected_film  # noqa: E402
-from ehlpetsc.scales import Scales  # noqa: E402
-from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+from ehlpetsc.case.loading import load
+from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.surfaces.roughness import Roughness
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -42,14 +43,13 @@ class Scene:
     def start(self, max_it=30):
         """Steady solution at time 0, in so many Newton iterations at most."""
         self.solver.snes.max_it = max_it
-        self.state = self.march.start(NotConverged)
+        self.state = self.march.start()
         return self
 
     def steps(self, count, dt):
         """Go `count` steps of `dt` [s], yielding after each; a step that had to be halved is an error."""
         for _ in range(count):
-            self.state.dt_next = dt
-            self.state = self.march.advance(self.state, NotConverged, dt)
+            self.state = self.march.advance(self.state, dt)
             assert self.state.retries == 0
             yield self.state
 

@@ -6,12 +6,13 @@ its ends, by 0.0004 in the mean. The pressure that counts is the one found, aver
 waves carry some load further out than Hertz has it, 1 to 2 % here; their amplitude is corrected for
 that, such that the ratio wanted comes out. What is left of the cylinder is thus of the order of 0.1 %.
 """
+
 import numpy as np
 import pytest
 from driving import Scene, observed_order
 
-from ehlpetsc import reference
-from ehlpetsc.scales import Scales
+from ehlpetsc.physics import exact_solutions
+from ehlpetsc.physics.scales import Scales
 
 WAVES = 10  # to a half width
 DOMAIN = ("mesh.inlet=-1.3", "mesh.outlet=1.3")  # 13 waves either side: a crest at x = 0
@@ -26,8 +27,8 @@ def hertz(points):
     """Errors of pressure over p0, mean and within 0.9 a, and of the gap beyond 1.1 a over a^2/R."""
     scene = Scene("dry_hertz.toml", mesh(points), "mesh.inlet=-2.52", "mesh.outlet=2.52").start()
     s = scene.scales
-    wrong = np.abs(scene.pressure / s.p0 - reference.hertz_pressure(s.x, 1.0, 1.0))
-    gap = np.abs(scene.film - reference.hertz_gap(s.x * s.a, s.a, s.R)) / s.h
+    wrong = np.abs(scene.pressure / s.p0 - exact_solutions.hertz_pressure(s.x, 1.0, 1.0))
+    gap = np.abs(scene.film - exact_solutions.hertz_gap(s.x * s.a, s.a, s.R)) / s.h
     assert (scene.state.h >= 0.0).all() and (scene.pressure >= -1e-12 * s.p0).all()
     return wrong.sum() / points, wrong[np.abs(s.x) <= 0.9].max(), gap[np.abs(s.x) >= 1.1].max(), scene
 
@@ -52,13 +53,18 @@ def parabola_and_quartic(points, width, folder):
     s = Scene("dry_hertz.toml", mesh(points)).scales
     contact = width * s.a
     quartic = (1.0 / width**2 - 1.0) / (3.0 * s.R * contact**2)
-    assert reference.quartic_load(contact, s.R, s.E, quartic) == pytest.approx(s.load, rel=1e-12)
+    assert exact_solutions.quartic_load(contact, s.R, s.E, quartic) == pytest.approx(s.load, rel=1e-12)
     x = np.linspace(-1.52, 1.52, 3041) * s.a
     np.savetxt(folder / "quartic.csv", np.column_stack([x, -quartic * x**4]), delimiter=",")
-    scene = Scene("dry_hertz.toml", mesh(points), "mesh.inlet=-1.52", "mesh.outlet=1.52",
-                  f"surface.slow.file='{folder}/quartic.csv'").start(MAX_IT)
+    scene = Scene(
+        "dry_hertz.toml",
+        mesh(points),
+        "mesh.inlet=-1.52",
+        "mesh.outlet=1.52",
+        f"surface.slow.file='{folder}/quartic.csv'",
+    ).start(MAX_IT)
     x = scene.x * s.a
-    exact = reference.quartic_pressure(x, contact, s.R, s.E, quartic)
+    exact = exact_solutions.quartic_pressure(x, contact, s.R, s.E, quartic)
     wrong = np.abs(scene.pressure - exact) / exact.max()
     touching = np.abs(scene.x[scene.pressure > 1e-6 * s.p0]).max() / width
     return wrong.sum() / points, wrong[np.abs(x) <= 0.9 * contact].max(), touching, scene
@@ -85,7 +91,7 @@ class Wave:
         Mean pressure over the pressure of full contact.
     fraction : float
         Contact width over wavelength: from a straight line through (p/cos psi)^2 over sin^2 psi, see
-        :func:`ehlpetsc.reference.westergaard_pressure`, which vanishes at the edge; finer than the nodes.
+        :func:`westergaard_pressure`, which vanishes at the edge; finer than the nodes.
     exact : float
         Westergaard's fraction at `ratio`.
     error : float
@@ -101,12 +107,12 @@ class Wave:
         central = slice(scene.centre - nodes // 2, scene.centre + nodes // 2)
         x, p = scene.x[central] * s.a, scene.pressure[central]
         mean = p.mean()
-        self.ratio = mean / reference.westergaard_full_pressure(amplitude, length, s.E)
-        self.exact = 2.0 * reference.westergaard_half_width(mean, amplitude, length, s.E) / length
+        self.ratio = mean / exact_solutions.westergaard_full_pressure(amplitude, length, s.E)
+        self.exact = 2.0 * exact_solutions.westergaard_half_width(mean, amplitude, length, s.E) / length
         psi, high = np.pi * x / length, p > 0.5 * p.max()
         slope, level = np.polyfit(np.sin(psi[high]) ** 2, (p[high] / np.cos(psi[high])) ** 2, 1)
         self.fraction = 2.0 / np.pi * np.arcsin(np.sqrt(-level / slope))
-        exact = reference.westergaard_pressure(x, mean, amplitude, length, s.E)
+        exact = exact_solutions.westergaard_pressure(x, mean, amplitude, length, s.E)
         self.error = np.abs(p - exact).mean() / exact.max()
 
 

@@ -13,11 +13,12 @@ a/dx  M = 20, L = 10    M = 100, L = 11
 
 With the inlet at -8 instead of -4 half widths the lighter load gives 0.26 % more film, the heavier 0.03 %.
 """
+
 import numpy as np
 import pytest
 from driving import Scene, observed_order
 
-from ehlpetsc.reference import MOES_POINTS
+from ehlpetsc.physics.published_values import MOES_POINTS
 
 LIGHT, HEAVY = MOES_POINTS
 SETTINGS = {LIGHT: (), HEAVY: ("contact.load=2.09915459e6", "fluid.viscosity=0.01014206817")}

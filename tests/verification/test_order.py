@@ -14,6 +14,7 @@ time   1.954  1.957
 both   1.975  2.136
 =====  =====  ========
 """
+
 import numpy as np
 import pytest
 from driving import Scene, observed_order
@@ -22,7 +23,10 @@ COARSEST = 8  # points per half width
 WINDOW = (-1.0, 0.5)
 TRAVEL = 2.5  # half widths, of the mean speed
 SCENE = (
-    "contact.load=130e3", "motion.entrainment_speed=25", "mesh.inlet=-1.75", "mesh.outlet=1.5",
+    "contact.load=130e3",
+    "motion.entrainment_speed=25",
+    "mesh.inlet=-1.75",
+    "mesh.outlet=1.5",
     "surface.slow.synthetic={kind='ridge', amplitude=0.1e-6, wavelength=133e-6, position=133e-6}",
 )
 
@@ -30,8 +34,8 @@ SCENE = (
 def solution(points, steps):
     """Film [um] and pressure [p0] in the window at the end, and how near the schemes came to their limiter.
 
-    The limiter of :func:`ehlpetsc.reynolds.positive_extrapolation` acts where the film content halves
-    within a cell or a step: the last value is the least ratio, full film up to the end of the window.
+    The limiter of :func:`positive_extrapolation` acts where the film content halves within a
+    cell or a step: the last value is the least ratio, full film up to the end of the window.
     """
     scene = Scene("ridge.toml", f"mesh.points_per_half_width={points}", *SCENE).start()
     s = scene.scales
@@ -56,11 +60,14 @@ def orders(solutions):
     return [observed_order(differences) for differences in norms]
 
 
-@pytest.mark.parametrize("refinements", [
-    pytest.param([(n, 80) for n in (16, 32, 64, 128, 256)], id="space"),
-    pytest.param([(32, n) for n in (40, 80, 160, 320, 640)], id="time"),
-    pytest.param([(n, 5 * n // 2) for n in (8, 16, 32, 64, 128)], id="both"),
-])
+@pytest.mark.parametrize(
+    "refinements",
+    [
+        pytest.param([(n, 80) for n in (16, 32, 64, 128, 256)], id="space"),
+        pytest.param([(32, n) for n in (40, 80, 160, 320, 640)], id="time"),
+        pytest.param([(n, 5 * n // 2) for n in (8, 16, 32, 64, 128)], id="both"),
+    ],
+)
 def test_second_order(refinements):
     film, pressure = orders([solution(points, steps) for points, steps in refinements])
     print(f"observed order: film {film:.3f}, pressure {pressure:.3f}")

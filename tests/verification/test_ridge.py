@@ -13,12 +13,13 @@ a/dx  courant  h(0)     h_min    p_max
 200   0.5      0.14780  0.12511  1.17894
 ====  =======  =======  =======  =======
 """
+
 import numpy as np
 import pytest
 from driving import CASES, Scene
 
-from ehlpetsc.case import load
-from ehlpetsc.reference import RIDGE
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.published_values import RIDGE
 
 
 def test_ridge_in_the_centre_of_the_contact():

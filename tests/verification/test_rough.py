@@ -1,9 +1,8 @@
 """Two measured surfaces in contact: the bound, its multiplier, load and mass at every step."""
+
 import numpy as np
 import pytest
 from driving import Scene
-
-from ehlpetsc.solver import NotConverged
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
 SHORT = ("mesh.inlet=-1.3", "mesh.points_per_half_width=100", "time.travel=1.5", "fluid.viscosity=0.001")
@@ -13,10 +12,10 @@ TOLERANCE = 1e-7  # of the residual
 @pytest.fixture(scope="module")
 def states():
     scene = Scene("table1_rough.toml", *SHORT).start()
-    march, nominal, state = scene.march, scene.scales.dt, scene.state
+    march, state = scene.march, scene.state
     found = []
     while state.time < scene.scales.duration * (1.0 - 1e-9):
-        earlier, state = state, march.advance(state, NotConverged, nominal)
+        earlier, state = state, march.advance(state)
         found.append((earlier, state))
     return scene, found
 

@@ -4,6 +4,7 @@ The three time steps with contacts are of cases/table1_rough.toml as it stands; 
 stored in rough_contacts.npz. After a change of that case ``python3 tests/verification/test_sweep.py`` writes
 it anew, in five minutes.
 """
+
 from pathlib import Path
 
 import numpy as np
@@ -12,18 +13,19 @@ import pytest
 
 petsc4py.init([])
 
-from petsc4py import PETSc  # noqa: E402
+from petsc4py import PETSc
 
-from ehlpetsc import sweep  # noqa: E402
-from ehlpetsc.case import load  # noqa: E402
-from ehlpetsc.march import March  # noqa: E402
-from ehlpetsc.options import UsageError  # noqa: E402
-from ehlpetsc.reynolds import Storage  # noqa: E402
-from ehlpetsc.roughness import Roughness  # noqa: E402
-from ehlpetsc.run import expected_film  # noqa: E402
-from ehlpetsc.scales import Scales  # noqa: E402
-from ehlpetsc.schemes import scheme, solver_of  # noqa: E402
-from ehlpetsc.solver import NotConverged, Solver, set_defaults  # noqa: E402
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.reynolds import Storage
+from ehlpetsc.errors import SolveFailed
+from ehlpetsc.nonlinear import gauss_seidel as sweep
+from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.nonlinear.options import UsageError
+from ehlpetsc.nonlinear.scheme import scheme, solver_of
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.surfaces.roughness import Roughness
 
 CASES = Path(__file__).parents[2] / "cases"
 STORED = Path(__file__).with_name("rough_contacts.npz")
@@ -72,9 +74,9 @@ def test_same_film_pressure_and_contacts_as_newton(rough, step):
 def test_sweeps_march_from_their_own_start():
     states = []
     for march in marches("table1_rough.toml", "mesh.points_per_half_width=50"):
-        state = march.start(NotConverged)
+        state = march.start()
         for _ in range(5):
-            state = march.advance(state, NotConverged, march.scales.dt)
+            state = march.advance(state)
         assert state.retries == 0
         states.append((state.q, state.h))
     assert_same(march.problem, *states, rtol=1e-5)
@@ -83,7 +85,7 @@ def test_sweeps_march_from_their_own_start():
 def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
     coarse = "mesh.points_per_half_width=50"
     newton, swept = marches("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
-    states = [march.start(NotConverged) for march in (newton, swept)]
+    states = [march.start() for march in (newton, swept)]
     bound = swept.solver.bound
     assert states[1].h.min() == bound
     np.testing.assert_array_equal(states[1].h <= bound, states[0].h <= bound)
@@ -95,14 +97,17 @@ def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
 def test_gives_up_after_so_many_evaluations(monkeypatch):
     monkeypatch.setattr(sweep, "EVALUATIONS", 2)
     march = marches("table1_smooth.toml", "mesh.points_per_half_width=50")[1]
-    with pytest.raises(NotConverged, match="MAX_IT after 2 "):
+    with pytest.raises(SolveFailed, match="MAX_IT after 2 "):
         march.solver.solve(np.ones(march.problem.n), np.ones(march.problem.n), 0.0)
 
 
-@pytest.mark.parametrize("name, value, message", [
-    ("table1_smooth.toml", "swept", "-ehl_scheme swept: allowed: newton, sweep"),
-    ("dry_hertz.toml", "sweep", "a dry contact has no Reynolds equation"),
-])
+@pytest.mark.parametrize(
+    "name, value, message",
+    [
+        ("table1_smooth.toml", "swept", "-ehl_scheme swept: allowed: newton, sweep"),
+        ("dry_hertz.toml", "sweep", "a dry contact has no Reynolds equation"),
+    ],
+)
 def test_schemes_that_cannot_be(name, value, message):
     options = PETSc.Options()
     options["ehl_scheme"] = value
@@ -118,9 +123,9 @@ def test_schemes_that_cannot_be(name, value, message):
 def store():
     """Run the case to the steps of `CONTACTS` and keep what goes before each."""
     march, _ = marches("table1_rough.toml")
-    kept, state = {}, march.start(NotConverged)
+    kept, state = {}, march.start()
     while state.step < max(CONTACTS):
-        before, state = state, march.advance(state, NotConverged, march.scales.dt)
+        before, state = state, march.advance(state)
         if state.step in CONTACTS:
             levels = before.q, before.h, before.m, before.m_older
             kept[f"levels_{state.step}"] = np.array(levels, dtype=np.float32)

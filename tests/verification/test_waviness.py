@@ -10,11 +10,12 @@ wavelength  Fourier at 0   half peak to peak  published
 0.25 b      0.6613         0.6584             0.660
 ==========  =============  =================  =========
 """
+
 import numpy as np
 import pytest
 from driving import Scene
 
-from ehlpetsc.reference import WAVINESS
+from ehlpetsc.physics.published_values import WAVINESS
 
 # wavelength/b: points per half width, nodes a step, half periods followed after the front came to x = 0.
 # Long waves need a fine mesh for the smooth film alone, 4 % too thin at a/100, and few steps; short ones

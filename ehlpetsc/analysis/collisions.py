@@ -1,0 +1,295 @@
+"""Collisions of asperities in the members of a series: found, compared, judged.
+
+Members of a series share roughness, kinematics and, but for halved steps, time levels: an asperity pair
+stands in the same relative position in all of them at the same time. Nodes in contact of all members are
+put into one map of place and time; what hangs together there is one collision. Times, not step numbers, are
+compared.
+
+``python3 -m ehlpetsc.analysis.collisions OUTPUT.series.json`` lists them and says how film and
+pressure go with the swept value (Holmes et al. 2005, figure 4).
+"""
+
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.series_index import WITH_FILM, command, from_thick_to_thin
+
+BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
+SAME = 1e-3  # of the interval between frames: times nearer than this are the same
+BLOCK = 256  # frames read at a time
+
+
+@dataclass(frozen=True)
+class Collision:
+    """One collision.
+
+    Attributes
+    ----------
+    x, time : float
+        A point of contact of the member that touches first of all [m, s]: of those at times that most members
+        have stored the one at which most touch, and of these the one with the highest pressure in any.
+    begin, end : float
+        Times of the first and last contact in any member [s].
+    touching : tuple of bool
+        For each member whether its surfaces touch anywhere in the collision.
+    film, pressure : tuple of float
+        At the point, for each member [m, Pa]; the film is 0 in contact, whatever its bound.
+    """
+
+    x: float
+    time: float
+    begin: float
+    end: float
+    touching: tuple
+    film: tuple
+    pressure: tuple
+
+
+def points_in_contact(result):
+    """Stored frames and nodes in contact: two arrays of int, shape (n,).
+
+    Raises
+    ------
+    OutputError
+        The result holds neither contacts nor films.
+    """
+    name = next((n for n in ("in_contact", "film_thickness") if n in result), None)
+    if name is None:
+        raise OutputError(f"{result.path}: stores neither in_contact nor film_thickness")
+    frames, nodes = [], []
+    for begin in range(0, len(result.time), BLOCK):
+        block = result[name][begin : min(begin + BLOCK, len(result.time))]
+        frame, node = np.nonzero(block if name == "in_contact" else block <= 0.0)
+        frames.append(frame + begin)
+        nodes.append(node)
+    return np.concatenate(frames), np.concatenate(nodes)
+
+
+def find(results):
+    """Collisions of a series, in order of time.
+
+    Parameters
+    ----------
+    results : list of ehlpetsc.results.reader.Result
+        In the order in which members are to touch: the one that touches last first, as the thickest film.
+
+    Returns
+    -------
+    list of Collision
+
+    Raises
+    ------
+    OutputError
+        A result holds fewer than two frames, or no contacts.
+    """
+    if any(len(result.time) < 2 for result in results):
+        raise OutputError("collisions need more than one stored frame")
+    spacing = max(float(np.diff(result.x).max()) for result in results)
+    interval = max(float(np.diff(result.time).max()) for result in results)
+    points = [_points(result) for result in results]
+    labels = _label(points, spacing, interval)
+    at = [_Reader(result) for result in results]
+    found = []
+    for label in range(1, 1 + max((int(part.max(initial=0)) for part in labels), default=0)):
+        parts = [(t[own == label], x[own == label]) for (t, x), own in zip(points, labels, strict=True)]
+        found.append(_collision(parts, at))
+    return sorted(found, key=lambda collision: collision.time)
+
+
+def _points(result):
+    frames, nodes = points_in_contact(result)
+    return result.time[frames], result.x[nodes]
+
+
+def _label(points, spacing, interval):
+    """For each member the number of the collision that each of its points belongs to."""
+    from scipy.ndimage import binary_dilation, label
+
+    cells = [(np.rint(t / interval).astype(int), np.rint(x / spacing).astype(int)) for t, x in points]
+    every = [np.concatenate(part) for part in zip(*cells, strict=True)]
+    if not len(every[0]):
+        return [np.empty(0, int) for _ in points]
+    low = [part.min() for part in every]
+    grid = np.zeros([part.max() - least + 1 for part, least in zip(every, low, strict=True)], bool)
+    for row, column in cells:
+        grid[row - low[0], column - low[1]] = True
+    numbers, _ = label(binary_dilation(grid, np.ones((2 * BRIDGED - 1, 3))), np.ones((3, 3)))
+    return [numbers[row - low[0], column - low[1]] for row, column in cells]
+
+
+class _Reader:
+    """Film and pressure of one member at places and times."""
+
+    def __init__(self, result):
+        self.result = result
+
+    def has(self, time):
+        """Whether a frame of just that time is stored: meshes share only some of their levels."""
+        stored = self.result.time
+        return bool(np.abs(stored - time).min() < SAME * np.diff(stored).max())
+
+    def __call__(self, x, time):
+        frame = self.result.nearest_frame(time=time)
+        node = int(np.argmin(np.abs(self.result.x - x)))
+        film, pressure = (float(self.result[name][frame, node]) for name in ("film_thickness", "pressure"))
+        touching = "in_contact" in self.result and self.result["in_contact"][frame, node]
+        return 0.0 if touching else film, pressure
+
+
+def _collision(parts, at):
+    touching = tuple(bool(len(t)) for t, _ in parts)
+    first = touching.index(True)
+    best, chosen = (-1, -1, -1.0), None
+    for time, x in zip(*parts[first], strict=True):
+        film, pressure = zip(*(read(x, time) for read in at), strict=True)
+        rank = (sum(read.has(time) for read in at), sum(h <= 0.0 for h in film), max(pressure))
+        if rank > best:
+            best, chosen = rank, (float(x), float(time), film, pressure)
+    x, time, film, pressure = chosen
+    times = np.concatenate([t for t, _ in parts])
+    return Collision(x, time, float(times.min()), float(times.max()), touching, film, pressure)
+
+
+def spread(points, count):
+    """At most `count` of the contact points, in turns from those that break down at each member."""
+    groups = {}
+    for point in points:
+        groups.setdefault(int(np.argmax(np.asarray(point.film) <= 0.0)), []).append(point)
+    turns = [(turn, first, point) for first, group in groups.items() for turn, point in enumerate(group)]
+    return [point for *_, point in sorted(turns, key=lambda t: t[:2])[:count]]
+
+
+def ranked(collisions):
+    """Numbers of the collisions, those most worth a picture first.
+
+    `contact_points` in their order, then those in which most members touch, of these the highest pressure.
+    """
+    first = [id(c) for c in contact_points(collisions)]
+
+    def rank(number):
+        c = collisions[number]
+        shown = first.index(id(c)) if id(c) in first else len(first)
+        return shown, -sum(c.touching), -max(c.pressure)
+
+    return sorted(range(len(collisions)), key=rank)
+
+
+def slope_jumps(values, film):
+    r"""Relative growth of the slope of a film against a value, from interval to interval, on its way to zero.
+
+    Slopes :math:`s_k=(h_k-h_{k+1})/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last one, cut
+    off at h = 0, is a lower bound. A last jump of 0 or less says that the straight line through the last two
+    films reaches zero before the first member in contact: contact comes where extrapolation puts it.
+
+    Parameters
+    ----------
+    values, film : sequence of float
+        From the thickest film on. Against the viscosity even smooth films steepen, being as eta0^0.7; against
+        the smooth film of each member they do not.
+
+    Returns
+    -------
+    ndarray, shape (number of films before contact - 1,)
+        :math:`s_{k+1}/s_k-1`.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two films before contact, or no contact.
+    """
+    film = np.asarray(film)
+    end = int(np.argmax(film <= 0.0)) + 1
+    if film.min() > 0.0 or end < 3:
+        raise ValueError("two films before contact are needed")
+    slopes = -np.diff(film[:end]) / np.abs(np.diff(values[:end]))
+    return slopes[1:] / slopes[:-1] - 1.0
+
+
+def pressure_steps(film, pressure):
+    """Relative changes of the pressure from member to member once the film is gone, shape (n,)."""
+    film, pressure = np.asarray(film), np.asarray(pressure)
+    if film.min() > 0.0:
+        return np.empty(0)
+    after = pressure[int(np.argmax(film <= 0.0)) :]
+    return np.diff(after) / after[:-1]
+
+
+def contact_points(collisions, films=2):
+    """The collisions that show film breakdown: `films` members or more in full film, the others in contact.
+
+    The first ones are those that break down in the middle of the series, of these those of highest pressure.
+    """
+
+    def shown(c):
+        film = np.asarray(c.film)
+        full = int(np.argmax(film <= 0.0)) if film.min() <= 0.0 else 0
+        return full if full >= films and (film[full:] <= 0.0).all() and full < len(film) - 1 else 0
+
+    good = [c for c in collisions if shown(c)]
+    return sorted(good, key=lambda c: (-abs(shown(c) - len(c.film) // 2), c.pressure[-1]), reverse=True)
+
+
+def report(results):
+    """Collisions of a series and what they show, as lines of text."""
+    results, values, key = from_thick_to_thin(results)
+    found = find(results)
+    a = results[0].attrs["a"]
+    swept = ", ".join(f"{v:g}" for v in values)
+    lines = [
+        f"{len(found)} collisions in {len(results)} members, {key} = {swept}",
+        "number     x/a    time/us  touching  film/um, pressure/GPa at that point in each member",
+    ]
+    for number, c in enumerate(found):
+        marks = "".join("x" if touches else "." for touches in c.touching)
+        pairs = " ".join(f"{1e6 * h:.4f},{1e-9 * p:.2f}" for h, p in zip(c.film, c.pressure, strict=True))
+        lines.append(f"{number:6d} {c.x / a:8.4f} {1e6 * c.time:10.3f}  {marks}  {pairs}")
+    return lines + (breakdown(found, values, smooth_films(results)) if key in WITH_FILM else [])
+
+
+def smooth_films(results):
+    """Least film [m] of each member before roughness comes in."""
+    return [float(result.steps("h_min")[0]) for result in results]
+
+
+def breakdown(found, values, smooth):
+    """How the films of the collisions reach zero and the pressures go on, as lines of text."""
+    points = contact_points(found)
+    if not points:
+        return ["no point with two full films before contact and two members in contact after them"]
+    steps = [pressure_steps(c.film, c.pressure) for c in points]
+    jumps = [slope_jumps(values, c.film) for c in points]
+    lines = [
+        f"{len(points)} contact points with two full films or more before, and contact ever after",
+        f"contact where the last two films extrapolate to: {share([j[-1] <= 0.0 for j in jumps])}",
+        "growth of the film's slope from interval to interval before, median and largest:",
+    ]
+    for what, abscissa in (("swept value", values), ("smooth film", smooth)):
+        before = np.concatenate([slope_jumps(abscissa, c.film)[:-1] for c in points])
+        if len(before):
+            lines.append(f"  against the {what} {100 * np.median(before):.1f} %, {100 * before.max():.1f} %")
+    every = np.concatenate(steps)
+    return [
+        *lines,
+        "pressure grows once the film is gone:",
+        f"  from each member to the next: {share([(s > 0.0).all() for s in steps])}",
+        f"  from the first in contact to the last: {share([np.prod(1.0 + s) > 1.0 for s in steps])}",
+        f"  in single changes: {share(every > 0.0)}",
+    ]
+
+
+def share(flags):
+    """``5 of 6 (83 %)``."""
+    flags = np.asarray(flags, bool)
+    return f"{flags.sum()} of {len(flags)} ({100 * flags.mean():.0f} %)"
+
+
+def main(arguments=None):
+    """Run the command; returns its exit status: 0 done, 2 bad input."""
+    return command("ehlpetsc.analysis.collisions", __doc__.split("\n")[0], report, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

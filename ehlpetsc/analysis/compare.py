@@ -1,0 +1,240 @@
+"""Compare two result files field by field: ``python3 -m ehlpetsc.compare A.h5 B.h5 [--rtol R] [--atol A]``.
+
+Where meshes or stored times differ, the finer is interpolated linearly at the nodes and times of the
+coarser, on what both cover. A quantity is the same if its greatest difference is within
+``atol + rtol scale``, its scale the greatest magnitude in either file. Numbers of nodes and steps are taken
+out of the contacts: they are compared as shares of nodes and of steps. What only tells how a solution was
+reached (iterations, time steps, wall clock) is not compared.
+
+Exit status: 0 the same, 1 different, 2 the files cannot be compared.
+"""
+
+import argparse
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.quantities import FIELDS, STEP_SCALARS
+from ehlpetsc.results.reader import read_result
+
+RTOL = 1e-6
+SCALARS = ("h_min", "p_max", "contacts", "load", "approach", "friction")
+BLOCK_BYTES = 2**24
+ROUNDING = 1e-9  # of the extent: what computed coordinates may differ by and still be equal
+
+
+@dataclass
+class Difference:
+    """Norms of the difference of one quantity.
+
+    Attributes
+    ----------
+    name, units : str
+    scale : float
+        Greatest magnitude in either file.
+    greatest, rms : float
+        Greatest and root mean square difference; nan if one file has a value and the other nan.
+    x, time : float or None
+        Where and when the difference is greatest [m, s].
+    """
+
+    name: str
+    units: str
+    scale: float = 0.0
+    greatest: float = 0.0
+    rms: float = 0.0
+    x: float | None = None
+    time: float | None = None
+
+    def same(self, rtol, atol):
+        """Whether the greatest difference is allowed."""
+        return bool(self.greatest <= atol + rtol * self.scale)
+
+    def relative(self, value):
+        """A norm over the scale of the quantity."""
+        return value / self.scale if self.scale else value
+
+
+class Line:
+    """Linear interpolation from one set of points to another."""
+
+    def __init__(self, grid, points):
+        at = np.clip(np.searchsorted(grid, points, side="right") - 1, 0, max(len(grid) - 2, 0))
+        self.left, self.right = at, np.minimum(at + 1, len(grid) - 1)
+        width = np.where(self.right > at, grid[self.right] - grid[at], 1.0)
+        self.weight = np.clip((points - grid[at]) / width, 0.0, 1.0)
+
+    def __call__(self, values, part=slice(None), begin=0):
+        """Values at the points of `part`, `values` starting at grid point `begin` on the first axis."""
+        weight = self.weight[part].reshape(-1, *[1] * (values.ndim - 1))
+        low, high = values[self.left[part] - begin], values[self.right[part] - begin]
+        return np.where(weight == 0.0, low, (1.0 - weight) * low + weight * high)
+
+
+def common_points(one, other, what):
+    """Points of the coarser of two increasing sets in the range of both.
+
+    Raises
+    ------
+    OutputError
+        There are none.
+    """
+    if len(one) == len(other) == 1:  # two steady solutions, whatever their times
+        return one
+    slack = ROUNDING * max(np.ptp(one), np.ptp(other))
+    low, high = max(one[0], other[0]) - slack, min(one[-1], other[-1]) + slack
+    inside = [grid[(grid >= low) & (grid <= high)] for grid in (one, other)]
+    points = min(inside, key=len)
+    if not len(points):
+        raise OutputError(f"the files have no {what} in common")
+    return points
+
+
+def compare(one, other):
+    """Differences of all quantities stored in both results.
+
+    Parameters
+    ----------
+    one, other : ehlpetsc.results.reader.Result
+
+    Yields
+    ------
+    Difference
+
+    Raises
+    ------
+    OutputError
+        They have no nodes or no times in common, or one has no frame.
+    """
+    for result in (one, other):
+        if not len(result.time) or not len(result.steps("time")):
+            raise OutputError(f"{result.path}: no time step in it")
+    x = common_points(one.x, other.x, "nodes")
+    times = common_points(one.time, other.time, "times")
+    same_mesh = np.array_equal(one.x, other.x)
+    for name in FIELDS:
+        if name in one.fields and name in other.fields:
+            yield _field(one, other, name, x, times, same_mesh or name != "in_contact")
+    shares = [Line(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
+    yield _curves(Difference("contact_count", "share"), shares, x=x)
+    step_times = common_points(one.steps("time"), other.steps("time"), "time steps")
+    for name in SCALARS:
+        values = [_scalar(r, name, step_times) for r in (one, other)]
+        units = "share" if name == "contacts" else STEP_SCALARS[name].units
+        yield _curves(Difference(f"steps/{name}", units), values, time=step_times)
+
+
+def _scalar(result, name, times):
+    values = result.steps(name).astype(float)
+    return Line(result.steps("time"), times)(values / len(result.x) if name == "contacts" else values)
+
+
+def _curves(difference, values, x=None, time=None):
+    one, other = values
+    apart = np.abs(one - other)
+    apart[np.isnan(one) & np.isnan(other)] = 0.0
+    difference.scale = float(np.nanmax(np.abs(values), initial=0.0))
+    worst = int(np.argmax(apart))  # a nan counts as the greatest
+    difference.greatest, difference.rms = float(apart[worst]), float(np.sqrt(np.mean(apart**2)))
+    difference.x, difference.time = (None if axis is None else float(axis[worst]) for axis in (x, time))
+    return difference
+
+
+def _field(one, other, name, x, times, by_node):
+    """Difference of a field, read in blocks of frames; without `by_node` of its mean along x."""
+    difference = Difference(name, FIELDS[name].units if by_node else "share")
+    readers = [_Reader(result, name, x, times) for result in (one, other)]
+    block = max(1, BLOCK_BYTES // (8 * max(len(one.x), len(other.x))))
+    square = 0.0
+    for begin in range(0, len(times), block):
+        part = slice(begin, min(begin + block, len(times)))
+        values = [reader(part) for reader in readers]
+        if not by_node:
+            values = [v.mean(axis=1, keepdims=True) for v in values]
+        apart = np.abs(values[0] - values[1])
+        apart[np.isnan(values[0]) & np.isnan(values[1])] = 0.0
+        square += float(np.sum(apart**2)) / (len(times) * apart.shape[1])
+        difference.scale = max(difference.scale, *(float(np.nanmax(np.abs(v), initial=0.0)) for v in values))
+        frame, node = np.unravel_index(np.argmax(apart), apart.shape)
+        if not apart[frame, node] <= difference.greatest and not np.isnan(difference.greatest):
+            difference.greatest, difference.time = float(apart[frame, node]), float(times[begin + frame])
+            difference.x = float(x[node]) if by_node else None
+    difference.rms = float(np.sqrt(square))
+    return difference
+
+
+class _Reader:
+    """A field at common nodes and times, a block of frames at once."""
+
+    def __init__(self, result, name, x, times):
+        self._dataset = result[name]
+        self._in_time, self._in_x = Line(result.time, times), Line(result.x, x)
+
+    def __call__(self, part):
+        first, last = self._in_time.left[part].min(), self._in_time.right[part].max()
+        frames = self._dataset[first : last + 1].astype(float)
+        return self._in_x(self._in_time(frames, part, first).T).T
+
+
+def table(differences, a, rtol, atol):
+    """The differences as text, a line each."""
+    lines = [
+        f"{'quantity':<20} {'unit':<6} {'scale':>11} {'max/scale':>10} {'rms/scale':>10} {'at x/a':>8}"
+        f" {'at t/us':>10}"
+    ]
+    for d in differences:
+        x = "" if d.x is None else f"{d.x / a:.3f}"
+        time = "" if d.time is None else f"{1e6 * d.time:.4f}"
+        lines.append(
+            f"{d.name:<20} {d.units:<6} {d.scale:>11.4e} {d.relative(d.greatest):>10.2e}"
+            f" {d.relative(d.rms):>10.2e} {x:>8} {time:>10}  {'same' if d.same(rtol, atol) else 'DIFFERENT'}"
+        )
+    return "\n".join(lines)
+
+
+def _about(result):
+    times, status = result.time, result.attrs["status"]
+    span = f"{1e6 * times[0]:.4g} .. {1e6 * times[-1]:.4g} us"
+    size = f"{len(result.x)} nodes, {len(times)} frames"
+    return f"{result.path}: {result.attrs['title']}; {size}, {span}, {status}"
+
+
+def _only_in_one(one, other):
+    """Faults that are no numbers: fields that only one file stores, runs that ended differently."""
+    for result, lacking in ((one, other), (other, one)):
+        for name in sorted(set(result.fields) - set(lacking.fields)):
+            yield f"{name} is stored in {result.path} alone"
+    if one.attrs["status"] != other.attrs["status"]:
+        yield f"one run is {one.attrs['status']}, the other {other.attrs['status']}"
+
+
+def _tolerance(text):
+    value = float(text)
+    if not 0.0 <= value < np.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not a number >= 0")
+    return value
+
+
+def main(arguments=None):
+    """Run the command; returns its exit status."""
+    parser = argparse.ArgumentParser(prog="python3 -m ehlpetsc.compare", description=__doc__.split("\n")[0])
+    parser.add_argument("one", metavar="A.h5")
+    parser.add_argument("other", metavar="B.h5")
+    parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")
+    parser.add_argument("--atol", type=_tolerance, default=0.0, help="in SI units [%(default)s]")
+    options = parser.parse_args(arguments)
+    try:
+        with read_result(options.one) as one, read_result(options.other) as other:
+            differences = list(compare(one, other))
+            faults = list(_only_in_one(one, other))
+            print(_about(one), _about(other), sep="\n")
+            print(table(differences, float(one.attrs["a"]), options.rtol, options.atol))
+    except OutputError as error:
+        print(f"ehlpetsc.analysis.compare: {error}", file=sys.stderr)
+        return 2
+    faults += [d.name for d in differences if not d.same(options.rtol, options.atol)]
+    allowed = f"(rtol {options.rtol:g}, atol {options.atol:g})"
+    print(f"different: {'; '.join(faults)} {allowed}" if faults else f"same {allowed}")
+    return 1 if faults else 0

@@ -1,0 +1,105 @@
+"""Faults of a case file in words: file, key, value, what is allowed."""
+
+import difflib
+import json
+
+from pydantic import ValidationError
+
+from ehlpetsc.case.schema import item_type
+
+
+def allowed(field):
+    """What a key takes, e.g. ``a number > 0 and <= 100 [m] (radius of relative curvature)``.
+
+    Parameters
+    ----------
+    field : pydantic.fields.ModelField
+    """
+    info = field.field_info
+    text = _kind(field) + _bounds(item_type(field))
+    if "unit" in info.extra:
+        text += f" [{info.extra['unit']}]"
+    return f"{text} ({info.description})" if info.description else text
+
+
+def _kind(field):
+    several = field.shape != 1
+    choices = getattr(field.type_, "__args__", ())
+    if choices and all(isinstance(c, str) for c in choices):
+        return ("a list of " if several else "one of ") + ", ".join(f'"{c}"' for c in choices)
+    type_ = item_type(field)
+    names = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+    name = next((n for k, n in names.items() if isinstance(type_, type) and issubclass(type_, k)), None)
+    if several:
+        count = len(field.sub_fields)
+        return "a list" if name is None else "a list of two numbers" if count == 2 else "a list of numbers"
+    return name or "a table"
+
+
+def _bounds(type_):
+    signs = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
+    found = [(sign, getattr(type_, name, None)) for name, sign in signs]
+    return " and".join(f" {sign} {bound:g}" for sign, bound in found if bound is not None)
+
+
+def show(value):
+    """A value nearly as the user typed it; long ones shortened."""
+    try:
+        text = json.dumps(value, ensure_ascii=False, default=str)
+    except ValueError:  # Python will not print an integer of thousands of digits
+        text = "a number of thousands of digits"
+    text = "nan" if text == "NaN" else text
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def describe(error, model, data, where=""):
+    """Faults of one table and all tables in it.
+
+    Parameters
+    ----------
+    error : pydantic.ValidationError
+    model : type
+        The model that was refused.
+    data : dict
+        What it was made of.
+    where : str
+        Dotted name of the table, with a dot at its end, or "".
+
+    Returns
+    -------
+    list of str
+        ``key = value: what is wrong; allowed: ...``
+    """
+    faults = []
+    for wrapper in _flat(error.raw_errors):
+        name, cause = wrapper.loc_tuple()[0], wrapper.exc
+        field = next((f for f in model.__fields__.values() if name in (f.alias, f.name)), None)
+        key = where + str(name)
+        value = data.get(name)
+        if name == "__root__":
+            faults.append(f"{where.rstrip('.') or 'case'}: {cause}")
+        elif isinstance(cause, ValidationError):
+            faults += describe(cause, cause.model, value, key + ".")
+        elif name not in data:
+            faults.append(f"{key} is missing; allowed: {allowed(field)}")
+        elif field is None or name != field.alias:
+            faults.append(f"{key} = {show(value)}: unknown key; {nearest(str(name), model)}")
+        else:
+            faults.append(f"{key} = {show(value)}: allowed: {allowed(field)}")
+    return list(dict.fromkeys(faults))
+
+
+def nearest(name, model):
+    """Hint at the key that was probably meant."""
+    keys = [f.alias for f in model.__fields__.values()]
+    close = difflib.get_close_matches(name, keys, n=1)
+    return f'did you mean "{close[0]}"?' if close else f"allowed: {', '.join(keys)}"
+
+
+def _flat(errors):
+    """Pydantic nests the errors of list items in lists."""
+    for error in errors:
+        if isinstance(error, (list, tuple)):
+            yield from _flat(error)
+        else:
+            yield error

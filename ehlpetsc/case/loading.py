@@ -1,0 +1,231 @@
+"""The case file: read, overridden, checked, all faults told at once."""
+
+import contextlib
+import copy
+import difflib
+import tomllib
+from pathlib import Path
+
+import tomlkit
+from pydantic import Field, PrivateAttr, ValidationError, validator
+
+from ehlpetsc.case.faults import describe, show
+from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Post, Series, Surface, Table, Time
+from ehlpetsc.errors import CaseError, ProfileError
+from ehlpetsc.surfaces.profile_files import high_pass, read_profile
+
+__all__ = ["Case", "CaseError", "load", "members"]
+
+
+class Case(Table):
+    """A case as the user wrote it; a section left out of the file is None.
+
+    Attributes
+    ----------
+    text : str
+        The TOML text with the overrides in it: saved beside its profiles, it runs the same case again.
+    path : pathlib.Path
+        Where it was read; profile files are sought beside it.
+    """
+
+    title: str = Field(..., min_length=1, description="one line for the result file and its pictures")
+    contact: Contact = Field(..., description="solids and load")
+    fluid: Fluid | None = Field(None, description="left out: dry contact")
+    motion: Motion | None = Field(None, description="speeds; needed with [fluid] and with [time]")
+    mesh: Mesh = Field(..., description="nodes")
+    surface: Surface = Field(Surface(), description="left out: smooth")
+    time: Time | None = Field(None, description="left out: steady")
+    output: Output = Field(Output(), description="what the result file holds")
+    post: Post = Field(Post(), description="read by ehlpetsc.post alone")
+    petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
+    series: Series | None = Field(None, description="one key swept over values")
+    _text: str = PrivateAttr("")
+    _path: Path = PrivateAttr(Path())
+
+    @validator("petsc")
+    def _options(cls, options):
+        """PETSc takes text; TOML's true, false and numbers are written out for it."""
+        for name, value in options.items():
+            number = isinstance(value, int | float) and abs(value) < 1e300
+            if not name or name.startswith("-") or not (number or isinstance(value, str)):
+                raise ValueError(name)
+        return {name: show(v) if not isinstance(v, str) else v for name, v in options.items()}
+
+    @property
+    def text(self):
+        return self._text
+
+    @property
+    def path(self):
+        return self._path
+
+
+def load(path, overrides=()):
+    """Read and check a case file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        The TOML file.
+    overrides : iterable of str
+        ``table.key=value``, the value in TOML syntax, else taken as text.
+
+    Returns
+    -------
+    Case
+
+    Raises
+    ------
+    CaseError
+        With all faults, one line each.
+    """
+    text = _read(path)
+    data = _parse(path, text)
+    faults, settings = [], []
+    for override in overrides:
+        try:
+            settings.append(_setting(override))
+            _set(data, *settings[-1])
+        except ValueError:
+            faults.append(f"{path}: {override}: allowed: table.key=value, as in fluid.viscosity=0.003")
+    faults += _faults(path, data)
+    if not faults:
+        faults += _series_faults(path, data)
+    if faults:
+        raise CaseError(faults)
+    return _made(path, data, _with_settings(text, settings))
+
+
+def members(case):
+    """Members of a series: the same case without `[series]`, its key set to one value each.
+
+    Parameters
+    ----------
+    case : Case
+        With a series.
+
+    Returns
+    -------
+    list of (value, Case)
+    """
+    keys, data = case.series.key.split("."), tomllib.loads(case.text)
+    result = []
+    for value in data["series"]["values"]:
+        text = _with_settings(case.text, [(keys, value)], without="series")
+        result.append((value, _made(case.path, _member(data, keys, value), text)))
+    return result
+
+
+def _read(path):
+    try:
+        return Path(path).read_bytes().decode()
+    except UnicodeDecodeError as error:
+        raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise CaseError([f"{path}: cannot be read: {reason}{_meant(path)}"]) from None
+
+
+def _meant(path):
+    """Hint at a case file of nearly that name in the same folder."""
+    with contextlib.suppress(OSError, ValueError):
+        beside = [p.stem for p in Path(path).parent.glob("*.toml")]
+        close = difflib.get_close_matches(Path(path).stem, beside, n=1)
+        if close:
+            return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"
+    return ""
+
+
+def _parse(path, text):
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through
+        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
+
+
+def _setting(override):
+    """("a.b=value") -> (["a", "b"], value)."""
+    name, equals, raw = override.partition("=")
+    keys = name.strip().split(".")
+    if not equals or not all(keys):
+        raise ValueError(override)
+    try:
+        parsed = tomllib.loads(f"value = {raw}")
+    except (ValueError, RecursionError):
+        parsed = {}
+    return keys, parsed["value"] if list(parsed) == ["value"] else raw
+
+
+def _set(data, keys, value):
+    for key in keys[:-1]:
+        data = data.setdefault(key, {})
+        if not isinstance(data, dict):
+            raise ValueError(key)
+    data[keys[-1]] = value
+
+
+def _with_settings(text, settings, without=None):
+    """The text with keys set and a table left out, comments kept."""
+    if not settings and without is None:
+        return text
+    document = tomlkit.parse(text)
+    for keys, value in settings:
+        _set(document, keys, value)
+    if without:
+        document.remove(without)
+    return tomlkit.dumps(document)
+
+
+def _made(path, data, text):
+    case = Case(**data)
+    case._text, case._path = text, Path(path)
+    return case
+
+
+def _member(data, keys, value):
+    member = copy.deepcopy(data)
+    del member["series"]
+    _set(member, keys, value)
+    return member
+
+
+def _faults(path, data):
+    """Faults of the tables and of the profile files they name."""
+    faults = []
+    if "motion" not in data and ("fluid" in data or "time" in data):
+        faults.append("motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])")
+    try:
+        Case(**data)
+    except ValidationError as error:
+        faults += describe(error, Case, data)
+    surface = data.get("surface")
+    for side in ("fast", "slow"):
+        table = surface.get(side) if isinstance(surface, dict) else None
+        if isinstance(table, dict) and isinstance(table.get("file"), str) and table["file"]:
+            try:
+                _try_profile(Path(path).parent, table)
+            except ProfileError as error:
+                faults.append(f"surface.{side}.file = {show(table['file'])}: {error}")
+    return [f"{path}: {fault}" for fault in faults]
+
+
+def _try_profile(folder, table):
+    x, z = read_profile(folder / table["file"])
+    cutoff = table.get("cutoff")
+    if isinstance(cutoff, int | float) and 0 < cutoff <= 1:
+        high_pass(x, z, cutoff)
+
+
+def _series_faults(path, data):
+    """Faults that only a member of the series has."""
+    if "series" not in data:
+        return []
+    key, values = data["series"]["key"], data["series"]["values"]
+    faults = []
+    for value in values:
+        try:
+            member = _member(data, key.split("."), value)
+        except ValueError:
+            return [f"{path}: series.key = {show(key)}: allowed: a key of this case"]
+        faults += [f"{fault} (series.values: {show(value)})" for fault in _faults(path, member)]
+    return faults

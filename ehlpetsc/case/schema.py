@@ -1,0 +1,252 @@
+"""Every key of a case file: type, unit, bounds, default and meaning.
+
+One model a table of the file; attribute names are the keys (`lambda` is `lambda_`). Bounds are wide enough
+for any machine element in SI units and narrow enough that a value in GPa, mm or um is found out.
+"""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, Extra, Field, confloat, root_validator, validator
+
+FIELDS = (
+    "pressure",
+    "film_thickness",
+    "void_fraction",
+    "shear_stress_fast",
+    "shear_stress_slow",
+    "in_contact",
+)
+MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
+
+Modulus = confloat(ge=1e6, le=1e18)
+Ratio = confloat(ge=0.0, le=0.5)
+Height = confloat(ge=1e-12, le=1e-2)
+Length = confloat(ge=1e-9, le=1.0)
+Depth = confloat(ge=0, le=100)
+
+
+def _is(kind, value):
+    """TOML's own types: an integer is a number, true and false are not."""
+    if isinstance(value, bool):
+        return kind is bool
+    return isinstance(value, (int, float) if kind is float else kind)
+
+
+class Table(BaseModel):
+    """A table of the case file: frozen, no unknown keys, no silent conversions."""
+
+    class Config:
+        extra = Extra.forbid
+        allow_mutation = False
+        allow_population_by_field_name = False
+
+    @validator("*", pre=True)
+    def _no_conversion(cls, value, field):
+        kind = next((k for k in (bool, int, float, str, dict) if _subclass(item_type(field), k)), None)
+        if value is None or kind is None:  # None: left out
+            return value
+        for item in value if isinstance(value, list) and kind is not dict else [value]:
+            if not _is(kind, item):
+                raise TypeError(f"{kind.__name__} expected")
+            if kind is float and not -1e308 < item < 1e308:  # nan compares false
+                raise ValueError("not finite")
+        return value
+
+
+def _subclass(type_, kind):
+    return isinstance(type_, type) and issubclass(type_, (BaseModel, dict) if kind is dict else kind)
+
+
+def item_type(field):
+    """Type of a key, of its items where it takes several."""
+    return field.sub_fields[0].type_ if field.sub_fields and field.shape != 1 else field.type_
+
+
+class Contact(Table):
+    """`[contact]`: solids and load."""
+
+    radius: float = Field(..., ge=1e-9, le=100, unit="m", description="radius of relative curvature")
+    load: float = Field(..., ge=1e-3, le=1e10, unit="N/m", description="load per length of contact")
+    youngs_modulus: tuple[Modulus, Modulus] = Field(..., unit="Pa", description="of surface fast and slow")
+    poisson_ratio: tuple[Ratio, Ratio] = Field(..., description="of surface fast and slow")
+    boundary_friction: float = Field(0.0, ge=0, le=2, description="|q|/p at dry nodes")
+    minimum_film: float = Field(0.0, ge=0, le=1e-6, unit="m", description="the bound of the film thickness")
+
+
+class Fluid(Table):
+    """`[fluid]`: viscosity, density and Eyring stress."""
+
+    viscosity: float = Field(..., ge=1e-6, le=1e4, unit="Pa s", description="at ambient pressure")
+    law: Literal["seed", "barus", "roelands"] = Field(..., description="viscosity law")
+    pressure_viscosity: float = Field(..., ge=1e-12, le=1e-6, unit="1/Pa", description="alpha")
+    kappa: float | None = Field(None, ge=1e-9, le=1, unit="Pa s", description="seed law, below viscosity")
+    chi: float | None = Field(None, ge=1e-12, le=1e-6, unit="1/Pa", description="seed law")
+    roelands_z: float | None = Field(None, ge=1e-3, le=2, description="Roelands law, exponent z")
+    roelands_pressure: float | None = Field(None, ge=1e6, le=1e10, unit="Pa", description="Roelands law, pr")
+    density: Literal["dowson-higginson", "incompressible"] = Field(..., description="density law")
+    gamma: float | None = Field(None, ge=0, le=1e-6, unit="1/Pa", description="Dowson-Higginson density")
+    lambda_: float | None = Field(
+        None, alias="lambda", ge=0, le=1e-6, unit="1/Pa", description="Dowson-Higginson density, below gamma"
+    )
+    eyring_stress: float | None = Field(None, ge=1e3, le=1e12, unit="Pa", description="left out: Newtonian")
+    inlet_film: float | None = Field(
+        None, ge=1e-10, le=1e-2, unit="m", description="oil film at the inlet; left out: fully flooded"
+    )
+
+    @validator("kappa", "chi", "roelands_z", "roelands_pressure", "gamma", "lambda_", always=True)
+    def _law_is_complete(cls, value, values, field):
+        law, density = values.get("law"), values.get("density")
+        needed = {
+            "kappa": law == "seed",
+            "chi": law == "seed",
+            "roelands_z": law == "roelands",
+            "roelands_pressure": law == "roelands",
+            "gamma": density == "dowson-higginson",
+            "lambda_": density == "dowson-higginson",
+        }
+        if value is None and needed[field.name]:
+            raise ValueError("missing for this law")
+        return value
+
+    @validator("kappa", "lambda_")
+    def _below(cls, value, values, field):
+        # kappa >= eta0 turns the seed law's exponent round; lambda > gamma thins the oil under pressure
+        limit = values.get("viscosity" if field.name == "kappa" else "gamma")
+        equal_too = field.name == "kappa"
+        if value is not None and limit is not None and (value > limit or equal_too and value == limit):
+            raise ValueError("too large")
+        return value
+
+
+class Motion(Table):
+    """`[motion]`: speeds of the surfaces."""
+
+    entrainment_speed: float = Field(..., ge=1e-9, le=1e3, unit="m/s", description="mean of both, not zero")
+    slide_roll_ratio: float = Field(0.0, ge=-100, le=100, description="(u1 - u2)/u")
+
+
+class Mesh(Table):
+    """`[mesh]`: nodes in x."""
+
+    inlet: float = Field(..., ge=-100, lt=-1, unit="half widths", description="first node")
+    outlet: float = Field(..., gt=1, le=100, unit="half widths", description="last node")
+    points_per_half_width: int = Field(..., ge=4, le=100_000, description="at most 200000 nodes in all")
+    near_field: int = Field(3, ge=2, le=1000, description="nodes of deflection in the matrix, each side")
+
+    @validator("points_per_half_width")
+    def _affordable(cls, value, values):
+        if value * (values.get("outlet", 0.0) - values.get("inlet", 0.0)) > MAX_NODES:
+            raise ValueError("too many nodes")
+        return value
+
+    @property
+    def nodes(self):
+        """Number of nodes; the last one lies at the outlet to the nearest whole spacing."""
+        return round((self.outlet - self.inlet) * self.points_per_half_width) + 1
+
+
+class Ground(Table):
+    """A random profile of given Ra, correlation length and skewness."""
+
+    kind: Literal["ground"]
+    ra: float = Field(..., ge=1e-12, le=1e-3, unit="m", description="mean height deviation")
+    correlation: Length = Field(..., unit="m", description="lag at which the autocorrelation is 1/e")
+    skewness: float = Field(0.0, ge=-3, le=3, description="negative: plateaus with valleys")
+    seed: int = Field(..., ge=0, le=2**32 - 1, description="of the random numbers")
+
+
+class Wave(Table):
+    """A cosine or square wave with a crest at profile abscissa 0."""
+
+    kind: Literal["sine", "square"]
+    amplitude: Height = Field(..., unit="m", description="half of the peak to valley height")
+    wavelength: Length = Field(..., unit="m", description="crest to crest")
+
+
+class Bump(Table):
+    """One ridge or dent of Gaussian section."""
+
+    kind: Literal["ridge", "dent"]
+    amplitude: Height = Field(..., unit="m", description="height of the ridge, depth of the dent")
+    wavelength: Length = Field(..., unit="m", description="full width at 1/e")
+    position: float | None = Field(
+        None, ge=0, le=10, unit="m", description="abscissa of the centre; left out: 2 wavelengths"
+    )
+
+
+SYNTHETIC = {"ground": Ground, "sine": Wave, "square": Wave, "ridge": Bump, "dent": Bump}
+
+
+class SurfaceProfile(Table):
+    """`[surface.fast]`, `[surface.slow]`: a measured or a synthetic profile."""
+
+    file: str | None = Field(None, min_length=1, description="profile file, beside the case file")
+    synthetic: dict | None = Field(None, description='{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }')
+    scale: float = Field(1.0, ge=-1e4, le=1e4, description="factor on the heights; negative: turned over")
+    level: bool = Field(False, description="subtract the least-squares line")
+    cutoff: Length | None = Field(None, unit="m", description="Gaussian high-pass, ISO 16610-21")
+    flip: bool = Field(False, description="run the profile from its other end")
+
+    @validator("synthetic")
+    def _kind(cls, value):
+        """The keys of a synthetic profile are those of its kind."""
+        if value is None:
+            return None
+        model = SYNTHETIC.get(value.get("kind")) if isinstance(value.get("kind"), str) else None
+        if model is None:
+            raise ValueError("unknown kind")
+        return model(**value)
+
+    @root_validator(skip_on_failure=True)
+    def _one_source(cls, values):
+        if (values["file"] is None) == (values["synthetic"] is None):
+            raise ValueError("needs either file or synthetic, one of the two")
+        if values["synthetic"] and (values["level"] or values["flip"] or values["cutoff"] is not None):
+            raise ValueError("level, cutoff and flip are for a file, not for a synthetic profile")
+        return values
+
+
+class Surface(Table):
+    """`[surface]`: a side left out is smooth."""
+
+    fast: SurfaceProfile | None = Field(None, description="profile of the surface moving at u (1 + xi/2)")
+    slow: SurfaceProfile | None = Field(None, description="profile of the surface moving at u (1 - xi/2)")
+
+
+class Time(Table):
+    """`[time]`: left out, the case is steady."""
+
+    travel: float = Field(
+        ..., ge=1e-6, le=1e5, unit="half widths", description="of the faster surface, from the smooth start"
+    )
+    courant: float = Field(0.5, ge=1e-3, le=100, description="u_max dt/dx")
+
+
+class Output(Table):
+    """`[output]`: what the result file holds."""
+
+    every: int = Field(1, ge=1, le=10**9, description="steps between stored fields")
+    fields: list[Literal[FIELDS]] = Field(list(FIELDS), min_items=1, description="stored fields")
+    precision: Literal["float64", "float32"] = Field("float64", description="of the stored fields")
+    checkpoint: float = Field(10.0, gt=0, le=1e5, unit="minutes", description="between restart files")
+
+
+class Post(Table):
+    """`[post]`: read by `ehlpetsc.post` alone; checked here so that a slip shows before the run."""
+
+    depths: list[Depth] | None = Field(None, min_items=1, unit="half widths", description="z/a")
+    b: float | None = Field(None, gt=-2, lt=0, description="fatigue strength exponent")
+    c: float | None = Field(None, gt=-5, lt=0, description="fatigue ductility exponent")
+    cyclic_hardening: float | None = Field(None, gt=0, lt=1, description="n'")
+    fatigue_strength: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="sigma_f'")
+    fatigue_ductility: float | None = Field(None, ge=1e-6, le=100, description="eps_f'")
+    cyclic_strength: float | None = Field(
+        None, ge=1e6, le=1e12, unit="Pa", description="K'; left out: sigma_f'/eps_f'^n'"
+    )
+
+
+class Series(Table):
+    """`[series]`: one key swept over values, one member a value."""
+
+    key: str = Field(..., regex=r"^[A-Za-z_]+(\.[A-Za-z_]+)+$", description='as in "fluid.viscosity"')
+    values: list[Any] = Field(..., min_items=1, description="a list of values of that key")

@@ -1,0 +1,77 @@
+"""Every exception of the package, and the exit statuses of its commands.
+
+An error that a user can mend says in its text what is wrong, where, and what is allowed or to be tried.
+"""
+
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """How a command ended."""
+
+    DONE = 0
+    BUG = 1
+    BAD_INPUT = 2
+    NOT_CONVERGED = 3
+    STOPPED = 4
+
+
+class CaseError(Exception):
+    """The case cannot be run.
+
+    Attributes
+    ----------
+    faults : list of str
+        One line a fault, all of them at once.
+    """
+
+    def __init__(self, faults):
+        super().__init__("\n".join(faults))
+        self.faults = list(faults)
+
+
+class ProfileError(Exception):
+    """A profile cannot be used; the message says why and how to mend it."""
+
+
+class UsageError(Exception):
+    """The command line cannot be understood; the message says what is allowed."""
+
+
+class OutputError(Exception):
+    """A result or restart file cannot be read or written; the text says why and what is left."""
+
+
+class SolveFailed(Exception):
+    """One solve of the discrete equations failed; `reason` is the solver's name of why.
+
+    Attributes
+    ----------
+    reason : str
+    iterations : int
+        Spent on it.
+    """
+
+    def __init__(self, reason, iterations):
+        super().__init__(f"SNES {reason} after {iterations} iterations")
+        self.reason, self.iterations = reason, iterations
+
+
+class NoSteadyStart(Exception):
+    """No steady solution was found.
+
+    Attributes
+    ----------
+    share : float or None
+        How much of the pressure-viscosity coefficient was reached, None if not any.
+    iterations : int
+        Spent on it.
+    """
+
+    def __init__(self, failure, share, iterations):
+        super().__init__(str(failure))
+        self.share, self.iterations = share, iterations
+
+
+class NotConverged(Exception):
+    """A time step or steady start that cannot be saved; the text names step, time, reason, what to try."""

@@ -1,0 +1,219 @@
+r"""The paper's own iteration: sweeps over the nodes that update each pair (p, h) by a 2 x 2 block.
+
+At every node the Reynolds and the deflection equation are put in the form (Holmes et al. 2005, eq. (8), (9))
+
+.. math:: A_0p_0+B_0h_0=R,\qquad C_0p_0+D_0h_0=E,
+
+R and E with the newest values of all other nodes, and solved for the pair (eq. (10)); where h comes out
+below its bound, it is put there and p follows from the deflection equation alone (eq. (11)). Nothing is
+assumed about which nodes touch.
+
+Residual and coefficients are those of :class:`ehlpetsc.discretisation.ehl_problem.ContactProblem`. A and
+B are derivatives of the Reynolds rows at the state before the last sweeps, so that sweeps solve what
+Newton's method linearises; C and D are exact. Between two evaluations of A and B
+
+* pressures further away than `NEAR` nodes act on E by FFT with their values of the last evaluation;
+* h00 moves with the load that is missing, by a part of what Hertz' contact would need;
+* where the gap is open, wider than `OPEN` expected films and under less than `LOW` p0, h is put to the whole
+  integral of p, as it is at the two ends in any case. Second differences alone tell a change of h00 or of a
+  distant pressure from node to node, which takes the square of their number in sweeps. In the open
+  gap pressures hardly answer to the film, so that this is safe; in the film, or in valleys between
+  asperities, it is not.
+
+A node that changes between oil and cavity stops at the change, where its derivatives jump, until the next
+evaluation. Over-relaxation takes the sweeps to a half in the film and to less in the open gap, where
+pressures obey Poisson's equation. What the flow carries from node to node bears none, for each node would
+amplify it: void in cavities, and films in a steady contact. In a time step the storage of oil damps it.
+
+The order of the nodes is the paper's, one after the other with the flow. That is no work for array
+operations; the loops are compiled. Ranks do not share a sweep: each does the whole of it.
+"""
+
+import numpy as np
+from petsc4py import PETSc
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation import elasticity
+from ehlpetsc.discretisation.ehl_problem import ContactProblem
+from ehlpetsc.errors import SolveFailed
+from ehlpetsc.nonlinear.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
+
+# half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
+REACH, STEADY_REACH = 0.6, 4.0
+EVALUATIONS = 400  # before a solve is given up
+NEAR = 100  # nodes on either side whose pressures act at once
+OPEN, LOW = 3.0, 0.1  # gaps wider than so many expected films, at pressures below this in p0, are open
+IN_OPEN_GAP, IN_FILM = 1.85, 1.3  # over-relaxation there, and in the film of a time step
+APPROACH = 0.2  # of the change of h00 that the missing load asks for
+STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
+
+
+@compiled(fastmath=True)
+def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, relaxation):
+    r"""Update every pair once, in the direction of flow, in place.
+
+    Parameters
+    ----------
+    q, h, p : ndarray, shape (n,)
+        Newest values; the first and the last h, and the first q, are left alone.
+    q_then, h_then : ndarray, shape (n,)
+        State at the last evaluation.
+    flow, flow_by : ndarray, shape (n,), (n, 8)
+        Reynolds rows there and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
+    bend : ndarray, shape (n,)
+        What gap and distant pressures contribute to E.
+    kernel : ndarray, shape (2 near + 1,)
+        Curvature kernel at -near .. near nodes.
+    stretch : float
+        :math:`\pi/\Delta x`, of the second difference of h.
+    bound : float
+        Least film.
+    relaxation : ndarray, shape (n,)
+    """
+    n, near = len(q), len(kernel) // 2
+    c, d = kernel[near], 2.0 * stretch
+    for i in range(1, n):
+        a, b = flow_by[i, 4], flow_by[i, 5]
+        r = a * q_then[i] + b * h_then[i] - flow[i]
+        for k in range(4):
+            j = i + k - 2
+            if k != 2 and 0 <= j < n:
+                r -= flow_by[i, 2 * k] * (q[j] - q_then[j]) + flow_by[i, 2 * k + 1] * (h[j] - h_then[j])
+        if i == n - 1:
+            q[i] = limited((r - b * h[i]) / a, q_then[i])
+            p[i] = max(q[i], 0.0)
+            break
+        low, high = max(i - near, 0), min(i + near + 1, n)
+        e = bend[i] + stretch * (h[i - 1] + h[i + 1]) + c * p[i]
+        for j in range(low, high):
+            e -= kernel[j - i + near] * p[j]
+        if q_then[i] > 0.0:
+            determinant = a * d - b * c
+            new_q, new_h = (r * d - b * e) / determinant, (a * e - c * r) / determinant
+        else:
+            new_h = e / d
+            new_q = (r - b * new_h) / a
+        if new_h < bound:
+            new_h = bound
+            new_q = max((e - d * bound) / c, REFILLED)
+        else:
+            new_q = q[i] + relaxation[i] * (new_q - q[i])
+            new_h = max(h[i] + relaxation[i] * (new_h - h[i]), bound)
+        q[i] = limited(new_q, q_then[i])
+        h[i] = new_h
+        p[i] = max(q[i], 0.0)
+
+
+@compiled
+def limited(q, then):
+    """A pair's new q, kept to where the coefficients of the last evaluation hold."""
+    if then > 0.0:
+        return min(max(q, -REFILLED, then - STEP_LIMIT), then + STEP_LIMIT)
+    return min(max(q, OIL_KEPT * (1.0 + then) - 1.0), REFILLED)
+
+
+class Sweeper:
+    """Solves one scene by sweeps; stands in for :class:`ehlpetsc.nonlinear.newton.Solver`.
+
+    Stops at the same residual, that of ``-snes_atol``.
+
+    Parameters
+    ----------
+    case, scales, film_scale
+        As in :class:`ehlpetsc.discretisation.ehl_problem.ContactProblem`.
+
+    Attributes
+    ----------
+    sweeps : int
+        Of all solves so far.
+    """
+
+    start_iterations = EVALUATIONS
+
+    def __init__(self, case, scales, film_scale):
+        self.problem = p = ContactProblem(case, scales, film_scale, 0, scales.nx)
+        self.bound = case.contact.minimum_film / scales.h
+        self.tolerance = PETSc.Options().getReal("snes_atol", 1e-7)
+        near = min(NEAR, p.n - 1)
+        self.kernel = np.concatenate([p.curvature[near:0:-1], p.curvature[: near + 1]])
+        distant = p.curvature.copy()
+        distant[: near + 1] = 0.0
+        self.distant = elasticity.SymmetricToeplitz(distant)
+        self.stretch = np.pi / p.dx
+        self.sweeps = 0
+
+    def flow_rows(self):
+        """F of the last solution at every node, shape (nx,)."""
+        return self.flow
+
+    def solve(self, q, h, h00, max_it=None):
+        """Solve from the given start, with `max_it` evaluations instead of the usual number at most.
+
+        Returns
+        -------
+        q, h : ndarray, shape (nx,)
+        h00 : float
+        iterations : int
+            Evaluations of the coefficients.
+
+        Raises
+        ------
+        SolveFailed
+        """
+        q, h = q.copy(), np.maximum(h, self.bound)
+        most = max_it or EVALUATIONS
+        for iteration in range(most):
+            p = self.problem.pressure(q)
+            h00, still_open = self._correct(p, h, h00)
+            norm = self._evaluate(q, h, h00)
+            if norm < self.tolerance:
+                return q, h, h00, iteration
+            if not np.isfinite(norm):
+                raise SolveFailed("NOT_FINITE", iteration)
+            self._sweep(q, h, p, still_open)
+        raise SolveFailed("MAX_IT", most)
+
+    def _correct(self, p, h, h00):
+        """Balance the load by h00; put h of the open gap and the ends to the whole integral, in place."""
+        h00 += APPROACH / STIFFNESS * (self.problem.dx * p.sum() - 0.5 * np.pi)
+        gap_is_open = (h > OPEN * self.problem.film_scale) & (p < LOW)
+        gap_is_open[[0, -1]] = True
+        h[gap_is_open] = np.maximum(self.problem.film(p, h00)[gap_is_open], self.bound)
+        return h00, gap_is_open
+
+    def _evaluate(self, q, h, h00):
+        """Residual and coefficients at a state; the norm of what is not complementary."""
+        problem = self.problem
+        with np.errstate(over="ignore", invalid="ignore"):
+            rows = problem.residual(q, h, h00)
+            self.flow = rows[1:-1:2].copy()
+            self.flow_by = problem.flow_values
+            rows[1:-1:2][(h <= self.bound) & (self.flow > 0.0)] = 0.0
+            return np.linalg.norm(rows)
+
+    def _sweep(self, q, h, p, gap_is_open):
+        problem, steady = self.problem, self.problem.past is None
+        sweeps = max(1, round((STEADY_REACH if steady else REACH) / problem.dx))
+        fixed = 0.5 * problem.x**2 + problem.gap
+        bend = self.distant(p)
+        bend[1:-1] += self.stretch * (fixed[:-2] - 2.0 * fixed[1:-1] + fixed[2:])
+        relaxation = np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM)
+        relaxation[q <= 0.0] = 1.0
+        then = q.copy(), h.copy()
+        q[0] -= self.flow[0] / self.flow_by[0, 4]
+        p[0] = max(q[0], 0.0)
+        for _ in range(sweeps):
+            sweep(
+                q,
+                h,
+                p,
+                *then,
+                self.flow,
+                self.flow_by,
+                -bend,
+                self.kernel,
+                self.stretch,
+                self.bound,
+                relaxation,
+            )
+        self.sweeps += sweeps

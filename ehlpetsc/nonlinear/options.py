@@ -1,0 +1,99 @@
+"""The command line: the case file, own options (-ehl_*) and those handed on to PETSc."""
+
+import difflib
+from dataclasses import dataclass
+
+from ehlpetsc.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Option:
+    """An own option as ``-help`` lists it: what follows it with its unit, its default, its meaning."""
+
+    value: str
+    default: str
+    text: str
+
+
+OWN = {
+    "ehl_output": Option("FILE.h5", "CASE.h5 in this folder", "result file, the restart file beside it"),
+    "ehl_ranks_per_member": Option("RANKS", "1", "of a [series], how many ranks compute one member"),
+    "ehl_restart": Option("FILE.restart.h5", "begin at time 0", "go on from there and append to the result"),
+    "ehl_scheme": Option("newton|sweep", "newton", "iteration; sweep is the paper's own, slower"),
+    "ehl_set": Option("TABLE.KEY=VALUE", "the case as it is", "set a key of the case; may be repeated"),
+    "ehl_time_limit": Option("MINUTES", "none", "stop after this wall clock time, restart file written"),
+}
+
+USAGE = "python3 -m ehlpetsc CASE.toml [options]"
+
+
+def faults(names):
+    """One line for each own option that there is none of, with the nearest there is.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names in PETSc's table.
+    """
+    lines = []
+    for name in sorted(names):
+        if name == "ehl_set":
+            lines.append("-ehl_set in an options file: allowed on the command line and in PETSC_OPTIONS")
+        elif name.startswith(("ehl", "-ehl")) and name not in OWN:
+            close = difflib.get_close_matches(name.lstrip("-"), OWN, n=1)
+            hint = f"did you mean -{close[0]}?" if close else f"allowed: -{', -'.join(OWN)}"
+            lines.append(f"-{name}: unknown option; {hint}")
+    return lines
+
+
+def help_text():
+    """Own options with values, units and defaults, in the manner of PETSc's -help."""
+    lines = [
+        "----------------------------------------",
+        f"ehlpetsc: {USAGE}, under mpirun on any number of ranks",
+        "Options come from: program defaults < [petsc] of the case < PETSC_OPTIONS < command line.",
+        "Own options:",
+    ]
+    lines += [f"  -{name} <{o.value}>: {o.text} (default: {o.default})" for name, o in OWN.items()]
+    lines += [
+        "  --explain: tell the scene in words, with expected film, run time and file size; nothing is run",
+        "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
+    ]
+    return "\n".join(lines)
+
+
+def text_of(options, name):
+    """Value of an own option, "" where it is not given.
+
+    Parameters
+    ----------
+    options : petsc4py.PETSc.Options
+    name : str
+
+    Raises
+    ------
+    UsageError
+        It stands without a value.
+    """
+    value = options.getString(name, "")
+    if options.hasName(name) and not value:
+        raise UsageError(f"-{name} stands without a value; allowed: -{name} {OWN[name].value}")
+    return value
+
+
+def time_limit(options):
+    """Minutes of -ehl_time_limit, 0 where there is no limit.
+
+    Raises
+    ------
+    UsageError
+        Not a number above 0.
+    """
+    text = text_of(options, "ehl_time_limit")
+    try:
+        minutes = float(text or "inf")
+    except ValueError:
+        minutes = 0.0
+    if not minutes > 0.0:
+        raise UsageError(f"-ehl_time_limit {text}: allowed: a number > 0 [minutes]")
+    return minutes if text else 0.0

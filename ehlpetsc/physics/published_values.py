@@ -1,0 +1,69 @@
+"""Published and independently computed values that the solver is held against."""
+
+from typing import NamedTuple
+
+
+class Film(NamedTuple):
+    """A smooth steady film: conditions, and least and central film thickness [um]."""
+
+    viscosity: float
+    speed: float
+    slide_roll_ratio: float
+    points_per_half_width: int | None
+    h_min: float
+    h_central: float
+
+
+SMOOTH_FILMS = (
+    Film(0.010, 5.0, 0.25, None, 0.22747, 0.26211),
+    Film(0.005, 5.0, 0.25, None, 0.14216, 0.16314),
+    Film(0.002, 5.0, 0.25, None, 0.07672, 0.08751),
+    Film(0.005, 25.0, 0.10, None, 0.43387, 0.50144),
+)
+"""Table 1 contact and Eyring stress on [-4, 1.5] a: dense solutions extrapolated to zero mesh size, 0.2 %."""
+
+SMOOTH_FILMS_BY_MESH = (
+    Film(0.005, 5.0, 0.25, 100, 0.141250, 0.161532),
+    Film(0.005, 5.0, 0.25, 200, 0.141722, 0.162430),
+    Film(0.005, 5.0, 0.25, 400, 0.141839, 0.162654),
+)
+"""The second of `SMOOTH_FILMS` on [-2.5, 1.5] a and on finite meshes."""
+
+
+class MoesPoint(NamedTuple):
+    """Dimensionless films of a Newtonian, incompressible Barus fluid."""
+
+    M: float
+    L: float
+    h_min: float
+    h_central: float
+
+
+MOES_POINTS = (MoesPoint(20.0, 10.0, 3.966, 5.262), MoesPoint(100.0, 11.0, 3.488, 4.656))
+"""Computed by a dense solver."""
+
+WAVINESS = {4.0: 0.030, 2.0: 0.073, 1.0: 0.183, 0.5: 0.394, 0.25: 0.660, 0.125: 0.839}
+"""Wavelength/b -> amplitude ratio at M=100, L=11, Ai/Hc=0.1, pure rolling; Venner et al. 1997, table 1."""
+
+WAVINESS_LINEAR = {4.0: 0.0298, 2.0: 0.0708, 1.0: 0.179, 0.5: 0.391, 0.25: 0.677, 0.125: 0.887}
+"""The same by a linearised dense solution with their fluid; the shortest is mesh-sensitive."""
+
+
+class Bounds(NamedTuple):
+    """A value and its uncertainty."""
+
+    value: float
+    uncertainty: float
+
+
+RIDGE = {
+    "film at the centre": Bounds(0.148e-6, 0.001e-6),
+    "h_min": Bounds(0.1253e-6, 0.0005e-6),
+    "p_max": Bounds(1.179e9, 0.002e9),
+}
+"""Gaussian ridge 0.1 um exp(-((X-Xc)/0.1)^2) at Xc = 0, Table 1, eta0 = 0.005, u = 5, xi = 0.25 [m, m, Pa].
+
+It travels at 0.875 u from Xc = -2 with the load held; computed by a dense solver."""
+
+CONTACT_PROPORTIONS = {100: 1.0, 200: 1.26, 300: 1.48, 400: 1.76}
+"""Points per half width -> mean contact rate over the coarsest mesh's; Holmes et al. 2005, section 3.1."""

@@ -1,0 +1,159 @@
+r"""Lubricant laws: viscosity, density and the Eyring flow factor, each with its derivative.
+
+Every law is a pure function in SI units, of arrays or, where it is called in compiled loops over nodes, of
+numbers; complex arguments are carried through, so that the derivatives can be checked by complex step.
+"""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+
+SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
+
+
+def viscosity(p, fluid):
+    r"""Logarithm of the viscosity over its ambient value.
+
+    ``seed``: :math:`\ln(\eta/\eta_0) = \ln(\eta_0/\kappa)[(1+\chi p)^Z-1]`,
+    :math:`Z=\alpha/(\chi\ln(\eta_0/\kappa))`, Holmes et al. 2005, eq. (3);
+    ``barus``: :math:`\alpha p`; ``roelands``: :math:`(\alpha p_r/z)[(1+p/p_r)^z-1]`.
+
+    Parameters
+    ----------
+    p : ndarray
+        Pressure [Pa].
+    fluid : case.Fluid
+
+    Returns
+    -------
+    ln_eta, dln_eta_dp : ndarray
+        :math:`\ln(\eta/\eta_0)` [1] and its derivative [1/Pa], shape of `p`.
+    """
+    alpha = fluid.pressure_viscosity
+    if fluid.law == "barus":
+        return alpha * p, np.full_like(p, alpha)
+    if fluid.law == "roelands":
+        reference, z = fluid.roelands_pressure, fluid.roelands_z
+        factor = alpha * reference / z
+    else:
+        factor = np.log(fluid.viscosity / fluid.kappa)
+        reference, z = 1.0 / fluid.chi, alpha / (fluid.chi * factor)
+    base = 1.0 + p / reference
+    power = base**z
+    return factor * (power - 1.0), factor * z * power / (base * reference)
+
+
+def density(p, fluid):
+    r"""Density over its ambient value, :math:`(1+\gamma p)/(1+\lambda p)`, Holmes et al. 2005, eq. (4).
+
+    Returns
+    -------
+    rho, drho_dp : ndarray
+        Ratio [1] and derivative [1/Pa], shape of `p`; exactly 1 and 0 if incompressible.
+    """
+    if fluid.density == "incompressible":
+        return np.ones_like(p), np.zeros_like(p)
+    below = 1.0 + fluid.lambda_ * p
+    return (1.0 + fluid.gamma * p) / below, (fluid.gamma - fluid.lambda_) / below**2
+
+
+@compiled
+def flow_factors(sigma):
+    r"""Eyring factors of rolling and sliding, of one number.
+
+    :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3` and :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`
+    (Conry, Wang & Cusano 1987); near zero their series, :math:`S_0=3\sum 2n\,\Sigma^{2n-2}/(2n+1)!`.
+
+    Returns
+    -------
+    s0, ds0, el, del_ : float
+        Both with their derivatives.
+    """
+    s = sigma
+    if abs(s.real) < SERIES_LIMIT:
+        t = s * s
+        return (
+            1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560))),
+            s * (1 / 5 + t * (1 / 70 + t * (1 / 2520 + t / 166320))),
+            1.0 + t * (-1 / 15 + t * (2 / 315 + t * (-1 / 1575 + t * 2 / 31185))),
+            s * (-2 / 15 + t * (8 / 315 + t * (-6 / 1575 + t * 16 / 31185))),
+        )
+    over, grown = 1.0 / s, np.exp(s)  # one exponential for sinh, cosh and coth
+    shrunk = 1.0 / grown
+    sinh, cosh = 0.5 * (grown - shrunk), 0.5 * (grown + shrunk)
+    coth = 1.0 + 2.0 / (grown * grown - 1.0)
+    square = 3.0 * over * over
+    s0 = square * (cosh - sinh * over)
+    ds0 = square * sinh - 3.0 * s0 * over
+    el = square * (s * coth - 1.0)
+    return s0, ds0, el, square * (coth - s * (coth * coth - 1.0)) - 2.0 * el * over
+
+
+@compiled
+def mobility(h, slope, fluidity, stress, slip):
+    r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, as one quantity; of numbers.
+
+    :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
+    :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987). It stays finite both for
+    :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`.
+
+    Parameters
+    ----------
+    h, slope, fluidity : float
+        Film [m], pressure gradient [Pa/m], :math:`1/\eta` [1/(Pa s)] at the same place.
+    stress, slip : float
+        :math:`\tau_0` [Pa], infinite for a Newtonian fluid, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
+
+    Returns
+    -------
+    value, d_h, d_slope, d_ln_eta : float
+        M [m^3/(Pa s)] and its derivatives with respect to h, slope and :math:`\ln\eta`.
+    """
+    per_film = slope * (0.5 / stress)
+    s0, ds0, el, del_ = flow_factors(h * per_film)
+    square = h * h
+    cube = h * square * fluidity
+    rolling, sliding = cube * s0, slip * square * el
+    value = np.sqrt(rolling * rolling + sliding * sliding)
+    safe = 1.0 / value if value != 0.0 else 1.0
+    rolls, slides = rolling * safe, sliding * safe
+    by_sigma = rolls * cube * ds0 + slides * slip * square * del_
+    by_h = rolls * 3.0 * square * fluidity * s0 + 2.0 * slides * slip * h * el
+    return (
+        value / 12.0,
+        (by_h + by_sigma * per_film) / 12.0,
+        by_sigma * h * (0.5 / stress) / 12.0,
+        -rolls * rolling / 12.0,
+    )
+
+
+def wall_shear(h, slope, ln_eta, fluid, sliding):
+    r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
+
+    :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
+    (Conry, Wang & Cusano 1987); Newtonian: :math:`\tau_m=\eta(u_1-u_2)/h`.
+
+    Returns
+    -------
+    lower, upper : ndarray
+        Shear stress [Pa] in the film at the lower (slow) and at the upper (fast) wall, at h > 0.
+    """
+    rate = sliding / h
+    half = h * slope / 2.0
+    if fluid.eyring_stress is None:
+        mean = fluid.viscosity * np.exp(ln_eta) * rate
+        return mean - half, mean + half
+    tau0 = fluid.eyring_stress
+    sigma = np.abs(half) / tau0
+    # ln(sinh(s)/s), so that neither a huge viscosity nor a steep gradient overflows
+    small = sigma < SERIES_LIMIT
+    s = np.where(small, 1.0, sigma)
+    spread = np.where(
+        small, sigma**2 / 6 - sigma**4 / 180 + sigma**6 / 2835, s + np.log1p(-np.exp(-2 * s)) - np.log(2 * s)
+    )
+    with np.errstate(divide="ignore"):
+        ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - spread
+    large = ln_argument > 20.0
+    asinh = np.where(large, ln_argument + np.log(2.0), np.arcsinh(np.exp(np.minimum(ln_argument, 20.0))))
+    mean = tau0 * np.sign(sliding) * asinh
+    return mean - half, mean + half

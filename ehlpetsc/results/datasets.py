@@ -1,0 +1,143 @@
+"""The datasets of a result file: created up front with dimension scales, then lengthened row by row."""
+
+import contextlib
+import os
+import struct
+
+import h5py
+import numpy as np
+
+from ehlpetsc.results.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS
+
+CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
+CHUNK_STEPS = 512
+METADATA_BYTES = 2**20  # more than HDF5 adds to its own structures in one flush
+RESERVE_BYTES = 2**16  # more than it writes on closing
+
+
+def lay_out(file, x, fields, precision, profiles):
+    """Create every dataset, empty along time.
+
+    Parameters
+    ----------
+    file : h5py.File
+    x : ndarray, shape (nx,)
+        Nodes [m].
+    fields : list of str
+        Fields to store, keys of `ehlpetsc.results.quantities.FIELDS`.
+    precision : {"float64", "float32"}
+        Type of the fields.
+    profiles : dict
+        As for `ehlpetsc.results.writer.ResultWriter`.
+    """
+    _fixed(file, "x", OTHERS["x"], np.asarray(x, dtype=float))
+    _growing(file, "time", OTHERS["time"], CHUNK_STEPS)
+    for name in [n for n in FIELDS if n in fields]:
+        dtype = np.dtype(FIELDS[name].dtype if name == "in_contact" else precision)
+        rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
+        # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
+        packed = {"compression": "gzip", "compression_opts": 1} if name == "in_contact" else {}
+        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
+    _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
+    _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
+    _growing(file, "steps/time", OTHERS["steps/time"], CHUNK_STEPS)
+    for name, field in STEP_SCALARS.items():
+        _growing(file, f"steps/{name}", field, CHUNK_STEPS)
+    for surface, profile in profiles.items():
+        if profile is not None:
+            _surface(file, f"surface/{surface}", *profile)
+    for name, text in GROUPS.items():
+        if name in file:
+            comment(file[name], text)
+
+
+def create(path):
+    """Create an HDF5 file for writing; OSError if the disk has no room for an empty one."""
+    with open(path, "wb") as raw:
+        os.posix_fallocate(raw.fileno(), 0, METADATA_BYTES)
+    return h5py.File(path, "w", libver="latest")
+
+
+@contextlib.contextmanager
+def room(file, data_bytes):
+    """Make sure of the disk space before HDF5 writes, which crashes on a full disk; flush what was written.
+
+    Some space is kept in reserve behind the data, so that the file can always be closed.
+
+    Parameters
+    ----------
+    file : h5py.File
+    data_bytes : int
+        Size of the rows to be written.
+
+    Raises
+    ------
+    OSError
+        There is not enough room (or quota); the file is as it was.
+    """
+    descriptor, end = file.id.get_vfd_handle(), file.id.get_filesize()
+    chunks = CHUNK_BYTES * len(FIELDS) + 8 * CHUNK_STEPS * (len(STEP_SCALARS) + len(OTHERS))
+    try:
+        os.posix_fallocate(descriptor, end, data_bytes + chunks + METADATA_BYTES + RESERVE_BYTES)
+    except OSError:
+        os.ftruncate(descriptor, end + RESERVE_BYTES)
+        raise
+    yield
+    file.flush()
+    os.ftruncate(descriptor, file.id.get_filesize() + RESERVE_BYTES)
+
+
+def close(file, status):
+    """Note how the run ended, close the file and give its reserve back."""
+    descriptor = os.dup(file.id.get_vfd_handle())
+    try:
+        file.attrs["status"] = status
+        file.close()
+        (end,) = struct.unpack_from("<Q", os.pread(descriptor, 48, 0), 28)  # as superblocks 2 and 3 have it
+        os.ftruncate(descriptor, end)
+    finally:
+        os.close(descriptor)
+
+
+def extend(dataset, rows):
+    """Append rows to a dataset."""
+    if len(rows):
+        begin = dataset.shape[0]
+        dataset.resize(begin + len(rows), axis=0)
+        dataset[begin:] = rows
+
+
+def _surface(file, name, s, z, speed, statistics=None):
+    _fixed(file, f"{name}/s", OTHERS["surface/s"], s)
+    _fixed(file, f"{name}/z", OTHERS["surface/z"], z)
+    for key, value in ({"speed": speed} | (statistics or {})).items():
+        file[name].attrs[key] = value
+
+
+def comment(item, text):
+    """What `h5dump -H` and `h5ls -v` show of a group or dataset: attributes' values they leave out."""
+    h5py.h5o.set_comment(item.id, text.encode())
+
+
+def _fixed(file, name, field, values):
+    _describe(file.create_dataset(name, data=np.asarray(values)), field)
+
+
+def _growing(file, name, field, rows, *width, dtype=None, **packed):
+    dataset = file.create_dataset(
+        name, (0, *width), dtype or field.dtype, maxshape=(None, *width), chunks=(rows, *width), **packed
+    )
+    _describe(dataset, field)
+
+
+def _describe(dataset, field):
+    dataset.attrs["units"] = field.units
+    dataset.attrs["long_name"] = field.long_name
+    comment(dataset, f"{field.long_name} [{field.units}] ({', '.join(field.dims)})")
+    own_name = dataset.name.rsplit("/", 1)[1]
+    if field.dims == (own_name,):
+        dataset.make_scale(own_name)
+        return
+    for axis, dim in enumerate(field.dims):
+        dataset.dims[axis].attach_scale(dataset.parent[dim])
+        dataset.dims[axis].label = dim

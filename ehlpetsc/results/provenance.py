@@ -1,0 +1,45 @@
+"""Where a result comes from: versions and the commit of the code."""
+
+import json
+import platform
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ehlpetsc import __version__
+
+
+def versions(more):
+    """Names and versions in one line, those of `more` (dict of str to str) after our own."""
+    ours = {
+        "ehlpetsc": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "h5py": h5py.__version__,
+        "hdf5": h5py.version.hdf5_version,
+    }
+    return ", ".join(f"{name} {version}" for name, version in (ours | more).items())
+
+
+def git_commit():
+    """Commit of the checkout the package runs from, ``-dirty`` if changed; empty if it is none."""
+    top = Path(__file__).resolve().parents[2]
+    if not (top / ".git").exists():
+        return ""
+    command = ["git", "-C", str(top), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        answer = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return ""  # no git, or a checkout of another user: the result matters more
+    return answer.stdout.strip()
+
+
+def earlier_runs(attrs, last_step):
+    """JSON list of the configurations of all runs before a restart, the last of them described by `attrs`."""
+    runs = json.loads(attrs.get("history", "[]"))
+    keys = ("case", "petsc_options", "ranks", "versions", "git_commit")
+    known = {key: attrs[key] for key in keys if key in attrs}
+    run = {key: value if isinstance(value, str) else int(value) for key, value in known.items()}
+    return json.dumps([*runs, {"up_to_step": int(last_step), **run}])

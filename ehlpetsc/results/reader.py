@@ -1,0 +1,147 @@
+"""Reading result files: whole ones, ones being written, and ones a killed run left behind."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+
+FORMAT_VERSION = 1
+"""Version of the layout; a reader refuses files of a later one."""
+
+
+def open_for_reading(path):
+    """Open an HDF5 file that may still be written to, or that a killed writer left open.
+
+    Raises
+    ------
+    OutputError
+        No such file, or not one HDF5 can read.
+    """
+    if not Path(path).is_file():
+        raise OutputError(f"{path}: no such file")
+    try:
+        return h5py.File(path, "r")
+    except OSError as plain:
+        # a live or killed writer leaves its mark in the file, which only a SWMR reader accepts
+        try:
+            return h5py.File(path, "r", swmr=True)
+        except (OSError, ValueError):
+            raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({plain})") from plain
+
+
+def read_result(path):
+    """Open a result file.
+
+    Parameters
+    ----------
+    path : str or path-like
+
+    Returns
+    -------
+    Result
+        To be closed, or used in a ``with`` statement.
+
+    Raises
+    ------
+    OutputError
+        Missing, damaged, not a result file, or of a later format version.
+    """
+    file = open_for_reading(path)
+    version = file.attrs.get("format_version")
+    fault = None
+    if version is None or "x" not in file or "steps" not in file:
+        fault = "an HDF5 file, but not a result of ehlpetsc"
+    elif version > FORMAT_VERSION:
+        fault = f"format version {version}, this ehlpetsc reads up to {FORMAT_VERSION}: use a later ehlpetsc"
+    if fault:
+        file.close()
+        raise OutputError(f"{path}: {fault}")
+    return Result(file, path)
+
+
+def _whole_rows(group):
+    """Rows that a group's datasets share; its ``time`` is written last and so vouches for the rest."""
+    rows = [d.shape[0] for d in group.values() if isinstance(d, h5py.Dataset) and d.maxshape[0] is None]
+    return min(rows, default=0)
+
+
+class Result:
+    """A result file, read lazily.
+
+    Attributes
+    ----------
+    path : Path
+    attrs : dict
+        Root attributes: case text, provenance, a, p0, speeds, status.
+    x : ndarray, shape (nx,)
+        Nodes [m].
+    time, step : ndarray, shape (nt,)
+        Times [s] and step numbers of the stored frames.
+    fields : list of str
+        Names of the fields stored in every frame.
+    contact_count : ndarray, shape (nx,)
+        Time steps in contact over the whole run.
+    """
+
+    def __init__(self, file, path):
+        self._file = file
+        self.path = Path(path)
+        self.attrs = dict(file.attrs)
+        self.x = file["x"][:]
+        # a killed writer may have lengthened some datasets and not yet others
+        self._frames, self._steps = _whole_rows(file), _whole_rows(file["steps"])
+        self.time, self.step = file["time"][: self._frames], file["step"][: self._frames]
+        self.contact_count = file["contact_count"][:]
+        self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    def close(self):
+        """Close the file."""
+        self._file.close()
+
+    def __getitem__(self, name):
+        """The dataset `name`, not read yet; after a killed run it may have rows beyond `time`."""
+        return self._file[name]
+
+    def __contains__(self, name):
+        return name in self._file
+
+    def frame(self, name, index):
+        """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""
+        return self._file[name][range(len(self.time))[index]].astype(float)
+
+    def steps(self, name):
+        """Per-step scalar `name`, shape (nsteps,)."""
+        return self._file["steps"][name][: self._steps]
+
+    def nearest_frame(self, *, time=None, step=None):
+        """Index of the stored frame nearest to a time [s] or to a step number."""
+        wanted, stored = (time, self.time) if step is None else (step, self.step)
+        return int(np.argmin(np.abs(stored - wanted)))
+
+    def contact_rate(self):
+        """Contacts per millisecond at each node, Q of Holmes et al. 2005, figure 7; shape (nx,).
+
+        One time step in contact counts as one contact, so that Q grows as the time step falls.
+
+        Raises
+        ------
+        OutputError
+            The run has lasted no time: a steady one.
+        """
+        lasted = np.nansum(self.steps("dt"))
+        if not lasted > 0.0:
+            raise OutputError(f"{self.path}: a steady solution has no contacts per millisecond")
+        return self.contact_count / (1e3 * lasted)
+
+    def profile(self, surface):
+        """Roughness of surface "fast" or "slow" as ``(s, z, speed)``; None if it was smooth."""
+        group = self._file.get(f"surface/{surface}")
+        return None if group is None else (group["s"][:], group["z"][:], float(group.attrs["speed"]))

@@ -1,0 +1,129 @@
+"""Results that belong together: the members of a series opened, and sorted by their swept value."""
+
+import argparse
+import contextlib
+import json
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.reader import read_result
+
+WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
+
+
+def open_all(paths, stack):
+    """Results of the files named; a series' index (.series.json) stands for those members that have a file.
+
+    Parameters
+    ----------
+    paths : list of path-like
+    stack : contextlib.ExitStack
+        Closes them.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be read, or no member of a series has one.
+    """
+    return [stack.enter_context(read_result(file)) for path in paths for file in _files(Path(path))]
+
+
+def command(name, about, report, arguments):
+    """Run a command that prints the lines of a report on results.
+
+    Parameters
+    ----------
+    name : str
+        Module of the command.
+    about : str
+        What it is for.
+    report : callable
+        Takes the opened results, returns lines.
+    arguments : list of str or None
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, 2 bad input.
+    """
+    parser = argparse.ArgumentParser(prog=f"python3 -m {name}", description=about)
+    parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
+    try:
+        with contextlib.ExitStack() as stack:
+            print("\n".join(report(open_all(parser.parse_args(arguments).results, stack))))
+    except OutputError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _files(path):
+    if path.suffix != ".json":
+        return [path]
+    try:
+        members = json.loads(path.read_text())["members"]
+        files = [path.with_name(member["file"]) for member in members]
+    except OSError as error:
+        raise OutputError(f"{path}: {error.strerror}") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise OutputError(f"{path}: not the index of a series ({error})") from error
+    there = [file for file in files if file.exists()]
+    if not there:
+        raise OutputError(f"{path}: no member of the series has a result file beside it")
+    return there
+
+
+def series_values(results):
+    """The one number that the case files of a series do not share.
+
+    Returns
+    -------
+    key : str or None
+        Dotted key, None if no single key differs or it holds no numbers.
+    values : list of float
+    """
+    tables = [_flat(tomllib.loads(result.attrs["case"])) for result in results]
+    keys = sorted(set().union(*tables) - {"title", "series.key", "series.values"})
+    differing = [key for key in keys if any(table.get(key) != tables[0].get(key) for table in tables)]
+    numbers = (int, float)
+    if len(differing) == 1 and all(isinstance(table.get(differing[0]), numbers) for table in tables):
+        return differing[0], [float(table[differing[0]]) for table in tables]
+    return None, []
+
+
+def _flat(table, prefix=""):
+    found = {}
+    for key, value in table.items():
+        found |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+    return found
+
+
+def in_order(results):
+    """A series sorted by its swept value; other results as they come."""
+    key, values = series_values(results)
+    return [results[i] for i in np.argsort(values, kind="stable")] if key else results
+
+
+def from_thick_to_thin(results):
+    """A series sorted so that its film falls along it: viscosity and speed from high to low, others as swept.
+
+    Returns
+    -------
+    results : list of Result
+    values : list of float
+    key : str
+
+    Raises
+    ------
+    OutputError
+        They are not a series over numbers.
+    """
+    key, _ = series_values(results)
+    if key is None:
+        raise OutputError("not a series: the case files differ in no single number")
+    ordered = in_order(results)[:: -1 if key in WITH_FILM else 1]
+    return ordered, series_values(ordered)[1], key

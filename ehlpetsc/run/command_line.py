@@ -1,0 +1,80 @@
+"""The command line taken apart: the case file, settings of its keys, and what is PETSc's."""
+
+import itertools
+import os
+import shlex
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ehlpetsc.errors import UsageError
+from ehlpetsc.nonlinear.options import USAGE
+
+
+@dataclass
+class Command:
+    """A command line taken apart.
+
+    Attributes
+    ----------
+    case : str or None
+        The case file.
+    overrides : list of str
+        Values of -ehl_set: those of PETSC_OPTIONS, then those of the command line.
+    explain : bool
+        Whether the scene is to be told in words and not run.
+    petsc : list of str
+        All other words, for PETSc.
+    """
+
+    case: str | None = None
+    overrides: list = field(default_factory=list)
+    explain: bool = False
+    petsc: list = field(default_factory=list)
+
+
+def parse_command_line(arguments):
+    """Take the command line apart.
+
+    The case file is the one word that ends in .toml, else the first word. -ehl_set is taken out, here and
+    from PETSC_OPTIONS, because PETSc's table keeps only the last option of a name.
+
+    Raises
+    ------
+    UsageError
+        Two case files, or none where one is needed; an options file that is not there.
+    """
+    command = Command()
+    rest, sets = _without_sets(arguments)
+    try:
+        environment, earlier = _without_sets(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
+    except ValueError as error:
+        raise UsageError(f"PETSC_OPTIONS: {error}") from None
+    if earlier:
+        os.environ["PETSC_OPTIONS"] = shlex.join(environment)
+    command.overrides = earlier + sets
+    command.explain = "--explain" in rest
+    rest = [word for word in rest if word != "--explain"]
+    names = [word for word in rest if word.endswith(".toml")] or [word for word in rest[:1] if word[0] != "-"]
+    if len(names) > 1:
+        raise UsageError(f"one case file at a time, not {' and '.join(names)}: {USAGE}")
+    if names:
+        command.case = names[0]
+        rest.remove(names[0])
+    elif not {"-help", "--help", "-h"} & set(rest):
+        raise UsageError(f"which case? {USAGE}; what there is: python3 -m ehlpetsc -help")
+    for word, name in itertools.pairwise(rest):
+        if word == "-options_file" and not Path(name).is_file():
+            raise UsageError(f"-options_file {name}: no such file")
+    command.petsc = ["-help" if word in ("--help", "-h") else word for word in rest]
+    return command
+
+
+def _without_sets(words):
+    rest, sets = [], []
+    words = iter(words)
+    for word in words:
+        if word in ("-ehl_set", "--ehl_set"):
+            sets.append(next(words, ""))
+        else:
+            rest.append(word)
+    return rest, sets

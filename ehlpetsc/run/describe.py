@@ -1,0 +1,206 @@
+"""The scene of a case in words, and what to know before it runs."""
+
+import math
+
+from ehlpetsc import __version__
+from ehlpetsc.case.loading import members
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast import FULL_FILM, dowson_higginson, file_size, lambda_ratio, run_time, steps
+from ehlpetsc.surfaces.roughness import Roughness, mesh_warnings
+
+WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 0.8 to 0.9 of it
+
+
+def explain(case):
+    """The scene in words: figures, size, what is switched off.
+
+    Parameters
+    ----------
+    case : case.Case
+
+    Returns
+    -------
+    str
+        Several lines.
+
+    Raises
+    ------
+    profiles.ProfileError
+    """
+    scales = Scales.of(case)
+    rough = Roughness.of(case, scales)
+    sections = [
+        [case.title],
+        _contact(scales),
+        _film(case, scales, rough),
+        _motion(case, scales),
+        _surfaces(rough),
+        _size(case, scales, rough),
+        _switched_off(case, rough),
+        [f"Warning: {line}" for line in warnings(case, scales)],
+    ]
+    if case.series:
+        sections.insert(1, _series(case))
+    return "\n".join(line for section in sections for line in section)
+
+
+def banner(case, scales, rough, ranks):
+    """What is about to run, in a few lines: title, size, surfaces.
+
+    Parameters
+    ----------
+    case : case.Case
+    scales : scales.Scales
+    rough : roughness.Roughness or None
+    ranks : int
+
+    Returns
+    -------
+    list of str
+    """
+    length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
+    return [
+        f"ehlpetsc {__version__}: {case.title}",
+        f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
+        f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
+        *(_surfaces(rough) if rough else []),
+        *_ranks_for_nothing(scales, ranks),
+    ]
+
+
+def _ranks_for_nothing(scales, ranks):
+    if ranks == 1 or scales.nx >= WORTH_TWO_RANKS:
+        return []
+    return [
+        f"note: one rank would be about as quick: at {scales.nx} nodes exchanging vectors costs what more "
+        "cores save; the members of a series gain from ranks at any size"
+    ]
+
+
+def warnings(case, scales):
+    """What a user should know before the run, one line each.
+
+    Parameters
+    ----------
+    case : case.Case
+    scales : scales.Scales
+    """
+    rough = [f"surface.{name}" for name in ("fast", "slow") if getattr(case.surface, name)]
+    notes = []
+    if rough and case.time is None and case.motion is not None:
+        notes.append(
+            f"{' and '.join(rough)} with [motion] but without [time]: "
+            "the roughness is held still under the film; add [time] to let it move"
+        )
+    return notes + mesh_warnings(case, scales)
+
+
+def _contact(s):
+    return [
+        f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
+        f"Hertz: half width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
+    ]
+
+
+def _film(case, s, rough):
+    if case.fluid is None:
+        return ["Film: none, dry contact"]
+    h_min = dowson_higginson(s, case.fluid.pressure_viscosity)
+    lines = [
+        f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
+        f"L = {s.moes_l:.2f}",
+        f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3g} um",
+    ]
+    if rough and rough.rq > 0:
+        ratio = lambda_ratio(case, s, rough)
+        lines.append(
+            f"Lambda ratio: {ratio:.2g} "
+            f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(ratio)}"
+        )
+    return lines
+
+
+def _regime(ratio):
+    """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
+    if ratio > FULL_FILM:
+        return "full film"
+    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
+
+
+def _motion(case, s):
+    if case.motion is None:
+        return ["Motion: none"]
+    line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; fast {s.u1:g} m/s, slow {s.u2:g} m/s"
+    if case.time is None:
+        return [line, "Time: steady"]
+    return [
+        line,
+        f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
+        f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
+    ]
+
+
+def _surfaces(rough):
+    lines = []
+    for side in ("fast", "slow"):
+        profile = rough and getattr(rough, side)
+        lines.append(
+            f"Surface {side}: "
+            + (
+                f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}"
+                if profile
+                else "smooth"
+            )
+        )
+    return lines
+
+
+def _size(case, s, rough):
+    seconds = run_time(case, s, rough)
+    return [
+        f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
+        f"{2 * s.nx + 1} unknowns",
+        f"Expected run time on one rank: {_duration(seconds)}; result file: {_bytes(file_size(case, s))}",
+    ]
+
+
+def _series(case):
+    """The members of a series and what they take together."""
+    shown = ", ".join(str(value) for value in case.series.values)
+    seconds = size = 0.0
+    for _, member in members(case):
+        scales = Scales.of(member)
+        seconds += run_time(member, scales, Roughness.of(member, scales))
+        size += file_size(member, scales)
+    return [
+        f"A series: {case.series.key} = {shown}; below, the base case.",
+        f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
+    ]
+
+
+def _switched_off(case, rough):
+    fluid = case.fluid
+    off = {
+        "Reynolds equation (no [fluid])": fluid is None,
+        "time (no [time])": case.time is None,
+        "roughness (no [surface])": not rough,
+        "Eyring stress (Newtonian)": fluid and fluid.eyring_stress is None,
+        "compressibility": fluid and fluid.density == "incompressible",
+        "starvation (fully flooded inlet)": fluid and fluid.inlet_film is None,
+        "boundary friction at dry nodes": case.contact.boundary_friction == 0.0,
+    }
+    return ["Switched off: " + (", ".join(name for name, is_off in off.items() if is_off) or "nothing")]
+
+
+def _duration(seconds):
+    for limit, unit, size in ((90, "s", 1), (5400, "min", 60)):
+        if seconds < limit:
+            return f"about {max(seconds / size, 1):.0f} {unit}"
+    return f"about {seconds / 3600:.1f} h"
+
+
+def _bytes(count):
+    for unit, size in (("GB", 1e9), ("MB", 1e6)):
+        if count >= size:
+            return f"about {count / size:.1f} {unit}"
+    return f"about {math.ceil(count / 1e3)} kB"

@@ -1,0 +1,94 @@
+"""Dealing pieces of work to groups of ranks: whoever is free gets the next one.
+
+The first rank deals and works at the same time: it looks for requests between its own time steps
+(:meth:`Dealer.serve`), so that no rank is spent on waiting and no shared memory is needed.
+"""
+
+import time as clock
+
+from mpi4py import MPI
+
+REQUEST, ANSWER = 71, 72
+PAUSE = 0.01  # s between two looks of a rank that waits
+
+
+class Dealer:
+    """Deals the numbers in `order` to groups of `ranks` ranks each.
+
+    Parameters
+    ----------
+    world : mpi4py communicator
+    ranks : int
+        Of a group; the last group has what is left.
+    order : list of int
+        In which the pieces are dealt.
+    take : callable
+        Called on the first rank of the world with each report.
+
+    Attributes
+    ----------
+    group : mpi4py communicator
+        The group this rank is in.
+    """
+
+    def __init__(self, world, ranks, order, take):
+        self.world, self.take = world, take
+        self.group = world.Split(world.rank // ranks, world.rank)
+        self._waiting = list(order)
+        self._others = -(-world.size // ranks) - 1  # groups that are yet to hear that nothing is left
+
+    def next(self, report, ending):
+        """Report on the last piece and get the next one; collective over the group.
+
+        Parameters
+        ----------
+        report : object or None
+            Handed to `take`; that of the group's first rank counts.
+        ending : bool
+            True: deal nothing more, to no group.
+
+        Returns
+        -------
+        int or None
+            None: nothing left, for good.
+        """
+        number = None
+        if self.world.rank == 0:
+            number = self._deal(report, ending)
+        elif self.group.rank == 0:
+            self.world.send((report, ending), 0, REQUEST)
+            wait(lambda: self.world.iprobe(0, ANSWER))
+            number = self.world.recv(source=0, tag=ANSWER)
+        return self.group.bcast(number)
+
+    def serve(self):
+        """Answer the requests that have come; on the first rank, often."""
+        if self.world.rank != 0:
+            return
+        status = MPI.Status()
+        while self._others and self.world.iprobe(MPI.ANY_SOURCE, REQUEST, status):
+            report, ending = self.world.recv(source=status.source, tag=REQUEST)
+            number = self._deal(report, ending)
+            self._others -= number is None
+            self.world.send(number, status.source, ANSWER)
+
+    def finish(self, status):
+        """Wait until every group is done; the first rank's `status()` on all ranks."""
+        if self.world.rank == 0:
+            wait(lambda: self.serve() or not self._others)
+        done = self.world.Ibarrier()  # a rank in a plain barrier would keep its core busy
+        wait(done.Test)
+        return self.world.bcast(status() if self.world.rank == 0 else None)
+
+    def _deal(self, report, ending):
+        if report is not None:
+            self.take(report)
+        if ending:
+            self._waiting.clear()
+        return self._waiting.pop(0) if self._waiting else None
+
+
+def wait(ready):
+    """Look every now and then until `ready()`."""
+    while not ready():
+        clock.sleep(PAUSE)

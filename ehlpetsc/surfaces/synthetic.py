@@ -1,0 +1,89 @@
+"""Synthetic profiles: sampled heights that take the same way as measured ones."""
+
+import numpy as np
+
+POINTS = 64  # a wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
+GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
+EDGE = 0.1  # of a square wave: over it, in units of the cosine, the flank rises
+
+
+def sampled(spec):
+    """Samples of a synthetic profile.
+
+    Parameters
+    ----------
+    spec : case_keys.Ground or case_keys.Wave or case_keys.Bump
+
+    Returns
+    -------
+    X, z : ndarray, shape (n,)
+        m; heights positive out of the metal. A wave is half a wavelength long: mirrored end to end it is the
+        whole wave.
+    repeats : bool
+        Whether the profile continues mirrored beyond its ends, else with height 0.
+    """
+    if spec.kind == "ground":
+        return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
+    if spec.kind in ("ridge", "dent"):
+        return *bump(spec), False
+    x = np.linspace(0.0, spec.wavelength / 2, POINTS // 2 + 1)
+    wave = np.cos(2 * np.pi * x / spec.wavelength)
+    if spec.kind == "square":
+        x = np.linspace(0.0, spec.wavelength / 2, 4 * POINTS + 1)
+        wave = np.tanh(np.cos(2 * np.pi * x / spec.wavelength) / EDGE) / np.tanh(1 / EDGE)
+    return x, spec.amplitude * wave, True
+
+
+def bump(spec):
+    r"""Ridge or dent, :math:`z=\pm A\exp[-(2(X-X_c)/w)^2]`, w the full width at 1/e."""
+    width = spec.wavelength
+    centre = 2 * width if spec.position is None else spec.position
+    x = centre + np.linspace(-3 * width, 3 * width, 6 * POINTS + 1)
+    sign = 1.0 if spec.kind == "ridge" else -1.0
+    return x, sign * spec.amplitude * np.exp(-((2 * (x - centre) / width) ** 2))
+
+
+def ground(ra, correlation, skewness, seed):
+    r"""Random profile with autocorrelation :math:`\exp[-(X/l)^2]` before its heights are skewed.
+
+    White noise under a Gaussian weight, then each height moved to where its rank lies in a gamma
+    (Pearson III) distribution, whose parameter is chosen so that the sample has the skewness asked for.
+
+    Parameters
+    ----------
+    ra, correlation : float
+        m.
+    skewness : float
+        Rsk of the profile.
+    seed : int
+
+    Returns
+    -------
+    X, z : ndarray
+        m; mean 0.
+    """
+    from scipy.ndimage import gaussian_filter1d
+    from scipy.optimize import brentq
+
+    n = GROUND_LENGTH * GROUND_POINTS
+    noise = np.random.default_rng(seed).standard_normal(n)
+    normal = gaussian_filter1d(noise, GROUND_POINTS / 2, mode="mirror", truncate=6.0)
+    normal = (normal - normal.mean()) / normal.std()
+    z = _pearson3(normal, brentq(lambda s: _skewness(_pearson3(normal, s)) - skewness, -8.0, 8.0, xtol=1e-10))
+    z -= z.mean()
+    return np.arange(n) * (correlation / GROUND_POINTS), z * (ra / np.abs(z).mean())
+
+
+def _pearson3(normal, skewness):
+    """Standard normal heights turned into Pearson III ones of the same rank."""
+    from scipy.special import gammaincinv, ndtr
+
+    if abs(skewness) < 1e-3:
+        return normal
+    shape = 4.0 / skewness**2
+    return np.sign(skewness) * (gammaincinv(shape, ndtr(np.sign(skewness) * normal)) - shape) / np.sqrt(shape)
+
+
+def _skewness(z):
+    deviation = z - z.mean()
+    return (deviation**3).mean() / (deviation**2).mean() ** 1.5
