@@ -1,0 +1,131 @@
+"""Imports go one way: which room may import which, read from the source, also inside functions."""
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
+GROUND = {"errors", "compiled", "environment"}  # every room may stand on these; they import nothing of ours
+MAY_IMPORT = {
+    "physics": set(),
+    "surfaces": set(),
+    "case": {"surfaces"},
+    "results": set(),
+    "discretisation": {"physics"},
+    "nonlinear": {"discretisation", "physics"},
+    "stepping": {"nonlinear", "discretisation", "physics"},
+    "run": {"stepping", "nonlinear", "discretisation", "physics", "case", "surfaces", "results"},
+    "analysis": {"results"},
+    "plot": {"analysis", "results", "physics"},
+    "post": {"results"},
+    "study": {"case", "results", "physics"},  # runs the solver as a user does: by its command
+    "compare": {"analysis"},
+    "__main__": {"run", "case"},
+} | {name: set() for name in GROUND}
+SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
+LIBRARIES = {  # who alone may load what is heavy
+    "petsc4py": {"nonlinear", "run", "__main__"},
+    "mpi4py": {"run"},
+    "matplotlib": {"plot", "post", "study"},
+    "numba": {"compiled", "post"},
+}
+
+
+def module_name(path):
+    """``ehlpetsc.post`` of ehlpetsc/post/__init__.py, ``ehlpetsc.post.run`` of run.py beside it."""
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def room(module):
+    """``post`` of ehlpetsc.post.run; the package itself is the room ``ehlpetsc``."""
+    return ".".join(module.split(".")[1:2]) or module
+
+
+def imports(module, source):
+    """Modules that a source text imports anywhere; ``__version__`` of the package counts as none."""
+    inside = module.split(".") if FILES[module].name == "__init__.py" else module.split(".")[:-1]
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            above = inside[: len(inside) + 1 - node.level] if node.level else []
+            base = ".".join([*above, *filter(None, [node.module])])
+            names = {alias.name for alias in node.names}
+            if base == "ehlpetsc" and names == {"__version__"}:
+                continue
+            found |= {f"{base}.{name}" if f"{base}.{name}" in FILES else base for name in names}
+    return found
+
+
+IMPORTS = {module: imports(module, path.read_text(encoding="utf-8")) for module, path in FILES.items()}
+
+
+def ours(module):
+    return {name for name in IMPORTS[module] if name.split(".")[0] == "ehlpetsc"}
+
+
+def reached(module):
+    """A module and all of ours that it imports, directly or not."""
+    seen, waiting = set(), {module}
+    while waiting:
+        seen |= waiting
+        waiting = {name for one in waiting for name in ours(one)} - seen
+    return seen
+
+
+def test_the_table_names_every_room_once_and_has_no_cycle():
+    assert set(MAY_IMPORT) == {room(module) for module in FILES} - {"ehlpetsc"}
+    assert all(below <= set(MAY_IMPORT) for below in MAY_IMPORT.values())
+    tuple(TopologicalSorter(MAY_IMPORT).static_order())
+
+
+@pytest.mark.parametrize("name", sorted(MAY_IMPORT))
+def test_a_room_imports_only_what_it_may(name):
+    allowed = MAY_IMPORT[name] | {name} | (GROUND if name not in GROUND else set())
+    wrong = [
+        f"{module} imports {other}"
+        for module in FILES
+        if room(module) == name
+        for other in sorted(ours(module))
+        if room(other) not in allowed
+    ]
+    assert wrong == []
+
+
+def test_no_two_modules_import_each_other():
+    try:
+        tuple(TopologicalSorter({module: ours(module) for module in FILES}).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+@pytest.mark.parametrize("library", sorted(LIBRARIES))
+def test_a_heavy_library_is_imported_only_where_it_belongs(library):
+    users = [m for m in FILES if any(name.split(".")[0] == library for name in IMPORTS[m])]
+    assert users and {room(module) for module in users} <= LIBRARIES[library]
+
+
+@pytest.mark.parametrize("name", ["post", "analysis", "plot", "compare", "case", "results"])
+def test_a_room_that_reads_or_checks_reaches_neither_solver_nor_petsc_nor_mpi(name):
+    everything = set().union(*(reached(module) for module in FILES if room(module) == name))
+    assert not {room(module) for module in everything} & SOLVER
+    libraries = {lib.split(".")[0] for module in everything for lib in IMPORTS[module]}
+    assert not libraries & {"petsc4py", "mpi4py"}
+
+
+def test_what_is_imported_exists():
+    unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
+    assert unknown == set()
+
+
+def test_imports_inside_functions_and_relative_ones_are_seen():
+    module = "ehlpetsc.results.reader"
+    source = "def f():\n    from . import quantities\n    from ..run.command import run\n    import h5py\n"
+    assert imports(module, source) == {"ehlpetsc.results.quantities", "ehlpetsc.run.command", "h5py"}
