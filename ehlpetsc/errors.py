@@ -42,6 +42,10 @@ class OutputError(Exception):
     """A result or restart file cannot be read or written; the text says why and what is left."""
 
 
+class PostError(Exception):
+    """A result cannot be post-processed; the text says why."""
+
+
 class SolveFailed(Exception):
     """One solve of the discrete equations failed; `reason` is the solver's name of why.
 

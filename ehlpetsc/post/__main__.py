@@ -6,14 +6,14 @@ import sys
 import time
 from pathlib import Path
 
-from ehlpetsc.post.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
-from ehlpetsc.post.cycles import RESIDUES
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
+from ehlpetsc.post.fatigue.cycles import RESIDUES
+from ehlpetsc.post.fatigue.statistics import REGRESSIONS
+from ehlpetsc.post.inputs.loads import SURFACES
 from ehlpetsc.post.jit import COMPILED
-from ehlpetsc.post.loads import SURFACES
-from ehlpetsc.post.postresult import PostResult
+from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.settings import PostError
-from ehlpetsc.post.statistics import REGRESSIONS
 
 DONE, BAD_INPUT, STOPPED = 0, 2, 4
 
@@ -151,7 +151,7 @@ def main(argv=None):
         for path in chosen.results:
             outputs.append(_process(path, chosen))
         if chosen.pictures is not None:
-            from ehlpetsc.post.gallery import draw
+            from ehlpetsc.post.pictures.gallery import draw
 
             for name in draw(chosen.results, outputs, chosen.pictures, chosen.point, chosen.frame):
                 print(name)

@@ -5,14 +5,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.post.accumulate import Counter, Counting
-from ehlpetsc.post.bodies import body_points, passage
-from ehlpetsc.post.gathering import Sweep, blocks, workers
-from ehlpetsc.post.histories import QUANTUM
-from ehlpetsc.post.loads import SURFACES, Loads
-from ehlpetsc.post.settings import PostError, read_settings
-from ehlpetsc.post.statistics import asperities, log_life, weibull_fit
-from ehlpetsc.post.store import Parts, fingerprint, stored_mark, write_result
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.fatigue.accumulate import Counter, Counting
+from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
+from ehlpetsc.post.inputs.loads import SURFACES, Loads
+from ehlpetsc.post.inputs.settings import read_settings
+from ehlpetsc.post.outputs.store import Parts, fingerprint, stored_mark, write_result
+from ehlpetsc.post.stresses.body_points import body_points, passage
+from ehlpetsc.post.stresses.body_stress import QUANTUM
+from ehlpetsc.post.stresses.gathering import Sweep, blocks, workers
 
 MEMORY = 1e9  # bytes of open histories; too few and frames are gone through twice
 DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads

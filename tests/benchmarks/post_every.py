@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from ehlpetsc.post.postresult import PostResult
+from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
 
 DEPTHS = (0.0, 0.01, 0.03, 0.1, 0.5)

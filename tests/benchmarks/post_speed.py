@@ -23,9 +23,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from post_result_file import Scene, write
 
 from ehlpetsc.post import Material
-from ehlpetsc.post.accumulate import Counter, Counting
-from ehlpetsc.post.kernels import hat
-from ehlpetsc.post.stress import StressField
+from ehlpetsc.post.fatigue.accumulate import Counter, Counting
+from ehlpetsc.post.stresses.half_plane import StressField
+from ehlpetsc.post.stresses.kernels import hat
 
 
 def best(call, repeats=5):

@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from ehlpetsc.post.between import hermite_spectra, limited_slopes
-from ehlpetsc.post.kernels import point_kernels
-from ehlpetsc.post.stress import padded_length
+from ehlpetsc.post.stresses.half_plane import padded_length
+from ehlpetsc.post.stresses.kernels import point_kernels
+from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
 
 NODES = np.arange(64.0)
 BETWEEN = np.linspace(10, 54, 881)

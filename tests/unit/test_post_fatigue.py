@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.post import Material, cycles_to_failure, damage, equivalent_range, strain_range
-from ehlpetsc.post.lifetable import life_table, look_up
+from ehlpetsc.post.fatigue.life_table import life_table, look_up
 
 STEEL = Material()
 RANGES = np.array([1e9, 1.5e9, 2e9, 3e9, 4e9])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.post import weibull_fit
-from ehlpetsc.post.statistics import asperities, benard_ranks, exceedance, fitted_exceedance, log_life
+from ehlpetsc.post.fatigue.statistics import asperities, benard_ranks, exceedance, fitted_exceedance, log_life
 
 DATA = [16, 34, 53, 75, 93, 120]
 

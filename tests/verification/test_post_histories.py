@@ -5,12 +5,12 @@ import pytest
 from post_result_file import P0, A, Scene, write
 
 from ehlpetsc.post import Material, damage, stress
-from ehlpetsc.post.accumulate import Counting
-from ehlpetsc.post.bodies import passage
-from ehlpetsc.post.histories import QUANTUM, BodyStress, history_at, parity_weights
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.postresult import PostResult
+from ehlpetsc.post.fatigue.accumulate import Counting
+from ehlpetsc.post.inputs.loads import Loads
+from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
+from ehlpetsc.post.stresses.body_points import passage
+from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, history_at, parity_weights
 
 FINE = 16  # elements of the reference a node spacing
 DEPTHS = (0.0, 0.02, 0.05, 0.1)  # z/a: 0 to 5 elements

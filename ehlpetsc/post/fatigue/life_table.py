@@ -8,7 +8,7 @@ from math import exp, log
 
 import numpy as np
 
-from ehlpetsc.post.fatigue import log_reversals, log_strain_amplitude
+from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude
 from ehlpetsc.post.jit import njit
 
 ENTRIES = 4096

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from scipy import fft
 
-from ehlpetsc.post.kernels import half_hat, hat
+from ehlpetsc.post.stresses.kernels import half_hat, hat
 
 UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
 DEPTHS_AT_ONCE = 5  # whose spectra stay in the cache
@@ -37,7 +37,7 @@ def padded_length(nx):
 def kernel_spectra(nx, z):
     """Spectra of the hat kernels, -2/pi included; z in elements.
 
-    Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.kernels`.
+    Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.stresses.kernels`.
     """
     n = padded_length(nx)
     distance = np.arange(-(nx - 1), nx)

@@ -11,8 +11,8 @@ import numpy as np
 from scipy import fft
 
 from ehlpetsc.post.jit import njit
-from ehlpetsc.post.kernels import hat, point_kernels
-from ehlpetsc.post.stress import padded_length
+from ehlpetsc.post.stresses.half_plane import padded_length
+from ehlpetsc.post.stresses.kernels import hat, point_kernels
 
 NEAR = 24  # elements; beyond it a kernel is smooth over an element and quadrature is exact
 PARTS = 64  # hats an element that stand for the cubics near by: 2e-4 of a one-node peak at most
@@ -68,8 +68,8 @@ def _far(u, z):
 def hermite_spectra(nx, z, offset):
     """Spectra of the kernels under the shapes, -2/pi included, seen `offset` elements right of the nodes.
 
-    z in elements. Shape (8, padded_length // 2 + 1): A, B, C, E of :mod:`ehlpetsc.post.kernels` under values,
-    then under slopes.
+    z in elements. Shape (8, padded_length // 2 + 1): A, B, C, E of :mod:`ehlpetsc.post.stresses.kernels`
+    under values, then under slopes.
     """
     n = padded_length(nx)
     distance = np.arange(-nx, nx)

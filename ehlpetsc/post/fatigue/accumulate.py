@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.post.cycles import RESIDUES, find_cycles, workspace
-from ehlpetsc.post.fatigue import cycle_damage
+from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
+from ehlpetsc.post.fatigue.life_table import life_table, look_up
+from ehlpetsc.post.fatigue.strain_life import cycle_damage
 from ehlpetsc.post.jit import njit
-from ehlpetsc.post.lifetable import life_table, look_up
 
 CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,), "von_mises": (3,)}
 RANGES = ("reversals", "window")
@@ -156,7 +156,7 @@ def damage(sx, sz, txz, material, count="max3", residue="closed", ranges="revers
         has no sign, misses a reversal through zero. A von Mises stress signed by the shear is not offered:
         its sign jumps pair nearly equal stress states.
     residue : {"closed", "half"}
-        See :func:`ehlpetsc.post.cycles.rainflow`.
+        See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
     ranges : {"reversals", "window"}
         Component ranges of a cycle: the difference between its two reversals, with its sign, or the largest
         less the smallest value of each component from the one to the other.

@@ -10,8 +10,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ehlpetsc.post.histories import BATCH, BodyStress, in_cache, parity_weights
 from ehlpetsc.post.jit import njit
+from ehlpetsc.post.stresses.body_stress import BATCH, BodyStress, in_cache, parity_weights
 
 LARGEST_KEPT = 31 << 20  # bytes of a block that malloc keeps: new pages for every batch cost a third more
 
@@ -76,9 +76,9 @@ class Sweep:
 
     Parameters
     ----------
-    loads : ehlpetsc.post.loads.Loads
+    loads : ehlpetsc.post.inputs.loads.Loads
     surface : str
-    motion : ehlpetsc.post.bodies.Passage
+    motion : ehlpetsc.post.stresses.body_points.Passage
     depths : ndarray
         In elements.
     quantum : float

@@ -5,12 +5,8 @@ import math
 import tomllib
 from typing import NamedTuple
 
-from ehlpetsc.post.fatigue import Material
-
-
-class PostError(Exception):
-    """The input cannot be post-processed; the text says why, for the user."""
-
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.fatigue.strain_life import Material
 
 FATIGUE_KEYS = ("b", "c", "cyclic_hardening", "fatigue_strength", "fatigue_ductility", "cyclic_strength")
 DEPTHS = (

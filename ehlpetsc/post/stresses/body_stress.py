@@ -3,9 +3,9 @@
 Between two frames a body point moves by a part of the node spacing. Linear interpolation, of nodal stresses
 or of the load, then cuts the peaks of short ripples: 5 % of the amplitude at ten nodes, and much more of the
 damage near the surface, which rises with about the eleventh power. Here the load has cubic pieces
-(:mod:`ehlpetsc.post.between`), and their kernels are evaluated at the offset of the body's points from the
-nodes, one offset a frame: their spectra are polynomials in the offset, through Chebyshev points, so that an
-offset costs a sum of a few tables.
+(:mod:`ehlpetsc.post.stresses.load_interpolation`), and their kernels are evaluated at the offset of the
+body's points from the nodes, one offset a frame: their spectra are polynomials in the offset, through
+Chebyshev points, so that an offset costs a sum of a few tables.
 """
 
 from functools import partial
@@ -13,9 +13,9 @@ from functools import partial
 import numpy as np
 from scipy import fft
 
-from ehlpetsc.post.between import hermite_spectra, limited_slopes
 from ehlpetsc.post.jit import njit
-from ehlpetsc.post.stress import padded_length
+from ehlpetsc.post.stresses.half_plane import padded_length
+from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
 
 BATCH = 144  # frames a thread takes at a time
 IN_CACHE = 8  # frames whose spectra and stresses stay in the cache, where threads do not wait for each other

@@ -7,13 +7,14 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from ehlpetsc.post import plots
-from ehlpetsc.post.fatigue import cycles_to_failure, equivalent_range
-from ehlpetsc.post.histories import QUANTUM, history_at
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.postresult import PostResult
-from ehlpetsc.post.settings import PostError, read_settings
-from ehlpetsc.post.stress import stress
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
+from ehlpetsc.post.inputs.loads import Loads
+from ehlpetsc.post.inputs.settings import read_settings
+from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.post.pictures import plots
+from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
+from ehlpetsc.post.stresses.half_plane import stress
 
 matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "font.size": 9})
 FIELD_DEPTH = 1.5  # half widths

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-from ehlpetsc.post.statistics import WeibullFit
+from ehlpetsc.post.fatigue.statistics import WeibullFit
 
 
 class PostResult:

@@ -5,8 +5,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ehlpetsc.post.settings import PostError
-from ehlpetsc.post.stress import spacing
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.stresses.half_plane import spacing
 
 FORMAT_VERSION = 1
 CACHE = 32 << 20  # bytes of chunks kept a dataset

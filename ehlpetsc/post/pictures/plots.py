@@ -3,10 +3,10 @@
 import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from ehlpetsc.post.accumulate import CHANNELS
-from ehlpetsc.post.cycles import rainflow
-from ehlpetsc.post.statistics import exceedance, fitted_exceedance
-from ehlpetsc.post.stress import von_mises
+from ehlpetsc.post.fatigue.accumulate import CHANNELS
+from ehlpetsc.post.fatigue.cycles import rainflow
+from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
+from ehlpetsc.post.stresses.half_plane import von_mises
 
 DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
 COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
@@ -174,7 +174,7 @@ def cycle_histogram(axes, cycles, damages):
 
 def counted_channel(count, values, material):
     """Channel whose cycles a picture shows: the counted one, or that of the largest damage."""
-    from ehlpetsc.post.accumulate import damage
+    from ehlpetsc.post.fatigue.accumulate import damage
 
     if len(CHANNELS[count]) == 1:
         return min(CHANNELS[count][0], 2)

@@ -1,0 +1,1 @@
+"""Pictures of stresses, histories, damage and its distributions."""

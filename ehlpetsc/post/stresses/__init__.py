@@ -1,0 +1,1 @@
+"""Half-plane stresses under a load, and their histories at points fixed in a moving body."""
