@@ -12,7 +12,7 @@ from pydantic import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.case.faults import describe, show
 from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Post, Series, Surface, Table, Time
 from ehlpetsc.errors import CaseError, ProfileError
-from ehlpetsc.surfaces.profile_files import high_pass, read_profile
+from ehlpetsc.surfaces.samples import try_file
 
 __all__ = ["Case", "CaseError", "load", "members"]
 
@@ -203,17 +203,10 @@ def _faults(path, data):
         table = surface.get(side) if isinstance(surface, dict) else None
         if isinstance(table, dict) and isinstance(table.get("file"), str) and table["file"]:
             try:
-                _try_profile(Path(path).parent, table)
+                try_file(Path(path).parent, table)
             except ProfileError as error:
                 faults.append(f"surface.{side}.file = {show(table['file'])}: {error}")
     return [f"{path}: {fault}" for fault in faults]
-
-
-def _try_profile(folder, table):
-    x, z = read_profile(folder / table["file"])
-    cutoff = table.get("cutoff")
-    if isinstance(cutoff, int | float) and 0 < cutoff <= 1:
-        high_pass(x, z, cutoff)
 
 
 def _series_faults(path, data):

@@ -185,6 +185,9 @@ class SurfaceProfile(Table):
     scale: float = Field(1.0, ge=-1e4, le=1e4, description="factor on the heights; negative: turned over")
     level: bool = Field(False, description="subtract the least-squares line")
     cutoff: Length | None = Field(None, unit="m", description="Gaussian high-pass, ISO 16610-21")
+    short_cutoff: Length | None = Field(
+        None, unit="m", description="Gaussian low-pass, S-filter of ISO 3274, below cutoff"
+    )
     flip: bool = Field(False, description="run the profile from its other end")
 
     @validator("synthetic")
@@ -201,9 +204,16 @@ class SurfaceProfile(Table):
     def _one_source(cls, values):
         if (values["file"] is None) == (values["synthetic"] is None):
             raise ValueError("needs either file or synthetic, one of the two")
-        if values["synthetic"] and (values["level"] or values["flip"] or values["cutoff"] is not None):
-            raise ValueError("level, cutoff and flip are for a file, not for a synthetic profile")
+        for_a_file = ("level", "cutoff", "short_cutoff", "flip")
+        if values["synthetic"] and any(values[key] not in (None, False) for key in for_a_file):
+            raise ValueError(f"{', '.join(for_a_file)} are for a file, not for a synthetic profile")
         return values
+
+    @validator("short_cutoff")
+    def _below_the_cutoff(cls, value, values):
+        if value is not None and values.get("cutoff") is not None and value >= values["cutoff"]:
+            raise ValueError("not below cutoff")
+        return value
 
 
 class Surface(Table):

@@ -6,7 +6,8 @@ from ehlpetsc import __version__
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import FULL_FILM, dowson_higginson, file_size, lambda_ratio, run_time, steps
-from ehlpetsc.surfaces.roughness import Roughness, mesh_warnings
+from ehlpetsc.surfaces.mesh_fit import mesh_warnings
+from ehlpetsc.surfaces.roughness import Roughness
 
 WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 0.8 to 0.9 of it
 
@@ -144,15 +145,14 @@ def _surfaces(rough):
     lines = []
     for side in ("fast", "slow"):
         profile = rough and getattr(rough, side)
-        lines.append(
-            f"Surface {side}: "
-            + (
-                f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}"
-                if profile
-                else "smooth"
-            )
-        )
+        lines.append(f"Surface {side}: {_heights(profile) if profile else 'smooth'}")
     return lines
+
+
+def _heights(profile):
+    text = f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}"
+    before = profile.given.ra_unfiltered
+    return text if before is None else f"{text} (Ra {before * 1e6:.4f} um before short_cutoff)"
 
 
 def _size(case, s, rough):

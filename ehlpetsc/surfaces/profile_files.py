@@ -102,39 +102,3 @@ def _checked(x, z):
             f"{x[-1] - x[0]:g} m long, {np.ptp(z):g} m valley to peak; allowed: x and z in m, not in mm or um"
         )
     return x - x[0], z
-
-
-def levelled(x, z):
-    """Heights less their least-squares line."""
-    return z - np.polynomial.Polynomial.fit(x, z, 1)(x)
-
-
-def high_pass(x, z, cutoff):
-    r"""Roughness left by the Gaussian profile filter of ISO 16610-21.
-
-    The mean line is the convolution with
-    :math:`s(x)=\frac{1}{\alpha\lambda_c}\exp[-\pi(x/\alpha\lambda_c)^2]`,
-    :math:`\alpha=\sqrt{\ln 2/\pi}`, which passes half the amplitude at the cut-off. At the ends the
-    profile is mirrored, as it is when it is run.
-
-    Parameters
-    ----------
-    x, z : ndarray, shape (n,)
-        m; x equally spaced.
-    cutoff : float
-        Wavelength [m].
-
-    Raises
-    ------
-    ProfileError
-        Where x is not equally spaced, or the profile is shorter than the cut-off.
-    """
-    from scipy.ndimage import gaussian_filter1d
-
-    step = np.diff(x)
-    if np.ptp(step) > 2 * SPACING_TOLERANCE * step.mean():
-        raise ProfileError("cutoff: the filter needs equally spaced x")
-    if cutoff > x[-1]:
-        raise ProfileError(f"cutoff = {cutoff:g} m; allowed: at most the length of the profile, {x[-1]:g} m")
-    sigma = cutoff * np.sqrt(np.log(2.0) / 2.0) / np.pi / step.mean()
-    return z - gaussian_filter1d(z, sigma, mode="mirror", truncate=6.0)

@@ -9,8 +9,12 @@ import pytest
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.profile_files import high_pass, levelled, read_profile
-from ehlpetsc.surfaces.roughness import RAMP, Profile, Roughness, mesh_warnings
+from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.mesh_fit import mesh_warnings
+from ehlpetsc.surfaces.profile import Profile
+from ehlpetsc.surfaces.profile_files import read_profile
+from ehlpetsc.surfaces.roughness import RAMP, Roughness
+from ehlpetsc.surfaces.samples import Samples
 
 CASES = Path(__file__).parents[2] / "cases"
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
@@ -18,7 +22,7 @@ A = 1e-3  # half width of the domains made here, m
 
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
-    return Profile(X, z, repeats, speed, moving, -2.5 * A, 1.5 * A, RAMP * A, duration)
+    return Profile(Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP * A, duration)
 
 
 def rough(name, *overrides):
@@ -97,12 +101,36 @@ def test_the_gaussian_filter_has_the_transmission_of_iso_16610_21(ratio, left):
     assert kept @ wave[inner] / (wave[inner] @ wave[inner]) == pytest.approx(left, abs=1e-4)
 
 
+@pytest.mark.parametrize(("ratio", "left"), [(1.0, 0.5), (0.5, 2.0**-4), (4.0, 2.0 ** (-1 / 16))])
+@pytest.mark.parametrize("cutoff", [8e-6, 0.4e-6])  # 80 and 4 spacings
+def test_the_short_cutoff_has_the_transmission_of_iso_16610_21(cutoff, ratio, left):
+    x = np.arange(2401) * 0.1e-6
+    wave = np.cos(2 * np.pi * x / (ratio * cutoff))  # mirrored at both ends it goes on as a wave
+    np.testing.assert_allclose(low_pass(x, wave, cutoff), left * wave, atol=1e-12)
+
+
+def test_both_filters_share_what_there_is():
+    x = np.arange(500) * 1e-6
+    z = np.random.default_rng(1).standard_normal(500)
+    np.testing.assert_allclose(high_pass(x, z, 30e-6) + low_pass(x, z, 30e-6), z, atol=1e-14)
+
+
+def test_the_short_cutoff_tells_ra_before_and_after():
+    base, _ = rough("table1_rough.toml")
+    smoothed, _ = rough("table1_rough.toml", "surface.fast.short_cutoff=10e-6")
+    assert smoothed.fast.given.ra_unfiltered == pytest.approx(base.fast.ra)
+    assert 0.5 * base.fast.ra < smoothed.fast.ra < 0.98 * base.fast.ra
+    assert base.fast.given.ra_unfiltered is None
+
+
 def test_the_filter_refuses_what_it_cannot_filter():
     x = np.array([0, 1, 3, 4, 5]) * 1e-6
     with pytest.raises(ProfileError, match="equally spaced"):
         high_pass(x, x, 2e-6)
     with pytest.raises(ProfileError, match="at most the length"):
         high_pass(np.arange(5) * 1e-6, np.zeros(5), 5e-6)
+    with pytest.raises(ProfileError, match="short_cutoff = 1.9e-06 m; allowed: at least 2 spacings"):
+        low_pass(np.arange(5) * 1e-6, np.zeros(5), 1.9e-6)
 
 
 def test_keys_of_a_surface_act_in_their_order():
@@ -126,6 +154,58 @@ def test_body_points_carry_their_heights_with_them():
     # moved by exactly one sample spacing times speed, the film sees the sample before
     later = Roughness(p, None).gap(x + 2.0 * 0.7e-3, t + 0.7e-3)
     np.testing.assert_allclose(later, at, atol=1e-17)
+
+
+def test_the_mean_over_a_cell_is_that_of_the_polynomial():
+    # a clamped cubic spline is exact for a cubic level at both ends; beside x = 0 and l it is mirrored
+    X = np.linspace(0.0, 1.0, 6) * A
+    p = profile(X, 1e-7 * (3 * (X / A) ** 2 - 2 * (X / A) ** 3), moving=False)
+    faces = np.array([-0.2, -0.05, 0.1, 0.101, 0.37, 0.93, 1.02, 1.4, 2.0, 3.7]) * A
+    integral = np.vectorize(_cubic_integral)(faces / A)
+    expected = 1e-7 * np.diff(integral) / np.diff(faces / A)
+    np.testing.assert_allclose(p.mean_height(faces - 2.5 * A), expected, rtol=1e-12)
+
+
+def _cubic_integral(x):
+    """Of 3 x^2 - 2 x^3 on [0, 1], mirrored at both ends, from 0 to x."""
+    if x < 0:
+        return -_cubic_integral(-x)
+    turns, rest = divmod(x, 2.0)
+    back = max(rest - 1.0, 0.0)
+    return turns + (rest**3 - rest**4 / 2 if not back else 1.0 - ((1 - back) ** 3 - (1 - back) ** 4 / 2))
+
+
+@pytest.mark.parametrize("nodes", [2.3, 8.0, 64.0])  # a wavelength
+def test_the_mean_over_a_cell_of_a_wave_is_the_wave_times_its_sinc(nodes):
+    X = np.linspace(0.0, 0.5e-4, 2001)  # half a wave: mirrored it is whole
+    p = profile(X, 1e-7 * np.cos(2 * np.pi * X / 1e-4), speed=3.0, duration=1.0)
+    dx = 1e-4 / nodes
+    x, t = np.arange(-1.2 * A, 1.2 * A, dx), 7.77e-3
+    factor = np.sinc(1.0 / nodes)
+    np.testing.assert_allclose(
+        Roughness(p, p).gap(x, t, dx), factor * Roughness(p, p).gap(x, t), rtol=0, atol=1e-18
+    )
+
+
+def test_the_mean_over_cells_keeps_the_volume_of_a_lone_ridge():
+    X = np.linspace(0.4, 0.6, 101) * A
+    z = 1e-7 * np.exp(-(((X / A - 0.5) / 0.02) ** 2))
+    p = profile(X, z, speed=1.0, repeats=False)
+    for dx in (0.01 * A, 0.33 * A):  # far coarser than the ridge: a node would miss it
+        x = np.arange(-2.5 * A, 1.5 * A, dx)
+        volume = -Roughness(p, None).gap(x, 1.5 * A, dx).sum() * dx
+        assert volume == pytest.approx(1e-7 * 0.02 * A * np.sqrt(np.pi), rel=1e-6)
+
+
+def test_the_mean_over_a_cell_has_its_ramp_and_goes_to_the_value():
+    X, z = read_profile(ALICONA)
+    for speed in (2.0, -2.0):
+        p = profile(X, z, speed=speed)
+        s = (-2.5 * A - np.linspace(-0.05, 0.3, 701) * A) if speed > 0 else np.linspace(1.4, 1.8, 801) * A
+        narrow = np.stack([s - 1e-9, s + 1e-9], axis=1)
+        means = np.array([p.mean_height(pair)[0] for pair in narrow])
+        np.testing.assert_allclose(means, p.height(s), atol=1e-12)
+    assert (profile(X, z).mean_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
 
 
 def test_the_profile_enters_at_the_inlet_from_its_first_point():

@@ -1,0 +1,61 @@
+"""Levelling and filtering of measured profiles."""
+
+import numpy as np
+
+from ehlpetsc.errors import ProfileError
+
+SPACING_TOLERANCE = 0.01  # rounding in a file's abscissae, against a spacing that really varies
+SHORTEST = 2  # spacings: a profile holds no shorter wave
+
+
+def levelled(x, z):
+    """Heights less their least-squares line."""
+    return z - np.polynomial.Polynomial.fit(x, z, 1)(x)
+
+
+def high_pass(x, z, cutoff):
+    """Roughness: the profile less the mean line of wavelength `cutoff` [m], see `mean_line`."""
+    return z - mean_line(x, z, cutoff, "cutoff")
+
+
+def low_pass(x, z, cutoff):
+    """The profile without waves shorter than `cutoff` [m]: the S-filter of ISO 3274, see `mean_line`."""
+    return mean_line(x, z, cutoff, "short_cutoff")
+
+
+def mean_line(x, z, cutoff, key):
+    r"""Mean line of the Gaussian profile filter of ISO 16610-21.
+
+    The convolution with :math:`s(x)=\frac{1}{\alpha\lambda_c}\exp[-\pi(x/\alpha\lambda_c)^2]`,
+    :math:`\alpha=\sqrt{\ln 2/\pi}`: of a wave of length :math:`\lambda` it passes
+    :math:`2^{-(\lambda_c/\lambda)^2}` of the amplitude, half at the cut-off. At the ends the profile is
+    mirrored, as it is when it is run; a cosine transform then gives the convolution exactly, however short
+    the cut-off.
+
+    Parameters
+    ----------
+    x, z : ndarray, shape (n,)
+        m; x equally spaced.
+    cutoff : float
+        Wavelength [m].
+    key : str
+        What the user calls this cut-off.
+
+    Raises
+    ------
+    ProfileError
+        Where x is not equally spaced, or the cut-off is longer than the profile or no wave of it.
+    """
+    from scipy.fft import dct, idct
+
+    step = np.diff(x)
+    if np.ptp(step) > 2 * SPACING_TOLERANCE * step.mean():
+        raise ProfileError(f"{key}: the filter needs equally spaced x")
+    length, step = x[-1] - x[0], step.mean()
+    if cutoff > length:
+        raise ProfileError(f"{key} = {cutoff:g} m; allowed: at most the length of the profile, {length:g} m")
+    if cutoff < SHORTEST * step:
+        least = SHORTEST * step
+        raise ProfileError(f"{key} = {cutoff:g} m; allowed: at least {SHORTEST} spacings of it, {least:g} m")
+    frequency = np.arange(x.size) / (2.0 * step * (x.size - 1))
+    return idct(dct(z, type=1) * np.exp2(-((cutoff * frequency) ** 2)), type=1)

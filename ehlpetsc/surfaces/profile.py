@@ -1,0 +1,144 @@
+"""Heights of one surface: a spline that travels with its body."""
+
+from functools import cached_property
+
+import numpy as np
+
+SHORT = 4  # nodes a wavelength below which the mesh does not carry it
+MAX_SAMPLES = 5_000_000  # of a profile as stored
+
+
+class Profile:
+    r"""Heights of one surface.
+
+    Body point s is at :math:`x=s+Ut`. Its abscissa in the profile is
+
+    * U > 0: :math:`X=x_\mathrm{inlet}-s`, so that the profile enters at the inlet from time 0 on;
+    * U < 0: :math:`X=s-x_\mathrm{outlet}`, it enters at the outlet;
+    * U = 0, or a steady case: :math:`X=s-x_\mathrm{inlet}`, it lies under the whole domain from the start.
+
+    A moving surface is smooth where X < 0 and its heights come in over the ramp by
+    :math:`r^3(10-15r+6r^2)`: film and its rate of change have no jump.
+
+    Parameters
+    ----------
+    given : ehlpetsc.surfaces.samples.Samples
+    speed : float
+        U [m/s].
+    moving : bool
+        False in a steady case.
+    inlet, outlet, ramp, duration : float
+        Ends of the domain and length of the ramp [m], time the run takes [s].
+
+    Attributes
+    ----------
+    ra, rq, rsk : float
+        Of the samples about their mean: m, m, 1.
+    """
+
+    def __init__(self, given, speed, moving, inlet, outlet, ramp, duration):
+        from scipy.interpolate import CubicSpline
+
+        X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
+        self.given, self.X, self.heights = given, X, z
+        self._enters = moving and speed != 0.0
+        self._origin, self._sign = (inlet, -1.0) if self._enters and speed > 0 else (outlet, 1.0)
+        if not self._enters:
+            self._origin = inlet
+        self._ramp = ramp
+        self._travelled = abs(speed) * duration if self._enters else outlet - inlet
+        # level ends: mirrored end to end, the profile has no kink
+        self._spline = CubicSpline(X, z, bc_type="clamped")
+        deviation = z - z.mean()
+        self.ra, self.rq = float(np.abs(deviation).mean()), float(np.sqrt((deviation**2).mean()))
+        self.rsk = float(((deviation / self.rq) ** 3).mean()) if self.rq > 0 else 0.0
+
+    def height(self, s):
+        """Heights [m] at body points s [m]."""
+        X = self._sign * (s - self._origin)
+        if not self._enters:
+            return self._at(X)
+        return self._come_in(X) * self._at(np.maximum(X, 0.0))
+
+    def mean_height(self, faces):
+        r"""Mean height [m] of each cell between faces at body points s [m].
+
+        :math:`\frac{1}{s_{i+1}-s_i}\int_{s_i}^{s_{i+1}}z\,ds`, the integral of the spline, also across its
+        mirrored continuation. The ramp is taken at the middle of the cell.
+
+        Parameters
+        ----------
+        faces : ndarray, shape (n + 1,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        X = self._sign * (faces - self._origin)
+        mean = self._level + np.diff(self._integral(X)) / np.diff(X)
+        return self._come_in(0.5 * (X[1:] + X[:-1])) * mean if self._enters else mean
+
+    def _come_in(self, X):
+        """Factor on the heights, 0 where X < 0, 1 beyond the ramp."""
+        r = np.clip(X / self._ramp, 0.0, 1.0)
+        return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
+
+    def _at(self, X):
+        first, last = self.X[0], self.X[-1]
+        if self.repeats:
+            length = last - first
+            return self._spline(last - np.abs(length - np.mod(X - first, 2.0 * length)))
+        inside = (X >= first) & (X <= last)
+        return np.where(inside, self._spline(np.clip(X, first, last)), 0.0)
+
+    def _integral(self, X):
+        """Integral [m^2] of height less `_level` up to X.
+
+        Mirrored heights less their mean integrate to nothing over a profile, so that the integral is periodic
+        too and loses no digits on a long way.
+        """
+        first, last = self.X[0], self.X[-1]
+        if not self.repeats:
+            return self._antiderivative(np.clip(X, first, last))
+        length = last - first
+        beyond = length - np.mod(X - first, 2.0 * length)  # negative: on the way back
+        return np.sign(beyond) * self._antiderivative(last - np.abs(beyond))
+
+    @cached_property
+    def _level(self):
+        """Mean height of what is mirrored [m]; 0 where the heights are 0 beyond the samples."""
+        return (
+            self._spline.integrate(self.X[0], self.X[-1]) / (self.X[-1] - self.X[0]) if self.repeats else 0.0
+        )
+
+    @cached_property
+    def _antiderivative(self):
+        from scipy.interpolate import PPoly
+
+        deviation = self._spline.c.copy()
+        deviation[-1] -= self._level
+        return PPoly(deviation, self._spline.x).antiderivative()
+
+    @cached_property
+    def s(self):
+        """Body points [m], increasing, equally spaced as the profile's samples, that enter during the run."""
+        step = np.diff(self.X).mean()
+        X = np.arange(min(int(self._travelled / step * (1 + 1e-12)) + 1, MAX_SAMPLES)) * step
+        return np.sort(self._origin + self._sign * X)
+
+    @cached_property
+    def z(self):
+        """Heights [m] at `s`, ramp included."""
+        return self.height(self.s)
+
+    def short_share(self, dx):
+        """Share of the height variance in wavelengths under `SHORT` spacings dx [m]."""
+        n = min(max(self.X.size, 16), 1 << 17)
+        x = np.linspace(self.X[0], self.X[-1], n)
+        z = self._spline(x)
+        z = np.concatenate([z, z[-2:0:-1]])  # mirrored: no jump to spill over the spectrum
+        power = np.abs(np.fft.rfft(z)) ** 2
+        power[0] = 0.0
+        total = power.sum()
+        short = np.fft.rfftfreq(z.size, x[1] - x[0]) * SHORT * dx > 1.0
+        return float(power[short].sum() / total) if total > 0 else 0.0
