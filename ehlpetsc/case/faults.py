@@ -3,9 +3,8 @@
 import difflib
 import json
 
-from pydantic import ValidationError
-
 from ehlpetsc.case.schema import item_type
+from ehlpetsc.case.validation import ValidationError
 
 
 def allowed(field):

@@ -7,10 +7,10 @@ import tomllib
 from pathlib import Path
 
 import tomlkit
-from pydantic import Field, PrivateAttr, ValidationError, validator
 
 from ehlpetsc.case.faults import describe, show
 from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Post, Series, Surface, Table, Time
+from ehlpetsc.case.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.surfaces.samples import try_file
 

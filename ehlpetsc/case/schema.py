@@ -6,7 +6,7 @@ for any machine element in SI units and narrow enough that a value in GPa, mm or
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, Extra, Field, confloat, root_validator, validator
+from ehlpetsc.case.validation import BaseModel, Extra, Field, confloat, root_validator, validator
 
 FIELDS = (
     "pressure",
