@@ -1,0 +1,85 @@
+"""What the README pages show is there and works: links, modules, the case file, the lines of a run."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.describe import banner
+from ehlpetsc.surfaces.roughness import Roughness
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))
+MAIN = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def anchors(page):
+    """Names under which the headings of a page can be linked to."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_links_of_a_page_lead_somewhere(page):
+    dead = []
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        if target.startswith(("http://", "https://")):
+            continue
+        path, _, anchor = target.partition("#")
+        file = page.parent / path if path else page
+        if not file.exists() or (anchor and anchor not in anchors(file)):
+            dead.append(target)
+    assert dead == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_commands_of_a_page_are_modules(page):
+    named = set(re.findall(r"python3 -m (ehlpetsc[\w.]*\w)", page.read_text(encoding="utf-8")))
+    for module in named:
+        path = ROOT.joinpath(*module.split("."))
+        assert path.with_suffix(".py").exists() or (path / "__main__.py").exists(), module
+
+
+def test_files_that_the_map_names_exist():
+    package = ROOT / "ehlpetsc"
+    text = (package / "README.md").read_text(encoding="utf-8")
+    folder = package
+    for name in re.findall(r"`([\w/]+\.py)`", text):
+        if "/" in name:  # those after it lie beside it
+            folder = (ROOT if name.startswith("tests/") else package) / Path(name).parent
+        assert (folder / Path(name).name).exists(), name
+
+
+def test_functions_that_the_map_names_exist():
+    """`module.function`, `Class.method`: both in one file."""
+    package = ROOT / "ehlpetsc"
+    sources = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
+    names = set(re.findall(r"`([\w.]+\.\w+)`", (package / "README.md").read_text(encoding="utf-8")))
+    for name in {name for name in names if not name.endswith(".py")}:
+        *_, home, last = name.split(".")
+        homes = [text for path, text in sources.items() if path.stem == home or f"class {home}" in text]
+        assert any(re.search(rf"\b(def|class) {last}\b", text) for text in homes), name
+
+
+def test_the_main_page_is_one_page():
+    assert len(MAIN.splitlines()) <= 150
+
+
+def test_the_case_file_shown_has_twelve_lines_and_is_a_case(tmp_path):
+    shown = re.search(r"```toml\n(.*?)```", MAIN, re.DOTALL)[1]
+    assert len(shown.splitlines()) == 12
+    path = tmp_path / "shown.toml"
+    path.write_text(shown.replace("profiles/", f"{ROOT}/cases/profiles/"))
+    case = load(path, ())
+    assert (case.mesh.points_per_half_width, case.time.travel, case.output.every) == (200, 6.0, 4)
+    assert case.surface.slow is None and case.surface.fast.scale == 0.5
+
+
+def test_a_run_begins_with_the_lines_shown():
+    case = load(ROOT / "cases" / "table1_rough.toml", ())
+    scales = Scales.of(case)
+    lines = banner(case, scales, Roughness.of(case, scales), 2)
+    for line in lines:
+        assert line[:90] in MAIN
