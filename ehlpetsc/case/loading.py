@@ -9,10 +9,10 @@ from pathlib import Path
 import tomlkit
 
 from ehlpetsc.case.faults import describe, show
+from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Post, Series, Surface, Table, Time
 from ehlpetsc.case.validation import Field, PrivateAttr, ValidationError, validator
-from ehlpetsc.errors import CaseError, ProfileError
-from ehlpetsc.surfaces.samples import try_file
+from ehlpetsc.errors import CaseError
 
 __all__ = ["Case", "CaseError", "load", "members"]
 
@@ -194,18 +194,12 @@ def _faults(path, data):
     faults = []
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append("motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])")
+    case = None
     try:
-        Case(**data)
+        case = Case(**data)
     except ValidationError as error:
         faults += describe(error, Case, data)
-    surface = data.get("surface")
-    for side in ("fast", "slow"):
-        table = surface.get(side) if isinstance(surface, dict) else None
-        if isinstance(table, dict) and isinstance(table.get("file"), str) and table["file"]:
-            try:
-                try_file(Path(path).parent, table)
-            except ProfileError as error:
-                faults.append(f"surface.{side}.file = {show(table['file'])}: {error}")
+    faults += profile_faults(Path(path).parent, data.get("surface"), case if not faults else None)
     return [f"{path}: {fault}" for fault in faults]
 
 

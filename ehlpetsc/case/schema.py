@@ -6,7 +6,7 @@ for any machine element in SI units and narrow enough that a value in GPa, mm or
 
 from typing import Any, Literal
 
-from ehlpetsc.case.validation import BaseModel, Extra, Field, confloat, root_validator, validator
+from ehlpetsc.case.validation import BaseModel, Extra, Field, confloat, conint, root_validator, validator
 
 FIELDS = (
     "pressure",
@@ -23,6 +23,8 @@ Ratio = confloat(ge=0.0, le=0.5)
 Height = confloat(ge=1e-12, le=1e-2)
 Length = confloat(ge=1e-9, le=1.0)
 Depth = confloat(ge=0, le=100)
+Column = conint(ge=1, le=1000)
+UNITS = ("m", "mm", "um", "nm")  # of profile files
 
 
 def _is(kind, value):
@@ -181,14 +183,33 @@ class SurfaceProfile(Table):
     """`[surface.fast]`, `[surface.slow]`: a measured or a synthetic profile."""
 
     file: str | None = Field(None, min_length=1, description="profile file, beside the case file")
-    synthetic: dict | None = Field(None, description='{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }')
-    scale: float = Field(1.0, ge=-1e4, le=1e4, description="factor on the heights; negative: turned over")
+    unit: Literal[UNITS] | None = Field(None, description="of the heights in the file; left out: m")
+    x_unit: Literal[UNITS] | None = Field(None, description="of x in the file; left out: as unit")
+    spacing: Length | None = Field(None, unit="m", description="of points without x in the file")
+    columns: list[Column] | None = Field(
+        None, min_items=1, max_items=2, description="of x and z in the file, or of z alone, counted from 1"
+    )
+    decimal: Literal[".", ","] | None = Field(None, description="decimal sign; left out: found from the file")
+    header_lines: int | None = Field(
+        None, ge=0, le=100_000, description="lines before the numbers; left out: found from the file"
+    )
+    fill_gaps: float | None = Field(
+        None, ge=0, le=1, unit="m", description="longest gap of missing heights that the spline bridges"
+    )
     level: bool = Field(False, description="subtract the least-squares line")
     cutoff: Length | None = Field(None, unit="m", description="Gaussian high-pass, ISO 16610-21")
     short_cutoff: Length | None = Field(
         None, unit="m", description="Gaussian low-pass, S-filter of ISO 3274, below cutoff"
     )
     flip: bool = Field(False, description="run the profile from its other end")
+    synthetic: dict | None = Field(None, description='{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }')
+    scale: float = Field(1.0, ge=-1e4, le=1e4, description="factor on the heights; negative: turned over")
+
+    @validator("short_cutoff")
+    def _below_the_cutoff(cls, value, values):
+        if value is not None and values.get("cutoff") is not None and value >= values["cutoff"]:
+            raise ValueError("not below cutoff")
+        return value
 
     @validator("synthetic")
     def _kind(cls, value):
@@ -204,16 +225,10 @@ class SurfaceProfile(Table):
     def _one_source(cls, values):
         if (values["file"] is None) == (values["synthetic"] is None):
             raise ValueError("needs either file or synthetic, one of the two")
-        for_a_file = ("level", "cutoff", "short_cutoff", "flip")
+        for_a_file = [key for key in values if key not in ("file", "synthetic", "scale")]
         if values["synthetic"] and any(values[key] not in (None, False) for key in for_a_file):
             raise ValueError(f"{', '.join(for_a_file)} are for a file, not for a synthetic profile")
         return values
-
-    @validator("short_cutoff")
-    def _below_the_cutoff(cls, value, values):
-        if value is not None and values.get("cutoff") is not None and value >= values["cutoff"]:
-            raise ValueError("not below cutoff")
-        return value
 
 
 class Surface(Table):

@@ -8,6 +8,7 @@ try:
         PrivateAttr,
         ValidationError,
         confloat,
+        conint,
         root_validator,
         validator,
     )
@@ -19,6 +20,7 @@ except ImportError:  # before 1.10.17 there is no such name
         PrivateAttr,
         ValidationError,
         confloat,
+        conint,
         root_validator,
         validator,
     )
@@ -30,6 +32,7 @@ __all__ = [
     "PrivateAttr",
     "ValidationError",
     "confloat",
+    "conint",
     "root_validator",
     "validator",
 ]

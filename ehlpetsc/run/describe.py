@@ -6,6 +6,7 @@ from ehlpetsc import __version__
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import FULL_FILM, dowson_higginson, file_size, lambda_ratio, run_time, steps
+from ehlpetsc.surfaces.arrival import arrival, arrival_warnings
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -35,7 +36,7 @@ def explain(case):
         _contact(scales),
         _film(case, scales, rough),
         _motion(case, scales),
-        _surfaces(rough),
+        _surfaces(case, scales, rough),
         _size(case, scales, rough),
         _switched_off(case, rough),
         [f"Warning: {line}" for line in warnings(case, scales)],
@@ -64,7 +65,7 @@ def banner(case, scales, rough, ranks):
         f"ehlpetsc {__version__}: {case.title}",
         f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
         f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
-        *(_surfaces(rough) if rough else []),
+        *(_surfaces(case, scales, rough) if rough else []),
         *_ranks_for_nothing(scales, ranks),
     ]
 
@@ -93,7 +94,8 @@ def warnings(case, scales):
             f"{' and '.join(rough)} with [motion] but without [time]: "
             "the roughness is held still under the film; add [time] to let it move"
         )
-    return notes + mesh_warnings(case, scales)
+    profiles = Roughness.of(case, scales)
+    return notes + arrival_warnings(case, scales, profiles) + mesh_warnings(profiles, scales)
 
 
 def _contact(s):
@@ -141,18 +143,35 @@ def _motion(case, s):
     ]
 
 
-def _surfaces(rough):
+def _surfaces(case, s, rough):
     lines = []
     for side in ("fast", "slow"):
         profile = rough and getattr(rough, side)
-        lines.append(f"Surface {side}: {_heights(profile) if profile else 'smooth'}")
+        told = _profile(case, s, profile) if profile else ["smooth"]
+        lines += [f"Surface {side}: {line}" for line in told]
     return lines
 
 
-def _heights(profile):
-    text = f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}"
-    before = profile.given.ra_unfiltered
-    return text if before is None else f"{text} (Ra {before * 1e6:.4f} um before short_cutoff)"
+def _profile(case, s, profile):
+    """Size, roughness and travel of one profile, a line each."""
+    given = profile.given
+    film = dowson_higginson(s, case.fluid.pressure_viscosity) if case.fluid else None
+    ratio = f", lambda ratio {film / profile.rq:.2g}" if film and profile.rq > 0.0 else ""
+    lines = [
+        f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}{ratio}",
+        *given.notes,
+    ]
+    if given.measured:
+        size = f"{1e3 * given.length:.4g} mm long, {given.X.size} points {1e6 * given.spacing:.4g} um apart"
+        lines.insert(1, size)
+        if profile.travelled > given.length:
+            lines.append(f"continues mirrored: {1e3 * profile.travelled:.4g} mm of it are drawn in")
+    arrives = arrival(profile, s)
+    if arrives:
+        reaches, fills = arrives
+        then = "and fills it" if profile.repeats else "and stands with its middle at x = 0"
+        lines.append(f"reaches the contact at travel {reaches:.2f} a {then} at {fills:.2f} a")
+    return lines
 
 
 def _size(case, s, rough):

@@ -56,6 +56,9 @@ def mean_line(x, z, cutoff, key):
         raise ProfileError(f"{key} = {cutoff:g} m; allowed: at most the length of the profile, {length:g} m")
     if cutoff < SHORTEST * step:
         least = SHORTEST * step
-        raise ProfileError(f"{key} = {cutoff:g} m; allowed: at least {SHORTEST} spacings of it, {least:g} m")
+        raise ProfileError(
+            f"{key} = {cutoff:g} m; allowed: at least {SHORTEST} spacings of its points, {least:g} m; "
+            'where its x is not in m, write unit = "mm", "um" or "nm"'
+        )
     frequency = np.arange(x.size) / (2.0 * step * (x.size - 1))
     return idct(dct(z, type=1) * np.exp2(-((cutoff * frequency) ** 2)), type=1)

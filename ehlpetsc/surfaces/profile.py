@@ -32,6 +32,10 @@ class Profile:
 
     Attributes
     ----------
+    enters : bool
+        False where it lies under the domain from the start.
+    ramp, travelled : float
+        Length of the ramp, and of the profile that is drawn in [m].
     ra, rq, rsk : float
         Of the samples about their mean: m, m, 1.
     """
@@ -41,12 +45,12 @@ class Profile:
 
         X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
         self.given, self.X, self.heights = given, X, z
-        self._enters = moving and speed != 0.0
-        self._origin, self._sign = (inlet, -1.0) if self._enters and speed > 0 else (outlet, 1.0)
-        if not self._enters:
+        self.enters = moving and speed != 0.0
+        self._origin, self._sign = (inlet, -1.0) if self.enters and speed > 0 else (outlet, 1.0)
+        if not self.enters:
             self._origin = inlet
-        self._ramp = ramp
-        self._travelled = abs(speed) * duration if self._enters else outlet - inlet
+        self.ramp = ramp
+        self.travelled = abs(speed) * duration if self.enters else outlet - inlet
         # level ends: mirrored end to end, the profile has no kink
         self._spline = CubicSpline(X, z, bc_type="clamped")
         deviation = z - z.mean()
@@ -56,7 +60,7 @@ class Profile:
     def height(self, s):
         """Heights [m] at body points s [m]."""
         X = self._sign * (s - self._origin)
-        if not self._enters:
+        if not self.enters:
             return self._at(X)
         return self._come_in(X) * self._at(np.maximum(X, 0.0))
 
@@ -76,11 +80,11 @@ class Profile:
         """
         X = self._sign * (faces - self._origin)
         mean = self._level + np.diff(self._integral(X)) / np.diff(X)
-        return self._come_in(0.5 * (X[1:] + X[:-1])) * mean if self._enters else mean
+        return self._come_in(0.5 * (X[1:] + X[:-1])) * mean if self.enters else mean
 
     def _come_in(self, X):
         """Factor on the heights, 0 where X < 0, 1 beyond the ramp."""
-        r = np.clip(X / self._ramp, 0.0, 1.0)
+        r = np.clip(X / self.ramp, 0.0, 1.0)
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
     def _at(self, X):
@@ -123,7 +127,7 @@ class Profile:
     def s(self):
         """Body points [m], increasing, equally spaced as the profile's samples, that enter during the run."""
         step = np.diff(self.X).mean()
-        X = np.arange(min(int(self._travelled / step * (1 + 1e-12)) + 1, MAX_SAMPLES)) * step
+        X = np.arange(min(int(self.travelled / step * (1 + 1e-12)) + 1, MAX_SAMPLES)) * step
         return np.sort(self._origin + self._sign * X)
 
     @cached_property

@@ -1,31 +1,68 @@
-"""Reading, levelling and filtering of measured profiles."""
+"""Reading measured profiles: text in many layouts, and what the package SurfaceTopography reads."""
 
-import re
+import functools
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.errors import ProfileError
+from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
-TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ""}
-SPACING_TOLERANCE = 0.01  # rounding in a file's abscissae, against a spacing that really varies
+TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
+UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
 
-def read_profile(path):
+@dataclass(frozen=True)
+class Layout:
+    """How a profile file is written; what is left out is found from the file, or it is refused.
+
+    Attributes
+    ----------
+    unit, x_unit : str or None
+        Of the heights, and of x where it is another: a key of `UNITS`; left out: m.
+    spacing : float or None
+        Of the points [m], where the file has heights alone.
+    columns : tuple of int or None
+        Of x and z, or of z alone, counted from 1.
+    decimal : str or None
+        "." or ",".
+    header_lines : int or None
+        Lines before the numbers.
+    fill_gaps : float or None
+        Longest gap of missing heights [m] that the spline bridges.
+    """
+
+    unit: str | None = None
+    x_unit: str | None = None
+    spacing: float | None = None
+    columns: tuple | None = None
+    decimal: str | None = None
+    header_lines: int | None = None
+    fill_gaps: float | None = None
+
+
+KEYS = tuple(Layout.__dataclass_fields__)
+
+
+def read_profile(path, layout=None):
     """Abscissae, from 0 on, and heights of a profile file.
 
-    Two columns of text, x and z in metres, separated by a comma, semicolon, tab or spaces, ``#`` for comments
-    and one line of column names allowed; any other format through the package SurfaceTopography where it is
-    installed.
+    Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
+    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
+    format through the package SurfaceTopography where it is installed.
 
     Parameters
     ----------
     path : path-like
+    layout : Layout, optional
 
     Returns
     -------
     X, z : ndarray, shape (n,)
         Both in m, X increasing; heights positive out of the metal.
+    notes : tuple of str
+        What was done to the file's numbers.
 
     Raises
     ------
@@ -35,36 +72,63 @@ def read_profile(path):
     try:
         if not path.is_file():
             raise ProfileError(f"no such file: {path}")
-        columns = _text_columns(path) if path.suffix.lower() in TEXT else _surface_topography(path)
+        state = path.stat()
+        return _read(path, layout or Layout(), state.st_mtime_ns, state.st_size)
     except (OSError, ValueError) as error:  # ValueError: a name no file system takes
         raise ProfileError(f"cannot be read: {error}") from None
-    return _checked(*columns)
 
 
-def _text_columns(path):
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except UnicodeDecodeError:
-        raise ProfileError("not text; allowed: two columns of numbers, x and z in m") from None
-    rows, header_allowed = [], True
-    for number, line in enumerate(lines, 1):
-        words = re.split(r"[,;\s]+", line.partition("#")[0].strip(" \t\r,;"))
-        if words == [""]:
-            continue
-        try:
-            x, z = map(float, words)
-        except ValueError:
-            if not header_allowed:
-                raise ProfileError(
-                    f"line {number}: {line.strip()[:40]!r}; allowed: two numbers a line, x and z in m"
-                ) from None
-        else:
-            rows.append((x, z))
-        header_allowed = False
-    return tuple(np.array(rows).reshape(-1, 2).T)
+@functools.lru_cache(maxsize=4)  # a case is checked, described and run: the file is read once for all
+def _read(path, layout, _modified, _size):
+    text = path.suffix.lower() in TEXT
+    x, z, notes = _checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
+    x.flags.writeable = z.flags.writeable = False
+    return x, z, tuple(notes)
 
 
-def _surface_topography(path):
+def _from_text(path, layout):
+    columns, header = text_columns(path, layout.decimal, layout.header_lines)
+    named = units_in(header)
+    if layout.unit is None and set(named) - {"m"}:
+        raise ProfileError(
+            f'its header names {" and ".join(named)}; write unit = "{named[-1]}" for the heights'
+            + (f' and x_unit = "{named[0]}"' if named[0] != named[-1] else "")
+        )
+    factor = UNITS[layout.unit or "m"]
+    chosen = _chosen(columns, layout)
+    if len(chosen) == 1:
+        return layout.spacing * np.arange(chosen[0].size), factor * chosen[0]
+    return UNITS[layout.x_unit or layout.unit or "m"] * chosen[0], factor * chosen[1]
+
+
+def _chosen(columns, layout):
+    """The columns of x and z, or of z alone."""
+    count = len(columns)
+    if layout.columns is not None:
+        if max(layout.columns) > count:
+            raise ProfileError(f"columns = {list(layout.columns)}: the file has {count}")
+        chosen = columns[[c - 1 for c in layout.columns]]
+    elif count > 2:
+        raise ProfileError(
+            f"{count} columns; write columns = [1, 2] for x and z, counted from 1, or columns = [2] and "
+            "spacing for heights alone; where commas are decimal, semicolons or tabs must part the numbers"
+        )
+    else:
+        chosen = columns
+    if len(chosen) == 1 and layout.spacing is None:
+        raise ProfileError("heights alone: write spacing = distance of the points in m")
+    if len(chosen) == 2 and layout.spacing is not None:
+        raise ProfileError(
+            "spacing is given, but x too: leave spacing out, or write columns = [2] for the heights alone, "
+            'or decimal = "," where the comma is decimal'
+        )
+    return chosen
+
+
+def _from_surface_topography(path, layout):
+    given = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
+    if given:
+        raise ProfileError(f"{given[0]}: for text alone, the format {path.suffix!r} tells it; leave it out")
     try:
         from SurfaceTopography import read_topography
     except ImportError:
@@ -85,20 +149,49 @@ def _surface_topography(path):
     return x[:, middle], z[:, middle]
 
 
-def _checked(x, z):
-    x, z = np.asarray(x, float), np.ma.filled(np.ma.asarray(z, float), np.nan)
+def _checked(x, z, layout):
+    x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
+    notes = []
+    bad = ~np.isfinite(x) | np.isinf(z)
+    if bad.any():
+        raise ProfileError(f"point {bad.argmax() + 1} is not a finite number; allowed: finite x and z")
     if x.size < 4:
         raise ProfileError(f"{x.size} points; allowed: at least 4")
-    bad = ~(np.isfinite(x) & np.isfinite(z))
-    if bad.any():
-        raise ProfileError(f"point {bad.argmax() + 1} is not a finite number; allowed: finite x and z in m")
     step = np.diff(x)
+    if (step < 0).all():
+        x, z, step = x[::-1], z[::-1], -step[::-1]
+        notes.append("x falls in the file: read from its end")
     if (step == 0).any():
-        raise ProfileError(f"x = {x[(step == 0).argmax()]:g} stands twice; allowed: every x once")
-    if (step < 0).any():
-        raise ProfileError(f"x falls after x = {x[(step < 0).argmax()]:g}; allowed: x increasing")
-    if x[-1] - x[0] > 10.0 or np.ptp(z) > 0.01:
         raise ProfileError(
-            f"{x[-1] - x[0]:g} m long, {np.ptp(z):g} m valley to peak; allowed: x and z in m, not in mm or um"
+            f"x = {x[(step == 0).argmax()]:g} stands twice; allowed: every x once, or spacing and columns "
+            "for the heights alone"
         )
-    return x - x[0], z
+    if (step < 0).any():
+        raise ProfileError(f"x falls after x = {x[(step < 0).argmax()]:g}; allowed: x increasing, or falling")
+    if np.isnan(z).any():
+        x, z = _filled(x, z, layout.fill_gaps, notes)
+    return x - x[0], z, notes
+
+
+def _filled(x, z, longest, notes):
+    """The profile with its missing heights filled by the spline, those at its ends cut off."""
+    from scipy.interpolate import CubicSpline
+
+    there = np.flatnonzero(~np.isnan(z))
+    missing = z.size - there.size
+    if there.size < 4:
+        raise ProfileError(f"{there.size} heights are not missing; allowed: at least 4")
+    gaps = np.diff(x[there]) * (np.diff(there) > 1)
+    ends = max(x[there[0]] - x[0], x[-1] - x[there[-1]])
+    widest = max(gaps.max(), ends)
+    if longest is None or widest > longest:
+        worst = x[there[gaps.argmax()]] if gaps.max() >= ends else x[0] if there[0] else x[there[-1]]
+        raise ProfileError(
+            f"{missing} heights missing, the longest gap {widest:.3g} m behind x = {worst:g}; "
+            f"write fill_gaps = {widest * 1.01:.2g} or more to have the spline bridge gaps of that length [m]"
+        )
+    inside = slice(there[0], there[-1] + 1)
+    notes.append(
+        f"{missing} missing heights filled or, at the ends, cut off; longest gap {1e6 * widest:.3g} um"
+    )
+    return x[inside], CubicSpline(x[there], z[there])(x[inside])

@@ -6,7 +6,9 @@ import numpy as np
 
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
-from ehlpetsc.surfaces.profile_files import read_profile
+from ehlpetsc.surfaces.profile_files import KEYS, Layout, read_profile
+
+OFFSET = 1e-3  # of Rq: a mean beyond rounding
 
 
 @dataclass(frozen=True)
@@ -19,18 +21,31 @@ class Samples:
         m; heights positive out of the metal.
     repeats : bool
         Whether the profile continues mirrored beyond its ends, else with height 0.
-    ra_unfiltered : float or None
-        Ra before `short_cutoff` took the short waves off [m]; None without it.
+    measured : bool
+        Read from a file.
+    notes : tuple of str
+        What was done to the file's numbers, for the user.
     """
 
     X: np.ndarray
     z: np.ndarray
     repeats: bool
-    ra_unfiltered: float | None = None
+    measured: bool = False
+    notes: tuple = ()
+
+    @property
+    def length(self):
+        """From the first sample to the last [m]."""
+        return float(self.X[-1] - self.X[0])
+
+    @property
+    def spacing(self):
+        """Mean distance of the samples [m]."""
+        return self.length / (self.X.size - 1)
 
 
 def samples(folder, spec):
-    """Samples of one surface: read or made, levelled, both filters, flipped, scaled, in this order.
+    """Samples of one surface: read or made, levelled, both filters, mean taken off, flipped, scaled.
 
     Parameters
     ----------
@@ -45,38 +60,29 @@ def samples(folder, spec):
     if spec.synthetic is not None:
         X, z, repeats = synthetic.sampled(spec.synthetic)
         return Samples(X, spec.scale * z, repeats)
-    X, z = read_profile(folder / spec.file)
+    X, z, notes = read_profile(folder / spec.file, layout_of(spec))
+    notes = list(notes)
     if spec.level:
         z = levelled(X, z)
     if spec.cutoff is not None:
         z = high_pass(X, z, spec.cutoff)
-    before = None
     if spec.short_cutoff is not None:
-        before = abs(spec.scale) * mean_deviation(z)
-        z = low_pass(X, z, spec.short_cutoff)
+        before, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
+        told = [f"{1e6 * abs(spec.scale) * ra:.4f} um" for ra in (before, mean_deviation(z))]
+        notes.append(f"short_cutoff: Ra {told[0]} before, {told[1]} after")
+    mean = float(z.mean())
+    if abs(mean) > OFFSET * (z - mean).std():  # it would come in as a step and thin the film
+        z = z - mean
+        notes.append(f"mean height of {1e6 * mean:.4g} um taken off")
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
-    return Samples(X, spec.scale * z, True, before)
+    return Samples(X, spec.scale * z, True, True, tuple(notes))
 
 
-def try_file(folder, table):
-    """Read and filter the file of a surface's table that may itself be at fault.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-    table : dict
-        With a text under "file".
-
-    Raises
-    ------
-    ProfileError
-    """
-    x, z = read_profile(folder / table["file"])
-    for key, pass_filter in (("cutoff", high_pass), ("short_cutoff", low_pass)):
-        value = table.get(key)
-        if isinstance(value, int | float) and 0 < value <= 1:
-            pass_filter(x, z, value)
+def layout_of(spec):
+    """How the file of a surface is written."""
+    given = {key: getattr(spec, key) for key in KEYS}
+    return Layout(**given | {"columns": spec.columns and tuple(spec.columns)})
 
 
 def mean_deviation(z):

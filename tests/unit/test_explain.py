@@ -110,3 +110,35 @@ def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
     assert len(still) == 1 and "surface.slow with [motion] but without [time]" in still[0]
     c = case.load(CASES / "dry_rough.toml")
     assert warnings(c, Scales.of(c)) == []
+
+
+def test_each_surface_is_told_with_its_figures():
+    told = starting(lines("fig7.toml"), "Surface slow")
+    assert told[0].endswith("lambda ratio 0.81")
+    assert told[1] == "Surface slow: 1.712 mm long, 3425 points 0.5 um apart"
+    assert told[2] == "Surface slow: continues mirrored: 18.28 mm of it are drawn in"
+    assert told[3] == "Surface slow: reaches the contact at travel 1.93 a and fills it at 4.63 a"
+    assert not [line for line in lines("fig1.toml") if "mirrored" in line]
+    ridge = starting(lines("ridge.toml"), "Surface")
+    assert ridge[0] == "Surface fast: smooth"
+    assert ridge[2].endswith("at travel 1.67 a and stands with its middle at x = 0 at 3.73 a")
+
+
+@pytest.mark.parametrize(
+    ("name", "travel", "told"),
+    [
+        (
+            "table1_rough.toml",
+            1.0,
+            ["reaches the contact (1.50): it stays smooth", "contact (1.93): it stays"],
+        ),
+        ("table1_rough.toml", 4.0, ["fills the contact (4.63)"]),
+        ("table1_rough.toml", 4.7, []),
+        ("ridge.toml", 3.0, ["middle of the profile is at x = 0 (3.73)"]),
+    ],
+)
+def test_a_run_that_ends_before_its_roughness_is_there_warns(name, travel, told):
+    found = starting(lines(name, f"time.travel={travel}"), "Warning")
+    assert len(found) == len(told)
+    for line, words in zip(found, told, strict=True):
+        assert f"the run ends at time.travel = {travel:g}, before" in line and words in line

@@ -11,7 +11,7 @@ GROUND = {"errors", "compiled", "environment"}  # every room may stand on these;
 MAY_IMPORT = {
     "physics": set(),
     "surfaces": set(),
-    "case": {"surfaces"},
+    "case": {"surfaces", "physics"},
     "results": set(),
     "discretisation": {"physics"},
     "nonlinear": {"discretisation", "physics"},

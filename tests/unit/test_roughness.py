@@ -1,20 +1,21 @@
 """Profiles: reading, filters, synthetic heights, motion through the contact, coarse meshes."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ehlpetsc.case import loading as case
+from ehlpetsc.case.schema import SurfaceProfile
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.surfaces.arrival import arrival
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
-from ehlpetsc.surfaces.mesh_fit import mesh_warnings
+from ehlpetsc.surfaces.mesh_fit import mesh_warnings, spikes
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_files import read_profile
 from ehlpetsc.surfaces.roughness import RAMP, Roughness
-from ehlpetsc.surfaces.samples import Samples
+from ehlpetsc.surfaces.samples import Samples, samples
 
 CASES = Path(__file__).parents[2] / "cases"
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
@@ -31,55 +32,13 @@ def rough(name, *overrides):
     return Roughness.of(c, scales), scales
 
 
-@pytest.mark.parametrize(
-    ("text", "comment"), [("{},{}\n", "# x, z\n"), ("{}\t{}\n", ""), (" {}   {}  # p\n", "x z\n")]
-)
-def test_text_formats_give_the_same_profile(tmp_path, text, comment):
-    x, z = np.arange(5) * 1e-6 + 3e-6, np.array([0, 1e-7, -2e-7, 3e-7, 0])
-    path = tmp_path / "p.txt"
-    path.write_text(comment + "".join(text.format(a, b) for a, b in zip(x, z, strict=True)))
-    X, heights = read_profile(path)
-    np.testing.assert_allclose(X, x - 3e-6, atol=1e-18)
-    np.testing.assert_array_equal(heights, z)
-
-
 def test_measured_profiles_have_the_roughness_their_readme_gives():
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     assert np.abs(z - z.mean()).mean() == pytest.approx(0.157e-6, abs=0.0005e-6)
     assert np.diff(X) == pytest.approx(0.5e-6)
-    X, z = read_profile(CASES / "profiles" / "hommel_stylus_profile.csv")
+    X, z, _ = read_profile(CASES / "profiles" / "hommel_stylus_profile.csv")
     assert X[-1] == pytest.approx(4.8e-3, rel=2e-4)
     assert np.abs(high_pass(X, z, 0.8e-3)).mean() == pytest.approx(0.018e-6, abs=0.0005e-6)
-
-
-def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
-    path = tmp_path / "p.x3p"
-    path.write_bytes(b"PK")
-    with pytest.raises(ProfileError, match="'.x3p' needs the package SurfaceTopography"):
-        read_profile(path)
-
-
-def test_other_formats_come_through_surface_topography(tmp_path, monkeypatch):
-    class Topography:
-        dim = 2
-
-        def to_unit(self, unit):
-            assert unit == "m"
-            return self
-
-        def positions_and_heights(self):
-            x, y = np.meshgrid(np.arange(6) * 1e-6, np.arange(3) * 1e-6, indexing="ij")
-            return x, y, 0.1 * x + y
-
-    package = type(sys)("SurfaceTopography")
-    package.read_topography = lambda path: Topography()
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
-    path = tmp_path / "p.sur"
-    path.write_bytes(b"")
-    X, z = read_profile(path)
-    np.testing.assert_allclose(X, np.arange(6) * 1e-6)
-    np.testing.assert_allclose(z, 0.1 * X + 1e-6)  # the middle one of three traces
 
 
 def test_levelling_removes_a_line_and_nothing_else():
@@ -118,9 +77,12 @@ def test_both_filters_share_what_there_is():
 def test_the_short_cutoff_tells_ra_before_and_after():
     base, _ = rough("table1_rough.toml")
     smoothed, _ = rough("table1_rough.toml", "surface.fast.short_cutoff=10e-6")
-    assert smoothed.fast.given.ra_unfiltered == pytest.approx(base.fast.ra)
+    (note,) = smoothed.fast.given.notes
+    assert (
+        note == f"short_cutoff: Ra {1e6 * base.fast.ra:.4f} um before, {1e6 * smoothed.fast.ra:.4f} um after"
+    )
     assert 0.5 * base.fast.ra < smoothed.fast.ra < 0.98 * base.fast.ra
-    assert base.fast.given.ra_unfiltered is None
+    assert base.fast.given.notes == ()
 
 
 def test_the_filter_refuses_what_it_cannot_filter():
@@ -146,7 +108,7 @@ def test_keys_of_a_surface_act_in_their_order():
 
 def test_body_points_carry_their_heights_with_them():
     x = np.linspace(-2.5, 1.5, 801) * A
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=2.0, duration=3e-3)
     t = 1.3e-3
     at = Roughness(p, None).gap(x, t)
@@ -198,7 +160,7 @@ def test_the_mean_over_cells_keeps_the_volume_of_a_lone_ridge():
 
 
 def test_the_mean_over_a_cell_has_its_ramp_and_goes_to_the_value():
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     for speed in (2.0, -2.0):
         p = profile(X, z, speed=speed)
         s = (-2.5 * A - np.linspace(-0.05, 0.3, 701) * A) if speed > 0 else np.linspace(1.4, 1.8, 801) * A
@@ -209,7 +171,7 @@ def test_the_mean_over_a_cell_has_its_ramp_and_goes_to_the_value():
 
 
 def test_the_profile_enters_at_the_inlet_from_its_first_point():
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=2.0)
     inlet, t = -2.5 * A, 4e-4
     beyond_ramp = np.arange(0.2e-3, 0.8e-3, 0.5e-6)
@@ -233,7 +195,7 @@ def test_nothing_jumps_where_the_profile_begins():
 
 
 def test_a_short_profile_continues_mirrored_without_kink():
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=1.0)
     d = np.linspace(0, 1e-5, 50)
     for end in (X[-1], 2 * X[-1], 3 * X[-1]):
@@ -244,7 +206,7 @@ def test_a_short_profile_continues_mirrored_without_kink():
 
 
 def test_a_surface_moving_backwards_enters_at_the_outlet():
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=-2.0)
     t, at = 4e-4, np.arange(0.2e-3, 0.8e-3, 0.5e-6)
     x = 1.5 * A + at - 2.0 * t
@@ -254,7 +216,7 @@ def test_a_surface_moving_backwards_enters_at_the_outlet():
 
 @pytest.mark.parametrize(("speed", "moving"), [(0.0, True), (3.0, False)])
 def test_at_rest_or_steady_it_lies_under_the_whole_domain(speed, moving):
-    X, z = read_profile(ALICONA)
+    X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=speed, moving=moving)
     np.testing.assert_allclose(p.height(-2.5 * A + X), z, atol=1e-15)
     assert (p.s[0], p.s[-1]) == pytest.approx((-2.5 * A, 1.5 * A))
@@ -335,7 +297,8 @@ def test_ground_heights_depend_on_their_seed_alone():
 def test_a_coarse_mesh_is_told_with_its_figure():
     for points, share in ((200, None), (100, "7.3 %"), (50, "51.1 %")):
         c = case.load(CASES / "table1_rough.toml", [f"mesh.points_per_half_width={points}"])
-        notes = mesh_warnings(c, Scales.of(c))
+        scales = Scales.of(c)
+        notes = mesh_warnings(Roughness.of(c, scales), scales)
         assert [share in note for note in notes] == ([True, True] if share else [])
     assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
 
@@ -348,19 +311,43 @@ def test_the_share_of_short_waves_is_that_of_the_variance():
     assert p.short_share(3.9e-6) < 1e-3
 
 
-@pytest.mark.parametrize(
-    ("said", "told"),
-    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of the formats it knows")],
-)
-def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeypatch, said, told):
-    def read_topography(path):
-        raise RuntimeError(said)
+def test_a_constant_offset_is_taken_off_and_told(tmp_path):
+    X, z, _ = read_profile(ALICONA)
+    np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
+    spec = SurfaceProfile(file="p.csv", scale=0.5)
+    given = samples(tmp_path, spec)
+    assert given.notes == ("mean height of 1 um taken off",)
+    np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
+    assert samples(ALICONA.parent, SurfaceProfile(file=ALICONA.name)).notes == ()
 
-    package = type(sys)("SurfaceTopography")
-    package.read_topography = read_topography
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
-    path = tmp_path / "p.x3p"
-    path.write_bytes(b"PK nonsense")
-    with pytest.raises(ProfileError) as caught:
-        read_profile(path)
-    assert str(caught.value) == f"SurfaceTopography cannot read it: {told}"
+
+def test_spikes_narrower_than_a_cell_are_told_and_asperities_are_not():
+    X, z, _ = read_profile(ALICONA)
+    assert spikes(Samples(X, z, True, True), 3.4e-6)[0] == 0
+    z = z.copy()
+    z[1000:1002] += 2e-6
+    count, highest, place = spikes(Samples(X, z, True, True), 3.4e-6)
+    assert (count, place) == (2, pytest.approx(X[1000]))
+    assert highest == pytest.approx(2e-6, rel=0.1)
+    assert spikes(Samples(X, z, True, True), 0.2e-6)[0] == 0  # a mesh finer than the profile carries it
+
+
+def test_the_travel_at_which_a_profile_comes_and_fills():
+    r, s = rough("table1_rough.toml")  # inlet -2.5 a, slide/roll ratio 0.25: 5.625 and 4.375 m/s
+    assert arrival(r.fast, s) == pytest.approx((1.5, 3.5 + RAMP))
+    assert arrival(r.slow, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP) * 9 / 7))
+    for profile in (r.fast, r.slow):
+        reaches, fills = arrival(profile, s)
+        x = s.x * s.a
+        inside = np.abs(s.x) <= 1.0
+        before, then = (-Roughness(profile, None).gap(x, t * s.a / s.u_max) for t in (reaches, fills))
+        assert (before[inside] == 0.0).all() and (before[s.x < -1.05] != 0.0).any()
+        whole = profile._at(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
+        np.testing.assert_allclose(then[inside], whole, rtol=1e-9)
+    backwards, s = rough("table1_rough.toml", "motion.slide_roll_ratio=-4")  # u -1, 3: enters at the outlet
+    reaches, fills = arrival(backwards.fast, s)
+    assert (reaches, fills) == pytest.approx((0.5 * 3, (2.5 + RAMP) * 3))
+    ridge, s = rough("ridge.toml")
+    assert arrival(ridge.slow, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
+    still, s = rough("dry_rough.toml")
+    assert arrival(still.slow, s) is None

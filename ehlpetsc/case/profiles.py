@@ -1,0 +1,66 @@
+"""Faults of the profile files that a case names: unreadable, or absurd beside its contact."""
+
+from ehlpetsc.case.faults import show
+from ehlpetsc.case.schema import SurfaceProfile
+from ehlpetsc.case.validation import ValidationError
+from ehlpetsc.errors import ProfileError
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.surfaces.plausibility import absurd, likely_unit
+from ehlpetsc.surfaces.samples import layout_of, samples
+
+
+def profile_faults(folder, surface, case):
+    """Faults of both surfaces' files.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the case file.
+    surface : object
+        What stands under `surface` in the case file.
+    case : Case or None
+        None where other tables are at fault: the profiles are then not held against the contact.
+
+    Returns
+    -------
+    list of str
+        ``key = value: what is wrong; allowed: ...``
+    """
+    faults = []
+    for side in ("fast", "slow"):
+        table = surface.get(side) if isinstance(surface, dict) else None
+        if isinstance(table, dict) and isinstance(table.get("file"), str) and table["file"]:
+            try:
+                _try(folder, table, case)
+            except ProfileError as error:
+                faults.append(f"surface.{side}.file = {show(table['file'])}: {error}")
+    return faults
+
+
+def _try(folder, table, case):
+    try:
+        spec = SurfaceProfile(**table)
+    except ValidationError:  # its keys are told; without them the file cannot be understood, only sought
+        spec = None
+    if spec is None:
+        return _sought(folder / table["file"])
+    given = samples(folder, spec)
+    if case is None:
+        return None
+    scales = Scales.of(case)
+    film = scales.h * expected_film(case, scales) if case.fluid else 0.0
+    fault = absurd(given, scales.a, scales.dx, scales.h, film)
+    if fault:
+        likely = likely_unit(given, layout_of(spec), spec.scale)
+        raise ProfileError(f"{fault}" + (f"; is it in another unit? write {likely}" if likely else ""))
+    return None
+
+
+def _sought(path):
+    try:
+        if path.is_file():
+            return
+    except (OSError, ValueError):  # a name no file system takes
+        pass
+    raise ProfileError(f"no such file: {path}")

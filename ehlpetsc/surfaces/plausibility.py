@@ -1,0 +1,74 @@
+"""Profiles that cannot be meant: absurd beside half width, film or mesh, for the most part a wrong unit."""
+
+import numpy as np
+
+from ehlpetsc.surfaces.profile_files import UNITS
+
+COARSE = 0.25  # half widths between two points: no asperity of such a profile lies in the contact
+HIGH = 0.1  # half widths: greatest Rq
+DEEP = 30.0  # times the elastic approach a^2/R, or the film: greatest Rq
+STEEP = 1.0  # greatest root mean square slope
+ATOM = 1e-11  # m: least Rq
+CELLS = 4  # of the mesh: least length
+TYPICAL_SPACING, TYPICAL_RQ = (5e-9, 3e-5), (3e-10, 2e-5)  # m: of measured profiles
+
+
+def absurd(given, a, dx, approach, film):
+    """What is absurd about a measured profile, in a sentence that names the likely unit; None if nothing is.
+
+    Parameters
+    ----------
+    given : ehlpetsc.surfaces.samples.Samples
+    a, dx : float
+        Half width and spacing of the mesh [m].
+    approach, film : float
+        a^2/R and expected film [m].
+    """
+    rq = float(given.z.std())
+    slope = float(np.sqrt(np.mean((np.diff(given.z) / np.diff(given.X)) ** 2)))
+    highest = min(HIGH * a, DEEP * max(approach, film))
+    if given.spacing > COARSE * a:
+        fault = f"points {_um(given.spacing)} apart beside a half width of {_um(a)}"
+    elif rq > highest:
+        fault = (
+            f"Rq {_um(rq)} beside a half width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
+        )
+    elif slope > STEEP:
+        fault = f"slopes of {slope:.3g} in the root mean square"
+    elif 0.0 < rq < ATOM:
+        fault = f"Rq {_um(rq)}, less than an atom"
+    elif given.length < CELLS * dx:
+        fault = f"{_um(given.length)} long beside cells of the mesh of {_um(dx)}"
+    else:
+        return None
+    return f"{fault}: not a profile of this contact"
+
+
+def likely_unit(given, layout, scale):
+    """Keys that would make a profile one as they are measured, e.g. ``unit = "um"``; None if none would.
+
+    Parameters
+    ----------
+    given : ehlpetsc.surfaces.samples.Samples
+    layout : ehlpetsc.surfaces.profile_files.Layout
+        As it was read.
+    scale : float
+        Factor on the heights that the user asked for.
+    """
+    now = (layout.unit or "m", layout.x_unit or layout.unit or "m")
+    rq, step = given.z.std() / (abs(scale) or 1.0) / UNITS[now[0]], given.spacing / UNITS[now[1]]
+    of_x = [now[1]] if layout.spacing is not None else list(UNITS)
+    pairs = [(one, other) for other in of_x for one in UNITS if (one, other) != now]
+    for one, other in sorted(pairs, key=lambda pair: pair[0] != pair[1]):
+        if _within(rq * UNITS[one], TYPICAL_RQ) and _within(step * UNITS[other], TYPICAL_SPACING):
+            alone = other == one or layout.spacing is not None
+            return f'unit = "{one}"' + ("" if alone else f' and x_unit = "{other}"')
+    return None
+
+
+def _within(value, limits):
+    return limits[0] <= value <= limits[1]
+
+
+def _um(length):
+    return f"{1e6 * length:.3g} um"

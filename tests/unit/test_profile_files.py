@@ -1,0 +1,206 @@
+"""Profile files as instruments write them: read, or refused with the key that settles it."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case import loading as case
+from ehlpetsc.errors import CaseError, ProfileError
+from ehlpetsc.surfaces.profile_files import Layout, read_profile
+
+CASES = Path(__file__).parents[2] / "cases"
+X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])
+
+
+def lines(form, x=1.0, z=1.0):
+    """The profile written with a format, in other units by factors."""
+    return "".join(form.format(a * x, b * z) for a, b in zip(X, Z, strict=True))
+
+
+def german(text):
+    return text.replace(".", ",")
+
+
+READABLE = {
+    "comma": ("# x [m], z [m]\n" + lines("{},{}\n"), {}),
+    "tab": (lines("{}\t{}\n"), {}),
+    "blanks and comments": ("x z\n" + lines(" {}   {}  # p\n"), {}),
+    "comma and blank": (lines("{:.7f}, {:.8f}\n"), {}),
+    "semicolon at the end": (lines("{};{};\n"), {}),
+    "decimal comma, semicolon": (german(lines("{:.7f};{:.8f}\n")), {}),
+    "decimal comma, tab": (german(lines("{:.7f}\t{:.8e}\n")), {}),
+    "decimal comma, blanks": (german(lines("{:.7f}  {:.8f}\n")), {}),
+    "header lines": ("Instrument 7\nDate: 1.2.2003\nx;z\n;\n" + lines("{};{}\n"), {}),
+    "header of numbers": ("4000\n0.8 2\n7\n" + lines("{}\t{}\n"), {"header_lines": 3}),
+    "BOM": ("\ufeff" + lines("{},{}\n"), {}),
+    "um": (lines("{},{}\n", 1e6, 1e6), {"unit": "um"}),
+    "mm and um in the header": (
+        "x [mm]\tz [\u00b5m]\n" + lines("{}\t{}\n", 1e3, 1e6),
+        {"unit": "um", "x_unit": "mm"},
+    ),
+    "heights alone": (lines("{1}\n", z=1e9), {"unit": "nm", "spacing": 2e-6}),
+    "heights alone, decimal comma": (
+        german(lines("{1:.4f}\n", z=1e6)),
+        {"unit": "um", "spacing": 2e-6, "decimal": ","},
+    ),
+    "several columns": (lines("1;{0};7;{1}\n"), {"columns": (2, 4)}),
+    "third column alone": (lines("1,{0},{1}\n"), {"columns": (3,), "spacing": 2e-6}),
+    "thousands": (lines("{0:,.1f};{1:,.3f}\n", 1e9, 1e9), {"decimal": ".", "unit": "nm"}),
+}
+
+
+@pytest.mark.parametrize(("text", "layout"), READABLE.values(), ids=READABLE)
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1", "utf-16"])
+def test_layouts_give_the_same_profile(tmp_path, text, layout, encoding):
+    path = tmp_path / "p.txt"
+    path.write_bytes(text.lstrip("\ufeff" if encoding != "utf-8" else "").encode(encoding))
+    x, z, notes = read_profile(path, Layout(**layout))
+    np.testing.assert_allclose(x, X, atol=1e-18)
+    np.testing.assert_allclose(z, Z, atol=1e-18)
+    assert notes == ()
+
+
+def test_falling_x_is_read_from_its_end(tmp_path):
+    path = tmp_path / "p.csv"
+    path.write_text("".join(reversed(lines("{},{}\n").splitlines(keepends=True))))
+    x, z, notes = read_profile(path)
+    np.testing.assert_allclose(x, X, atol=1e-18)
+    np.testing.assert_array_equal(z, Z)
+    assert notes == ("x falls in the file: read from its end",)
+
+
+def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
+    x = np.arange(400) * 1e-6
+    z = 1e-7 * np.sin(x / 3e-5)
+    words = [f"{v:.12e}" for v in z]
+    for gap, how in ((slice(50, 53), "nan"), (slice(200, 201), ""), (slice(0, 2), "---")):
+        words[gap] = [how] * (gap.stop - gap.start)
+    path = tmp_path / "p.csv"
+    path.write_text("".join(f"{a:.7e};{word}\n" for a, word in zip(x, words, strict=True)))
+    with pytest.raises(
+        ProfileError, match="6 heights missing, the longest gap 4e-06 m behind x = 4.9e-05; write"
+    ):
+        read_profile(path)
+    with pytest.raises(ProfileError, match="fill_gaps = 4e-06 or more"):
+        read_profile(path, Layout(fill_gaps=3.9e-6))
+    X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
+    assert len(X) == 398 and X[0] == 0.0  # the ends are not guessed
+    np.testing.assert_allclose(filled, z[2:], atol=1e-12)
+    assert notes == ("6 missing heights filled or, at the ends, cut off; longest gap 4 um",)
+
+
+REFUSED = {
+    "several columns": (lines("1;{0};{1}\n"), {}, "3 columns; write columns = \\[1, 2\\]"),
+    "heights alone": (lines("{1}\n"), {}, "heights alone: write spacing"),
+    "decimal or separator": (german(lines("{1:.9f}\n")), {"spacing": 1e-6}, 'decimal = ","'),
+    "both signs": (lines("{0:,.1f};{1:,.3f}\n", 1e9, 1e9), {}, 'write decimal = "," or decimal = "."'),
+    "no such column": (lines("{},{}\n"), {"columns": (1, 3)}, "columns = \\[1, 3\\]: the file has 2"),
+    "unit in the header": (
+        "x [mm];z [um]\n" + lines("{};{}\n"),
+        {},
+        'write unit = "um" .* and x_unit = "mm"',
+    ),
+    "header of numbers": ("4000\n" + lines("{},{}\n"), {}, "line 1: 1 numbers, .* header_lines = 1"),
+    "text in it": (lines("{},{}\n") + "end\n", {}, "line 7: 'end'; allowed: numbers alone below"),
+    "no numbers": ("a\nb\n", {}, "0 points"),
+    "few points": ("0,0\n1,1\n", {}, "2 points; allowed: at least 4"),
+    "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, "point 7 is not a finite number"),
+    "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, "point 7 is not a finite number"),
+    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "stands twice; allowed: every x once, or spacing"),
+}
+
+
+@pytest.mark.parametrize(("text", "layout", "told"), REFUSED.values(), ids=REFUSED)
+def test_a_refusal_says_how_to_write_it(tmp_path, text, layout, told):
+    path = tmp_path / "p.csv"
+    path.write_text(text)
+    with pytest.raises(ProfileError, match=told) as caught:
+        read_profile(path, Layout(**layout))
+    assert "\n" not in str(caught.value)
+
+
+def measured(tmp_path, x=1.0, z=1.0):
+    """A measured profile in another unit beside a case."""
+    table = np.loadtxt(CASES / "profiles" / "alicona_meander_profile.csv", delimiter=",")
+    np.savetxt(tmp_path / "p.csv", table * (x, z), delimiter=",")
+    text = (CASES / "table1_smooth.toml").read_text() + "\n[surface.slow]\nfile = 'p.csv'\n"
+    (tmp_path / "c.toml").write_text(text)
+    return tmp_path / "c.toml"
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "keys", "told"),
+    [
+        (1e3, 1e3, (), 'unit = "mm"'),
+        (1e3, 1e6, (), 'unit = "um" and x_unit = "mm"'),
+        (1, 1e6, (), "unit = "),
+        (1, 1e3, (), 'unit = "mm" and x_unit = "m"'),
+        (1e3, 1e3, ("cutoff=0.8e-3",), "at least 2 spacings"),
+        (1e6, 1e6, ("unit='nm'",), 'unit = "um"'),
+        (1, 1, ("scale=1e4",), "not a profile of this contact"),
+    ],
+)
+def test_a_profile_absurd_beside_the_contact_names_the_likely_unit(tmp_path, x, z, keys, told):
+    path = measured(tmp_path, x, z)
+    with pytest.raises(CaseError, match=told) as caught:
+        case.load(path, [f"surface.slow.{key}" for key in keys])
+    (fault,) = caught.value.faults
+    assert "surface.slow.file" in fault
+
+
+def test_the_unit_named_is_the_one_to_write(tmp_path):
+    path = measured(tmp_path, 1e3, 1e6)
+    case.load(path, ["surface.slow.unit='um'", "surface.slow.x_unit='mm'"])
+    case.load(measured(tmp_path))
+    with pytest.raises(CaseError, match='unit = "feet": allowed'):
+        case.load(path, ["surface.slow.unit='feet'"])
+
+
+def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
+    path = tmp_path / "p.x3p"
+    path.write_bytes(b"PK")
+    with pytest.raises(ProfileError, match="'.x3p' needs the package SurfaceTopography"):
+        read_profile(path)
+
+
+def test_other_formats_come_through_surface_topography(tmp_path, monkeypatch):
+    class Topography:
+        dim = 2
+
+        def to_unit(self, unit):
+            assert unit == "m"
+            return self
+
+        def positions_and_heights(self):
+            x, y = np.meshgrid(np.arange(6) * 1e-6, np.arange(3) * 1e-6, indexing="ij")
+            return x, y, 0.1 * x + y
+
+    package = type(sys)("SurfaceTopography")
+    package.read_topography = lambda path: Topography()
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+    path = tmp_path / "p.sur"
+    path.write_bytes(b"")
+    x, z, _ = read_profile(path)
+    np.testing.assert_allclose(x, np.arange(6) * 1e-6)
+    np.testing.assert_allclose(z, 0.1 * x + 1e-6)  # the middle one of three traces
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of the formats it knows")],
+)
+def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeypatch, said, told):
+    def read_topography(path):
+        raise RuntimeError(said)
+
+    package = type(sys)("SurfaceTopography")
+    package.read_topography = read_topography
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+    path = tmp_path / "p.x3p"
+    path.write_bytes(b"PK nonsense")
+    with pytest.raises(ProfileError) as caught:
+        read_profile(path)
+    assert str(caught.value) == f"SurfaceTopography cannot read it: {told}"
