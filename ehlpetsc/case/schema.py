@@ -16,6 +16,7 @@ FIELDS = (
     "shear_stress_slow",
     "in_contact",
 )
+BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
 MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
 
 Modulus = confloat(ge=1e6, le=1e18)
@@ -72,7 +73,27 @@ class Contact(Table):
     youngs_modulus: tuple[Modulus, Modulus] = Field(..., unit="Pa", description="of surface fast and slow")
     poisson_ratio: tuple[Ratio, Ratio] = Field(..., description="of surface fast and slow")
     boundary_friction: float = Field(0.0, ge=0, le=2, description="|q|/p at dry nodes")
-    minimum_film: float = Field(0.0, ge=0, le=1e-6, unit="m", description="the bound of the film thickness")
+    model: Literal["direct", "mixed"] = Field(
+        "direct", description="the film's bound replaces Reynolds; or oil and solids carry side by side"
+    )
+    boundary_film: float | None = Field(
+        None,
+        ge=1e-11,
+        le=1e-6,
+        unit="m",
+        description="mixed contact: film below which the solids carry [10 nm]",
+    )
+    minimum_film: float = Field(
+        0.0, ge=0, le=1e-6, unit="m", description="direct contact: the bound of the film thickness"
+    )
+
+    @validator("boundary_film", always=True)
+    def _of_mixed_contact(cls, value, values):
+        if values.get("model") != "mixed":
+            if value is not None:
+                raise ValueError("for mixed contact")
+            return None
+        return BOUNDARY_FILM if value is None else value
 
 
 class Fluid(Table):

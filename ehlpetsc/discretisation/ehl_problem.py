@@ -1,179 +1,173 @@
-r"""The discrete contact problem: one interleaved system for q, h and the approach h00.
+r"""The discrete contact problem: one interleaved system for q, w and the approach h00.
 
-Unknowns (q_0, h_0, q_1, h_1, ..., h00); rows in the same places, as SNESVI pairs row with unknown:
+Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact_model`; rows in the same
+places, as SNESVI pairs row with unknown:
 
-* in q's place the deflection in second differences,
-  :math:`\frac{\pi}{\Delta x}(\delta^2h-\Delta x^2-\delta^2\phi)-\sum_kf_kp_{i+k}=0`
-  (Holmes et al. 2005, eq. (2)); at the two end nodes the whole integral with h00;
-* in h's place Reynolds, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, or p itself in a dry
-  contact, both complementary to the bound h >= 0;
+* in q's place the deflection, :mod:`ehlpetsc.discretisation.deflection`;
+* in w's place Reynolds, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact complementary
+  to the bound of the film; in a dry contact p itself, complementary likewise, or no oil in mixed contact;
 * last the load, :math:`\sum p\,\Delta x=\pi/2`.
 
-The matrix holds the near field of the deflection, the residual and the operator of the Krylov method
-the whole of it.
+Nothing here keeps a state: a step's inputs go in as one frozen record, residual and derivatives come out
+as another.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from ehlpetsc.discretisation import elasticity
-from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL
-from ehlpetsc.discretisation.reynolds import Reynolds, full_of_oil
+from ehlpetsc.discretisation.contact_model import contact_model
+from ehlpetsc.discretisation.deflection import Deflection
+from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, flow_product
+from ehlpetsc.discretisation.interleaving import both_of, firsts, seconds
+from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 
-LEAK = 1e-3  # of dp/dq at cavitated nodes, in the preconditioner alone: a pivot that is never zero
+
+@dataclass(frozen=True)
+class StepInputs:
+    """What a solve is given beside its first guess.
+
+    Attributes
+    ----------
+    phi : ndarray, shape (nx,)
+        What the roughness adds to the gap, in a^2/R.
+    history : reynolds.FilmHistory or None
+        Previous time levels; None: steady.
+    fluid : case.Fluid or None
+        None: dry.
+    inlet_film : float or None
+        Oil given at the inlet in a^2/R; None: flooded.
+    """
+
+    phi: np.ndarray
+    history: FilmHistory | None
+    fluid: object
+    inlet_film: float | None
 
 
-class ContactProblem:
-    """Residual and Jacobian rows of the nodes first .. last-1.
+@dataclass(frozen=True)
+class Evaluation:
+    """Residual and derivatives at one state.
+
+    Attributes
+    ----------
+    relations : contact_model.Relations
+    residual : ndarray
+        Local rows, interleaved; shape of the local part of the vector.
+    flow : ndarray, shape (local nodes, 8)
+        Derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1.
+    """
+
+    relations: tuple
+    residual: np.ndarray
+    flow: np.ndarray
+
+
+class EHLProblem:
+    """Residual and derivatives of the nodes first .. last-1.
 
     Parameters
     ----------
     case : case.Case
     scales : scales.Scales
     film_scale : float
-        Expected film in a^2/R.
+        What Reynolds' rows are divided by, about the expected film, in a^2/R.
     first, last : int
         Local nodes; the rank that owns the last one owns the load row.
-
-    Attributes
-    ----------
-    gap : ndarray, shape (nx,)
-        What the roughness adds to the gap, in a^2/R; set before each solve.
-    ends : list of int
-        Local ones of the two end nodes.
-    past : reynolds.Storage or None
-        Previous time levels; None: steady.
-    flow_columns, flow_values : ndarray, shape (local nodes, 8)
-        Entries of the flow rows of the last residual: q and h of the nodes i-2 .. i+1; column -1: none.
     """
 
     def __init__(self, case, scales, film_scale, first, last):
-        self.n, self.x = scales.nx, scales.x
+        self.n, self.x, self.scales = scales.nx, scales.x, scales
         self.dx = self.x[1] - self.x[0]
-        self.first, self.last = first, last
-        self.near = min(case.mesh.near_field, self.n - 1)
-        self.dry = case.fluid is None
+        self.first, self.last, self.local = first, last, last - first
+        self.fluid, self.dry = case.fluid, case.fluid is None
         self.film_scale = film_scale
-        if self.dry:
-            own = 2 * np.arange(first, last, dtype=np.int32)
-            self.flow_columns = np.full((last - first, 2 * STENCIL), -1, dtype=np.int32)
-            self.flow_columns[:, OWN], self.flow_columns[:, OWN + 1] = own, own + 1
-            self.flow_values = np.zeros(self.flow_columns.shape)
-            self.flow_values[:, OWN] = 1.0
-        else:
-            self.reynolds = Reynolds(case.fluid, scales, film_scale, first, last)
-            self.flow_columns = self.reynolds.columns
-        self.gap, self.past = np.zeros(self.n), None
-        self._kernels()
-        self._pattern()
-        self._deflection_rows()
+        self.model = contact_model(case, scales, film_scale)
+        self.deflection = Deflection(self.n, self.dx, first, last)
+        self.reynolds = None if self.dry else Reynolds(scales, film_scale, first, last)
+        self.inlet_film = None
+        if not self.dry and case.fluid.inlet_film is not None:
+            self.inlet_film = case.fluid.inlet_film / scales.h
+        self.flow_columns = self._dry_columns() if self.dry else self.reynolds.columns
 
     @property
     def load_is_local(self):
+        """Whether this rank has the load's row."""
         return self.last == self.n
 
-    def _kernels(self):
-        n, near = self.n, self.near
-        self.curvature = elasticity.curvature_kernel(n)
-        self.exact = elasticity.SymmetricToeplitz(self.curvature, self.first, self.last)
-        far = self.curvature.copy()
-        far[: near + 1] = 0.0
-        self.far = elasticity.SymmetricToeplitz(far, self.first, self.last)
-        self.logarithm = elasticity.deflection_kernel(n) - np.log(self.dx)
-        self.end_scale = 1.0 / self.dx
-        self.inside = np.arange(max(self.first, 1), min(self.last, n - 1))
-        self.ends = [end for end in (0, n - 1) if self.first <= end < self.last]
+    def inputs(self, phi=None, history=None):
+        """Inputs of a step of this case; smooth and steady by default."""
+        phi = np.zeros(self.n) if phi is None else phi
+        return StepInputs(phi, history, self.fluid, self.inlet_film)
 
-    def pressure(self, q):
-        """Pressure in p0."""
-        return q if self.dry else np.maximum(q, 0.0)
+    def film(self, pressure, h00, phi):
+        """Separation by the integral form, in a^2/R."""
+        return h00 + 0.5 * self.x**2 + phi + self.deflection.integral(pressure)
 
-    def slope(self, q):
-        """dp/dq."""
-        return np.ones_like(q) if self.dry else full_of_oil(q) * 1.0
-
-    def deflection(self, p):
-        r"""Elastic deflection :math:`-\frac1\pi\int p\ln|x-s|ds` at every node, in a^2/R."""
-        return (self.dx / np.pi) * elasticity.SymmetricToeplitz(self.logarithm)(p)
-
-    def film(self, p, h00):
-        """Film of the integral form, in a^2/R."""
-        return h00 + 0.5 * self.x**2 + self.gap + self.deflection(p)
-
-    def end_row(self, node):
-        """Under every pressure in the deflection row of an end node, shape (nx,)."""
-        kernel = self.logarithm if node == 0 else self.logarithm[::-1]
-        return (-self.end_scale * self.dx / np.pi) * kernel
-
-    def residual(self, q, h, h00):
-        """Local rows, interleaved, of the whole state; shape of the local part of the vector."""
-        p = self.pressure(q)
-        out = np.empty(2 * (self.last - self.first) + self.load_is_local)
-        i = self.inside
-        fixed = h - 0.5 * self.x**2 - self.gap  # the parabola's second difference is dx^2 exactly
-        bend = (np.pi / self.dx) * (fixed[i - 1] - 2 * fixed[i] + fixed[i + 1])
-        out[2 * (i - self.first)] = bend - self.exact(p)[i - self.first]
-        for end in self.ends:
-            rigid = self.end_scale * (fixed[end] - h00)
-            out[2 * (end - self.first)] = rigid + self.end_row(end) @ p
+    def content(self, q, w):
+        r"""Film content :math:`\rho h(1-\theta)` of every node, None without oil."""
         if self.dry:
-            flow = p[self.first : self.last]
+            return None
+        return self.reynolds.content(q, self.model.relations(q, w).film, self.fluid)[0]
+
+    def evaluate(self, q, w, h00, inputs):
+        """Local rows and their derivatives at one state.
+
+        Parameters
+        ----------
+        q, w : ndarray, shape (nx,)
+        h00 : float
+        inputs : StepInputs
+
+        Returns
+        -------
+        Evaluation
+        """
+        relations = self.model.relations(q, w)
+        residual = np.empty(2 * self.local + self.load_is_local)
+        # the parabola's second difference is dx^2 exactly
+        separation = relations.film - 0.5 * self.x**2 - inputs.phi
+        deflection = self.deflection.rows(separation, relations.pressure, h00)
+        firsts(residual, self.local)[:] = deflection
+        if self.dry:
+            imbalance, flow = q[self.first : self.last], self._dry_flow()
         else:
-            flow, self.flow_values = self.reynolds.evaluate(q, h, self.past)
-        out[1 : 2 * (self.last - self.first) : 2] = flow
+            imbalance, flow = self.reynolds.evaluate(q, relations.film, inputs)
+        seconds(residual, self.local)[:] = imbalance
         if self.load_is_local:
-            out[-1] = self.dx * p.sum() - 0.5 * np.pi
-        return out
+            residual[-1] = self.dx * relations.pressure.sum() - 0.5 * np.pi
+        return Evaluation(relations, residual, flow)
 
-    def _pattern(self):
-        """Compressed rows of the local part: the deflection's, Reynolds', the load's."""
-        n, near = self.n, self.near
-        rows = []
-        for i in range(self.first, self.last):
-            nodes = np.arange(max(i - near, 0), min(i + near, n - 1) + 1)
-            films = [i] if i in (0, n - 1) else [i - 1, i, i + 1]
-            extra = [2 * n] if i in (0, n - 1) else []
-            rows.append(np.concatenate([2 * nodes, 2 * np.array(films) + 1, extra]))
-            flow = self.flow_columns[i - self.first]
-            rows.append(flow[flow >= 0])
+    def product(self, relations, flow, v_q, v_w, v_h00):
+        """The whole Jacobian times a vector, in the local rows.
+
+        Parameters
+        ----------
+        relations, flow
+            Of the state, as in :class:`Evaluation`.
+        v_q, v_w : ndarray, shape (nx,)
+        v_h00 : float
+
+        Returns
+        -------
+        ndarray
+            Interleaved, shape of the local part of the vector.
+        """
+        dp, dh = relations.p_q * v_q + relations.p_w * v_w, relations.h_w * v_w
+        rows = np.empty(2 * self.local + self.load_is_local)
+        firsts(rows, self.local)[:] = self.deflection.rows(dh, dp, v_h00)
+        flow_product(flow, v_q, dh, self.first, seconds(rows, self.local))
         if self.load_is_local:
-            rows.append(np.append(2 * np.arange(n), 2 * n))
-        self.pattern_rows = np.concatenate([[0], np.cumsum([len(r) for r in rows])]).astype(np.int32)
-        self.pattern_columns = np.concatenate(rows).astype(np.int32)
+            rows[-1] = self.dx * dp.sum()
+        return rows
 
-    def _deflection_rows(self):
-        """Columns and values of the local deflection rows in oil, near field; column -1: no entry."""
-        n, near = self.n, self.near
-        i = np.arange(self.first, self.last)[:, None]
-        distance = np.arange(-near, near + 1)
-        self.near_nodes = np.clip(i + distance, 0, n - 1)
-        pressures = np.where(self.near_nodes == i + distance, 2 * self.near_nodes, -1)
-        by_pressure = np.tile(-self.curvature[np.abs(distance)], (len(i), 1))
-        films = i + np.array([-1, 0, 1])
-        films = np.where((films >= 0) & (films < n), 2 * films + 1, -1)
-        by_film = np.tile((np.pi / self.dx) * np.array([1.0, -2.0, 1.0]), (len(i), 1))
-        approach, by_approach = np.full((len(i), 1), -1), np.full((len(i), 1), -self.end_scale)
-        for end in self.ends:
-            k = end - self.first
-            by_pressure[k] = self.end_row(end)[self.near_nodes[k]]
-            films[k], by_film[k], approach[k] = (-1, 2 * end + 1, -1), self.end_scale, 2 * n
-        self.deflection_columns = np.hstack([pressures, films, approach]).astype(np.int32)
-        self.in_oil = np.hstack([by_pressure, by_film, by_approach])
+    def _dry_columns(self):
+        own = both_of(np.arange(self.first, self.last, dtype=np.int32))
+        columns = np.full((self.local, 2 * STENCIL), -1, dtype=np.int32)
+        columns[:, OWN : OWN + 2] = own
+        return columns
 
-    def deflection_rows(self, slope, rows):
-        """Values of some local deflection rows at ``deflection_columns``, near field; `slope` is dp/dq."""
-        values, width = self.in_oil[rows], 2 * self.near + 1
-        values[:, :width] *= slope[self.near_nodes[rows]]
-        values[:, self.near] += np.where(slope[self.first + rows] > 0.0, 0.0, LEAK)
-        return values
-
-    def near_rows(self, changed):
-        """Local rows of the near field that `changed`, bool of shape (nx,), has nodes of."""
-        return np.flatnonzero(changed[self.near_nodes].any(axis=1))
-
-    def far_product(self, v_p):
-        """What the matrix lacks of the deflection rows: local nodes x (row of v_p = dp)."""
-        local = -self.far(v_p)
-        for end in self.ends:
-            far = slice(self.near + 1, self.n) if end == 0 else slice(0, self.n - 1 - self.near)
-            local[end - self.first] = self.end_row(end)[far] @ v_p[far]
-        return local
+    def _dry_flow(self):
+        flow = np.zeros((self.local, 2 * STENCIL))
+        flow[:, OWN] = 1.0
+        return flow

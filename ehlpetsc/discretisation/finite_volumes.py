@@ -59,7 +59,7 @@ def extrapolated(m, behind, k):
 
 
 @compiled
-def flux_through(at, left, per_length, per_film, stress, slip):
+def flux_through(at, left, per_length, per_film, eyring, slip):
     """Mass flux through the face right of node `left`, its derivatives by (q, h) behind, left and right.
 
     Parameters
@@ -68,7 +68,7 @@ def flux_through(at, left, per_length, per_film, stress, slip):
     left : int
     per_length, per_film : float
         p0 over the spacing [Pa/m]; a^2/R [m].
-    stress, slip : float
+    eyring, slip : float
         As of :func:`ehlpetsc.physics.rheology.mobility`.
 
     Returns
@@ -77,16 +77,16 @@ def flux_through(at, left, per_length, per_film, stress, slip):
     """
     right, behind = left + 1, max(left - 1, 0)
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
-    slope = per_length * (at[P, right] - at[P, left])
-    flow_l, h_l, slope_l, eta_l = mobility(at[H, left], slope, at[FLUIDITY, left], stress, slip)
-    flow_r, h_r, slope_r, eta_r = mobility(at[H, right], slope, at[FLUIDITY, right], stress, slip)
-    rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * slope
+    gradient = per_length * (at[P, right] - at[P, left])
+    flow_l, h_l, gradient_l, eta_l = mobility(at[H, left], gradient, at[FLUIDITY, left], eyring, slip)
+    flow_r, h_r, gradient_r, eta_r = mobility(at[H, right], gradient, at[FLUIDITY, right], eyring, slip)
+    rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * flow_l + rho_r * flow_r)
-    by_slope = (mean + half * (rho_l * slope_l + rho_r * slope_r)) * per_length
-    by_p_l = half * (at[RHO_P, left] * flow_l + at[LN_ETA_P, left] * rho_l * eta_l) - by_slope
-    by_p_r = half * (at[RHO_P, right] * flow_r + at[LN_ETA_P, right] * rho_r * eta_r) + by_slope
+    by_difference = (mean + half * (rho_l * gradient_l + rho_r * gradient_r)) * per_length
+    by_p_l = half * (at[RHO_P, left] * flow_l + at[LN_ETA_P, left] * rho_l * eta_l) - by_difference
+    by_p_r = half * (at[RHO_P, right] * flow_r + at[LN_ETA_P, right] * rho_r * eta_r) + by_difference
     return (
-        couette - mean * slope,
+        couette - mean * gradient,
         by_behind * at[M_Q, behind],
         by_behind * at[M_H, behind],
         by_left * at[M_Q, left] - by_p_l * at[DP, left],
@@ -97,7 +97,7 @@ def flux_through(at, left, per_length, per_film, stress, slip):
 
 
 @compiled
-def balance(at, first, law, then, past, k, rate, residual, values):
+def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
     """Fill in the cells' mass balance, outflow less inflow and what is stored, and its derivatives.
 
     Parameters
@@ -107,24 +107,46 @@ def balance(at, first, law, then, past, k, rate, residual, values):
     first : int
         Node of the first cell.
     law : tuple of 4 floats
-        `per_length`, `per_film`, `stress` and `slip` of :func:`flux_through`.
-    then, past : ndarray, shape (cells,)
-        m and w of :class:`ehlpetsc.discretisation.reynolds.Storage`.
+        `per_length`, `per_film`, `eyring` and `slip` of :func:`flux_through`.
+    then, carried : ndarray, shape (cells,)
+        m and what is carried over, of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
     k, rate : float
         Of the same, and the spacing over its step; 0: steady.
-    residual : ndarray, shape (cells,)
-    values : ndarray, shape (cells, 8)
+    imbalance : ndarray, shape (cells,)
+    derivatives : ndarray, shape (cells, 8)
         With respect to q and h of the nodes i-2 .. i+1.
     """
     inflow = flux_through(at, first - 1, *law)
-    for i in range(len(residual)):
-        node, row = first + i, values[i]
+    for i in range(len(imbalance)):
+        node, row = first + i, derivatives[i]
         outflow = flux_through(at, node, *law)
         stored, by_m, _ = positive_extrapolation(at[M, node], then[i], k)
-        residual[i] = outflow[0] - inflow[0] + (stored - past[i]) * rate
+        imbalance[i] = outflow[0] - inflow[0] + (stored - carried[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]
         row[2], row[3] = outflow[1] - inflow[3], outflow[2] - inflow[4]
         row[4] = outflow[3] - inflow[5] + by_m * at[M_Q, node] * rate
         row[5] = outflow[4] - inflow[6] + by_m * at[M_H, node] * rate
         row[6], row[7] = outflow[5], outflow[6]
         inflow = outflow
+
+
+@compiled
+def flow_product(flow, v_q, v_h, first, out):
+    """Derivatives of Reynolds' rows times a vector.
+
+    Parameters
+    ----------
+    flow : ndarray, shape (rows, 8)
+        By q and h of the nodes i-2 .. i+1; zero where there is no such node.
+    v_q, v_h : ndarray, shape (nx,)
+    first : int
+        Node of the first row.
+    out : ndarray, shape (rows,)
+    """
+    last = len(v_q) - 1
+    for row in range(len(flow)):
+        total = 0.0
+        for k in range(4):
+            node = min(max(first + row + k - 2, 0), last)
+            total += flow[row, 2 * k] * v_q[node] + flow[row, 2 * k + 1] * v_h[node]
+        out[row] = total

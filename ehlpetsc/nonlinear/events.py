@@ -4,7 +4,7 @@ from petsc4py import PETSc
 
 RESIDUAL = PETSc.Log.Event("EHL residual")
 ASSEMBLY = PETSc.Log.Event("EHL assembly")
-FAR_FIELD = PETSc.Log.Event("EHL far field")
+PRODUCT = PETSc.Log.Event("EHL product")
 FACTOR = PETSc.Log.Event("EHL factor")
 BACK_SOLVE = PETSc.Log.Event("EHL back solve")
 ROUGHNESS = PETSc.Log.Event("EHL roughness")

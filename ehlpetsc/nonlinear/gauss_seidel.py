@@ -8,7 +8,7 @@ R and E with the newest values of all other nodes, and solved for the pair (eq. 
 below its bound, it is put there and p follows from the deflection equation alone (eq. (11)). Nothing is
 assumed about which nodes touch.
 
-Residual and coefficients are those of :class:`ehlpetsc.discretisation.ehl_problem.ContactProblem`. A and
+Residual and coefficients are those of :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`. A and
 B are derivatives of the Reynolds rows at the state before the last sweeps, so that sweeps solve what
 Newton's method linearises; C and D are exact. Between two evaluations of A and B
 
@@ -34,7 +34,8 @@ from petsc4py import PETSc
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation import elasticity
-from ehlpetsc.discretisation.ehl_problem import ContactProblem
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.interleaving import seconds
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
 
@@ -49,7 +50,7 @@ STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both 
 
 
 @compiled(fastmath=True)
-def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, relaxation):
+def sweep(q, h, p, q_then, h_then, imbalance, flow, bend, kernel, stretch, bound, relaxation):
     r"""Update every pair once, in the direction of flow, in place.
 
     Parameters
@@ -58,7 +59,7 @@ def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, 
         Newest values; the first and the last h, and the first q, are left alone.
     q_then, h_then : ndarray, shape (n,)
         State at the last evaluation.
-    flow, flow_by : ndarray, shape (n,), (n, 8)
+    imbalance, flow : ndarray, shape (n,), (n, 8)
         Reynolds rows there and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
     bend : ndarray, shape (n,)
         What gap and distant pressures contribute to E.
@@ -73,12 +74,12 @@ def sweep(q, h, p, q_then, h_then, flow, flow_by, bend, kernel, stretch, bound, 
     n, near = len(q), len(kernel) // 2
     c, d = kernel[near], 2.0 * stretch
     for i in range(1, n):
-        a, b = flow_by[i, 4], flow_by[i, 5]
-        r = a * q_then[i] + b * h_then[i] - flow[i]
+        a, b = flow[i, 4], flow[i, 5]
+        r = a * q_then[i] + b * h_then[i] - imbalance[i]
         for k in range(4):
             j = i + k - 2
             if k != 2 and 0 <= j < n:
-                r -= flow_by[i, 2 * k] * (q[j] - q_then[j]) + flow_by[i, 2 * k + 1] * (h[j] - h_then[j])
+                r -= flow[i, 2 * k] * (q[j] - q_then[j]) + flow[i, 2 * k + 1] * (h[j] - h_then[j])
         if i == n - 1:
             q[i] = limited((r - b * h[i]) / a, q_then[i])
             p[i] = max(q[i], 0.0)
@@ -112,15 +113,15 @@ def limited(q, then):
     return min(max(q, OIL_KEPT * (1.0 + then) - 1.0), REFILLED)
 
 
-class Sweeper:
-    """Solves one scene by sweeps; stands in for :class:`ehlpetsc.nonlinear.newton.Solver`.
+class GaussSeidelSolver:
+    """Solves one scene by sweeps; stands in for :class:`ehlpetsc.nonlinear.newton.NewtonSolver`.
 
     Stops at the same residual, that of ``-snes_atol``.
 
     Parameters
     ----------
     case, scales, film_scale
-        As in :class:`ehlpetsc.discretisation.ehl_problem.ContactProblem`.
+        As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
 
     Attributes
     ----------
@@ -131,22 +132,21 @@ class Sweeper:
     start_iterations = EVALUATIONS
 
     def __init__(self, case, scales, film_scale):
-        self.problem = p = ContactProblem(case, scales, film_scale, 0, scales.nx)
-        self.bound = case.contact.minimum_film / scales.h
+        self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
+        self.bound, self.deflection = self.problem.model.bound, self.problem.deflection
         self.tolerance = PETSc.Options().getReal("snes_atol", 1e-7)
-        near = min(NEAR, p.n - 1)
-        self.kernel = np.concatenate([p.curvature[near:0:-1], p.curvature[: near + 1]])
-        distant = p.curvature.copy()
+        curvature, near = self.deflection.curvature, min(NEAR, scales.nx - 1)
+        self.kernel = np.concatenate([curvature[near:0:-1], curvature[: near + 1]])
+        distant = curvature.copy()
         distant[: near + 1] = 0.0
         self.distant = elasticity.SymmetricToeplitz(distant)
-        self.stretch = np.pi / p.dx
         self.sweeps = 0
 
     def flow_rows(self):
         """F of the last solution at every node, shape (nx,)."""
-        return self.flow
+        return self.imbalance
 
-    def solve(self, q, h, h00, max_it=None):
+    def solve(self, q, h, h00, inputs, max_it=None):
         """Solve from the given start, with `max_it` evaluations instead of the usual number at most.
 
         Returns
@@ -163,57 +163,46 @@ class Sweeper:
         q, h = q.copy(), np.maximum(h, self.bound)
         most = max_it or EVALUATIONS
         for iteration in range(most):
-            p = self.problem.pressure(q)
-            h00, still_open = self._correct(p, h, h00)
-            norm = self._evaluate(q, h, h00)
+            p = np.maximum(q, 0.0)
+            h00, still_open = self._correct(p, h, h00, inputs.phi)
+            norm = self._evaluate(q, h, h00, inputs)
             if norm < self.tolerance:
                 return q, h, h00, iteration
             if not np.isfinite(norm):
                 raise SolveFailed("NOT_FINITE", iteration)
-            self._sweep(q, h, p, still_open)
+            self._sweep(q, h, p, still_open, inputs)
         raise SolveFailed("MAX_IT", most)
 
-    def _correct(self, p, h, h00):
+    def _correct(self, p, h, h00, phi):
         """Balance the load by h00; put h of the open gap and the ends to the whole integral, in place."""
         h00 += APPROACH / STIFFNESS * (self.problem.dx * p.sum() - 0.5 * np.pi)
         gap_is_open = (h > OPEN * self.problem.film_scale) & (p < LOW)
         gap_is_open[[0, -1]] = True
-        h[gap_is_open] = np.maximum(self.problem.film(p, h00)[gap_is_open], self.bound)
+        h[gap_is_open] = np.maximum(self.problem.film(p, h00, phi)[gap_is_open], self.bound)
         return h00, gap_is_open
 
-    def _evaluate(self, q, h, h00):
+    def _evaluate(self, q, h, h00, inputs):
         """Residual and coefficients at a state; the norm of what is not complementary."""
-        problem = self.problem
         with np.errstate(over="ignore", invalid="ignore"):
-            rows = problem.residual(q, h, h00)
-            self.flow = rows[1:-1:2].copy()
-            self.flow_by = problem.flow_values
-            rows[1:-1:2][(h <= self.bound) & (self.flow > 0.0)] = 0.0
+            evaluation = self.problem.evaluate(q, h, h00, inputs)
+            rows, self.flow = evaluation.residual, evaluation.flow
+            imbalance = seconds(rows, self.problem.n)
+            self.imbalance = imbalance.copy()
+            imbalance[(h <= self.bound) & (self.imbalance > 0.0)] = 0.0
             return np.linalg.norm(rows)
 
-    def _sweep(self, q, h, p, gap_is_open):
-        problem, steady = self.problem, self.problem.past is None
+    def _sweep(self, q, h, p, gap_is_open, inputs):
+        problem, steady, stretch = self.problem, inputs.history is None, self.deflection.stretch
         sweeps = max(1, round((STEADY_REACH if steady else REACH) / problem.dx))
-        fixed = 0.5 * problem.x**2 + problem.gap
+        shape = 0.5 * problem.x**2 + inputs.phi
         bend = self.distant(p)
-        bend[1:-1] += self.stretch * (fixed[:-2] - 2.0 * fixed[1:-1] + fixed[2:])
+        bend[1:-1] += stretch * (shape[:-2] - 2.0 * shape[1:-1] + shape[2:])
         relaxation = np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM)
         relaxation[q <= 0.0] = 1.0
         then = q.copy(), h.copy()
-        q[0] -= self.flow[0] / self.flow_by[0, 4]
+        q[0] -= self.imbalance[0] / self.flow[0, 4]
         p[0] = max(q[0], 0.0)
+        coefficients = self.imbalance, self.flow, -bend, self.kernel, stretch, self.bound, relaxation
         for _ in range(sweeps):
-            sweep(
-                q,
-                h,
-                p,
-                *then,
-                self.flow,
-                self.flow_by,
-                -bend,
-                self.kernel,
-                self.stretch,
-                self.bound,
-                relaxation,
-            )
+            sweep(q, h, p, *then, *coefficients)
         self.sweeps += sweeps

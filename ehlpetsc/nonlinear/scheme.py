@@ -1,8 +1,8 @@
 """Which iteration solves the equations of a time step: ``-ehl_scheme``."""
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.gauss_seidel import Sweeper
-from ehlpetsc.nonlinear.newton import Solver
+from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
+from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import text_of
 
 ALLOWED = ("newton", "sweep")
@@ -28,10 +28,12 @@ def solver_of(case, scales, film_scale, comm, options):
     Raises
     ------
     options.UsageError
-        Sweeps are asked for, but the contact is dry.
+        Sweeps are asked for, but the contact is dry or mixed.
     """
     if scheme(options) == "newton":
-        return Solver(case, scales, film_scale, comm)
+        return NewtonSolver(case, scales, film_scale, comm)
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
-    return Sweeper(case, scales, film_scale)
+    if case.contact.model == "mixed":
+        raise UsageError("-ehl_scheme sweep: the paper's sweeps know direct contact alone; leave it out")
+    return GaussSeidelSolver(case, scales, film_scale)

@@ -49,3 +49,34 @@ def let_overlaps_touch(now, step, bound):
     for i in range(len(now)):
         if now[i, 1] - step[i, 1] < bound:
             step[i, 0] = min(step[i, 0], now[i, 0] - REFILLED)
+
+
+@compiled
+def mixed_change(now, step, stiffness):
+    """Largest change of total pressure in mixed contact, what crosses between gap and contact held there."""
+    largest = 0.0
+    for i in range(len(now)):
+        q, w, new_q, new_w = now[i, 0], now[i, 1], now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
+        solids = 0.0 if w >= 0.0 else stiffness * (max(-new_w, 0.0) + w)
+        largest = max(largest, abs(max(new_q, 0.0) - max(q, 0.0) + solids))
+    return largest
+
+
+@compiled
+def cross_gently(now, step, stiffness, opened):
+    """Change steps in place where solids come to touch or part: both stop just beyond.
+
+    Solids that touch begin with the pressure `REFILLED`; those that part with at most the film `opened`:
+    their derivatives are those of the other side. A cavity that fills or empties is held as in
+    :func:`keep_oil`.
+    """
+    for i in range(len(now)):
+        q, dq, w, dw = now[i, 0], step[i, 0], now[i, 1], step[i, 1]
+        if q < 0.0 and q - dq > REFILLED:
+            step[i, 0] = q - REFILLED
+        elif q - dq < 0.0:
+            step[i, 0] = min(dq, q + 1.0 - OIL_KEPT * (1.0 + min(q, 0.0)))
+        if w >= 0.0 and w - dw < 0.0:
+            step[i, 1] = w + REFILLED / stiffness
+        elif w < 0.0 and w - dw > opened:
+            step[i, 1] = w - opened

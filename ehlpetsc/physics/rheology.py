@@ -90,7 +90,7 @@ def flow_factors(sigma):
 
 
 @compiled
-def mobility(h, slope, fluidity, stress, slip):
+def mobility(h, gradient, fluidity, eyring, slip):
     r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, as one quantity; of numbers.
 
     :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
@@ -99,17 +99,17 @@ def mobility(h, slope, fluidity, stress, slip):
 
     Parameters
     ----------
-    h, slope, fluidity : float
+    h, gradient, fluidity : float
         Film [m], pressure gradient [Pa/m], :math:`1/\eta` [1/(Pa s)] at the same place.
-    stress, slip : float
+    eyring, slip : float
         :math:`\tau_0` [Pa], infinite for a Newtonian fluid, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
 
     Returns
     -------
-    value, d_h, d_slope, d_ln_eta : float
-        M [m^3/(Pa s)] and its derivatives with respect to h, slope and :math:`\ln\eta`.
+    value, d_h, d_gradient, d_ln_eta : float
+        M [m^3/(Pa s)] and its derivatives with respect to h, gradient and :math:`\ln\eta`.
     """
-    per_film = slope * (0.5 / stress)
+    per_film = gradient * (0.5 / eyring)
     s0, ds0, el, del_ = flow_factors(h * per_film)
     square = h * h
     cube = h * square * fluidity
@@ -122,12 +122,12 @@ def mobility(h, slope, fluidity, stress, slip):
     return (
         value / 12.0,
         (by_h + by_sigma * per_film) / 12.0,
-        by_sigma * h * (0.5 / stress) / 12.0,
+        by_sigma * h * (0.5 / eyring) / 12.0,
         -rolls * rolling / 12.0,
     )
 
 
-def wall_shear(h, slope, ln_eta, fluid, sliding):
+def wall_shear(h, gradient, ln_eta, fluid, sliding):
     r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
 
     :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
@@ -139,7 +139,7 @@ def wall_shear(h, slope, ln_eta, fluid, sliding):
         Shear stress [Pa] in the film at the lower (slow) and at the upper (fast) wall, at h > 0.
     """
     rate = sliding / h
-    half = h * slope / 2.0
+    half = h * gradient / 2.0
     if fluid.eyring_stress is None:
         mean = fluid.viscosity * np.exp(ln_eta) * rate
         return mean - half, mean + half

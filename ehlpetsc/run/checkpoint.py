@@ -12,7 +12,7 @@ TOTAL = "total "  # before the names of totals among the attributes
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
 
 
-def save(path, state, smooth, contact_count, totals, case, scales):
+def save(path, state, smooth, contact_count, totals, case, scales, model):
     """Write the restart file of a run.
 
     Parameters
@@ -20,12 +20,12 @@ def save(path, state, smooth, contact_count, totals, case, scales):
     path : path-like
     state : march.State
     smooth : pair of ndarray
-        Steady q and h that the predictor starts from.
+        Steady q and w that the predictor starts from.
     contact_count : ndarray of int, shape (nx,)
     totals : dict of str to number
         Of all steps so far, for the summary.
-    case, scales
-        Of the run.
+    case, scales, model
+        Of the run; the contact model.
 
     Raises
     ------
@@ -33,16 +33,13 @@ def save(path, state, smooth, contact_count, totals, case, scales):
     """
     arrays = {
         "x": scales.x * scales.a,
-        "q": state.q,
-        "h": state.h,
         "contact_count": contact_count,
-        "smooth_q": smooth[0],
-        "smooth_h": smooth[1],
     }
+    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *smooth)
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     if state.earlier:
-        for name in Level._fields:
-            arrays[f"earlier_{name}"] = np.array([getattr(level, name) for level in state.earlier])
+        times, q, w = (np.array(part) for part in zip(*state.earlier, strict=True))
+        arrays |= {"earlier_time": times} | _fields(model, "earlier_", q, w)
     attributes = {
         "h00": state.h00,
         "time": state.time,
@@ -56,7 +53,7 @@ def save(path, state, smooth, contact_count, totals, case, scales):
     save_restart(path, arrays, attributes)
 
 
-def load(path, case, scales):
+def load(path, case, scales, model):
     """State of a restart file, checked against the case.
 
     Returns
@@ -81,8 +78,7 @@ def load(path, case, scales):
         _check_fits(path, arrays["x"], earlier, case, scales)
         _rescale(arrays, attributes, scales)
         state = State(
-            arrays["q"],
-            arrays["h"],
+            *_unknowns(model, arrays, ""),
             float(attributes["h00"]),
             m=arrays.get("m"),
             m_older=arrays.get("m_older"),
@@ -90,19 +86,30 @@ def load(path, case, scales):
             dt=float(attributes["dt"]) or None,
             retries=int(attributes.get("retries", 0)),
             step=int(attributes["step"]),
-            earlier=_earlier(arrays),
+            earlier=_earlier(model, arrays),
         )
-        smooth = (arrays["smooth_q"], arrays["smooth_h"])
+        smooth = _unknowns(model, arrays, "smooth_")
         totals = {name.removeprefix(TOTAL): attributes[name].item() for name in attributes if TOTAL in name}
         return state, smooth, arrays["contact_count"], totals, changes(earlier, tomllib.loads(case.text))
     except KeyError as error:
         raise OutputError(f"{path}: damaged restart file ({error} is missing)") from error
 
 
-def _earlier(arrays):
+def _fields(model, name, q, w):
+    """Arrays that say what q and w stand for, so that a run may go on with another contact model."""
+    film = model.relations(q, w).film
+    return {f"{name}q": q, f"{name}h": film, f"{name}contact_pressure": model.contact_pressure(w)}
+
+
+def _unknowns(model, arrays, name):
+    q, film, solids = (arrays[name + field] for field in ("q", "h", "contact_pressure"))
+    return q, model.second_unknown(film, solids)
+
+
+def _earlier(model, arrays):
     if "earlier_time" not in arrays:
         return ()
-    return tuple(map(Level, *(arrays[f"earlier_{name}"] for name in Level._fields)))
+    return tuple(map(Level, arrays["earlier_time"], *_unknowns(model, arrays, "earlier_")))
 
 
 def _check_fits(path, x, earlier, case, scales):
@@ -127,6 +134,8 @@ def _rescale(arrays, attributes, scales):
         return
     for name in {"q", "smooth_q", "earlier_q"} & arrays.keys():  # negative: a void fraction
         arrays[name] = np.where(arrays[name] > 0.0, pressure, 1.0) * arrays[name]
+    for name in {"contact_pressure", "smooth_contact_pressure", "earlier_contact_pressure"} & arrays.keys():
+        arrays[name] = pressure * arrays[name]
     for name in {"h", "smooth_h", "earlier_h", "m", "m_older"} & arrays.keys():
         arrays[name] = film * arrays[name]
     attributes["h00"] *= film

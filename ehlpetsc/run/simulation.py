@@ -12,7 +12,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.errors import NotConverged, OutputError
 from ehlpetsc.nonlinear import events as log
-from ehlpetsc.nonlinear.newton import Solver
+from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -22,7 +22,7 @@ from ehlpetsc.run.describe import banner, warnings
 from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.stepping.observables import observe
 from ehlpetsc.stepping.step_control import on_level
-from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import Roughness
 
 DONE, NOT_CONVERGED, STOPPED = 0, 3, 4
@@ -69,7 +69,7 @@ class Run:
         self.views = taken_out(options, ("snes_view", "ksp_view"))
         self.follow = any(options.hasName(name) for name in FOLLOWED)
         solver = solver_of(case, self.scales, film, PETSc.Comm(comm), options)
-        self.march = March(solver, self.scales, self.roughness, film)
+        self.march = TimeStepping(solver, self.scales, self.roughness, film)
         self.output = Path(output)
         self.restart = self.output.with_suffix(".restart.h5")
         self.writer = self.failure = None
@@ -121,9 +121,7 @@ class Run:
 
     def store(self, state, started):
         """Write one accepted state; totals for the summary."""
-        scalars, fields, in_contact = observe(
-            self.case, self.scales, self.march.problem, self.march.solver.bound, state, started
-        )
+        scalars, fields, in_contact = observe(self.case, self.scales, self.march.problem, state, started)
         every = self.case.output.every
         frame = every == 1 or self.case.time is None or on_level(state.time, every * self.scales.dt)
         with log.OUTPUT:
@@ -152,13 +150,16 @@ class Run:
                 self.totals,
                 self.case,
                 self.scales,
+                self.march.problem.model,
             )
 
         on_root(self.comm, write)
 
     def resume(self, path):
         """State and contact count of a restart file."""
-        state, self.march.smooth, count, totals, notes = checkpoint.load(path, self.case, self.scales)
+        state, self.march.smooth, count, totals, notes = checkpoint.load(
+            path, self.case, self.scales, self.march.problem.model
+        )
         self.totals |= totals
         if self.root:
             print(f"restart: {path}, step {state.step}, {1e6 * state.time:.4f} us", file=self.out)
@@ -196,7 +197,7 @@ class Run:
     def _view(self):
         """-snes_view and -ksp_view once, after the first solve: PETSc would repeat them at every step."""
         solver = self.march.solver
-        for name in self.views if isinstance(solver, Solver) else ():
+        for name in self.views if isinstance(solver, NewtonSolver) else ():
             (solver.snes if name == "snes_view" else solver.snes.ksp).view()
 
     def _march(self, state):

@@ -7,15 +7,13 @@ import numpy as np
 from ehlpetsc.physics.traction import shear_stresses
 
 
-def observe(case, scales, problem, bound, state, started):
+def observe(case, scales, problem, state, started):
     """Per-step figures and fields in SI units.
 
     Parameters
     ----------
     case, scales, problem
         Of the run.
-    bound : float
-        Least film in a^2/R.
     state : stepping.time_stepping.State
     started : float
         Monotonic clock at the begin of the step [s].
@@ -27,15 +25,15 @@ def observe(case, scales, problem, bound, state, started):
     in_contact : ndarray of bool, shape (nx,)
     """
     s, p = scales, problem
-    pressure = p.pressure(state.q)
-    in_contact = state.h <= bound
+    relations = p.model.relations(state.q, state.w)
+    pressure, in_contact = relations.pressure, relations.touching
     void = np.zeros_like(pressure) if p.dry else np.maximum(-state.q, 0.0)
     fast, slow = shear_stresses(case, s, pressure * s.p0, state.h * s.h, void, in_contact)
     load = s.dx * s.p0 * pressure.sum()
     # F sums to the mass imbalance; at contact nodes it is the flow that leaving out Reynolds makes up,
     # here over the flow drawn in at the inlet
     drawn_in = 1.0 if p.dry else max(state.m[0], p.film_scale)
-    defect = 0.0 if p.dry else float(np.abs(state.flow[in_contact]).sum() * p.film_scale / drawn_in)
+    defect = 0.0 if p.dry else float(np.abs(state.imbalance[in_contact]).sum() * p.film_scale / drawn_in)
     scalars = {
         "dt": state.dt or 0.0,
         "newton": state.newton,

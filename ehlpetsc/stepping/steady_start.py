@@ -18,6 +18,8 @@ the gap is wider than the oil film. Whether a contact starves at all, the floode
 it takes more oil than it is given, and else it is the solution but for the first node.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
@@ -28,24 +30,40 @@ LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
 LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
 
 
-def hertz_start(problem, film, thick=1.3):
+def hertz_start(problem, film, phi, thick=1.3):
     """Hertz pressure and a film everywhere above the expected one; behind the outlet a cavity.
 
     The pressure is smoothed over `SMOOTHED` times the length of the inlet sweep, film^(2/3): the infinite
     slope at Hertz' edge drives more oil through a thick film than all that follows.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    film : float
+        Expected film in a^2/R.
+    phi : ndarray, shape (nx,)
+        Roughness in the gap, in a^2/R.
+    thick : float
+        Times the expected film.
+
+    Returns
+    -------
+    q, w : ndarray, shape (nx,)
+    h00 : float
     """
     x = problem.x
     p = np.sqrt(np.maximum(1.0 - x**2, 0.0))
     if not problem.dry:
         p = smoothed(p, SMOOTHED * film ** (2.0 / 3.0) / problem.dx)
     p *= 0.5 * np.pi / (problem.dx * p.sum())
-    h = problem.film(p, 0.0)
+    h = problem.film(p, 0.0, phi)
     if problem.dry:
         return p, np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0)), -h[np.argmax(p)]
     h00 = thick * film - h.min()
     h += h00
     behind = (x > 1.0) & (p < AMBIENT)
-    return np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(p, AMBIENT)), h, h00
+    q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(p, AMBIENT))
+    return q, problem.model.from_film(h), h00
 
 
 def smoothed(p, width):
@@ -58,26 +76,28 @@ def smoothed(p, width):
     return np.convolve(p, weights / weights.sum())[reach : reach + len(p)]
 
 
-def starved_start(problem, film):
+def starved_start(problem, film, inputs):
     """Hertz pressure and the oil film of the inlet, void wherever the gap is wider."""
-    oil = problem.reynolds.inlet
-    q, h, h00 = hertz_start(problem, min(film, oil))
+    oil = inputs.inlet_film
+    q, w, h00 = hertz_start(problem, min(film, oil), inputs.phi)
+    h = problem.model.relations(q, w).film
     void = (problem.x < -1.0) & (h > oil)
-    return np.where(void, oil / h - 1.0, q), h, h00
+    return np.where(void, oil / h - 1.0, q), w, h00
 
 
-def steady(solver, film):
+def steady(solver, film, inputs):
     """Steady solution of the solver's problem.
 
     Parameters
     ----------
-    solver : solver.Solver
+    solver : newton.NewtonSolver
     film : float
         Expected film in a^2/R.
+    inputs : ehl_problem.StepInputs
 
     Returns
     -------
-    q, h : ndarray, shape (nx,)
+    q, w : ndarray, shape (nx,)
     h00 : float
     iterations : int
         Of Newton, those of failed attempts too.
@@ -86,28 +106,24 @@ def steady(solver, film):
     ------
     NoSteadyStart
     """
-    problem = solver.problem
-    oil = None if problem.dry else problem.reynolds.inlet
+    problem, oil = solver.problem, inputs.inlet_film
     if oil is None:
         # the set of dry nodes may have all of them to go
         max_it = problem.n if problem.dry else None
-        return _Continuation(solver, max_it).solve(hertz_start(problem, film))
-    problem.reynolds.inlet = None
-    try:
-        q, h, h00, iterations = _Continuation(solver).solve(hertz_start(problem, film))
-    finally:
-        problem.reynolds.inlet = oil
-    if problem.reynolds.mass(q, h)[0][-1] <= oil:
-        q[0] = min(oil / h[0] - 1.0, 0.0)
-        begin = q, h, h00
+        return Continuation(solver, inputs, max_it).solve(hertz_start(problem, film, inputs.phi))
+    flooded = replace(inputs, inlet_film=None)
+    q, w, h00, iterations = Continuation(solver, flooded).solve(hertz_start(problem, film, inputs.phi))
+    if problem.content(q, w)[-1] <= oil:
+        q[0] = min(oil / problem.model.relations(q, w).film[0] - 1.0, 0.0)
+        begin = q, w, h00
     else:
-        begin = starved_start(problem, film)
+        begin = starved_start(problem, film, inputs)
     # the meniscus may have all nodes of the inlet to go
-    *state, more = _Continuation(solver, max_it=problem.n).solve(begin)
+    *state, more = Continuation(solver, inputs, max_it=problem.n).solve(begin)
     return *state, iterations + more
 
 
-class _Continuation:
+class Continuation:
     """Solve at once or, failing that, with a growing share of what makes the contact hard.
 
     Attributes
@@ -116,24 +132,19 @@ class _Continuation:
         Newton iterations, those of failed attempts too.
     """
 
-    def __init__(self, solver, max_it=None):
-        self.solver, self.problem = solver, solver.problem
+    def __init__(self, solver, inputs, max_it=None):
+        self.solver, self.inputs = solver, inputs
         self.max_it = max_it or solver.start_iterations
-        self.gap = self.problem.gap
-        self.fluid = None if self.problem.dry else self.problem.reynolds.fluid
         self.spent, self.failure = 0, None
 
     def solve(self, begin):
-        """Returns q, h, h00 and the iterations spent."""
-        try:
-            state = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
-        finally:
-            self._set(1.0, 1.0)
+        """Returns q, w, h00 and the iterations spent."""
+        state = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
         return *state, self.spent
 
     def _by_steps(self, begin):
         """The smooth contact, its oil made stiff by steps; then the roughness grown under it."""
-        rough = self.gap.any()
+        rough = self.inputs.phi.any()
         state = self._try(begin, 1.0, 0.0) if rough else None
         if state is None:
             state = self._grown(*self._easier(begin), lambda share: (share, 0.0))
@@ -161,19 +172,22 @@ class _Continuation:
         return state
 
     def _try(self, begin, share, roughness):
-        self._set(share, roughness)
+        inputs = easier(self.inputs, share, roughness)
         try:
-            *state, iterations = self.solver.solve(*begin, max_it=self.max_it)
+            *state, iterations = self.solver.solve(*begin, inputs, max_it=self.max_it)
         except SolveFailed as error:
             self.spent, self.failure = self.spent + error.iterations, error
             return None
         self.spent += iterations
         return state
 
-    def _set(self, share, roughness):
-        self.problem.gap = roughness * self.gap
-        if self.fluid:
-            change = {"pressure_viscosity": share * self.fluid.pressure_viscosity}
-            if self.fluid.eyring_stress is not None:
-                change["eyring_stress"] = self.fluid.eyring_stress / share**4
-            self.problem.reynolds.fluid = self.fluid.copy(update=change)
+
+def easier(inputs, share, roughness):
+    """The inputs with a share of the pressure-viscosity coefficient, and a share of the roughness."""
+    fluid = inputs.fluid
+    if fluid and share < 1.0:
+        change = {"pressure_viscosity": share * fluid.pressure_viscosity}
+        if fluid.eyring_stress is not None:
+            change["eyring_stress"] = fluid.eyring_stress / share**4
+        fluid = fluid.copy(update=change)
+    return replace(inputs, fluid=fluid, phi=roughness * inputs.phi)

@@ -18,10 +18,10 @@ petsc4py.init(sys.argv[:1])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import Roughness
 
 FAST = 8.0  # nominal steps in one, on the way to where time is taken
@@ -33,7 +33,7 @@ FULL_FILM = ("fluid.viscosity=0.01", "surface.fast.scale=0.2", "surface.slow.sca
 class Scene:
     """A run in this process."""
 
-    march: March
+    march: TimeStepping
     state: object
     step: float
 
@@ -56,8 +56,8 @@ def scene(name, *overrides):
     case = load(ROOT / "cases" / f"{name}.toml", overrides)
     scales = Scales.of(case)
     film = expected_film(case, scales)
-    solver = Solver(case, scales, film, PETSc.COMM_SELF)
-    march = March(solver, scales, Roughness.of(case, scales), film)
+    solver = NewtonSolver(case, scales, film, PETSc.COMM_SELF)
+    march = TimeStepping(solver, scales, Roughness.of(case, scales), film)
     return Scene(march, march.start(), scales.dt)
 
 

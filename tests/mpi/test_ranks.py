@@ -11,10 +11,10 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import Roughness
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
@@ -34,15 +34,14 @@ def marched(comm):
     case = load(CASE, SHORT)
     scales = Scales.of(case)
     film = expected_film(case, scales)
-    march = March(Solver(case, scales, film, comm), scales, Roughness.of(case, scales), film)
+    march = TimeStepping(NewtonSolver(case, scales, film, comm), scales, Roughness.of(case, scales), film)
     states = [march.start()]
     while states[-1].time < scales.duration:
         states.append(march.advance(states[-1]))
-    bound = march.solver.bound
     return (
-        np.array([march.problem.pressure(s.q) for s in states]),
+        np.array([s.p for s in states]),
         np.array([s.h for s in states]),
-        np.array([s.h <= bound for s in states]),
+        np.array([s.h <= 0.0 for s in states]),
         np.array([s.newton for s in states]),
     )
 

@@ -13,9 +13,9 @@ from ehlpetsc.run.command_line import parse_command_line
 
 
 def tamper(accident, rank, step):
-    from ehlpetsc.stepping.time_stepping import March
+    from ehlpetsc.stepping.time_stepping import TimeStepping
 
-    advance = March.advance
+    advance = TimeStepping.advance
 
     def with_accident(self, state, *arguments):
         from mpi4py import MPI  # not before PETSc has been started with its options
@@ -26,7 +26,7 @@ def tamper(accident, rank, step):
             os.kill(os.getpid(), getattr(signal, accident))
         return advance(self, state, *arguments)
 
-    March.advance = with_accident
+    TimeStepping.advance = with_accident
 
 
 if __name__ == "__main__":

@@ -1,12 +1,15 @@
 """Reynolds' rows: their derivatives, and that a part of the mesh has the rows of the whole."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.reynolds import ROUNDING, Reynolds, Storage
+from ehlpetsc.discretisation.contact_model import ROUNDING
+from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
@@ -17,7 +20,9 @@ FILM = 5e-4  # a^2/R
 def rows_of(extra, first=0, last=None):
     case = load(CASE, MESH + extra)
     scales = Scales.of(case)
-    return Reynolds(case.fluid, scales, FILM, first, last or scales.nx), scales
+    oil = case.fluid.inlet_film
+    inputs = StepInputs(np.zeros(scales.nx), None, case.fluid, oil and oil / scales.h)
+    return Reynolds(scales, FILM, first, last or scales.nx), inputs, scales.nx
 
 
 def state(n):
@@ -28,10 +33,11 @@ def state(n):
     return q, FILM * rng.uniform(0.3, 3.0, n)
 
 
-def past_of(reynolds, q, h):
+def with_history(inputs, reynolds, q, h):
     rng = np.random.default_rng(6)
-    m = reynolds.mass(q, h)[0]
-    return Storage(m * rng.uniform(0.6, 1.6, len(m)), m * rng.uniform(0.6, 1.6, len(m)), 0.01, 0.012)
+    m = reynolds.content(q, h, inputs.fluid)[0]
+    history = FilmHistory(m * rng.uniform(0.6, 1.6, len(m)), m * rng.uniform(0.6, 1.6, len(m)), 0.01, 0.012)
+    return replace(inputs, history=history)
 
 
 @pytest.mark.parametrize("transient", [False, True], ids=["steady", "transient"])
@@ -39,18 +45,18 @@ def past_of(reynolds, q, h):
     "extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]], ids=["seed", "barus", "starved"]
 )
 def test_derivatives(extra, transient):
-    reynolds, scales = rows_of(extra)
-    n = scales.nx
+    reynolds, inputs, n = rows_of(extra)
     q, h = state(n)
-    past = past_of(reynolds, q, h) if transient else None
-    values = reynolds.evaluate(q, h, past)[1]
+    if transient:
+        inputs = with_history(inputs, reynolds, q, h)
+    values = reynolds.evaluate(q, h, inputs)[1]
     for side, vector in enumerate((q, h)):
         for column in range(n):
             step = 1e-6 * abs(vector[column])
             changed = []
             for sign in (1, -1):
                 kept, vector[column] = vector[column], vector[column] + sign * step
-                changed.append(reynolds.evaluate(q, h, past)[0])
+                changed.append(reynolds.evaluate(q, h, inputs)[0])
                 vector[column] = kept
             expected = (changed[0] - changed[1]) / (2 * step)
             found = np.zeros(n)
@@ -61,25 +67,24 @@ def test_derivatives(extra, transient):
 
 
 def test_a_part_has_the_rows_of_the_whole():
-    reynolds, scales = rows_of([])
-    n = scales.nx
+    reynolds, inputs, n = rows_of([])
     q, h = state(n)
-    past = past_of(reynolds, q, h)
-    residual, values = reynolds.evaluate(q, h, past)
+    inputs = with_history(inputs, reynolds, q, h)
+    residual, values = reynolds.evaluate(q, h, inputs)
     for first, last in ((0, 20), (20, 44), (44, n)):
         part = rows_of([], first, last)[0]
-        some, entries = part.evaluate(q, h, past)
+        some, entries = part.evaluate(q, h, inputs)
         np.testing.assert_array_equal(some, residual[first:last])
         np.testing.assert_array_equal(entries, values[first:last])
         np.testing.assert_array_equal(part.columns, reynolds.columns[first:last])
 
 
 def test_the_sign_of_rounding_does_not_matter():
-    reynolds, scales = rows_of([])
-    q, h = state(scales.nx)
+    reynolds, inputs, n = rows_of([])
+    q, h = state(n)
     rows = []
     for rounding in (0.0, 1e-20, -0.5 * ROUNDING):
         q[0] = rounding
-        rows.append(reynolds.evaluate(q, h, None)[1])
+        rows.append(reynolds.evaluate(q, h, inputs)[1])
     np.testing.assert_allclose(rows[1], rows[0], rtol=1e-12)
     np.testing.assert_allclose(rows[2], rows[0], rtol=1e-9)

@@ -10,10 +10,10 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.newton import Solver, set_defaults
+from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import March
+from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import Roughness
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -35,8 +35,8 @@ class Scene:
         case = load(CASES / name, overrides)
         self.scales = Scales.of(case)
         film = expected_film(case, self.scales)
-        solver = Solver(case, self.scales, film, PETSc.COMM_SELF)
-        self.march = March(solver, self.scales, Roughness.of(case, self.scales), film)
+        solver = NewtonSolver(case, self.scales, film, PETSc.COMM_SELF)
+        self.march = TimeStepping(solver, self.scales, Roughness.of(case, self.scales), film)
         self.x, self.solver, self.problem = self.scales.x, solver, solver.problem
         self.centre = int(np.argmin(np.abs(self.x)))
 
@@ -61,7 +61,7 @@ class Scene:
     @property
     def pressure(self):
         """Pressure [Pa]."""
-        return self.problem.pressure(self.state.q) * self.scales.p0
+        return self.state.p * self.scales.p0
 
 
 def observed_order(errors):

@@ -30,7 +30,7 @@ def test_ridge_in_the_centre_of_the_contact():
     count = round(arrival / s.dt)
     for _ in scene.steps(count, arrival / count):
         pass
-    height = -scene.problem.gap * s.h  # nothing of the ridge is lost where profiles come in
+    height = -scene.march.phi(scene.state.time) * s.h  # nothing of the ridge is lost where profiles come in
     np.testing.assert_allclose(height, 0.1e-6 * np.exp(-((s.x / 0.1) ** 2)), atol=1e-12)
     found = {
         "film at the centre": scene.film[scene.centre],

@@ -8,17 +8,18 @@ and of the entries that reach into its neighbours' groups one block at either en
 
 import numpy as np
 
-from ehlpetsc.discretisation.ehl_problem import LEAK
+from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
+from ehlpetsc.nonlinear.jacobian_operator import leaks
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
 
 
-class ExtendedBand:
+class BandedJacobian:
     """Places and values of the local entries.
 
     Parameters
     ----------
-    problem : contact.ContactProblem
+    problem : ehl_problem.EHLProblem
         Its first node must begin a group.
 
     Attributes
@@ -35,11 +36,11 @@ class ExtendedBand:
         Whether the band numbers the local unknowns from the last to the first, so that the last rank's
         neighbour is where its elimination ends, as the first one's is: what comes from there is then solved
         for without forward substitution.
-    slope : ndarray, shape (nx,)
+    entries : node_variables.BandEntries or None
         Of the state last filled in.
     dense : ndarray, shape (3, nodes)
         Of the same: what the band lacks of both end nodes' deflection, and the load, under
-        the local q.
+        the local first unknowns.
     beside : tuple of ndarray
         Unknowns of the last group to the left, and of the first to the right, that local rows contain.
     """
@@ -47,7 +48,7 @@ class ExtendedBand:
     def __init__(self, problem):
         self.problem = problem
         self.nodes = np.arange(problem.first, problem.last)
-        self.rates, self.weights = exponentials(problem.curvature, 1.0 / problem.dx)
+        self.rates, self.weights = exponentials(problem.deflection.curvature, 1.0 / problem.dx)
         self.size = len(self.rates) + 2 * GROUP
         self.groups = -(-len(self.nodes) // GROUP)
         self.order = self.groups * self.size
@@ -63,7 +64,7 @@ class ExtendedBand:
         self._under_flow()
         self.under_pressure = self._dense_rows()
         self.values = np.empty_like(self.base)  # kept: new pages cost as much as filling them
-        self.slope = np.full(problem.n, np.nan)
+        self.entries = None
 
     def _in_other_rows(self):
         """Of a group: the sums, every pressure, and the films of two nodes (upwind) or one."""
@@ -109,19 +110,23 @@ class ExtendedBand:
             self.base[self._at(spare, spare)] = 1.0
 
     def _under_films(self):
-        """What the deflection rows have of films, and of the sums."""
-        p, inner = self.problem, self._inner()
+        """What the deflection rows have of films (nodes, values, places), and of the sums."""
+        d, inner = self.problem.deflection, self._inner()
+        ends = np.array(d.ends, dtype=int)
         row = self._film(inner) - 1
-        for k, value in ((-1, 1.0), (0, -2.0), (1, 1.0)):
-            self.base[self._at(row, self._film(inner + k))] = np.pi / p.dx * value
+        steps = list(zip((-1, 0, 1), SECOND_DIFFERENCE, strict=True))
+        self.film_nodes = np.concatenate([*(inner + k for k, _ in steps), ends])
+        self.by_film = np.repeat(
+            [*(d.stretch * value for _, value in steps), d.end_scale], [*[len(inner)] * 3, len(ends)]
+        )
+        rows = np.concatenate([row, row, row, self._film(ends) - 1])
+        self.film_place = self._at(rows, self._film(self.film_nodes))
         sums = self._group(inner)[:, None] * self.size + np.arange(len(self.rates))
         self.base[self._at(row[:, None], sums)] = -self.weights
-        for end in p.ends:
-            self.base[self._at(self._film(end) - 1, self._film(end))] = p.end_scale
 
     def _under_pressures(self):
         """What the recurrences and the deflection rows have of pressures: nodes, values, places."""
-        p, inner = self.problem, self._inner()
+        p, inner, d = self.problem, self._inner(), self.problem.deflection
         own = np.repeat(self.nodes, len(self.rates))
         rows = [self._group(own) * self.size + np.tile(np.arange(len(self.rates)), len(self.nodes))]
         nodes, values = [own], [np.tile(-2.0 * np.sinh(self.rates), len(self.nodes))]
@@ -131,12 +136,12 @@ class ExtendedBand:
             rows.append(self._film(inner[near]) - 1)
             nodes.append(inner[near] + k)
             far = np.exp(-np.outer(apart[near], self.rates)) @ self.weights
-            values.append(far - p.curvature[abs(k)])
-        for end in p.ends:
+            values.append(far - d.curvature[abs(k)])
+        for end in d.ends:
             near = self._beside(end)
             rows.append(np.full(len(near), self._film(end) - 1))
             nodes.append(near)
-            values.append(p.end_row(end)[near])
+            values.append(d.end_row(end)[near])
         self.pressure_nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
         self.pressure_place = self._at(np.concatenate(rows), self._film(self.pressure_nodes) - 1)
         self.diagonal = self._at(self._film(self.nodes) - 1, self._film(self.nodes) - 1)
@@ -149,8 +154,8 @@ class ExtendedBand:
         p = self.problem
         rows = np.empty((3, len(self.nodes)))
         for k, end in enumerate((0, p.n - 1)):
-            rows[k] = p.end_row(end)[self.nodes]
-            if end in p.ends:
+            rows[k] = p.deflection.end_row(end)[self.nodes]
+            if end in p.deflection.ends:
                 rows[k, self._beside(end) - p.first] = 0.0
         rows[2] = p.dx
         return rows
@@ -165,20 +170,18 @@ class ExtendedBand:
         node = self.nodes[:, None] + np.arange(-2, 2)
         both = np.stack([self._film(node) - 1, self._film(node)], axis=2).reshape(len(node), -1)
         there = np.repeat((node >= 0) & (node < p.n), 2, axis=1)
+        self.stencil = np.clip(node, 0, p.n - 1)
         place = self._at(self._film(self.nodes)[:, None], both)
         self.flow_place = np.where(there, place, self.base.size - 1)
 
-    def fill(self, slope, flow, touching):
+    def fill(self, entries, dropped):
         """Values for one state.
 
         Parameters
         ----------
-        slope : ndarray, shape (nx,)
-            dp/dq of every node.
-        flow : ndarray, shape (local nodes, 8)
-            Reynolds' rows, q and h of the nodes i-2 .. i+1.
-        touching : ndarray of int
-            Local nodes whose film stays as it is.
+        entries : node_variables.BandEntries
+        dropped : ndarray of int
+            Local nodes whose second unknown stays as it is.
 
         Returns
         -------
@@ -187,19 +190,12 @@ class ExtendedBand:
         left, right : ndarray, shape (size, len(beside))
             What the first and last group take from their neighbours on other ranks.
         """
-        changed = slope != self.slope
-        if changed.any():
-            some = np.flatnonzero(changed[self.pressure_nodes])
-            node = self.pressure_nodes[some]
-            self.base[self.pressure_place[some]] = self.by_pressure[some] * slope[node]
-            local = np.flatnonzero(changed[self.nodes])
-            self.base[self.diagonal[local]] += np.where(slope[self.nodes[local]] > 0.0, 0.0, LEAK)
-            self.dense = self.under_pressure * slope[self.nodes]
-            self.slope = slope.copy()
-        if len(touching):
+        self._fill_deflection(entries)
+        flow = entries.flow
+        if len(dropped):
             flow = flow.copy()
-            flow[touching] = 0.0
-            flow[touching, OWN + 1] = 1.0
+            flow[dropped] = 0.0
+            flow[dropped, OWN + 1] = 1.0
         values, cut, block = self.values, self.height * self.order, self.size**2
         columns = (self.order, self.height)
         # LAPACK clears what is above the band itself
@@ -209,3 +205,21 @@ class ExtendedBand:
         blocks = values[cut : cut + 2 * block].reshape(2, self.size, self.size)
         left, right = (block[:, some] for block, some in zip(blocks, self.beside, strict=True))
         return values[:cut].reshape(columns).T, left, right
+
+    def _fill_deflection(self, entries):
+        """Refill what a change of contact or cavity touches."""
+        before, self.entries = self.entries, entries
+        everywhere = np.ones(self.problem.n, dtype=bool)
+        changed = everywhere if before is None else entries.p_first != before.p_first
+        if changed.any():
+            some = np.flatnonzero(changed[self.pressure_nodes])
+            node = self.pressure_nodes[some]
+            self.base[self.pressure_place[some]] = self.by_pressure[some] * entries.p_first[node]
+            local = np.flatnonzero(changed[self.nodes])
+            self.base[self.diagonal[local]] += leaks(entries.p_first[self.nodes[local]])
+            self.dense = self.under_pressure * entries.p_first[self.nodes]
+        changed = everywhere if before is None else entries.h_second != before.h_second
+        if changed.any():
+            some = np.flatnonzero(changed[self.film_nodes])
+            node = self.film_nodes[some]
+            self.base[self.film_place[some]] = self.by_film[some] * entries.h_second[node]

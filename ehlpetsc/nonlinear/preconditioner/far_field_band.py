@@ -6,32 +6,55 @@ The band of :mod:`.banded_jacobian`, far deflection included, split between rank
 What GMRES has left to do is the error of three exponentials, the same on any number of ranks.
 """
 
-from ehlpetsc.nonlinear import events as log
+from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.preconditioner.node_variables import band_entries, in_unknowns
+from ehlpetsc.nonlinear.preconditioner.spike import SpikeLU
+
+
+class Factors:
+    """The factors of one scene, kept from one matrix to the next: PETSc makes a preconditioner anew
+    whenever the contact set changes.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    ranks : mpi4py communicator
+    """
+
+    def __init__(self, problem, ranks):
+        self.lu = SpikeLU(BandedJacobian(problem), -problem.deflection.end_scale, ranks)
+        self.fresh = False
+
+    def of_a_new_solve(self):
+        """Factor the next matrix anew, so that a run that was stopped goes on as if it had not been."""
+        self.fresh = False
+
+    def factor(self, operator):
+        """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian_operator`."""
+        model, stencil = operator.problem.model, self.lu.band.stencil
+        entries = band_entries(model, operator.relations, operator.flow, stencil)
+        self.lu.factor(entries, operator.dropped, anew=not self.fresh)
+        self.fresh = True
 
 
 class FarFieldBand:
-    """PETSc calls `setUp` for a new matrix and `apply` for every right-hand side.
-
-    Attributes
-    ----------
-    solver : solver.Solver
-        The one whose solve this is, set by itself: the matrix that PETSc hands over is without the films in
-        contact, and without the far deflection.
-    """
-
-    solver = None
+    """PETSc calls `setUp` for a new matrix and `apply` for every right-hand side."""
 
     def setUp(self, pc):
-        with log.FACTOR:
-            s = self.solver
-            self.kept, touching = s.in_system()
-            # in every solve anew, so that a run that was stopped goes on as if it had not been
-            first = s.snes.getIterationNumber() == 0
-            s.split.factor(s.slope, s.problem.flow_values, touching, anew=first)
+        """Take the state from the operator and factor for it."""
+        with events.FACTOR:
+            self.operator = pc.getOperators()[0].getPythonContext()
+            self.operator.factors.factor(self.operator)
 
     def apply(self, pc, x, y):
-        b, out, count = x.array_r, y.array, len(self.kept)
-        with log.BACK_SOLVE:
-            solution, approach = self.solver.split.solve(b[:count], self.kept, b[count:].sum())
-            out[:count] = solution[self.kept]
+        """Solve."""
+        o = self.operator
+        b, out, kept, problem = x.array_r, y.array, o.kept, o.problem
+        count = len(kept)
+        with events.BACK_SOLVE:
+            solution, approach = o.factors.lu.solve(b[:count], kept, b[count:].sum())
+            local = slice(problem.first, problem.last)
+            in_unknowns(problem.model, o.relations, local, solution.reshape(-1, 2))
+            out[:count] = solution if count == len(solution) else solution[kept]
             out[count:] = approach  # on the last rank

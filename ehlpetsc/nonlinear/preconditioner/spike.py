@@ -1,4 +1,4 @@
-r"""LU of the extended band of :mod:`ehlpetsc.nonlinear.preconditioner.banded_jacobian`, split between ranks.
+r"""LU of the band of :mod:`.banded_jacobian`, split between ranks.
 
 Each rank factors the part A of its own groups with LAPACK. What couples the parts, and what borders the band,
 enters through few unknowns w (Polizzi & Sameh 2006: SPIKE),
@@ -18,47 +18,47 @@ BORDER = 3  # far deflection of the first and of the last node, h00
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
 
 
-class SplitBand:
+class SpikeLU:
     """Factors and solves.
 
     Parameters
     ----------
-    extended : extended.ExtendedBand
+    band : banded_jacobian.BandedJacobian
         Of this rank's nodes.
     end_scale : float
         What h00 counts in the end nodes' deflection rows, negative.
     ranks : mpi4py communicator
     """
 
-    def __init__(self, extended, end_scale, ranks):
-        self.extended, self.end_scale, self.ranks = extended, end_scale, ranks
-        size, last = extended.size, ranks.size - 1
+    def __init__(self, band, end_scale, ranks):
+        self.band, self.end_scale, self.ranks = band, end_scale, ranks
+        size, last = band.size, ranks.size - 1
         self.inner = 2 * size * last  # of w, beside the cuts: groups to the left and to the right of each
         self.of_rank = [self._numbers(rank) for rank in range(ranks.size)]
         self.widest = max(len(unknowns) for unknowns, _, _ in self.of_rank)
-        self.b = np.zeros((1, extended.order))
+        self.b = np.zeros((1, band.order))
 
     def _numbers(self, rank):
         """What a rank has to do with w: columns of its G, its outer groups in w, and these in its tips."""
-        size, last = self.extended.size, self.ranks.size - 1
-        left, right = self.extended.beside
+        size, last = self.band.size, self.ranks.size - 1
+        left, right = self.band.beside
         before = [self.inner] if rank == 0 else 2 * size * (rank - 1) + left
         after = [self.inner + 1] if rank == last else 2 * size * rank + size + right
         first, others = (size if rank == 0 else 0), (size if rank == last else 2 * size)
         own = 2 * size * (rank - 1) + size + np.arange(first, others)
         return np.concatenate([before, after]).astype(int), own, slice(first, others)
 
-    def factor(self, slope, flow, touching, anew=True):
+    def factor(self, entries, dropped, anew=True):
         """Factor for one state; unless `anew`, not where the last factors are nearly its own; collective.
 
-        Other arguments as of :meth:`ehlpetsc.nonlinear.preconditioner.banded_jacobian.ExtendedBand.fill`.
+        Other arguments as of :meth:`.banded_jacobian.BandedJacobian.fill`.
         """
-        if not anew and self.ranks.allreduce(self._still_good(slope, flow, touching), min):
+        if not anew and self.ranks.allreduce(self._still_good(entries, dropped), min):
             return
-        self.factored = touching, flow, CLOSE * np.abs(flow).max(axis=1, keepdims=True)
-        e = self.extended
-        band, left, right = e.fill(slope, flow, touching)
-        self.lu, self.pivots, singular = dgbtrf(band, e.half, e.half, overwrite_ab=True)
+        self.factored = dropped, entries.flow, CLOSE * np.abs(entries.flow).max(axis=1, keepdims=True)
+        e = self.band
+        matrix, left, right = e.fill(entries, dropped)
+        self.lu, self.pivots, singular = dgbtrf(matrix, e.half, e.half, overwrite_ab=True)
         if singular:
             _never_zero(self.lu[2 * e.half])
         if self.ranks.rank == 0:
@@ -75,18 +75,20 @@ class SplitBand:
         self._couple(tips)
         self.spread = g[:, e.place]
 
-    def _still_good(self, slope, flow, touching):
+    def _still_good(self, entries, dropped):
         """Whether this rank's factors are nearly those of the given state."""
         held, rows, change = self.factored
+        filled = self.band.entries
         return (
-            np.array_equal(touching, held)
-            and np.array_equal(slope, self.extended.slope)
-            and bool((np.abs(flow - rows) <= change).all())
+            np.array_equal(dropped, held)
+            and np.array_equal(entries.p_first, filled.p_first)
+            and np.array_equal(entries.h_second, filled.h_second)
+            and bool((np.abs(entries.flow - rows) <= change).all())
         )
 
     def _own_solve(self, b, first, last):
         """Solve in place for right-hand sides (any number, order) that are zero but in first .. last-1."""
-        e = self.extended
+        e = self.band
         if not e.backwards:
             return substitute(self.lu.T, self.pivots, b, first)
         turned = b[:, ::-1].copy()
@@ -95,7 +97,7 @@ class SplitBand:
 
     def _tips_of(self, y):
         """What the others need of local solutions: both outer groups, and their part of the dense rows."""
-        e = self.extended
+        e = self.band
         return np.hstack([y[:, : e.size], y[:, -e.size :], y[:, e.place[::2]] @ e.dense.T])
 
     def _everyone(self, tips):
@@ -132,7 +134,7 @@ class SplitBand:
         load : float
             Right-hand side of the load's row, where it is local.
         """
-        e = self.extended
+        e = self.band
         self.b[:] = 0.0
         y = self.b[0]
         y[e.place[kept]] = b

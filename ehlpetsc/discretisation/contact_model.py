@@ -1,0 +1,124 @@
+r"""What the two unknowns of a node stand for: pressures, film and the separation of the solids.
+
+The first unknown q is the oil's: its pressure :math:`p_f=\max(q,0)`, its void fraction :math:`\max(-q,0)`.
+The second one w is the solids':
+
+* *direct* contact (Holmes et al. 2005): w is the film h itself, bounded below; at the bound the oil's
+  pressure is the solids' too, and Reynolds' equation is left out there;
+* *mixed* contact: the solids have a pressure p_c of their own, :math:`p=p_f+p_c`, complementary to the
+  film over the boundary film :math:`h_b`,
+
+  .. math:: h-h_b\ge0,\quad p_c\ge0,\quad p_c(h-h_b)=0,
+
+  which the sign of w carries: :math:`h=h_b+\max(w,0)`, :math:`p_c=K\max(-w,0)`. All three hold exactly,
+  whatever w is, and Reynolds' equation holds at every node.
+
+Lengths in x are in half widths, films in a^2/R, pressures in p0.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+ROUNDING = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
+
+
+def full_of_oil(q):
+    """Nodes with a pressure and no void; which side of zero rounding is on must not matter."""
+    return q > -ROUNDING
+
+
+class Relations(NamedTuple):
+    """What q and w mean at every node, with derivatives; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    pressure, film
+        Total pressure p; film h, of which the oil's flow knows.
+    p_q, p_w, h_w
+        Derivatives of p with respect to q and w, of h with respect to w.
+    touching
+        Nodes whose solids carry, of bool.
+    """
+
+    pressure: np.ndarray
+    film: np.ndarray
+    p_q: np.ndarray
+    p_w: np.ndarray
+    h_w: np.ndarray
+    touching: np.ndarray
+
+
+class DirectContact:
+    """The film is the second unknown, bounded below by `bound` (a^2/R); `dry`: q is the pressure as it is."""
+
+    is_mixed = False
+
+    def __init__(self, bound, dry):
+        self.bound, self.dry = bound, dry
+        self.thinnest = bound
+
+    def relations(self, q, w):
+        """See :class:`Relations`."""
+        if self.dry:
+            pressure, p_q = q, np.ones_like(q)
+        else:
+            pressure, p_q = np.maximum(q, 0.0), full_of_oil(q) * 1.0
+        return Relations(pressure, w, p_q, np.zeros_like(w), np.ones_like(w), w <= self.bound)
+
+    def contact_pressure(self, w):
+        """Not known apart from the oil's: zero."""
+        return np.zeros_like(w)
+
+    def from_film(self, h):
+        """The second unknown of an open gap."""
+        return np.maximum(h, self.bound)
+
+    def second_unknown(self, h, contact_pressure):
+        """The second unknown of a film, whatever pressure the solids had."""
+        return self.from_film(h)
+
+
+class MixedContact:
+    """Oil and solids carry side by side.
+
+    Parameters
+    ----------
+    boundary_film : float
+        h_b in a^2/R.
+    stiffness : float
+        K, p0 per a^2/R: a scale between the two meanings of w, which no answer depends on.
+    """
+
+    is_mixed = True
+
+    def __init__(self, boundary_film, stiffness):
+        self.boundary_film, self.stiffness = boundary_film, stiffness
+        self.thinnest = boundary_film
+
+    def relations(self, q, w):
+        """See :class:`Relations`."""
+        touching = w < 0.0
+        pressure = np.maximum(q, 0.0) + self.contact_pressure(w)
+        p_w = np.where(touching, -self.stiffness, 0.0)
+        film = self.boundary_film + np.maximum(w, 0.0)
+        return Relations(pressure, film, full_of_oil(q) * 1.0, p_w, np.where(touching, 0.0, 1.0), touching)
+
+    def contact_pressure(self, w):
+        """Pressure of the solids in p0."""
+        return self.stiffness * np.maximum(-w, 0.0)
+
+    def from_film(self, h):
+        """The second unknown of an open gap; none where the film is below the boundary film."""
+        return np.maximum(h - self.boundary_film, 0.0)
+
+    def second_unknown(self, h, contact_pressure):
+        """The second unknown of a film and the solids' pressure in p0."""
+        return np.where(contact_pressure > 0.0, -contact_pressure / self.stiffness, self.from_film(h))
+
+
+def contact_model(case, scales, film_scale):
+    """The model that a case asks for, see :class:`DirectContact` and :class:`MixedContact`."""
+    if case.contact.model == "mixed":
+        return MixedContact(case.contact.boundary_film / scales.h, 1.0 / film_scale)
+    return DirectContact(case.contact.minimum_film / scales.h, case.fluid is None)

@@ -1,0 +1,181 @@
+"""The Jacobian as PETSc's matrices: matrix-free with the exact deflection, and its near field assembled.
+
+The Krylov method multiplies by the whole Jacobian (:class:`JacobianOperator`, a Python matrix); the
+default preconditioner takes what it needs from that operator, by ``pc.getOperators()``. Other preconditioners
+(``-pc_type lu`` ...) get :class:`NearFieldMatrix`.
+"""
+
+import numpy as np
+
+from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
+from ehlpetsc.discretisation.interleaving import first_of, firsts, second_of, seconds
+from ehlpetsc.nonlinear import events
+
+LEAK = 1e-3  # of dp/dq at cavitated nodes, in preconditioners alone: a pivot that is never zero
+
+
+def leaks(p_q):
+    """What preconditioners add to the diagonal of the deflection rows: where q has no pressure, a little."""
+    return np.where(p_q > 0.0, 0.0, LEAK)
+
+
+class JacobianOperator:
+    """Context of PETSc's Python matrix.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    gather : callable
+        Whole (q, w, h00) of a distributed vector.
+    factors : object
+        Keeps the default preconditioner's factors between solves, see :mod:`.preconditioner`.
+
+    Attributes
+    ----------
+    relations, flow
+        Of the state linearised at, as in `ehl_problem.Evaluation`.
+    held : ndarray of bool, shape (nx,)
+        Nodes of direct contact at their bound.
+    """
+
+    def __init__(self, problem, gather, factors):
+        self.problem, self.gather, self.factors = problem, gather, factors
+        self.kept = np.arange(2 * problem.local)
+        self.dropped = np.arange(0)
+
+    def linearise(self, evaluation):
+        """Take the derivatives of a state."""
+        relations = evaluation.relations
+        if not self.problem.model.is_mixed:
+            # a node in contact and cavitated at once would leave its deflection row blind
+            relations = relations._replace(p_q=np.where(relations.touching, 1.0, relations.p_q))
+        self.relations, self.flow = relations, evaluation.flow
+
+    def mult(self, mat, v, out):
+        """PETSc's product."""
+        with events.PRODUCT:
+            out.array[:] = self.problem.product(self.relations, self.flow, *self.gather(v))
+
+    def createSubMatrix(self, mat, rows, columns, out=None):
+        """What SNESVI keeps of the system: the same operator, other unknowns zero."""
+        from petsc4py import PETSc
+
+        restricted = RestrictedOperator(self, rows, mat)
+        sizes = (rows.getLocalSize(), rows.getSize())
+        made = PETSc.Mat().createPython((sizes, sizes), restricted, comm=mat.comm)
+        made.setUp()
+        return made
+
+
+class RestrictedOperator:
+    """The Jacobian of the unknowns that SNESVI has kept; context of a Python matrix.
+
+    Attributes
+    ----------
+    kept : ndarray of int
+        Local places, of the pairs alone, that are in the system.
+    dropped : ndarray of int
+        Local nodes whose second unknown is not.
+    """
+
+    def __init__(self, whole, rows, mat):
+        self.whole, self.problem, self.factors = whole, whole.problem, whole.factors
+        local = self.problem.local
+        self.places = rows.indices - mat.getOwnershipRange()[0]
+        self.kept = self.places[: len(self.places) - self.problem.load_is_local]
+        seconds_kept = np.zeros(local, dtype=bool)
+        seconds_kept[self.kept[self.kept % 2 == 1] // 2] = True
+        self.dropped = np.flatnonzero(~seconds_kept)
+        self.full, self.product = mat.createVecs()
+
+    @property
+    def relations(self):
+        return self.whole.relations
+
+    @property
+    def flow(self):
+        return self.whole.flow
+
+    def mult(self, mat, v, out):
+        """PETSc's product."""
+        self.full.set(0.0)
+        self.full.array[self.places] = v.array_r
+        self.whole.mult(None, self.full, self.product)
+        out.array[:] = self.product.array_r[self.places]
+
+
+class NearFieldMatrix:
+    """The Jacobian with the deflection of `near` nodes on either side, in an AIJ matrix.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    near : int
+    matrix : petsc4py.PETSc.Mat
+        AIJ, created with its sizes.
+    """
+
+    def __init__(self, problem, near, matrix):
+        self.problem, self.matrix, self.near = problem, matrix, min(near, problem.n - 1)
+        self._deflection_columns()
+        rows, columns = self._pattern()
+        matrix.setPreallocationCSR((rows, columns, np.zeros(len(columns))))
+        matrix.setOption(matrix.Option.NEW_NONZERO_LOCATION_ERR, True)
+        matrix.setOption(matrix.Option.NO_OFF_PROC_ENTRIES, True)  # nothing to exchange at assembly
+
+    def _deflection_columns(self):
+        """Columns of the local deflection rows; -1: no entry."""
+        p, n = self.problem, self.problem.n
+        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-self.near, self.near + 1)
+        self.there = (nodes >= 0) & (nodes < n)
+        self.nodes = np.clip(nodes, 0, n - 1)
+        by_q = np.where(self.there, first_of(self.nodes), -1)
+        by_w = np.where(self.there, second_of(self.nodes), -1)
+        approach = np.full((p.local, 1), -1)
+        for end in p.deflection.ends:
+            approach[end - p.first] = 2 * n
+        self.columns = np.hstack([by_q, by_w, approach]).astype(np.int32)
+
+    def _pattern(self):
+        p, rows = self.problem, []
+        for deflection, flow in zip(self.columns, p.flow_columns, strict=True):
+            rows += [deflection[deflection >= 0], flow[flow >= 0]]
+        if p.load_is_local:
+            rows.append(np.arange(2 * p.n + 1))
+        return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
+
+    def fill(self, relations, flow):
+        """Values of a state, assembled."""
+        p, d, near = self.problem, self.problem.deflection, self.near
+        kernel = np.tile(-d.curvature[np.abs(np.arange(-near, near + 1))], (p.local, 1))
+        bend = np.zeros_like(kernel)
+        bend[:, near - 1 : near + 2] = d.stretch * np.array(SECOND_DIFFERENCE)
+        for end in d.ends:
+            row = end - p.first
+            kernel[row], bend[row] = d.end_row(end)[self.nodes[row]], 0.0
+            bend[row, near] = d.end_scale
+        by_q = kernel * relations.p_q[self.nodes]
+        by_q[:, near] += leaks(relations.p_q[p.first : p.last])
+        by_w = kernel * relations.p_w[self.nodes] + bend * relations.h_w[self.nodes]
+        approach = np.full((p.local, 1), -d.end_scale)
+        nodes = np.arange(p.first, p.last, dtype=np.int32)
+        set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
+        set_rows(self.matrix, second_of(nodes), p.flow_columns, self._by_unknowns(relations, flow))
+        if p.load_is_local:
+            load = np.zeros(2 * p.n)
+            firsts(load, p.n)[:], seconds(load, p.n)[:] = p.dx * relations.p_q, p.dx * relations.p_w
+            self.matrix.setValues([2 * p.n], np.arange(2 * p.n, dtype=np.int32), load)
+        self.matrix.assemble()
+
+    def _by_unknowns(self, relations, flow):
+        """Reynolds' rows by q and w."""
+        values = flow.copy()
+        node = np.clip(self.problem.flow_columns[:, 1::2] // 2, 0, self.problem.n - 1)
+        values[:, 1::2] *= relations.h_w[node]
+        return values
+
+
+def set_rows(matrix, rows, columns, values):
+    """Insert a block of rows of equal width; negative columns are left out by PETSc."""
+    for_row = np.arange(len(rows) + 1, dtype=np.int32) * columns.shape[1]
+    matrix.setValuesIJV(for_row, columns.ravel(), np.ascontiguousarray(values).ravel(), rowmap=rows)

@@ -1,0 +1,95 @@
+"""The preconditioner solves the matrix that it stands for, on any number of ranks."""
+
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from petsc4py import PETSc
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.nonlinear.jacobian_operator import LEAK
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
+from ehlpetsc.nonlinear.preconditioner.node_variables import band_entries, in_unknowns
+from ehlpetsc.nonlinear.preconditioner.spike import SpikeLU
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
+MESH = ["mesh.points_per_half_width=32", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
+TOUCHING = np.array([20, 21, 40, 63])
+
+
+def state(case, scales):
+    """A rough pressure with cavities, an uneven film; in mixed contact solids that carry at some nodes."""
+    rng = np.random.default_rng(1)
+    p = np.sqrt(np.maximum(1.0 - scales.x**2, 0.0)) * rng.uniform(0.5, 1.5, scales.nx)
+    q = np.where(p > 0.0, p, rng.uniform(-0.9, 0.1, scales.nx))
+    w = expected_film(case, scales) * rng.uniform(0.2, 3.0, scales.nx)
+    if case.contact.model == "mixed":
+        w[TOUCHING] *= -1.0
+    return q, w, 0.0
+
+
+def dense(problem, at, dropped):
+    """The matrix in q and w, its far deflection by exponentials; second unknowns of dropped nodes held."""
+    n, d = problem.n, problem.deflection
+    rates, weights = exponentials(d.curvature, 1.0 / problem.dx)
+    group, node = np.arange(n) // GROUP, np.arange(n)
+    apart = np.abs(np.subtract.outer(group, group))
+    kernel = np.exp(-apart[..., None] * rates) @ weights
+    by_pressure = -np.where(apart > 1, kernel, d.curvature[np.abs(np.subtract.outer(node, node))])
+    by_film = d.stretch * (np.eye(n, k=-1) - 2.0 * np.eye(n) + np.eye(n, k=1))
+    for end in (0, n - 1):
+        by_pressure[end], by_film[end] = d.end_row(end), 0.0
+        by_film[end, end] = d.end_scale
+    relations, _, flow = vars(problem.evaluate(*at, problem.inputs())).values()
+    matrix = np.zeros((2 * n + 1, 2 * n + 1))
+    leak = np.where((relations.p_q > 0.0) | (relations.p_w != 0.0), 0.0, LEAK)
+    matrix[: 2 * n : 2, : 2 * n : 2] = by_pressure * relations.p_q + np.diag(leak)
+    matrix[: 2 * n : 2, 1 : 2 * n : 2] = by_pressure * relations.p_w + by_film * relations.h_w
+    matrix[[0, 2 * n - 2], -1] = -d.end_scale
+    for i, row in enumerate(flow):
+        for k, j in enumerate(range(i - 2, i + 2)):
+            if 0 <= j < n:
+                matrix[2 * i + 1, [2 * j, 2 * j + 1]] = row[2 * k], row[2 * k + 1] * relations.h_w[j]
+    matrix[2 * dropped + 1] = 0.0
+    matrix[2 * dropped + 1, 2 * dropped + 1] = 1.0
+    matrix[2 * n, : 2 * n : 2], matrix[2 * n, 1 : 2 * n : 2] = (
+        problem.dx * relations.p_q,
+        problem.dx * relations.p_w,
+    )
+    return matrix
+
+
+@pytest.mark.parametrize("model", ["direct", "mixed"])
+def test_it_solves_its_matrix(model):
+    case, ranks = load(CASE, [*MESH, f"contact.model={model}"]), PETSc.COMM_WORLD.tompi4py()
+    scales = Scales.of(case)
+    n, at, film = scales.nx, state(case, scales), expected_film(case, scales)
+    assert n % GROUP  # the last group is not full
+    dropped = TOUCHING if model == "direct" else TOUCHING[:0]
+    cuts = [n // GROUP * k // ranks.size * GROUP for k in range(ranks.size)] + [n]
+    first, last = cuts[ranks.rank], cuts[ranks.rank + 1]
+    whole, part = EHLProblem(case, scales, film, 0, n), EHLProblem(case, scales, film, first, last)
+    right = np.random.default_rng(2).standard_normal(2 * n + 1)
+    right[2 * dropped + 1] = 0.0
+    lu = SpikeLU(BandedJacobian(part), -part.deflection.end_scale, ranks)
+    mine = dropped[(dropped >= first) & (dropped < last)] - first
+    kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
+    evaluation = part.evaluate(*at, part.inputs())
+    entries = band_entries(part.model, evaluation.relations, evaluation.flow, lu.band.stencil)
+    other = entries._replace(p_first=np.zeros(n), h_second=np.zeros(n), flow=3.0 * entries.flow)
+    lu.factor(other, dropped[:0])  # what it leaves must not matter
+    lu.factor(entries, mine)
+    found, approach = lu.solve(right[2 * first : 2 * last][kept], kept, right[-1] if last == n else 0.0)
+    in_unknowns(part.model, evaluation.relations, slice(first, last), found.reshape(-1, 2))
+    expected = np.linalg.solve(dense(whole, at, dropped), right)
+    scale = np.tile(np.abs(expected[:-1]).reshape(-1, 2).max(axis=0), last - first)
+    np.testing.assert_allclose(found / scale, expected[2 * first : 2 * last] / scale, rtol=0, atol=1e-7)
+    assert abs(approach / expected[-1] - 1.0) < 1e-7
