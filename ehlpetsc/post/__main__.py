@@ -9,6 +9,7 @@ from pathlib import Path
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
 from ehlpetsc.post.fatigue.cycles import RESIDUES
+from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS
 from ehlpetsc.post.inputs.loads import SURFACES
 from ehlpetsc.post.jit import COMPILED
@@ -55,9 +56,16 @@ def arguments(argv=None):
         "--ranges",
         choices=RANGES,
         default="reversals",
-        help="component ranges of a cycle: between its reversals (default) or largest less smallest in it",
+        help="ranges of a cycle: between its reversals (default) or the widest in its closed loop",
     )
-    add("--mean-stress", choices=MEAN_STRESSES, default="none")
+    add("--mean-stress", choices=MEAN_STRESSES, default="none", help="morrow: with a floor to compression")
+    add(
+        "--strain",
+        choices=STRAINS,
+        default="direct",
+        help="how the elastic range enters the cyclic stress-strain curve: as it is (default, as in the "
+        "paper), by Neuber's or by Glinka's rule",
+    )
     add("--regression", choices=REGRESSIONS, default="x on y", help="of the median ranks")
     add("--jobs", type=_jobs, default=1, metavar="N", help="threads (default 1)")
     add(
@@ -105,7 +113,7 @@ class Progress:
 def _process(path, chosen):
     output = chosen.output or str(Path(path).with_suffix("")) + ".post.h5"
     surfaces = SURFACES if chosen.surface == "both" else (chosen.surface,)
-    counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress)
+    counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress, chosen.strain)
     depths = None if chosen.depths is None else tuple(chosen.depths)
     job = Job(path, output, surfaces, depths, counting, chosen.regression, chosen.jobs)
     start = time.perf_counter()

@@ -105,22 +105,61 @@ def test_turned_shear_counts_though_von_mises_does_not_see_it():
     assert damage(*parts, STEEL, count="von_mises").peak_range == pytest.approx(np.sqrt(3) * 5e8, rel=1e-6)
 
 
-def test_window_sees_what_happens_between_reversals():
-    parts = np.array([0.0, 0, 0, 0, 0]), np.array([0.0, -1, -2, -1, 0]) * 1e9, np.array([0.0, 3e8, 0, 0, 0])
+def test_window_is_the_widest_distance_of_the_loop():
+    parts = np.array([0.0, 0, 0, 0, 0]), np.array([0.0, -1, -2, -1, 0]) * 1e9, np.array([0.0, 1.5e9, 0, 0, 0])
     by_reversals = damage(*parts, STEEL, count="sz")
     by_window = damage(*parts, STEEL, count="sz", ranges="window")
     assert by_reversals.peak_range == pytest.approx(2e9 * np.sqrt(0.79))
-    assert by_window.peak_range == pytest.approx(np.sqrt(4e18 * 0.79 + 3 * 9e16))
+    assert by_window.peak_range == pytest.approx(
+        np.sqrt(1e18 * 0.79 + 3 * 2.25e18)
+    )  # either end to the second
 
 
-def test_morrow_lengthens_life_under_compression():
+def test_window_keeps_the_signs_of_a_pair():
+    """sx and sz in step, as at a surface under pressure: the distance is that of the one pair there is."""
+    size = -1e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
+    window = damage(size, size, 0 * size, STEEL, ranges="window")
+    assert window.peak_range == pytest.approx(0.4e9, rel=1e-12)  # (1 - 2 nu) p
+    assert window.damage == pytest.approx(damage(size, size, 0 * size, STEEL).damage, rel=1e-12)
+
+
+def test_window_is_the_same_forwards_and_backwards():
+    parts = np.cumsum(np.random.default_rng(4).normal(scale=2e8, size=(3, 30, 150)), axis=-1)
+    for residue in ("closed", "half"):
+        forwards = damage(*parts, STEEL, ranges="window", residue=residue)
+        backwards = damage(*parts[..., ::-1], STEEL, ranges="window", residue=residue)
+        assert backwards.damage == pytest.approx(forwards.damage, rel=1e-12)
+        assert (forwards.damage >= damage(*parts, STEEL, residue=residue).damage * (1 - 1e-12)).all()
+
+
+def test_morrow_lengthens_life_under_compression_to_a_floor():
     result = damage(*pulse(1e9), STEEL, mean_stress="morrow")
-    mean = 1.3 * -0.5e9
-    expected = 1 / cycles_to_failure(1e9 * np.sqrt(0.79), STEEL, mean)
-    assert result.damage == pytest.approx(expected, rel=1e-9)
+    dsv = 1e9 * np.sqrt(0.79)
+    assert 1.3 * -0.5e9 < -dsv / 2  # the trace asks for more than the floor gives
+    assert result.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL, -dsv / 2), rel=1e-9)
     assert result.damage < damage(*pulse(1e9), STEEL).damage
+    tension = damage(*pulse(-1e9), STEEL, mean_stress="morrow")
+    assert tension.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL, 1.3 * 0.5e9), rel=1e-9)
     beyond = cycles_to_failure(1e9, STEEL, 3e9)  # mean above the strength: the plastic term alone
     assert np.isfinite(beyond) and 0 < beyond < cycles_to_failure(1e9, STEEL)
+
+
+def test_pressure_of_the_contact_is_no_benefit_without_end():
+    """Ten times the hydrostatic pressure about the same cycle gives the same damage."""
+    sx, sz, txz = pulse(1e9)
+    lives = [damage(sx - p, sz - p, txz, STEEL, mean_stress="morrow").damage for p in (2e9, 2e10)]
+    assert lives[0] == pytest.approx(lives[1], rel=1e-6)
+
+
+def test_residual_stress_enters_the_mean():
+    dsv = 1e9 * np.sqrt(0.79)
+    tension, residual = pulse(-1e9), -2e8
+    result = damage(*tension, STEEL, mean_stress="morrow", residual_stress=residual)
+    mean = 1.3 * 0.5e9 + 2 * residual  # the same in x and y
+    assert result.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL, mean), rel=1e-9)
+    assert damage(*tension, STEEL, residual_stress=residual).damage == damage(*tension, STEEL).damage
+    with pytest.raises(ValueError, match="residual_stress"):
+        damage(*tension, STEEL, residual_stress=np.nan)
 
 
 def test_no_stress_no_damage():
@@ -129,7 +168,8 @@ def test_no_stress_no_damage():
 
 
 @pytest.mark.parametrize(
-    "choice", [{"count": "signed"}, {"residue": "none"}, {"ranges": "x"}, {"mean_stress": "swt"}]
+    "choice",
+    [{"count": "signed"}, {"residue": "none"}, {"ranges": "x"}, {"mean_stress": "swt"}, {"strain": "x"}],
 )
 def test_unknown_choices(choice):
     with pytest.raises(ValueError, match="must be one of"):
@@ -159,7 +199,8 @@ from ehlpetsc.post import Material, damage, rainflow
 from ehlpetsc.post.jit import COMPILED
 assert COMPILED is {compiled}
 parts = np.cumsum(np.random.default_rng(5).normal(scale=2e8, size=(3, 20, 300)), axis=-1)
-for choice in ({{}}, dict(residue="half", count="von_mises"), dict(ranges="window", mean_stress="morrow")):
+neuber = dict(ranges="window", mean_stress="morrow", strain="neuber")
+for choice in ({{}}, dict(residue="half", count="von_mises"), neuber):
     for row in damage(*parts, Material(), **choice):
         print(row.tobytes().hex())
 print(rainflow(parts[0, 0]).tobytes().hex())

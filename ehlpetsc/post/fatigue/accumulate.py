@@ -6,7 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
+from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
+from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, widest
 from ehlpetsc.post.fatigue.strain_life import cycle_damage
 from ehlpetsc.post.jit import njit
 
@@ -30,10 +32,11 @@ class Counting(NamedTuple):
     residue: str = "closed"
     ranges: str = "reversals"
     mean_stress: str = "none"
+    strain: str = "direct"
 
     def check(self):
         """Raise ValueError for a choice that does not exist."""
-        choices = (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES)
+        choices = (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES, STRAINS)
         for name, value, known in zip(self._fields, self, choices, strict=True):
             if value not in known:
                 raise ValueError(f"{name} = {value!r}: must be one of {', '.join(known)}")
@@ -47,36 +50,25 @@ def _squared_range(dsx, dsz, dtxz, nu):
 
 
 @njit(cache=True, nogil=True)
-def _window(row, i, j):
-    """Largest less smallest value from sample i on to sample j, across the repetition if j < i."""
-    low = high = float(row[i])
-    k = i
-    while k != j:
-        k = k + 1 if k + 1 < row.size else 0
-        value = float(row[k])
-        low, high = min(low, value), max(high, value)
-    return high - low
-
-
-@njit(cache=True, nogil=True)
-def _sum_cycles(stress, nu, n, first, second, weight, window, morrow, constants, table):
-    """Damage, number and largest squared range of n cycles of one history (3, samples)."""
+def _sum_cycles(stress, series, nu, n, first, second, weight, options, constants, table, points):
+    """Damage, number and largest squared range of n cycles of `series` in one history (3, samples)."""
+    closed, window, morrow, rule, residual = options
     modulus, hardening, exponent, strength, ductility, b, c = constants
     total = number = largest = 0.0
     for k in range(n):
         i, j = first[k], second[k]
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
         if window:
-            squared = _squared_range(
-                _window(stress[0], i, j), _window(stress[1], i, j), _window(stress[2], i, j), nu
-            )
+            start, count = loop_of(series, stress.shape[1], i, j, closed)
+            squared = widest(points, stress.shape[1], start, count)
         else:
             squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
         if squared <= 0:
             continue
         if morrow:
-            mean = (1 + nu) * (xi + xj + zi + zj) / 2
-            part = cycle_damage(sqrt(squared), mean, modulus, hardening, exponent, strength, ductility, b, c)
+            dsv = sqrt(squared)
+            mean = max((1 + nu) * (xi + xj + zi + zj) / 2 + 2 * residual, -dsv / 2)
+            part = cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c)
         else:
             part = look_up(squared, table)
         total += weight[k] * part
@@ -92,20 +84,24 @@ def _fill_von_mises(stress, nu, scalar):
 
 
 @njit(cache=True, nogil=True)
-def damage_of_points(stress, lengths, nu, channels, closed, window, morrow, constants, table, work, out):
+def damage_of_points(stress, lengths, nu, channels, options, constants, table, work, out):
     """Fill out (points, 3) from stress (points, 3, samples), of which the first lengths[point] count."""
-    stack, first, second, weight, scalar = work
+    stack, first, second, weight, scalar, equivalent = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
+        if options[1]:
+            equivalent_points(history, nu, equivalent)
         worst = -1.0
         for channel in channels:
             if channel == 3:
                 _fill_von_mises(history, nu, scalar)
-                n = find_cycles(scalar[: lengths[point]], closed, stack, first, second, weight)
+                n = find_cycles(scalar[: lengths[point]], options[0], stack, first, second, weight)
             else:
-                n = find_cycles(history[channel], closed, stack, first, second, weight)
+                n = find_cycles(history[channel], options[0], stack, first, second, weight)
+                if options[1]:
+                    scalar[: lengths[point]] = history[channel]
             total, number, largest = _sum_cycles(
-                history, nu, n, first, second, weight, window, morrow, constants, table
+                history, scalar, nu, n, first, second, weight, options, constants, table, equivalent
             )
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
@@ -118,22 +114,27 @@ class Counter:
     def __init__(self, material, counting, samples):
         counting.check()
         self.material = material
+        self.channels = np.array(CHANNELS[counting.count])
         self.options = (
-            np.array(CHANNELS[counting.count]),
             counting.residue == "closed",
             counting.ranges == "window",
             counting.mean_stress == "morrow",
+            STRAINS.index(counting.strain),
         )
-        self.table = life_table(material)
-        self.work = (*workspace(samples), np.empty(samples))
+        self.table = life_table(material, counting.strain)
+        self.work = (*workspace(samples), np.empty(samples), np.empty((3, samples)))
 
-    def __call__(self, stress, lengths, out):
-        """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range."""
+    def __call__(self, stress, lengths, out, residual=0.0):
+        """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range.
+
+        `residual` (Pa) lies in both directions along the surface; it enters the mean-stress term alone.
+        """
         damage_of_points(
             stress,
             lengths,
             self.material.poisson_ratio,
-            *self.options,
+            self.channels,
+            (*self.options, float(residual)),
             self.material.constants(),
             self.table,
             self.work,
@@ -141,7 +142,18 @@ class Counter:
         )
 
 
-def damage(sx, sz, txz, material, count="max3", residue="closed", ranges="reversals", mean_stress="none"):
+def damage(
+    sx,
+    sz,
+    txz,
+    material,
+    count="max3",
+    residue="closed",
+    ranges="reversals",
+    mean_stress="none",
+    strain="direct",
+    residual_stress=0.0,
+):
     """Damage of one pass of each history.
 
     Parameters
@@ -158,11 +170,21 @@ def damage(sx, sz, txz, material, count="max3", residue="closed", ranges="revers
     residue : {"closed", "half"}
         See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
     ranges : {"reversals", "window"}
-        Component ranges of a cycle: the difference between its two reversals, with its sign, or the largest
-        less the smallest value of each component from the one to the other.
+        Component ranges of a cycle: the difference between its two reversals, with its sign; or the largest
+        von Mises distance between any two instants of the cycle's closed loop
+        (:mod:`ehlpetsc.post.fatigue.loops`), the same forwards and backwards in time.
     mean_stress : {"none", "morrow"}
         Morrow takes the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading the
-        mean stress itself) off the fatigue strength.
+        mean stress itself) off the fatigue strength. Compression helps no further than in a uniaxial cycle
+        that ends at zero stress, where the mean is minus half the range: below -dsv/2 the mean counts as
+        -dsv/2. So the FKM guideline (Rechnerischer Festigkeitsnachweis, stress ratio R > 1) has it; without
+        the floor the pressure of the contact itself would lengthen lives by decades.
+    strain : {"direct", "neuber", "glinka"}
+        How the elastic range enters the cyclic stress-strain curve (13): as it is, as in the paper, or by
+        Neuber's or Glinka's rule (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
+    residual_stress : float
+        Residual stress along the surface, the same in x and y, none in z, Pa: it adds twice itself to the
+        mean of Morrow's term and changes nothing without one.
 
     Returns
     -------
@@ -178,8 +200,10 @@ def damage(sx, sz, txz, material, count="max3", residue="closed", ranges="revers
     if not np.isfinite(stress).all():
         raise ValueError("stress histories must be finite")
     shape, samples = stress.shape[:-2], stress.shape[-1]
-    counter = Counter(material, Counting(count, residue, ranges, mean_stress), samples)
+    if not np.isfinite(residual_stress):
+        raise ValueError("residual_stress must be a finite number")
+    counter = Counter(material, Counting(count, residue, ranges, mean_stress, strain), samples)
     blocks = np.ascontiguousarray(stress).reshape(-1, 3, samples)
     out = np.empty((len(blocks), 3))
-    counter(blocks, np.full(len(blocks), samples), out)
+    counter(blocks, np.full(len(blocks), samples), out, residual_stress)
     return Damage(*(out[:, k].reshape(shape)[()] for k in range(3)))

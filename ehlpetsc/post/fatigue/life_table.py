@@ -8,43 +8,63 @@ from math import exp, log
 
 import numpy as np
 
-from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude
+from ehlpetsc.post.fatigue.elastic_plastic import log_local_range
+from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude, rule_of
 from ehlpetsc.post.jit import njit
 
 ENTRIES = 4096
 LOWEST, HIGHEST = 1e-6, 1e2  # of the fatigue strength
 
 
-def life_table(material):
-    """Table of shape (ENTRIES + 1, 2): ln(1/N) and its slope per step; the last row holds start and step."""
-    modulus, hardening, exponent, strength, ductility, b, c = material.constants()
-    start, stop = 2 * log(LOWEST * strength), 2 * log(HIGHEST * strength)
+def curve_table(start, stop, value_and_slope):
+    """Table (ENTRIES + 1, 2) of a function of a logarithm and its slope per step between start and stop.
+
+    `value_and_slope` takes the logarithm; the last row holds start and step.
+    """
     step = (stop - start) / (ENTRIES - 1)
     table = np.empty((ENTRIES + 1, 2))
     for k in range(ENTRIES):
-        log_dsv = (start + k * step) / 2
-        amplitude = log_strain_amplitude(log_dsv, modulus, hardening, exponent)
-        y = log_reversals(amplitude, strength, modulus, ductility, b, c)
-        elastic = exp(log_dsv - log(2 * modulus) - amplitude)
-        life = exp(log(strength / modulus) + b * y - amplitude)
-        slope = (elastic + (1 - elastic) / exponent) / (b * life + c * (1 - life))
-        table[k] = log(2.0) - y, -slope * step / 2
+        value, slope = value_and_slope(start + k * step)
+        table[k] = value, slope * step
     table[ENTRIES] = start, step
     return table
 
 
+def life_table(material, strain="direct"):
+    """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: what that becomes before eq. (13)."""
+    modulus, hardening, exponent, strength, ductility, b, c = material.constants()
+    rule = rule_of(strain)
+
+    def log_damage(log_squared):
+        local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
+        amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
+        y = log_reversals(amplitude, strength, modulus, ductility, b, c)
+        elastic = exp(local - log(2 * modulus) - amplitude)
+        life = exp(log(strength / modulus) + b * y - amplitude)
+        slope = (elastic + (1 - elastic) / exponent) / (b * life + c * (1 - life))
+        return log(2.0) - y, -slope * rate / 2
+
+    return curve_table(2 * log(LOWEST * strength), 2 * log(HIGHEST * strength), log_damage)
+
+
 @njit(cache=True, nogil=True)
-def look_up(squared, table):
-    """1/N at the square of a stress range > 0."""
+def interpolate(logarithm, table):
+    """Value of a :func:`curve_table` at a logarithm; straight on beyond its ends."""
     last = table.shape[0] - 2
-    place = (log(squared) - table[last + 1, 0]) / table[last + 1, 1]
+    place = (logarithm - table[last + 1, 0]) / table[last + 1, 1]
     if place <= 0:
-        return exp(table[0, 0] + place * table[0, 1])
+        return table[0, 0] + place * table[0, 1]
     if place >= last:
-        return exp(min(table[last, 0] + (place - last) * table[last, 1], 700.0))
+        return table[last, 0] + (place - last) * table[last, 1]
     k = int(place)
     t = place - k
     low, high = table[k, 0], table[k + 1, 0]
     rise = high - low
     left, right = table[k, 1] - rise, rise - table[k + 1, 1]
-    return exp(low + t * (rise + (1 - t) * (left * (1 - t) + right * t)))
+    return low + t * (rise + (1 - t) * (left * (1 - t) + right * t))
+
+
+@njit(cache=True, nogil=True)
+def look_up(squared, table):
+    """1/N at the square of a stress range > 0."""
+    return exp(min(interpolate(log(squared), table), 700.0))

@@ -17,6 +17,7 @@ from math import exp, inf, log
 
 import numpy as np
 
+from ehlpetsc.post.fatigue.elastic_plastic import STRAINS, log_local_range
 from ehlpetsc.post.jit import njit
 
 LARGEST_EXPONENT = 700.0  # exp of more overflows
@@ -75,12 +76,32 @@ def equivalent_range(dsx, dsy, dsz, dtxz):
     return np.sqrt(0.5 * ((dsx - dsy) ** 2 + (dsy - dsz) ** 2 + (dsz - dsx) ** 2) + 3 * np.square(dtxz))
 
 
-def strain_range(dsv, material):
-    """Strain range of a stress range dsv in Pa (Holmes et al. 2005, eq. (13))."""
+def rule_of(strain):
+    """Place of a rule's name in STRAINS; ValueError for one that does not exist."""
+    if strain not in STRAINS:
+        raise ValueError(f"strain = {strain!r}: must be one of {', '.join(STRAINS)}")
+    return STRAINS.index(strain)
+
+
+def strain_range(dsv, material, strain="direct"):
+    """Strain range of an elastic stress range dsv in Pa (Holmes et al. 2005, eq. (13)).
+
+    `strain` says what the elastic range becomes first (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
+    """
     dsv = np.asarray(dsv, float)
+    if rule_of(strain):
+        dsv = local_range(dsv, material, strain)
     return dsv / material.youngs_modulus + 2 * (dsv / (2 * material.hardening_coefficient)) ** (
         1 / material.cyclic_hardening
     )
+
+
+def local_range(dsv, material, strain):
+    """Elastic-plastic stress range of an elastic one, Pa (:mod:`ehlpetsc.post.fatigue.elastic_plastic`)."""
+    dsv, rule = np.asarray(dsv, float), rule_of(strain)
+    curve = material.constants()[:3]
+    logs = [log_local_range(log(value), *curve, rule)[0] if value > 0 else -inf for value in dsv.ravel()]
+    return np.exp(logs).reshape(dsv.shape)[()]
 
 
 @njit(cache=True, nogil=True)
@@ -118,17 +139,18 @@ def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
 
 
 @njit(cache=True, nogil=True)
-def cycle_damage(dsv, mean, modulus, hardening, exponent, strength, ductility, b, c):
+def cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c):
     """1/N of one cycle, straight from the equations."""
     if dsv <= 0:
         return 0.0
-    amplitude = log_strain_amplitude(log(dsv), modulus, hardening, exponent)
+    local, _ = log_local_range(log(dsv), modulus, hardening, exponent, rule)
+    amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
     y = log_reversals(amplitude, strength - mean, modulus, ductility, b, c)
     return 2 * exp(min(-y, LARGEST_EXPONENT))
 
 
 @njit(cache=True, nogil=True)
-def _lives(dsv, mean, constants, out):
+def _lives(dsv, mean, rule, constants, out):
     modulus, hardening, exponent, strength, ductility, b, c = constants
     for i in range(dsv.size):
         if dsv[i] <= 0:
@@ -136,12 +158,13 @@ def _lives(dsv, mean, constants, out):
         elif dsv[i] == inf:
             out[i] = 0.0
         else:
-            amplitude = log_strain_amplitude(log(dsv[i]), modulus, hardening, exponent)
+            local, _ = log_local_range(log(dsv[i]), modulus, hardening, exponent, rule)
+            amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
             y = log_reversals(amplitude, strength - mean[i], modulus, ductility, b, c)
             out[i] = inf if y > LARGEST_EXPONENT else exp(max(y, -LARGEST_EXPONENT)) / 2
 
 
-def cycles_to_failure(dsv, material, mean_stress=0.0):
+def cycles_to_failure(dsv, material, mean_stress=0.0, strain="direct"):
     """Cycles to failure N under a constant equivalent stress range, eqs. (13) and (14) inverted to rounding.
 
     Parameters
@@ -151,6 +174,8 @@ def cycles_to_failure(dsv, material, mean_stress=0.0):
     material : Material
     mean_stress : array_like
         Taken off the fatigue strength in the elastic term of (14) (Morrow), Pa.
+    strain : {"direct", "neuber", "glinka"}
+        What the elastic range becomes before (13): :mod:`ehlpetsc.post.fatigue.elastic_plastic`.
 
     Returns
     -------
@@ -160,11 +185,12 @@ def cycles_to_failure(dsv, material, mean_stress=0.0):
     Raises
     ------
     ValueError
-        A negative range or nan.
+        A negative range or nan, an unknown rule.
     """
+    rule = rule_of(strain)
     dsv, mean = (np.array(part, float) for part in np.broadcast_arrays(dsv, mean_stress))
     if not (dsv >= 0).all() or np.isnan(mean).any():
         raise ValueError("stress ranges must be numbers of 0 or more")
     out = np.empty(dsv.size)
-    _lives(dsv.ravel(), mean.ravel(), material.constants(), out)
+    _lives(dsv.ravel(), mean.ravel(), rule, material.constants(), out)
     return float(out[0]) if dsv.ndim == 0 else out.reshape(dsv.shape)

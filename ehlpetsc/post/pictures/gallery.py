@@ -203,7 +203,7 @@ def history_picture(path, result, point):
     i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)
     dx, dz, dt = (part[j] - part[i] for part in values)
     ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
-    damages = 1 / cycles_to_failure(ranges, material)
+    damages = 1 / cycles_to_failure(ranges, material, strain=result.attrs.get("strain", "direct"))
     top.set_xlabel("time [µs]")
     marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
     top.set_title(

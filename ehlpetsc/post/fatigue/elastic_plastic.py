@@ -1,0 +1,62 @@
+r"""The elastic-plastic range that belongs to an elastic one: none, Neuber's or Glinka's rule.
+
+.. math::
+    \text{direct:}\quad \Delta\sigma = \Delta\sigma_e
+
+    \text{Neuber:}\quad \Delta\sigma\,\Delta\varepsilon(\Delta\sigma) = \Delta\sigma_e^2/E
+
+    \text{Glinka:}\quad \frac{\Delta\sigma^2}{4E}
+        +\frac{\Delta\sigma}{n'+1}\Big(\frac{\Delta\sigma}{2K'}\Big)^{1/n'} = \frac{\Delta\sigma_e^2}{4E}
+
+with the cyclic stress-strain curve :math:`\Delta\varepsilon(\Delta\sigma)` of
+:mod:`ehlpetsc.post.fatigue.strain_life`, eq. (13). "direct" is what Holmes et al. (2005) do: the elastic
+range enters (13) as if it were the true one, so that above yield both stress and strain are too large.
+Neuber (1961), J. Appl. Mech. 28, keeps the product of stress and strain; Molski & Glinka (1981), Mater. Sci.
+Eng. 50, the strain energy of a notch. Both are for a small yielding zone held by an elastic body, as one
+under an asperity is; ranges are on the doubled curve (Masing).
+"""
+
+from math import exp, log
+
+from ehlpetsc.post.jit import njit
+
+STRAINS = ("direct", "neuber", "glinka")
+
+
+@njit(cache=True, nogil=True)
+def _sum_of_powers(first, first_slope, second, second_slope, wanted):
+    """y at which exp(first + first_slope y) + exp(second + second_slope y) = exp(wanted), and d wanted/dy.
+
+    The sum as ln over y is convex and rises; from the smaller of the one-term solutions, right of the root,
+    Newton descends to it without overshoot.
+    """
+    y = min((wanted - first) / first_slope, (wanted - second) / second_slope)
+    slope = first_slope
+    for _ in range(60):
+        e, p = first + first_slope * y, second + second_slope * y
+        high = max(e, p)
+        total = high + log(exp(e - high) + exp(p - high))
+        share = exp(e - total)
+        slope = first_slope * share + second_slope * (1 - share)
+        step = (total - wanted) / slope
+        y -= step
+        if abs(step) <= 1e-14 * (1 + abs(y)):
+            break
+    return y, slope
+
+
+@njit(cache=True, nogil=True)
+def log_local_range(log_elastic, modulus, hardening, exponent, rule):
+    """ln of the elastic-plastic stress range from ln of the elastic one, and its slope d ln/d ln.
+
+    `rule` is the place of the rule's name in STRAINS.
+    """
+    if rule == 0:
+        return log_elastic, 1.0
+    wanted = 2 * (log_elastic - log(2.0)) - log(modulus)  # (elastic amplitude)^2/E
+    elastic = -2 * log(2.0) - log(modulus)
+    plastic = -log(2.0) - log(2 * hardening) / exponent
+    if rule == 2:
+        plastic -= log((1 + exponent) / 2)  # of twice the strain energy
+    y, slope = _sum_of_powers(elastic, 2.0, plastic, 1 + 1 / exponent, wanted)
+    return y, 2 / slope

@@ -1,0 +1,115 @@
+"""Neuber's and Glinka's rules against their own equations, and closed loops against trying every pair."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.post import Material, cycles_to_failure, damage, rainflow, strain_range
+from ehlpetsc.post.fatigue.life_table import life_table, look_up
+from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, widest
+from ehlpetsc.post.fatigue.strain_life import equivalent_range, local_range
+
+STEEL = Material()
+RANGES = np.logspace(7, 10.5, 30)
+
+
+def curve_strain(stress):
+    """The doubled cyclic stress-strain curve (13)."""
+    return stress / STEEL.youngs_modulus + 2 * (stress / (2 * STEEL.hardening_coefficient)) ** (
+        1 / STEEL.cyclic_hardening
+    )
+
+
+def test_neuber_keeps_the_product():
+    local = local_range(RANGES, STEEL, "neuber")
+    assert local * curve_strain(local) == pytest.approx(RANGES**2 / STEEL.youngs_modulus, rel=1e-12)
+    assert strain_range(RANGES, STEEL, "neuber") == pytest.approx(curve_strain(local), rel=1e-14)
+
+
+def test_glinka_keeps_the_strain_energy():
+    for elastic, local in zip(RANGES, local_range(RANGES, STEEL, "glinka"), strict=True):
+        share = np.linspace(0, 1, 20001) ** 0.25  # fine where the curve bends
+        stress = local * share
+        strain = curve_strain(stress)
+        energy = np.sum((stress[1:] + stress[:-1]) / 4 * np.diff(strain))
+        # a strain of half the range on the plain curve is half of that on the doubled one
+        assert energy / 2 == pytest.approx((elastic / 2) ** 2 / (2 * STEEL.youngs_modulus), rel=1e-6)
+
+
+def test_elastic_ranges_stay_and_the_rules_keep_their_order():
+    low = np.array([1e6, 1e8])
+    for rule in ("neuber", "glinka"):
+        assert local_range(low, STEEL, rule) == pytest.approx(low, rel=1e-7)
+    strains = [strain_range(3e9, STEEL, rule) for rule in ("glinka", "neuber", "direct")]
+    assert strains == sorted(strains) and strains[0] < strains[1] < strains[2]
+
+
+def test_what_the_direct_entry_adds_to_damage():
+    """The figures of the README: the direct entry is too high against Neuber's rule and against Glinka's."""
+    ranges = np.array([1.0, 1.5, 2.0, 3.0]) * 1e9
+    direct = cycles_to_failure(ranges, STEEL)
+    neuber, glinka = (cycles_to_failure(ranges, STEEL, strain=rule) / direct for rule in ("neuber", "glinka"))
+    assert neuber == pytest.approx([1.104, 1.983, 6.048, 66.98], rel=1e-3)
+    assert glinka == pytest.approx([1.180, 2.685, 9.969, 129.6], rel=1e-3)
+
+
+@pytest.mark.parametrize("rule", ["neuber", "glinka"])
+def test_table_error_is_below_1e9(rule):
+    table = life_table(STEEL, rule)
+    ranges = np.exp(np.random.default_rng(0).uniform(np.log(2e3), np.log(2e11), 2000))
+    exact = 1 / cycles_to_failure(ranges, STEEL, strain=rule)
+    found = np.array([look_up(value * value, table) for value in ranges])
+    assert found == pytest.approx(exact, rel=1e-9)
+
+
+def test_unknown_rule():
+    for call in (strain_range, local_range):
+        with pytest.raises(ValueError, match="strain = 'esed'"):
+            call(1e9, STEEL, strain="esed")
+
+
+def test_rules_reach_the_damage_of_a_history_with_and_without_morrow():
+    sz = -2e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
+    parts, dsv = (0 * sz, sz, 0 * sz), 2e9 * np.sqrt(0.79)
+    for rule in ("neuber", "glinka"):
+        plain = damage(*parts, STEEL, strain=rule)
+        assert plain.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL, strain=rule), rel=1e-9)
+        morrow = damage(*parts, STEEL, strain=rule, mean_stress="morrow")
+        assert morrow.damage == pytest.approx(
+            1 / cycles_to_failure(dsv, STEEL, -dsv / 2, strain=rule), rel=1e-9
+        )
+
+
+def test_loop_of_an_inner_cycle_and_of_the_whole():
+    series = np.array([0.0, 10, 2, 6, 1, 12, 0])
+    assert loop_of(series, 7, 2, 3, True) == (2, 2)  # beyond 2 and 6 the next samples leave the range
+    series = np.array([0.0, 10, 5, 2, 4, 6, 3, 1, 12, 0])
+    assert loop_of(series, 10, 3, 5, True) == (2, 5)  # 5, 2, 4, 6, 3
+    assert loop_of(series, 10, 8, 0, True)[1] == 10
+    assert loop_of(series, 10, 9, 1, True)[1] == 9  # round the end: all but 12
+    assert loop_of(series, 10, 0, 1, False) == (0, 8)
+
+
+def test_widest_is_the_largest_of_all_pairs():
+    rng = np.random.default_rng(1)
+    for count in (2, 3, 17, 200):
+        parts = rng.normal(scale=1e8, size=(3, count))
+        points = np.empty((3, count))
+        equivalent_points(parts, 0.3, points)
+        d = parts[:, :, None] - parts[:, None, :]
+        pairs = equivalent_range(d[0], 0.3 * (d[0] + d[1]), d[1], d[2])
+        assert np.sqrt(widest(points, count, 0, count)) == pytest.approx(pairs.max(), rel=1e-12)
+        part = np.arange(count // 2, count // 2 + count // 2 + 1) % count  # round the end
+        found = widest(points, count, count // 2, count // 2 + 1)
+        assert np.sqrt(found) == pytest.approx(pairs[np.ix_(part, part)].max(), rel=1e-12)
+
+
+def test_loops_of_a_reversed_history_are_the_same_instants():
+    series = np.random.default_rng(2).normal(size=200).cumsum()
+
+    def loops(values):
+        for _, _, _, i, j in rainflow(values):
+            first, count = loop_of(values, values.size, int(i), int(j), True)
+            yield frozenset((first + np.arange(count)) % values.size)
+
+    backwards = {frozenset(series.size - 1 - k for k in loop) for loop in loops(series[::-1].copy())}
+    assert backwards == set(loops(series))
