@@ -1,0 +1,140 @@
+"""The whole Jacobian against differences of the residual, at a state with contact, cavity and film."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from petsc4py import PETSc
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.interleaving import firsts, second_of, seconds
+from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.nonlinear.jacobian_operator import LEAK, NearFieldMatrix
+from ehlpetsc.nonlinear.newton import NewtonSolver
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+
+CASES = Path(__file__).parents[2] / "cases"
+MESH = ["mesh.points_per_half_width=24", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
+ALONE, BESIDE = [20, 30, 47], 31  # nodes that touch; one beside another of them
+H00 = -0.3
+SCENES = {
+    "direct": ("table1_smooth.toml", []),
+    "direct over 1 nm": ("table1_smooth.toml", ["contact.minimum_film=1e-9"]),
+    "mixed": ("table1_smooth.toml", ["contact.model='mixed'"]),
+    "starved": ("table1_smooth.toml", ["fluid.inlet_film=1e-7"]),
+    "dry": ("dry_hertz.toml", []),
+}
+
+
+@dataclass
+class Scene:
+    solver: NewtonSolver
+    state: np.ndarray  # interleaved
+    inputs: object
+    touching: list
+
+    def residual(self, state):
+        n = self.solver.n
+        parts = firsts(state, n).copy(), seconds(state, n).copy(), state[-1]
+        return self.solver.problem.evaluate(*parts, self.inputs).residual.copy()
+
+
+def scene(name):
+    """A solver at an uneven state: oil, a cavity behind it, solids that touch, roughness, a past."""
+    file, extra = SCENES[name]
+    case = load(CASES / file, MESH + extra)
+    scales = Scales.of(case)
+    film = expected_film(case, scales)
+    solver = NewtonSolver(case, scales, film, PETSc.COMM_SELF)
+    rng, n, problem = np.random.default_rng(2), scales.nx, solver.problem
+    q = np.sqrt(np.maximum(1.05 - scales.x**2, 0.01)) * rng.uniform(0.5, 1.2, n)
+    w = film * rng.uniform(0.3, 3.0, n)
+    if not problem.dry:
+        q[scales.x > 1.02] = rng.uniform(-0.8, -0.1, (scales.x > 1.02).sum())
+    # two nodes side by side without any film are a kink: the limiter of the upwind flux
+    touching = ALONE if solver.bound == 0.0 and not problem.dry else [*ALONE, BESIDE]
+    w[touching] = -0.4 / solver.model.stiffness if solver.model.is_mixed else solver.bound
+    history = None
+    if not problem.dry:
+        m = problem.content(q, w)
+        history = FilmHistory(*(m * rng.uniform(0.6, 1.6, n) + 1e-6 for _ in range(2)), 0.01, 0.012)
+    state = np.append(np.stack([q, w], axis=1).ravel(), H00)
+    return Scene(solver, state, problem.inputs(1e-5 * rng.standard_normal(n), history), sorted(touching))
+
+
+def differences(at, direction, step):
+    """Derivative of the residual along a direction, second order; to one side, where films may not fall."""
+    f = [at.residual(at.state + k * step * direction) for k in range(3)]
+    return (-3.0 * f[0] + 4.0 * f[1] - f[2]) / (2.0 * step)
+
+
+def linearised(at):
+    """The solver with its Jacobian at the state, as SNES asks for it."""
+    solver = at.solver
+    solver.inputs, solver.place = at.inputs, None
+    solver.x.array[:] = at.state
+    solver.snes.computeJacobian(solver.x, solver.operator, solver.preconditioned)
+    return solver
+
+
+def columns_of(matrix, size):
+    """A PETSc matrix as a dense array, by products with unit vectors."""
+    v, out = matrix.createVecs()
+    dense = np.empty((size, size))
+    for column in range(size):
+        v.set(0.0)
+        v.array[column] = 1.0
+        matrix.mult(v, out)
+        dense[:, column] = out.array_r
+    return dense
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_column_is_the_difference_of_residuals(name):
+    at = scene(name)
+    solver, size = linearised(at), len(at.state)
+    np.testing.assert_array_equal(np.flatnonzero(solver.jacobian.relations.touching), at.touching)
+    found = columns_of(solver.operator, size)
+    for column in range(size):
+        scale = max(abs(at.state[column]), 1e-2 * solver.problem.film_scale)
+        unit = np.zeros(size)
+        unit[column] = 1.0
+        expected = differences(at, unit, 1e-5 * scale)
+        largest = np.abs(found[:, column]).max()
+        np.testing.assert_allclose(found[:, column], expected, rtol=1e-5, atol=1e-6 * largest, err_msg=column)
+
+
+@pytest.mark.parametrize("name", ["direct", "mixed", "dry"])
+def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
+    """What other preconditioners get: with a near field as wide as the mesh, the Jacobian and its leaks."""
+    at = scene(name)
+    solver, size = linearised(at), len(at.state)
+    problem, jacobian = solver.problem, solver.jacobian
+    matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)
+    NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.relations, jacobian.flow)
+    assembled, whole = columns_of(matrix, size), columns_of(solver.operator, size)
+    leaks = np.diag(assembled - whole)
+    np.testing.assert_allclose(assembled - np.diag(leaks), whole, rtol=1e-9, atol=1e-12 * np.abs(whole).max())
+    blind = jacobian.relations.p_q == 0.0
+    assert blind.any() != problem.dry
+    np.testing.assert_allclose(firsts(leaks, problem.n), np.where(blind, LEAK, 0.0), atol=1e-9)
+    np.testing.assert_allclose(seconds(leaks, problem.n), 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["direct", "mixed"])
+def test_a_restricted_operator_is_the_block_of_the_whole(name):
+    """What SNESVI keeps of the system."""
+    at = scene(name)
+    solver, size = linearised(at), len(at.state)
+    kept = np.setdiff1d(np.arange(size), second_of(np.array(at.touching))).astype(np.int32)
+    block = solver.operator.createSubMatrix(PETSc.IS().createGeneral(kept, comm=PETSc.COMM_SELF))
+    whole = columns_of(solver.operator, size)
+    np.testing.assert_allclose(columns_of(block, len(kept)), whole[np.ix_(kept, kept)], rtol=1e-12)
+    context = block.getPythonContext()
+    np.testing.assert_array_equal(context.dropped, at.touching)
