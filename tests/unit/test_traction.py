@@ -1,0 +1,92 @@
+"""Signs of shear: which way each surface is dragged, and what the film's balance of forces demands."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.traction import shear_stresses
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
+NEWTONIAN, EYRING = 1e12, 10e6
+FRICTION = 0.1
+
+
+def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
+    """Case, scales, and a pressure [Pa] with its film [m]: the gradient changes sign at x = 0."""
+    case = load(
+        CASE,
+        [
+            f"motion.slide_roll_ratio={slide_roll_ratio}",
+            f"motion.entrainment_speed={speed}",
+            f"fluid.eyring_stress={eyring}",
+            f"contact.boundary_friction={FRICTION}",
+            "mesh.points_per_half_width=40",
+        ],
+    )
+    scales = Scales.of(case)
+    p = 0.3e9 * np.exp(-(scales.x**2))
+    return case, scales, p, np.full(scales.nx, 0.2e-6)
+
+
+def shear(case, scales, p, h, void=0.0, touching=()):
+    in_contact = np.zeros(scales.nx, bool)
+    in_contact[list(touching)] = True
+    return shear_stresses(case, scales, p, h, np.full(scales.nx, void), in_contact)
+
+
+@pytest.mark.parametrize("ratio", [0.5, -0.5])
+@pytest.mark.parametrize("eyring", [EYRING, NEWTONIAN])
+def test_the_faster_surface_is_held_back_and_the_slower_one_dragged_along(ratio, eyring):
+    """Also where the surface called fast is the slower one: slide/roll ratio below zero."""
+    case, scales, p, h = scene(ratio, eyring)
+    fast, slow = shear(case, scales, np.full_like(p, 0.3e9), h)
+    assert (np.sign(ratio) * fast < 0.0).all() and (np.sign(ratio) * slow > 0.0).all()
+    np.testing.assert_allclose(fast, -slow, rtol=1e-12)  # no gradient: all is drag
+
+
+@pytest.mark.parametrize("ratio", [0.5, -0.5])
+def test_at_contact_nodes_friction_opposes_sliding(ratio):
+    case, scales, p, h = scene(ratio)
+    touching = [30, 31, 60]
+    fast, slow = shear(case, scales, p, h, touching=touching)
+    np.testing.assert_allclose(slow[touching], np.sign(ratio) * FRICTION * p[touching], rtol=1e-12)
+    np.testing.assert_allclose(fast[touching], -slow[touching], rtol=1e-12)
+    rolling = scene(0.0)
+    for side in shear(*rolling, touching=touching):
+        np.testing.assert_array_equal(side[touching], 0.0)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5, -1.0])
+@pytest.mark.parametrize("eyring", [EYRING, NEWTONIAN])
+def test_the_film_is_in_balance(ratio, eyring):
+    """What both walls give to the solids together is what the pressure does to the film: -h dp/dx."""
+    case, scales, p, h = scene(ratio, eyring)
+    fast, slow = shear(case, scales, p, h)
+    np.testing.assert_allclose(fast + slow, -h * np.gradient(p, scales.dx), rtol=1e-9, atol=1e-3)
+
+
+def test_in_pure_rolling_oil_flowing_down_the_pressure_drags_both_walls_with_it():
+    case, scales, p, h = scene(0.0)
+    fast, slow = shear(case, scales, p, h)
+    before, behind = (scales.x < -0.1) & (scales.x > -1.4), scales.x > 0.1
+    for side in (fast, slow):
+        assert (side[before] < 0.0).all() and (side[behind] > 0.0).all()
+
+
+def test_a_newtonian_film_shears_by_its_viscosity():
+    """Couette flow: eta (u1 - u2) / h, at the ambient pressure of 0.005 Pa s."""
+    case, scales, p, h = scene(0.5, NEWTONIAN)
+    _, slow = shear(case, scales, np.zeros_like(p), h)
+    np.testing.assert_allclose(slow, 0.005 * (scales.u1 - scales.u2) / h, rtol=1e-6)
+    assert scales.u1 - scales.u2 == pytest.approx(2.5)
+
+
+def test_void_carries_no_shear():
+    case, scales, p, h = scene(0.5)
+    full, empty, half = (shear(case, scales, p, h, void=void) for void in (0.0, 1.0, 0.5))
+    for side in (0, 1):
+        np.testing.assert_array_equal(empty[side], 0.0)
+        np.testing.assert_allclose(half[side], 0.5 * full[side], rtol=1e-12)
