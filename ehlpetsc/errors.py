@@ -15,6 +15,11 @@ class ExitStatus(IntEnum):
     NOT_CONVERGED = 3
     STOPPED = 4
 
+    @property
+    def words(self):
+        """As in summaries, result files and indices of series: ``not converged``."""
+        return self.name.lower().replace("_", " ")
+
 
 class CaseError(Exception):
     """The case cannot be run.
@@ -78,4 +83,12 @@ class NoSteadyStart(Exception):
 
 
 class NotConverged(Exception):
-    """A time step or steady start that cannot be saved; the text names step, time, reason, what to try."""
+    """A time step or steady start that cannot be saved; the text names step, time, reason, what to try.
+
+    Attributes
+    ----------
+    state : run.simulation.AcceptedState or None
+        The last good one, None if there is none.
+    """
+
+    state = None

@@ -16,11 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.quantities import FIELDS, STEP_SCALARS
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import read_result
 
 RTOL = 1e-6
-SCALARS = ("h_min", "p_max", "contacts", "load", "approach", "friction")
 BLOCK_BYTES = 2**24
 ROUNDING = 1e-9  # of the extent: what computed coordinates may differ by and still be equal
 
@@ -119,8 +118,9 @@ def compare(one, other):
             yield _field(one, other, name, x, times, same_mesh or name != "in_contact")
     shares = [Line(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
     yield _curves(Difference("contact_count", "share"), shares, x=x)
+    both = set(one.figures) & set(other.figures)
     step_times = common_points(one.steps("time"), other.steps("time"), "time steps")
-    for name in SCALARS:
+    for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in both]:
         values = [_scalar(r, name, step_times) for r in (one, other)]
         units = "share" if name == "contacts" else STEP_SCALARS[name].units
         yield _curves(Difference(f"steps/{name}", units), values, time=step_times)

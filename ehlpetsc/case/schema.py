@@ -8,14 +8,8 @@ from typing import Any, Literal
 
 from ehlpetsc.case.validation import BaseModel, Extra, Field, confloat, conint, root_validator, validator
 
-FIELDS = (
-    "pressure",
-    "film_thickness",
-    "void_fraction",
-    "shear_stress_fast",
-    "shear_stress_slow",
-    "in_contact",
-)
+from ehlpetsc.quantities import FIELDS
+
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
 MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
 
@@ -272,7 +266,7 @@ class Output(Table):
     """`[output]`: what the result file holds."""
 
     every: int = Field(1, ge=1, le=10**9, description="steps between stored fields")
-    fields: list[Literal[FIELDS]] = Field(list(FIELDS), min_items=1, description="stored fields")
+    fields: list[Literal[tuple(FIELDS)]] = Field(list(FIELDS), min_items=1, description="stored fields")
     precision: Literal["float64", "float32"] = Field("float64", description="of the stored fields")
     checkpoint: float = Field(10.0, gt=0, le=1e5, unit="minutes", description="between restart files")
 

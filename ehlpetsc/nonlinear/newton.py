@@ -25,41 +25,6 @@ from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is small enough
 LONGER_START = 7  # times the iterations of a time step
 OPENED = 1e-3  # of the expected film: what solids that part get in that iteration
-DEFAULTS = {
-    "snes_linesearch_type": "basic",
-    "snes_linesearch_maxstep": "1e10",
-    "snes_max_it": "30",
-    "snes_atol": "1e-7",
-    "snes_rtol": "0",  # the first residual of a thick film may be 1e17: a share of it says nothing
-    "snes_stol": "0",
-    "snes_max_funcs": "100000",
-    "ksp_type": "fgmres",  # keeps what the preconditioner gave: one application less than gmres
-    "ksp_rtol": "1e-4",  # tighter gains nothing, looser costs Newton iterations
-    "ksp_pc_side": "right",
-    "snes_max_linear_solve_fail": "1000",
-    "ksp_max_it": "100",
-    "ksp_gmres_restart": "100",
-}
-PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
-
-
-def set_defaults(options, extra=()):
-    """Enter the case's, then this program's options wherever the user gave none.
-
-    Returns
-    -------
-    list of str
-        Names of the program's own that were entered.
-    """
-    entered = []
-    for name, value in dict(extra).items():
-        if not options.hasName(name):
-            options[name] = value
-    for name, value in (DEFAULTS | ({} if options.hasName("pc_type") else PRECONDITIONER)).items():
-        if not options.hasName(name):
-            options[name] = value
-            entered.append(name)
-    return entered
 
 
 class NewtonSolver:

@@ -7,7 +7,7 @@ import struct
 import h5py
 import numpy as np
 
-from ehlpetsc.results.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS
+from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
@@ -15,7 +15,7 @@ METADATA_BYTES = 2**20  # more than HDF5 adds to its own structures in one flush
 RESERVE_BYTES = 2**16  # more than it writes on closing
 
 
-def lay_out(file, x, fields, precision, profiles):
+def lay_out(file, x, fields, figures, precision, profiles):
     """Create every dataset, empty along time.
 
     Parameters
@@ -24,7 +24,9 @@ def lay_out(file, x, fields, precision, profiles):
     x : ndarray, shape (nx,)
         Nodes [m].
     fields : list of str
-        Fields to store, keys of `ehlpetsc.results.quantities.FIELDS`.
+        Fields to store, keys of `ehlpetsc.quantities.FIELDS`.
+    figures : list of str
+        Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`.
     precision : {"float64", "float32"}
         Type of the fields.
     profiles : dict
@@ -33,16 +35,16 @@ def lay_out(file, x, fields, precision, profiles):
     _fixed(file, "x", OTHERS["x"], np.asarray(x, dtype=float))
     _growing(file, "time", OTHERS["time"], CHUNK_STEPS)
     for name in [n for n in FIELDS if n in fields]:
-        dtype = np.dtype(FIELDS[name].dtype if name == "in_contact" else precision)
+        flag = FIELDS[name].dtype == "u1"
+        dtype = np.dtype("u1" if flag else precision)
         rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
         # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
-        packed = {"compression": "gzip", "compression_opts": 1} if name == "in_contact" else {}
+        packed = {"compression": "gzip", "compression_opts": 1} if flag else {}
         _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
     _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
     _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
-    _growing(file, "steps/time", OTHERS["steps/time"], CHUNK_STEPS)
-    for name, field in STEP_SCALARS.items():
-        _growing(file, f"steps/{name}", field, CHUNK_STEPS)
+    for name in sorted(figures, key="time".__ne__):  # the scale of the others comes first
+        _growing(file, f"steps/{name}", STEP_SCALARS[name], CHUNK_STEPS)
     for surface, profile in profiles.items():
         if profile is not None:
             _surface(file, f"surface/{surface}", *profile)

@@ -79,8 +79,8 @@ class Result:
         Nodes [m].
     time, step : ndarray, shape (nt,)
         Times [s] and step numbers of the stored frames.
-    fields : list of str
-        Names of the fields stored in every frame.
+    fields, figures : list of str
+        Names of the fields stored in every frame, and of the figures of every step.
     contact_count : ndarray, shape (nx,)
         Time steps in contact over the whole run.
     """
@@ -95,6 +95,7 @@ class Result:
         self.time, self.step = file["time"][: self._frames], file["step"][: self._frames]
         self.contact_count = file["contact_count"][:]
         self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+        self.figures = list(file["steps"])
 
     def __enter__(self):
         return self

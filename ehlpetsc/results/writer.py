@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_every_case
 from ehlpetsc.results.datasets import close, create, extend, lay_out, room
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
-from ehlpetsc.results.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 from ehlpetsc.results.restart_file import load_restart, plain_reason, save_restart
 
@@ -52,13 +52,15 @@ class ResultWriter:
         Root attributes: a, p0, h_scale, u1, u2, ranks, petsc_options ...; ``versions`` may be a dict of more
         versions to name.
     fields : list of str
-        Fields to store in a frame, keys of `ehlpetsc.results.quantities.FIELDS`.
+        Fields to store in a frame, keys of `ehlpetsc.quantities.FIELDS`.
     every : int
         Steps between stored frames.
     precision : {"float64", "float32"}
         Type of the stored fields.
     profiles : dict
         ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk).
+    figures : list of str, optional
+        Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`; by default those that every case has.
     resume_step : int, optional
         Go on with the file at `path` after this step: what lies beyond is dropped. The file is copied, which
         also repairs one left by a killed run, and replaced when the copy is whole. Without a file at `path` a
@@ -84,6 +86,7 @@ class ResultWriter:
         every,
         precision,
         profiles,
+        figures=None,
         resume_step=None,
         contact_count=None,
     ):
@@ -99,7 +102,9 @@ class ResultWriter:
                 self._file = create(beside)
                 with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
                     self._root_attributes(case_text, title, dict(scalars_attrs))
-                    lay_out(self._file, x, fields, precision, profiles)
+                    lay_out(
+                        self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles
+                    )
                 if resume_step is not None and self.path.exists():
                     self._copy_up_to(resume_step, contact_count is None)
                 self._file.swmr_mode = True
@@ -123,7 +128,7 @@ class ResultWriter:
         fields : dict of str to ndarray, shape (nx,)
             At least the fields to be stored.
         scalars : dict of str to number
-            Per-step scalars, keys of `ehlpetsc.results.quantities.STEP_SCALARS`; those left out become
+            Per-step scalars, keys of `ehlpetsc.quantities.STEP_SCALARS`; those left out become
             nan, counts 0.
         in_contact : ndarray of bool, shape (nx,)
         frame : bool, optional
@@ -226,6 +231,8 @@ class ResultWriter:
             fault = "it was computed on another mesh"
         elif set(old.fields) != set(self._frame_fields()):
             fault = f"it stores other fields ({', '.join(old.fields)})"
+        elif set(old.figures) != set(self._file["steps"]):
+            fault = f"it stores other figures of its steps ({', '.join(old.figures)})"
         elif last is not None and last < step:  # None: stopped before its first step
             fault = f"it ends at step {last}, before step {step} of the restart file"
         elif count_from_file and last is not None and last > step:
@@ -245,7 +252,8 @@ class ResultWriter:
         """Empty the memory that holds steps and frames between flushes."""
         if not hasattr(self, "_columns"):
             self._times = np.empty(BATCH_STEPS)
-            self._columns = {n: np.empty(BATCH_STEPS, dtype=f.dtype) for n, f in STEP_SCALARS.items()}
+            figures = {n: d for n, d in self._file["steps"].items() if n != "time"}
+            self._columns = {n: np.empty(BATCH_STEPS, dtype=d.dtype) for n, d in figures.items()}
             datasets = {n: self._file[n] for n in self._frame_fields()}
             frames = max(1, BATCH_BYTES // (8 * len(self.contact_count)))
             self._frames = {n: np.empty((frames, d.shape[1]), d.dtype) for n, d in datasets.items()}

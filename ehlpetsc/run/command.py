@@ -1,4 +1,4 @@
-"""The command: one case on all ranks, or a series on groups of them. Rank 0 alone reads the case."""
+"""The command: one case on all ranks, or a series on groups of them. Rank 0 alone reads the case file."""
 
 import sys
 from pathlib import Path
@@ -7,15 +7,14 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError, NotConverged, OutputError, UsageError
-from ehlpetsc.nonlinear.newton import set_defaults
+from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import faults, help_text, text_of, time_limit
 from ehlpetsc.nonlinear.scheme import scheme
-from ehlpetsc.run.series import Series
-from ehlpetsc.run.simulation import NOT_CONVERGED, Run
+from ehlpetsc.run.describe import banner, warnings
+from ehlpetsc.run.series.series import Series
+from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.solve import Run
 from ehlpetsc.run.stop import StopRequest
-
-BAD_INPUT = 2
 
 
 def read_case(comm, path, overrides):
@@ -33,7 +32,7 @@ def refuse(comm, lines):
     """Say on rank 0 what is wrong with the input."""
     if comm.rank == 0:
         print("\n".join(lines), file=sys.stderr, flush=True)
-    return BAD_INPUT
+    return ExitStatus.BAD_INPUT
 
 
 def run(path, overrides):
@@ -49,33 +48,27 @@ def run(path, overrides):
         return refuse(comm, wrong)
     case = path and read_case(comm, path, overrides)
     if path and case is None:
-        return BAD_INPUT
+        return ExitStatus.BAD_INPUT
     try:
         if case and options.hasName("help"):
-            set_defaults(options, case.petsc)
-            Run(comm, case, options, stop, "none.h5")  # PETSc's own objects tell theirs as they are made
+            Simulation(case, comm)  # PETSc's own objects tell theirs as they are made
         if options.hasName("help"):
             PETSc.Sys.Print(help_text())
-            return 0
+            return ExitStatus.DONE
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
         if case.series:
             return Series(comm, case, options, stop, output).go()
-        return run_single(comm, case, options, stop, output)
+        return run_single(comm, case, stop, output, text_of(options, "ehl_restart"))
     except (OutputError, UsageError) as error:
         return refuse(comm, [f"ehlpetsc: {error}"])
 
 
-def run_single(comm, case, options, stop, output):
+def run_single(comm, case, stop, output, restart):
     """A case that is no series, on all ranks. Returns the exit status."""
-    entered = set_defaults(options, case.petsc)
-    try:
-        this = Run(comm, case, options, stop, output)
-        this.announce()
-        return this.go(text_of(options, "ehl_restart"))
-    except NotConverged as error:
-        if comm.rank == 0:
-            print(f"ehlpetsc: not converged: {error}", file=sys.stderr, flush=True)
-        return NOT_CONVERGED
-    finally:
-        for name in entered:  # -options_left is to list the user's alone
-            options.delValue(name)
+    simulation = Simulation(case, comm)
+    if comm.rank == 0:
+        for line in banner(case, simulation.scales, simulation.roughness, comm.size):
+            print(line)
+        for line in warnings(case, simulation.scales):
+            print(f"warning: {line}", flush=True)
+    return Run(simulation, output, stop).go(restart).status

@@ -3,8 +3,8 @@
 import math
 
 from ehlpetsc.physics import film_formulas
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.datasets import CHUNK_BYTES, CHUNK_STEPS
-from ehlpetsc.results.quantities import STEP_SCALARS
 
 # measured on one rank: seconds a time step takes in full film, as such and for each node
 STEP_TIME, NODE_TIME = 2.0e-3, 2.0e-6
@@ -50,9 +50,7 @@ def file_size(case, s):
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
     frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.nx * value))
-    fields = sum(
-        name != "in_contact" and not (name == "void_fraction" and case.fluid is None)
-        for name in case.output.fields
-    )
-    scalars = (len(STEP_SCALARS) + 1) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
+    stored = set(case.output.fields) & set(of_case(FIELDS, case))
+    fields = sum(FIELDS[name].dtype == "f8" for name in stored)
+    scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
     return fields * value * s.nx * rows * math.ceil(frames / rows) + scalars

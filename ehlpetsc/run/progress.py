@@ -5,19 +5,13 @@ import shutil
 import sys
 import time as clock
 
+from ehlpetsc.quantities import STEP_SCALARS
+
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
 
-_COLUMNS = (
-    ("step", "{:>8d}"),
-    ("time/us", "{:>11.4f}"),
-    ("dt/us", "{:>9.5f}"),
-    ("newton", "{:>6d}"),
-    ("contacts", "{:>8d}"),
-    ("h_min/um", "{:>9.5f}"),
-    ("p_max/GPa", "{:>9.4f}"),
-    ("remaining", "{:>9s}"),
-)
+_COLUMNS = {name: figure.progress for name, figure in STEP_SCALARS.items() if figure.progress}
+_REMAINING = "{:>9s}"
 
 
 def on_terminal(stream):
@@ -55,19 +49,16 @@ class Progress:
         self._shown = None
         self._pending = None
 
-    def step(self, step, time, scalars):
+    def step(self, figures):
         """Take note of an accepted step, and show it if it is the first or the last one was shown long ago.
 
         Parameters
         ----------
-        step : int
-        time : float
-            Time at its end [s].
-        scalars : dict
-            dt, newton, contacts, h_min, p_max of the step in SI units.
+        figures : dict of str to number
+            Of the step, as below ``steps/`` of a result file.
         """
         now = clock.monotonic()
-        self._pending = (step, time, scalars)
+        self._pending = figures
         wait = SECONDS_BETWEEN_BARS if self._bar else SECONDS_BETWEEN_LINES
         if self._shown is None or now - self._shown >= wait:
             self._show(now)
@@ -81,25 +72,22 @@ class Progress:
             self._stream.flush()
 
     def _show(self, now):
-        step, time, scalars = self._pending
-        self._pending = None
-        done = (time - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
+        figures, self._pending = self._pending, None
+        done = (figures["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
         done = min(max(done, 0.0), 1.0)
         left = duration((now - self._started) * (1.0 - done) / done) if done > 0.0 else "?"
         if self._bar:
-            self._draw_bar(done, left, scalars)
+            self._draw_bar(done, left, figures)
         else:
             if self._shown is None:
-                self._stream.write(_heading())
-            self._stream.write(_line(step, time, scalars, left))
+                self._stream.write(_heading(figures))
+            self._stream.write(_line(figures, left))
         self._stream.flush()
         self._shown = now
 
-    def _draw_bar(self, done, left, scalars):
-        text = (
-            f" {100 * done:5.1f} %  h_min {1e6 * scalars['h_min']:.4f} um"
-            f"  p_max {1e-9 * scalars['p_max']:.3f} GPa  contacts {scalars['contacts']}  {left} left"
-        )
+    def _draw_bar(self, done, left, figures):
+        shown = [column.bar.format(value) for column, value in _scaled(figures) if column.bar]
+        text = "  ".join([f" {100 * done:5.1f} %", *shown, f"{left} left"])
         columns = shutil.get_terminal_size().columns
         width = max(10, columns - len(text) - 3)
         filled = round(done * width)
@@ -107,27 +95,22 @@ class Progress:
         self._stream.write(f"\r{bar}\x1b[K")
 
 
-def _heading():
-    cells = (name.rjust(len(form.format(*_blank(form)))) for name, form in _COLUMNS)
-    return " ".join(cells) + "\n"
+def _scaled(figures):
+    """Columns and values of those figures that the step has."""
+    for name, column in _COLUMNS.items():
+        if name in figures:
+            whole = STEP_SCALARS[name].dtype[0] == "i"
+            yield column, int(figures[name]) if whole else column.factor * figures[name]
 
 
-def _blank(form):
-    return (0,) if "d" in form else ("",) if "s" in form else (0.0,)
+def _heading(figures):
+    cells = [column.heading.rjust(len(column.form.format(0))) for column, _ in _scaled(figures)]
+    return " ".join([*cells, _REMAINING.format("remaining")]) + "\n"
 
 
-def _line(step, time, scalars, left):
-    values = (
-        step,
-        1e6 * time,
-        1e6 * scalars["dt"],
-        int(scalars["newton"]),
-        int(scalars["contacts"]),
-        1e6 * scalars["h_min"],
-        1e-9 * scalars["p_max"],
-        left,
-    )
-    return " ".join(form.format(value) for (_, form), value in zip(_COLUMNS, values, strict=True)) + "\n"
+def _line(figures, left):
+    cells = [column.form.format(value) for column, value in _scaled(figures)]
+    return " ".join([*cells, _REMAINING.format(left)]) + "\n"
 
 
 def duration(seconds):
@@ -142,23 +125,14 @@ def duration(seconds):
     return f"{s // 86400}d{s % 86400 // 3600:02d}h"
 
 
-def summary_line(status, *, steps, newton, h_min, p_max, contacts, load_error, mass_error, wall):
+def summary_line(status, totals, wall):
     """The line every run ends with, for grep.
 
     Parameters
     ----------
-    status : str
-        "done", "stopped" or "not converged".
-    steps, newton, contacts : int
-        Accepted steps, Newton iterations of all of them, nodes in contact summed over steps.
-    h_min, p_max : float
-        Extremes over the run [m, Pa].
-    load_error, mass_error : float
-        Greatest relative errors over the run.
+    status : errors.ExitStatus
+    totals : results.totals.Totals
     wall : float
         Wall clock time [s].
     """
-    return (
-        f"ehlpetsc: {status} steps={steps} newton={newton} h_min={h_min:.9g} p_max={p_max:.9g}"
-        f" contacts={contacts} load_error={load_error:.2e} mass_error={mass_error:.2e} wall={wall:.1f}"
-    )
+    return f"ehlpetsc: {status.words} {totals} wall={wall:.1f}"

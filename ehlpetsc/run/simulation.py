@@ -1,259 +1,161 @@
-"""One case on the ranks of one communicator: solve, write, report. Rank 0 alone writes files."""
+"""One case on the ranks of one communicator, from accepted state to accepted state."""
 
-import sys
 import time as clock
-from pathlib import Path
+from dataclasses import dataclass, field
 
-import mpi4py
-import numpy as np
-import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.errors import NotConverged, OutputError
-from ehlpetsc.nonlinear import events as log
+from ehlpetsc.errors import NotConverged
+from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run import checkpoint
-from ehlpetsc.run.describe import banner, warnings
-from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.stepping.observables import observe
-from ehlpetsc.stepping.step_control import on_level
 from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import Roughness
 
-DONE, NOT_CONVERGED, STOPPED = 0, 3, 4
 FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
-GREATEST = ("p_max", "load_error", "mass_error")  # of the run, in the summary
 
 
-def on_root(comm, action, *arguments):
-    """What `action` returns on rank 0, None on the others; its OutputError is raised on every rank."""
-    answer = fault = None
-    if comm.rank == 0:
-        try:
-            answer = action(*arguments)
-        except OutputError as error:
-            fault = str(error)
-    fault = comm.bcast(fault)
-    if fault:
-        raise OutputError(fault)
-    return answer
+@dataclass(frozen=True)
+class AcceptedState:
+    """A time level that a simulation has come to; every figure and field is also an attribute.
+
+    Attributes
+    ----------
+    figures : dict of str to number
+        Of the step, as below ``steps/`` of a result file [SI units].
+    fields : dict of str to ndarray, shape (nx,)
+        In SI units.
+    in_contact : ndarray of bool, shape (nx,)
+    solution : stepping.time_stepping.State
+        Unknowns, and what the next step needs of the past.
+    """
+
+    figures: dict
+    fields: dict = field(repr=False)
+    in_contact: object = field(repr=False)
+    solution: object = field(repr=False)
+
+    def __getattr__(self, name):
+        for values in (vars(self).get("figures", {}), vars(self).get("fields", {})):
+            if name in values:
+                return values[name]
+        raise AttributeError(name)
 
 
-class Run:
-    """A case being run: holds march, writer, progress and restart file.
+class Simulation:
+    """A case that is solved while one iterates over its accepted states.
+
+    Iteration begins with the steady solution at time 0 and ends where the travel of the case does; broken
+    off, it goes on where it was. A simulation given the state of a restart file (:meth:`resume`) goes on from
+    there.
 
     Parameters
     ----------
-    comm : mpi4py communicator
-    case : case.Case
-    options : petsc4py.PETSc.Options
-    stop : callable
-        Asked before every step with the communicator: whether to end there.
-    output : path-like
-        Result file; the restart file gets its name too.
-    out, err : file, optional
-        Where rank 0 speaks; standard output and error by default.
+    case : case.loading.Case
+    comm : mpi4py communicator, optional
+        The ranks that share the work; every one of them iterates. By default this process alone.
+    options : dict of str to str, optional
+        PETSc options without the dash, before all others; PETSc's table holds them only while the
+        simulation is solving.
+
+    Attributes
+    ----------
+    scales : physics.scales.Scales
+    roughness : surfaces.roughness.Roughness or None
+    options : nonlinear.defaults.RunOptions
+        A context: whoever takes many steps enters it once around them.
+    march : stepping.time_stepping.TimeStepping
+    state : AcceptedState or None
+        The last one of this process.
+    solution : stepping.time_stepping.State or None
+        Its unknowns, or that of a restart file.
     """
 
-    def __init__(self, comm, case, options, stop, output, out=None, err=None):
-        self.comm, self.case, self.root, self.stop = comm, case, comm.rank == 0, stop
-        self.out, self.err = out or sys.stdout, err or sys.stderr
+    def __init__(self, case, comm=None, options=None):
+        self.case, self.comm = case, comm or MPI.COMM_SELF
+        self.options = RunOptions(case.petsc, options or {})
         self.scales = Scales.of(case)
         self.roughness = Roughness.of(case, self.scales)
         film = expected_film(case, self.scales)
-        self.views = taken_out(options, ("snes_view", "ksp_view"))
-        self.follow = any(options.hasName(name) for name in FOLLOWED)
-        solver = solver_of(case, self.scales, film, PETSc.Comm(comm), options)
+        self.state = self.solution = None
+        with self.options:
+            table = PETSc.Options()
+            solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
+            self._followed = any(map(table.hasName, FOLLOWED))
         self.march = TimeStepping(solver, self.scales, self.roughness, film)
-        self.output = Path(output)
-        self.restart = self.output.with_suffix(".restart.h5")
-        self.writer = self.failure = None
-        self.totals = {"newton": 0, "h_min": np.inf, "contacts": 0} | dict.fromkeys(GREATEST, 0.0)
 
-    def announce(self):
-        """Say on rank 0 what is about to run, and what the user should know before."""
-        if self.root:
-            for line in banner(self.case, self.scales, self.roughness, self.comm.size):
-                print(line, file=self.out)
-            for line in warnings(self.case, self.scales):
-                print(f"warning: {line}", file=self.out, flush=True)
+    @property
+    def finished(self):
+        """Whether the last state is the end of the travel; of a steady case, whether it is solved."""
+        if self.solution is None:
+            return False
+        return self.case.time is None or self.solution.time >= self.scales.duration * (1.0 - 1e-9)
 
-    def open_writer(self, step=None, count=None):
-        """Create or continue the result file, on rank 0."""
-        self.writer = on_root(self.comm, self._new_writer, step, count)
+    def __iter__(self):
+        while not self.finished:
+            yield self.advance()
 
-    def _new_writer(self, step, count):
-        s, c = self.scales, self.case
-        fields = [f for f in c.output.fields if c.fluid is not None or f != "void_fraction"]
-        profiles = {"fast": None, "slow": None}
-        if self.roughness is not None:
-            for side in profiles:
-                p = getattr(self.roughness, side)
-                profiles[side] = p and (p.s, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk})
-        attributes = {
-            "a": s.a,
-            "p0": s.p0,
-            "h_scale": s.h,
-            "u1": s.u1,
-            "u2": s.u2,
-            "ranks": self.comm.size,
-            "petsc_options": " ".join(f"-{k} {v}".strip() for k, v in PETSc.Options().getAll().items()),
-            "versions": libraries(),
-        }
-        return ResultWriter(
-            self.output,
-            case_text=c.text,
-            title=c.title,
-            x=s.x * s.a,
-            scalars_attrs=attributes,
-            fields=fields,
-            every=c.output.every,
-            precision=c.output.precision,
-            profiles=profiles,
-            resume_step=step,
-            contact_count=count,
-        )
+    def resume(self, solution, smooth):
+        """Go on from a time level instead of from the steady solution.
 
-    def store(self, state, started):
-        """Write one accepted state; totals for the summary."""
-        scalars, fields, in_contact = observe(self.case, self.scales, self.march.problem, state, started)
-        every = self.case.output.every
-        frame = every == 1 or self.case.time is None or on_level(state.time, every * self.scales.dt)
-        with log.OUTPUT:
-            on_root(
-                self.comm,
-                lambda: self.writer.append(state.step, state.time, fields, scalars, in_contact, frame),
-            )
-        t = self.totals
-        t["newton"] += scalars["newton"]
-        t["contacts"] += scalars["contacts"]
-        t["h_min"] = min(t["h_min"], scalars["h_min"])
-        for name in GREATEST:
-            t[name] = max(t[name], scalars[name])
-        return scalars
+        Parameters
+        ----------
+        solution : stepping.time_stepping.State
+        smooth : pair of ndarray, shape (nx,)
+            Steady q and w, for the predictor.
+        """
+        self.solution, self.march.smooth = solution, smooth
 
-    def checkpoint(self, state):
-        """Write the restart file beside the result, on rank 0."""
+    def advance(self, dt=None):
+        """Solve the steady contact, afterwards one time step.
 
-        def write():
-            self.writer.flush()
-            checkpoint.save(
-                self.restart,
-                state,
-                self.march.smooth,
-                self.writer.contact_count,
-                self.totals,
-                self.case,
-                self.scales,
-                self.march.problem.model,
-            )
+        Parameters
+        ----------
+        dt : float, optional
+            Length of the step [s]; by default the case's, shorter after steps that had to be halved.
 
-        on_root(self.comm, write)
+        Returns
+        -------
+        AcceptedState
 
-    def resume(self, path):
-        """State and contact count of a restart file."""
-        state, self.march.smooth, count, totals, notes = checkpoint.load(
-            path, self.case, self.scales, self.march.problem.model
-        )
-        self.totals |= totals
-        if self.root:
-            print(f"restart: {path}, step {state.step}, {1e6 * state.time:.4f} us", file=self.out)
-            for note in notes:
-                print(f"restart: {note}", file=self.out, flush=True)
-        return state, count
-
-    def go(self, restart):
-        """Run to the end. Returns the exit status."""
-        begun = clock.monotonic()
-        if restart:
-            state, count = self.resume(restart)
-            self.open_writer(state.step, count)
-        else:
-            self._follow("steady start")
-            with log.START:
-                state = self.march.start()
-            self._view()
-            self.open_writer()
-            self.store(state, begun)
-        status = "done"
-        if self.case.time is not None:
-            with log.STEPS:
-                state, status = self._march(state)
-        on_root(self.comm, lambda: self.writer.close(status))
-        if self.root:
-            self._report(state, status, clock.monotonic() - begun)
-        return {"done": DONE, "stopped": STOPPED}.get(status, NOT_CONVERGED)
-
-    def _follow(self, what):
-        """Head PETSc's own lines, where the user asked for some."""
-        if self.follow:
-            PETSc.Sys.Print(what, comm=self.comm)
-
-    def _view(self):
-        """-snes_view and -ksp_view once, after the first solve: PETSc would repeat them at every step."""
-        solver = self.march.solver
-        for name in self.views if isinstance(solver, NewtonSolver) else ():
-            (solver.snes if name == "snes_view" else solver.snes.ksp).view()
-
-    def _march(self, state):
-        s = self.scales
-        progress = Progress(state.time, s.duration, self.out) if self.root else None
-        saved = clock.monotonic()
-        status = "done"
-        while state.time < s.duration * (1.0 - 1e-9):
-            if self.stop(self.comm):
-                status = "stopped"
-                break
-            started = clock.monotonic()
-            self._follow(f"step {state.step + 1} from {1e6 * state.time:.4f} us")
+        Raises
+        ------
+        NotConverged
+            Its `state` is the last good one.
+        """
+        started = clock.monotonic()
+        with self.options:
             try:
-                state = self.march.advance(state)
+                self.solution = self._start() if self.solution is None else self._step(dt)
             except NotConverged as error:
-                status, self.failure = "not converged", str(error)
-                break
-            scalars = self.store(state, started)
-            if progress:
-                progress.step(state.step, state.time, scalars)
-            if self.comm.bcast(clock.monotonic() - saved > 60.0 * self.case.output.checkpoint):
-                self.checkpoint(state)
-                saved = clock.monotonic()
-        if progress:
-            progress.close()
-        if status != "done":
-            self.checkpoint(state)
-        return state, status
+                error.state = self.state
+                raise
+        figures, fields, in_contact = observe(self.case, self.scales, self.march.problem, self.solution, started)
+        figures |= {"step": self.solution.step, "time": self.solution.time}
+        self.state = AcceptedState(figures, fields, in_contact, self.solution)
+        return self.state
 
-    def _report(self, state, status, wall):
-        if self.failure:
-            print(
-                f"ehlpetsc: not converged: {self.failure}. Last good state: {self.restart}",
-                file=self.err,
-                flush=True,
-            )
-        elif status == "stopped":
-            print(
-                f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {self.restart}",
-                file=self.out,
-            )
-        print(f"result: {self.output}", file=self.out)
-        print(summary_line(status, steps=state.step, wall=wall, **self.totals), file=self.out, flush=True)
+    def _start(self):
+        self._head("steady start")
+        with events.START:
+            solution = self.march.start()
+        if isinstance(self.march.solver, NewtonSolver):
+            for name in self.options.views:
+                snes = self.march.solver.snes
+                (snes if name == "snes_view" else snes.ksp).view()
+        return solution
 
+    def _step(self, dt):
+        self._head(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
+        with events.STEPS:
+            return self.march.advance(self.solution, dt)
 
-def taken_out(options, names):
-    """Those of the names that stand in PETSc's table without a value, taken out of it."""
-    found = [name for name in names if options.hasName(name) and not options.getString(name, "")]
-    for name in found:
-        options.delValue(name)
-    return found
-
-
-def libraries():
-    """Names and versions of what computes, for the result file."""
-    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
-    mpi = MPI.Get_library_version().split(",")[0].rstrip("\0")
-    return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}
+    def _head(self, what):
+        """Head PETSc's own lines, where the user asked for some."""
+        if self._followed:
+            PETSc.Sys.Print(what, comm=self.comm)

@@ -15,14 +15,8 @@ environment.prepare()
 import petsc4py
 
 petsc4py.init(sys.argv[:1])
-from petsc4py import PETSc
-
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
-from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.simulation import Simulation
 
 FAST = 8.0  # nominal steps in one, on the way to where time is taken
 # measured profile at a fifth of its height under a thick film: never any contact
@@ -33,32 +27,32 @@ FULL_FILM = ("fluid.viscosity=0.01", "surface.fast.scale=0.2", "surface.slow.sca
 class Scene:
     """A run in this process."""
 
-    march: TimeStepping
-    state: object
+    simulation: Simulation
     step: float
 
     @property
     def solver(self):
-        return self.march.solver
+        return self.simulation.march.solver
+
+    @property
+    def state(self):
+        return self.simulation.solution
 
     def advance(self, steps):
         """Newton iterations and CPU seconds of so many steps."""
         newton, begun = 0, time.process_time()
         for _ in range(steps):
-            self.state = self.march.advance(self.state, self.step)
+            self.simulation.advance(self.step)
             newton += self.state.newton
         return newton, time.process_time() - begun
 
 
 def scene(name, *overrides):
     """Start a case of cases/."""
-    set_defaults(PETSc.Options())
-    case = load(ROOT / "cases" / f"{name}.toml", overrides)
-    scales = Scales.of(case)
-    film = expected_film(case, scales)
-    solver = NewtonSolver(case, scales, film, PETSc.COMM_SELF)
-    march = TimeStepping(solver, scales, Roughness.of(case, scales), film)
-    return Scene(march, march.start(), scales.dt)
+    simulation = Simulation(load(ROOT / "cases" / f"{name}.toml", overrides))
+    simulation.options.__enter__()  # for good: the benchmarks solve parts of steps as well
+    simulation.advance()
+    return Scene(simulation, simulation.scales.dt)
 
 
 def rough(points, inlet=-2.5, *more):

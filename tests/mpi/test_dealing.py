@@ -2,7 +2,7 @@
 
 import time
 
-from ehlpetsc.run.work_queue import Dealer
+from ehlpetsc.run.series.work_queue import Dealer
 
 
 def deal(ranks, pieces, ending_after=None):

@@ -13,20 +13,20 @@ from ehlpetsc.run.command_line import parse_command_line
 
 
 def tamper(accident, rank, step):
-    from ehlpetsc.stepping.time_stepping import TimeStepping
+    from mpi4py import MPI
 
-    advance = TimeStepping.advance
+    from ehlpetsc.run.simulation import Simulation
 
-    def with_accident(self, state, *arguments):
-        from mpi4py import MPI  # not before PETSc has been started with its options
+    advance = Simulation.advance
 
-        if state.step + 1 == step and MPI.COMM_WORLD.rank == rank:
+    def with_accident(self):
+        if self.solution and self.solution.step + 1 == step and MPI.COMM_WORLD.rank == rank:
             if accident == "raise":
                 raise ValueError("an accident")
             os.kill(os.getpid(), getattr(signal, accident))
-        return advance(self, state, *arguments)
+        return advance(self)
 
-    TimeStepping.advance = with_accident
+    Simulation.advance = with_accident
 
 
 if __name__ == "__main__":

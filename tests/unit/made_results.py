@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.results.quantities import FIELDS
+from ehlpetsc.quantities import FIELDS
 from ehlpetsc.results.writer import ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191

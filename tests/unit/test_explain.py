@@ -7,7 +7,7 @@ import pytest
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.quantities import FIELDS
+from ehlpetsc.quantities import FIELDS
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.describe import explain, warnings
 from ehlpetsc.run.forecast import dowson_higginson, file_size, steps

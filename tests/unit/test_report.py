@@ -5,6 +5,8 @@ import re
 
 import pytest
 
+from ehlpetsc.errors import ExitStatus
+from ehlpetsc.results.totals import Totals
 from ehlpetsc.run import progress as report
 
 SCALARS = dict(dt=1.5e-7, newton=4, contacts=2, h_min=0.1234e-6, p_max=1.25e9)
@@ -29,7 +31,7 @@ def run(stream, clock, seconds_a_step, steps=100):
     progress = report.Progress(0.0, steps * 1e-6, stream)
     for step in range(1, steps + 1):
         clock.append(clock[-1] + seconds_a_step)
-        progress.step(step, step * 1e-6, SCALARS)
+        progress.step(SCALARS | {"step": step, "time": step * 1e-6})
     progress.close()
     return stream.getvalue()
 
@@ -38,9 +40,9 @@ def test_lines_have_fixed_columns_and_are_few(clock):
     lines = run(io.StringIO(), clock, seconds_a_step=1.0).splitlines()
     assert len(lines) == 1 + 20 + 1  # heading, one each five seconds, last
     assert len({len(line) for line in lines}) == 1
-    names = ["step", "time/us", "dt/us", "newton", "contacts", "h_min/um", "p_max/GPa", "remaining"]
+    names = ["step", "time/us", "dt/us", "newton", "h_min/um", "p_max/GPa", "contacts", "remaining"]
     assert lines[0].split() == names
-    assert lines[1].split() == ["1", "1.0000", "0.15000", "4", "2", "0.12340", "1.2500", "1m39s"]
+    assert lines[1].split() == ["1", "1.0000", "0.15000", "4", "0.12340", "1.2500", "2", "1m39s"]
     assert lines[-1].split()[::7] == ["100", "0s"]
 
 
@@ -95,7 +97,7 @@ def test_progress_of_a_restarted_run_counts_from_its_restart(clock):
     stream = io.StringIO()
     progress = report.Progress(50e-6, 100e-6, stream)
     clock.append(clock[-1] + 10.0)
-    progress.step(60, 60e-6, SCALARS)
+    progress.step(SCALARS | {"step": 60, "time": 60e-6})
     assert stream.getvalue().split()[-1] == "40s"
 
 
@@ -108,17 +110,19 @@ def test_durations_read_well(seconds, text):
 
 
 def test_summary_line_can_be_grepped_and_read_back():
-    line = report.summary_line(
-        "done",
-        steps=120,
-        newton=600,
-        h_min=0.0,
-        p_max=1.23456789e9,
-        contacts=27,
-        load_error=2.5e-12,
-        mass_error=3e-4,
-        wall=12.34,
+    totals = Totals(
+        dict(
+            step=120,
+            newton=600,
+            h_min=0.0,
+            p_max=1.23456789e9,
+            contacts=27,
+            load_error=2.5e-12,
+            mass_error=3e-4,
+            retries=3,
+        )
     )
+    line = report.summary_line(ExitStatus.DONE, totals, 12.34)
     assert line.startswith("ehlpetsc: done steps=")
     values = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", line)}
     assert values == dict(

@@ -5,7 +5,10 @@ import pytest
 from made_results import make_result
 
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.run.series import Member, Named, added
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.totals import Totals
+from ehlpetsc.run.series.member import Member
+from ehlpetsc.run.series.series import Named
 from ehlpetsc.stepping.step_control import next_step, on_level
 
 
@@ -41,7 +44,7 @@ def test_the_longest_runs_come_first(tmp_path):
 
 def test_a_whole_file_of_the_same_case_stands(tmp_path, monkeypatch):
     member = series(tmp_path)[0]
-    assert member.stands() == "waiting" and member.totals() is None
+    assert member.stands() == "waiting" and member.totals().values == {}
     make_result(member.output)
     assert member.stands() == "waiting"  # of another case
     member.case._text = 'title = "made up"\n[fluid]\nviscosity = 0.005\n'
@@ -51,12 +54,23 @@ def test_a_whole_file_of_the_same_case_stands(tmp_path, monkeypatch):
 
 
 def test_sums_and_extremes_of_the_whole():
-    one = dict(steps=3, newton=10, h_min=1e-7, p_max=1e9, contacts=2, load_error=1e-9, mass_error=0.1)
-    two = dict(steps=4, newton=20, h_min=0.0, p_max=2e9, contacts=5, load_error=1e-8, mass_error=0.0)
-    assert added([one, None, two]) == dict(
-        steps=7, newton=30, h_min=0.0, p_max=2e9, contacts=7, load_error=1e-8, mass_error=0.1
+    one = dict(step=3, newton=10, h_min=1e-7, p_max=1e9, contacts=2, load_error=1e-9, mass_error=0.1)
+    two = dict(step=4, newton=20, h_min=0.0, p_max=2e9, contacts=5, load_error=1e-8, mass_error=0.0)
+    whole = Totals.of_series([Totals(one), Totals(), Totals(two)])
+    assert whole.values == dict(
+        step=7, newton=30, h_min=0.0, p_max=2e9, contacts=7, load_error=1e-8, mass_error=0.1
     )
-    assert added([None])["steps"] == 0
+    assert str(Totals.of_series([Totals()])).startswith("steps=0 newton=0 ")
+
+
+def test_totals_of_steps_are_those_of_their_file(tmp_path):
+    totals = Totals()
+    with read_result(make_result(tmp_path / "r.h5")) as result:
+        for row in range(len(result.steps("step"))):
+            totals.add({name: result.steps(name)[row].item() for name in result.figures})
+        stored = Totals.of_result(result)
+    assert str(totals) == str(stored)
+    assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
 
 
 def test_lines_are_named(capsys):

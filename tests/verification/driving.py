@@ -7,14 +7,8 @@ import petsc4py
 
 petsc4py.init([])
 
-from petsc4py import PETSc
-
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
-from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.simulation import Simulation
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -31,25 +25,21 @@ class Scene:
     """
 
     def __init__(self, name, *overrides):
-        set_defaults(PETSc.Options())
-        case = load(CASES / name, overrides)
-        self.scales = Scales.of(case)
-        film = expected_film(case, self.scales)
-        solver = NewtonSolver(case, self.scales, film, PETSc.COMM_SELF)
-        self.march = TimeStepping(solver, self.scales, Roughness.of(case, self.scales), film)
-        self.x, self.solver, self.problem = self.scales.x, solver, solver.problem
+        self.simulation = Simulation(load(CASES / name, overrides))
+        self.scales, self.march = self.simulation.scales, self.simulation.march
+        self.x, self.solver, self.problem = self.scales.x, self.march.solver, self.march.problem
         self.centre = int(np.argmin(np.abs(self.x)))
 
     def start(self, max_it=30):
         """Steady solution at time 0, in so many Newton iterations at most."""
         self.solver.snes.max_it = max_it
-        self.state = self.march.start()
+        self.state = self.simulation.advance().solution
         return self
 
     def steps(self, count, dt):
         """Go `count` steps of `dt` [s], yielding after each; a step that had to be halved is an error."""
         for _ in range(count):
-            self.state = self.march.advance(self.state, dt)
+            self.state = self.simulation.advance(dt).solution
             assert self.state.retries == 0
             yield self.state
 

@@ -8,24 +8,16 @@ import pytest
 
 petsc4py.init([])
 
-from petsc4py import PETSc
-
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
-from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import TimeStepping
+from ehlpetsc.run.simulation import Simulation
 
 CASES = Path(__file__).parents[2] / "cases"
 
 
 def steady(name, *overrides):
-    set_defaults(PETSc.Options())
-    case = load(CASES / name, overrides)
-    scales = Scales.of(case)
-    film = expected_film(case, scales)
-    march = TimeStepping(NewtonSolver(case, scales, film, PETSc.COMM_SELF), scales, None, film)
-    return scales, march.problem, march.start()
+    simulation = Simulation(load(CASES / name, overrides))
+    state = simulation.advance().solution
+    return simulation.scales, simulation.march.problem, state
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ stored in rough_contacts.npz. After a change of that case ``python3 tests/verifi
 it anew, in five minutes.
 """
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -13,38 +14,27 @@ import pytest
 
 petsc4py.init([])
 
-from petsc4py import PETSc
-
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear import gauss_seidel as sweep
-from ehlpetsc.nonlinear.newton import NewtonSolver, set_defaults
 from ehlpetsc.nonlinear.options import UsageError
-from ehlpetsc.nonlinear.scheme import scheme, solver_of
-from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.simulation import Simulation
 
 CASES = Path(__file__).parents[2] / "cases"
 STORED = Path(__file__).with_name("rough_contacts.npz")
 CONTACTS = {974: [303, 304], 1113: [420, 421], 1252: [303, 304, 411, 412]}
 
 
-def marches(name, *overrides):
-    """Newton's and the sweeps' march of one scene."""
-    set_defaults(PETSc.Options())
+def simulations(name, *overrides):
+    """One scene by Newton's method and by sweeps."""
     case = load(CASES / name, overrides)
-    scales = Scales.of(case)
-    film = expected_film(case, scales)
-    solvers = NewtonSolver(case, scales, film, PETSc.COMM_SELF), sweep.GaussSeidelSolver(case, scales, film)
-    return [TimeStepping(solver, scales, Roughness.of(case, scales), film) for solver in solvers]
+    return [Simulation(case, options={"ehl_scheme": scheme}) for scheme in ("newton", "sweep")]
 
 
 @pytest.fixture(scope="module")
 def rough():
-    return marches("table1_rough.toml")
+    return simulations("table1_rough.toml")
 
 
 def assert_same(problem, newton, swept, rtol):
@@ -60,31 +50,32 @@ def test_same_film_pressure_and_contacts_as_newton(rough, step):
     with np.load(STORED) as stored:
         q, h, m, m_older = stored[f"levels_{step}"].astype(float)
         h00, time, dt_older, dt = stored[f"scalars_{step}"]
-    for march in rough:
+    for simulation in rough:
+        march = simulation.march
         unit = march.scales.u / march.scales.a
         history = FilmHistory(m, m_older, dt * unit, dt_older * unit)
-        found.append(march.solver.solve(q, h, h00, march.problem.inputs(march.phi(time + dt), history)))
+        with simulation.options:
+            found.append(march.solver.solve(q, h, h00, march.problem.inputs(march.phi(time + dt), history)))
     for _, film, _, _ in found:
         np.testing.assert_array_equal(np.flatnonzero(film <= 0.0), CONTACTS[step])
-    assert_same(rough[0].problem, *found, rtol=1e-5)
+    assert_same(rough[0].march.problem, *found, rtol=1e-5)
     assert found[1][2] == pytest.approx(found[0][2], rel=1e-5)
 
 
 def test_sweeps_march_from_their_own_start():
     states = []
-    for march in marches("table1_rough.toml", "mesh.points_per_half_width=50"):
-        state = march.start()
-        for _ in range(5):
-            state = march.advance(state)
-        assert state.retries == 0
-        states.append((state.q, state.h))
-    assert_same(march.problem, *states, rtol=1e-5)
+    for simulation in simulations("table1_rough.toml", "mesh.points_per_half_width=50"):
+        for state in itertools.islice(simulation, 6):
+            assert state.retries == 0
+        states.append((state.solution.q, state.solution.h))
+    assert_same(simulation.march.problem, *states, rtol=1e-5)
 
 
 def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
     coarse = "mesh.points_per_half_width=50"
-    newton, swept = marches("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
-    states = [march.start() for march in (newton, swept)]
+    both = simulations("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
+    states = [simulation.advance().solution for simulation in both]
+    swept = both[1].march
     bound = swept.solver.bound
     assert states[1].h.min() == bound
     np.testing.assert_array_equal(states[1].h <= bound, states[0].h <= bound)
@@ -95,7 +86,7 @@ def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
 
 def test_gives_up_after_so_many_evaluations(monkeypatch):
     monkeypatch.setattr(sweep, "EVALUATIONS", 2)
-    march = marches("table1_smooth.toml", "mesh.points_per_half_width=50")[1]
+    march = simulations("table1_smooth.toml", "mesh.points_per_half_width=50")[1].march
     with pytest.raises(SolveFailed, match="MAX_IT after 2 "):
         march.solver.solve(np.ones(march.problem.n), np.ones(march.problem.n), 0.0, march.problem.inputs())
 
@@ -108,23 +99,16 @@ def test_gives_up_after_so_many_evaluations(monkeypatch):
     ],
 )
 def test_schemes_that_cannot_be(name, value, message):
-    options = PETSc.Options()
-    options["ehl_scheme"] = value
-    try:
-        case = load(CASES / name)
-        with pytest.raises(UsageError, match=message):
-            solver_of(case, Scales.of(case), 1.0, PETSc.COMM_SELF, options)
-    finally:
-        options.delValue("ehl_scheme")
-    assert scheme(options) == "newton"
+    with pytest.raises(UsageError, match=message):
+        Simulation(load(CASES / name), options={"ehl_scheme": value})
 
 
 def store():
     """Run the case to the steps of `CONTACTS` and keep what goes before each."""
-    march, _ = marches("table1_rough.toml")
-    kept, state = {}, march.start()
+    simulation, _ = simulations("table1_rough.toml")
+    kept, state = {}, simulation.advance().solution
     while state.step < max(CONTACTS):
-        before, state = state, march.advance(state)
+        before, state = state, simulation.advance().solution
         if state.step in CONTACTS:
             levels = before.q, before.w, before.m, before.m_older
             kept[f"levels_{state.step}"] = np.array(levels, dtype=np.float32)

@@ -7,25 +7,21 @@ already is not computed again: a whole file of the same case text is kept, a res
 
 import json
 import os
-import re
 import sys
 import time as clock
 from pathlib import Path
 
 from ehlpetsc.case.loading import members
-from ehlpetsc.errors import NotConverged, OutputError, UsageError
-from ehlpetsc.nonlinear.newton import set_defaults
+from ehlpetsc.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.writer import load_restart, read_result
+from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.describe import warnings
-from ehlpetsc.run.forecast import dowson_higginson, steps
 from ehlpetsc.run.progress import summary_line
-from ehlpetsc.run.simulation import DONE, NOT_CONVERGED, STOPPED, Run
-from ehlpetsc.run.work_queue import Dealer
-
-BAD_INPUT = 2
-STATES = {DONE: "done", BAD_INPUT: "bad input", NOT_CONVERGED: "not converged", STOPPED: "stopped"}
+from ehlpetsc.run.series.member import Member
+from ehlpetsc.run.series.work_queue import Dealer
+from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.solve import Run
 
 
 class Named:
@@ -44,62 +40,6 @@ class Named:
 
     def isatty(self):
         return False  # no bar: several members would draw over each other
-
-
-class Member:
-    """One member: its value, case and files.
-
-    Attributes
-    ----------
-    name : str
-        As in ``viscosity=0.002``.
-    output, restart : Path
-    """
-
-    def __init__(self, number, key, value, case, output):
-        word = key.rpartition(".")[2]
-        shown = str(value)
-        if isinstance(value, dict | list) or len(shown) > 40:
-            shown = str(number + 1)
-        self.value, self.case, self.name = value, case, f"{word}={shown}"
-        plain = re.sub(r"[^A-Za-z0-9.+-]", "_", shown)
-        self.output = output.with_name(f"{output.stem}_{word}_{plain}.h5")
-        self.restart = self.output.with_suffix(".restart.h5")
-
-    def stands(self):
-        """What its files hold of the same case: "done", "begun" (a restart file) or "waiting"."""
-        try:
-            with read_result(self.output) as result:
-                if result.attrs["case"] == self.case.text and result.attrs["status"] == "done":
-                    return "done"
-            if load_restart(self.restart)[1]["case"] == self.case.text:
-                return "begun"
-        except (OutputError, KeyError):
-            pass
-        return "waiting"
-
-    def weight(self):
-        """For dealing the longest first: nodes times steps; of equals, the thinner film."""
-        scales = Scales.of(self.case)
-        film = dowson_higginson(scales, self.case.fluid.pressure_viscosity) if self.case.fluid else 0.0
-        return scales.nx * (steps(scales) if self.case.time else 1), -film
-
-    def totals(self):
-        """Figures of its run for the summary, from the result file; None without one."""
-        try:
-            with read_result(self.output) as result:
-                of = result.steps
-                return {
-                    "steps": int(of("step").max(initial=0)),
-                    "newton": int(of("newton").sum()),
-                    "h_min": of("h_min").min(),
-                    "p_max": of("p_max").max(),
-                    "contacts": int(of("contacts").sum()),
-                    "load_error": of("load_error").max(),
-                    "mass_error": of("mass_error").max(),
-                }
-        except (OutputError, ValueError):
-            return None
 
 
 class Series:
@@ -123,7 +63,7 @@ class Series:
     def __init__(self, world, case, options, stop, output):
         if options.hasName("ehl_restart"):
             raise UsageError("-ehl_restart with a [series]: leave it out, begun members are gone on with")
-        self.world, self.case, self.options, self.stop = world, case, options, stop
+        self.world, self.case, self.stop = world, case, stop
         output = Path(output)
         self.index = output.with_suffix(".series.json")
         self.members = [
@@ -156,21 +96,16 @@ class Series:
     def _run(self, member):
         """Run one member on this group; its exit status and why it failed."""
         group = self.dealer.group
-        entered = set_defaults(self.options, member.case.petsc)
-        if self.case.series.key.startswith("petsc."):
-            entered.append(self.case.series.key.partition(".")[2])
         out, err = Named(member.name, sys.stdout), Named(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.stands() == "begun")
         try:
-            run = Run(group, member.case, self.options, self._stop, member.output, out, err)
-            return run.go(member.restart if begun else None), run.failure
-        except (NotConverged, OutputError, UsageError) as error:
+            run = Run(Simulation(member.case, group), member.output, self._stop, out, err)
+            outcome = run.go(member.restart if begun else None)
+            return outcome.status, str(outcome.failure or "")
+        except (OutputError, UsageError) as error:
             if group.rank == 0:
                 print(f"ehlpetsc: {error}", file=err, flush=True)
-            return NOT_CONVERGED if isinstance(error, NotConverged) else BAD_INPUT, str(error)
-        finally:
-            for name in entered:
-                self.options.delValue(name)
+            return ExitStatus.BAD_INPUT, str(error)
 
     def _stop(self, group):
         self.dealer.serve()
@@ -179,7 +114,7 @@ class Series:
     def _take(self, report):
         """Note on the first rank how a member ended."""
         number, status, failure = report
-        self.states[number] = STATES[status]
+        self.states[number] = status.words
         if failure:
             self.failures[number] = failure
         self._write_index()
@@ -228,24 +163,15 @@ class Series:
         sys.stderr.flush()
         self._write_index()
         if any(state in ("waiting", "stopped") for state in self.states):
-            status = STOPPED
+            status = ExitStatus.STOPPED
             print("ehlpetsc: stopped; the same command computes what is missing")
         else:
-            status = next((s for s in (NOT_CONVERGED, BAD_INPUT) if STATES[s] in self.states), DONE)
+            faults = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
+            status = next((s for s in faults if s.words in self.states), ExitStatus.DONE)
         print(f"index: {self.index}")
-        totals = added([m.totals() for m in self.members])
-        print(summary_line(STATES[status], wall=wall, **totals), flush=True)
+        totals = Totals.of_series(m.totals() for m in self.members)
+        print(summary_line(status, totals, wall), flush=True)
         return status
-
-
-def added(totals):
-    """Figures of several runs as those of one; runs without any are None."""
-    known = [t for t in totals if t]
-    worst = {"h_min": min, "p_max": max, "load_error": max, "mass_error": max}
-    return {
-        name: worst.get(name, sum)([t[name] for t in known] or [0])
-        for name in ("steps", "newton", "h_min", "p_max", "contacts", "load_error", "mass_error")
-    }
 
 
 def ranks_per_member(options, size):

@@ -1,0 +1,76 @@
+"""PETSc's table of options as a run needs it, and as it was before."""
+
+from petsc4py import PETSc
+
+DEFAULTS = {
+    "snes_linesearch_type": "basic",
+    "snes_linesearch_maxstep": "1e10",
+    "snes_max_it": "30",
+    "snes_atol": "1e-7",
+    "snes_rtol": "0",  # the first residual of a thick film may be 1e17: a share of it says nothing
+    "snes_stol": "0",
+    "snes_max_funcs": "100000",
+    "ksp_type": "fgmres",  # keeps what the preconditioner gave: one application less than gmres
+    "ksp_rtol": "1e-4",  # tighter gains nothing, looser costs Newton iterations
+    "ksp_pc_side": "right",
+    "snes_max_linear_solve_fail": "1000",
+    "ksp_max_it": "100",
+    "ksp_gmres_restart": "100",
+}
+PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
+
+
+VIEWS = ("snes_view", "ksp_view")
+
+
+class RunOptions:
+    """The options of a run in PETSc's table, for a ``with`` statement; afterwards the table is as it was.
+
+    ``program's defaults < of_case < what the table holds < given``. May be entered again inside itself.
+
+    Parameters
+    ----------
+    of_case, given : dict of str to str
+        `[petsc]` of the case; those of a call from Python.
+
+    Attributes
+    ----------
+    views : list of str
+        ``snes_view`` and ``ksp_view``, where they are asked for without a value: held back, because PETSc
+        would repeat them at every solve.
+    """
+
+    def __init__(self, of_case=(), given=()):
+        self._of_case, self._given, self._depth = dict(of_case), dict(given), 0
+        self.views = []
+
+    def __enter__(self):
+        self._depth += 1
+        if self._depth == 1:
+            self._enter(PETSc.Options())
+        return self
+
+    def __exit__(self, *exception):
+        self._depth -= 1
+        if self._depth == 0:
+            self._leave(PETSc.Options())
+
+    def _enter(self, table):
+        there = table.getAll()
+        wanted = self._of_case | there | self._given
+        wanted = DEFAULTS | ({} if "pc_type" in wanted else PRECONDITIONER) | wanted
+        self.views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
+        self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
+        changed = [name for name in [*self._entered, *self.views] if name in there]
+        self._held = {name: table.getString(name, "") for name in changed}
+        for name in self.views:
+            table.delValue(name)
+        for name in self._entered:
+            table[name] = wanted[name]
+
+    def _leave(self, table):
+        for name in self._entered:
+            table.delValue(name)
+        for name, value in self._held.items():
+            table[name] = value
+            table.hasName(name)  # it has been read, for -options_left

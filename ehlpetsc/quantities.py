@@ -1,0 +1,181 @@
+"""Every dataset of a result file in one table: unit, long name, type, where it exists, how it is summed up.
+
+A new quantity is a line here and a value in `ehlpetsc.stepping.observables`; the case file's list of fields,
+writer and reader, progress, the summary line, totals of runs and series, the forecast of file sizes and
+`ehlpetsc.analysis.compare` know it from this table.
+"""
+
+from dataclasses import dataclass
+
+_FRAME = ("time", "x")
+_STEP = ("time",)
+
+
+@dataclass(frozen=True)
+class Field:
+    """What is stored about a dataset beside its values.
+
+    Attributes
+    ----------
+    units : str
+        SI unit, "1" for a number.
+    long_name : str
+        Name for axes and headings.
+    dims : tuple of str
+        Names of the dimension scales, each beside the dataset or in a group above it.
+    dtype : str
+        Type on disk; the stored fields may be narrowed to float32 on request.
+    only : str
+        Scenes that have it, a key of `SCENES`; "": all.
+    """
+
+    units: str
+    long_name: str
+    dims: tuple = _FRAME
+    dtype: str = "f8"
+    only: str = ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """How progress shows a figure: heading, factor from SI units, format, words in the bar."""
+
+    heading: str
+    factor: float
+    form: str
+    bar: str = ""
+
+
+@dataclass(frozen=True)
+class Figure(Field):
+    """A scalar of every time step.
+
+    Attributes
+    ----------
+    over_run, over_series : str
+        What tells of all its values, a key of `REDUCTIONS`, "" if nothing does; of a series by default that
+        of its runs.
+    summary : str
+        Format in the last line of a run; "" leaves it out.
+    label : str
+        Name in that line; its own by default.
+    progress : Column, optional
+        Its column in the lines of progress.
+    compared : bool
+        Whether two runs of one case must agree in it: what only tells how a solution was reached need not.
+    """
+
+    dims: tuple = _STEP
+    over_run: str = ""
+    over_series: str = ""
+    summary: str = ""
+    label: str = ""
+    progress: Column | None = None
+    compared: bool = False
+
+
+REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
+"""From the values of the steps, in their order, to the one of a run."""
+
+SCENES = {
+    "": lambda case: True,
+    "fluid": lambda case: case.fluid is not None,
+    "mixed": lambda case: case.contact.model == "mixed",
+}
+"""Whether a case has what a quantity needs."""
+
+FIELDS = {
+    "pressure": Field("Pa", "pressure"),
+    "film_thickness": Field("m", "film thickness"),
+    "void_fraction": Field("1", "void fraction of the film", only="fluid"),
+    "shear_stress_fast": Field("Pa", "shear stress on the fast solid"),
+    "shear_stress_slow": Field("Pa", "shear stress on the slow solid"),
+    "in_contact": Field("1", "surfaces in contact (film thickness at its bound)", dtype="u1"),
+}
+"""Fields over (stored frame, node), in the order in which files list them."""
+
+STEP_SCALARS = {
+    "step": Figure(
+        "1",
+        "number of the time step",
+        dtype="i8",
+        over_run="last",
+        over_series="sum",
+        summary="d",
+        label="steps",
+        progress=Column("step", 1, "{:>8d}"),
+    ),
+    "time": Figure("s", "time at the end of the step", progress=Column("time/us", 1e6, "{:>11.4f}")),
+    "dt": Figure("s", "time step", progress=Column("dt/us", 1e6, "{:>9.5f}")),
+    "newton": Figure(
+        "1",
+        "Newton iterations of the step, retries included",
+        dtype="i4",
+        over_run="sum",
+        summary="d",
+        progress=Column("newton", 1, "{:>6d}"),
+    ),
+    "retries": Figure("1", "attempts that did not converge", dtype="i4", over_run="sum"),
+    "h_min": Figure(
+        "m",
+        "least film thickness",
+        over_run="min",
+        summary=".9g",
+        progress=Column("h_min/um", 1e6, "{:>9.5f}", "h_min {:.4f} um"),
+        compared=True,
+    ),
+    "p_max": Figure(
+        "Pa",
+        "greatest pressure",
+        over_run="max",
+        summary=".9g",
+        progress=Column("p_max/GPa", 1e-9, "{:>9.4f}", "p_max {:.3f} GPa"),
+        compared=True,
+    ),
+    "contacts": Figure(
+        "1",
+        "nodes in contact",
+        dtype="i4",
+        over_run="sum",
+        summary="d",
+        progress=Column("contacts", 1, "{:>8d}", "contacts {:d}"),
+        compared=True,
+    ),
+    "load": Figure("N/m", "integral of the pressure", compared=True),
+    "load_error": Figure("1", "relative error of the load", over_run="max", summary=".2e"),
+    "mass_error": Figure("1", "relative defect of the mass balance", over_run="max", summary=".2e"),
+    "approach": Figure("m", "undeformed separation h00", compared=True),
+    "friction": Figure("N/m", "friction force on the slow solid", compared=True),
+    "wall": Figure("s", "wall clock time of the step", over_run="sum"),
+}
+"""Scalars of every time step, below ``steps/``, in the order in which progress and summary tell them."""
+
+OTHERS = {
+    "x": Field("m", "distance along the entrainment direction", ("x",)),
+    "time": Field("s", "time of the stored frame", ("time",)),
+    "step": Field("1", "number of the time step stored in the frame", ("time",), "i8"),
+    "contact_count": Field("1", "time steps in contact over the whole run", ("x",), "i8"),
+    "surface/s": Field("m", "coordinate fixed to the surface, s = x - speed time", ("s",)),
+    "surface/z": Field("m", "height, positive out of the metal", ("s",)),
+}
+"""Coordinates and what else is neither a field nor a scalar of the step."""
+
+GROUPS = {
+    "/": "Result of ehlpetsc, in SI units. Attributes: the case as run, Hertz half width a [m] and pressure "
+    "p0 [Pa], h_scale = a^2/R [m], speeds u1 (fast), u2 (slow) [m/s], provenance, how the run ended (status)",
+    "steps": "a row for every accepted time step, also where no frame is stored",
+    "surface": "profiles as used, fixed in the bodies",
+    "surface/fast": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
+    "surface/slow": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
+}
+"""What the groups hold."""
+
+
+def of_case(table, case):
+    """Names of those quantities of a table that a case has."""
+    return [name for name, field in table.items() if SCENES[field.only](case)]
+
+
+def of_every_case(table):
+    """Names of those quantities of a table that all cases have."""
+    return [name for name, field in table.items() if not field.only]

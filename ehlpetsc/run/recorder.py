@@ -1,0 +1,166 @@
+"""What is kept of a run: result file, restart file, totals. Rank 0 alone writes files."""
+
+import time as clock
+from pathlib import Path
+
+import mpi4py
+import petsc4py
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.nonlinear import events
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.results.totals import Totals
+from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.run import checkpoint
+from ehlpetsc.stepping.step_control import on_level
+
+
+def on_root(comm, action, *arguments):
+    """What `action` returns on rank 0, None on the others; its OutputError is raised on every rank."""
+    answer = fault = None
+    if comm.rank == 0:
+        try:
+            answer = action(*arguments)
+        except OutputError as error:
+            fault = str(error)
+    fault = comm.bcast(fault)
+    if fault:
+        raise OutputError(fault)
+    return answer
+
+
+class Recorder:
+    """Keeps a simulation's accepted states.
+
+    Parameters
+    ----------
+    simulation : run.simulation.Simulation
+    output : path-like
+        Result file; the restart file gets its name too.
+
+    Attributes
+    ----------
+    totals : results.totals.Totals
+    restart : Path
+        Restart file.
+    """
+
+    def __init__(self, simulation, output):
+        self.simulation, self.comm = simulation, simulation.comm
+        self.output = Path(output)
+        self.restart = self.output.with_suffix(".restart.h5")
+        self.totals = Totals()
+        self._writer, self._opened = None, False
+        self._saved = clock.monotonic()
+
+    def resume(self, path):
+        """Put the simulation where a restart file was written, and go on with its result.
+
+        Returns
+        -------
+        list of str
+            What to know about it, one line each.
+        """
+        simulation, model = self.simulation, self.simulation.march.problem.model
+        solution, smooth, count, totals, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
+        simulation.resume(solution, smooth)
+        self.totals = Totals(totals)
+        self._open(solution.step, count)
+        return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
+
+    def take(self, state):
+        """Keep an accepted state.
+
+        Parameters
+        ----------
+        state : run.simulation.AcceptedState
+        """
+        if not self._opened:
+            self._open()
+        with events.OUTPUT:
+            on_root(self.comm, self._append, state)
+        self.totals.add(state.figures)
+        due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
+        if state.step and self.comm.bcast(due):
+            self.checkpoint()
+            self._saved = clock.monotonic()
+
+    def checkpoint(self):
+        """Write the restart file."""
+        on_root(self.comm, self._save)
+
+    def close(self, status):
+        """Write what is left and note how the run ended.
+
+        Parameters
+        ----------
+        status : errors.ExitStatus
+        """
+        if self._opened:
+            on_root(self.comm, lambda: self._writer.close(status.words))
+
+    def _open(self, step=None, count=None):
+        on_root(self.comm, self._create, step, count)
+        self._opened = True
+
+    def _append(self, state):
+        every, scales = self.simulation.case.output.every, self.simulation.scales
+        steady = self.simulation.case.time is None
+        frame = every == 1 or steady or on_level(state.time, every * scales.dt)
+        self._writer.append(state.step, state.time, state.fields, state.figures, state.in_contact, frame)
+
+    def _save(self):
+        self._writer.flush()
+        simulation = self.simulation
+        checkpoint.save(
+            self.restart,
+            simulation.solution,
+            simulation.march.smooth,
+            self._writer.contact_count,
+            self.totals.values,
+            simulation.case,
+            simulation.scales,
+            simulation.march.problem.model,
+        )
+
+    def _create(self, step, count):
+        case, scales = self.simulation.case, self.simulation.scales
+        stored = of_case(FIELDS, case)
+        attributes = {name: getattr(scales, name) for name in ("a", "p0", "u1", "u2")}
+        attributes |= {
+            "h_scale": scales.h,
+            "ranks": self.comm.size,
+            "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
+            "versions": libraries(),
+        }
+        self._writer = ResultWriter(
+            self.output,
+            case_text=case.text,
+            title=case.title,
+            x=scales.x * scales.a,
+            scalars_attrs=attributes,
+            fields=[name for name in case.output.fields if name in stored],
+            figures=of_case(STEP_SCALARS, case),
+            every=case.output.every,
+            precision=case.output.precision,
+            profiles=profiles(self.simulation.roughness),
+            resume_step=step,
+            contact_count=count,
+        )
+
+
+def profiles(roughness):
+    """Both surfaces as the writer takes them."""
+    sides = {side: roughness and getattr(roughness, side) for side in ("fast", "slow")}
+    return {
+        side: p and (p.s, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk}) for side, p in sides.items()
+    }
+
+
+def libraries():
+    """Names and versions of what computes, for the result file."""
+    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
+    mpi = MPI.Get_library_version().split(",")[0].rstrip("\0")
+    return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}

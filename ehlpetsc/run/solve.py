@@ -1,0 +1,107 @@
+"""A run from its beginning, or a restart file, to its end: states are taken, kept and told of."""
+
+import sys
+import time as clock
+from dataclasses import dataclass
+
+from ehlpetsc.errors import ExitStatus, NotConverged
+from ehlpetsc.run.progress import Progress, summary_line
+from ehlpetsc.run.recorder import Recorder
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes
+    ----------
+    status : errors.ExitStatus
+    failure : errors.NotConverged or None
+    wall : float
+        Wall clock time [s].
+    """
+
+    status: ExitStatus
+    failure: NotConverged | None
+    wall: float
+
+
+class Run:
+    """A simulation that is recorded.
+
+    Parameters
+    ----------
+    simulation : run.simulation.Simulation
+    output : path-like
+    stop : callable, optional
+        Asked before every step with the communicator: whether to end there.
+    out, err : file, optional
+        Where rank 0 speaks; standard output and error by default.
+    """
+
+    def __init__(self, simulation, output, stop=None, out=None, err=None):
+        self.simulation, self.recorder = simulation, Recorder(simulation, output)
+        self.stop, self.root = stop, simulation.comm.rank == 0
+        self.out, self.err = out or sys.stdout, err or sys.stderr
+
+    def go(self, restart=None):
+        """Run to the end, tell how it ended.
+
+        Parameters
+        ----------
+        restart : path-like, optional
+            Restart file to go on from.
+
+        Returns
+        -------
+        Outcome
+        """
+        begun = clock.monotonic()
+        with self.simulation.options:
+            notes = self.recorder.resume(restart) if restart else []
+            self._say(*(f"restart: {note}" for note in notes))
+            status, failure = self._all_states()
+            self.recorder.close(status)
+        outcome = Outcome(status, failure, clock.monotonic() - begun)
+        if self.root:
+            self._report(outcome)
+        return outcome
+
+    def _all_states(self):
+        simulation, progress = self.simulation, None
+        status = failure = None
+        while status is None:
+            if simulation.finished:
+                status = ExitStatus.DONE
+            elif simulation.solution is not None and self.stop and self.stop(simulation.comm):
+                status = ExitStatus.STOPPED
+            else:
+                if self.root and progress is None and simulation.solution is not None:
+                    progress = Progress(simulation.solution.time, simulation.scales.duration, self.out)
+                try:
+                    self.recorder.take(simulation.advance())
+                except NotConverged as error:
+                    status, failure = ExitStatus.NOT_CONVERGED, error
+                if progress and not failure:
+                    progress.step(simulation.state.figures)
+        if progress:
+            progress.close()
+        if status is not ExitStatus.DONE and simulation.solution is not None:
+            self.recorder.checkpoint()
+        return status, failure
+
+    def _report(self, outcome):
+        recorder, state = self.recorder, self.simulation.solution
+        if outcome.failure:
+            saved = f". Last good state: {recorder.restart}" if state else ""
+            print(f"ehlpetsc: not converged: {outcome.failure}{saved}", file=self.err, flush=True)
+        elif outcome.status is ExitStatus.STOPPED:
+            self._say(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
+        if state is not None:
+            self._say(f"result: {recorder.output}")
+        self._say(summary_line(outcome.status, recorder.totals, outcome.wall))
+
+    def _say(self, *lines):
+        if self.root:
+            for line in lines:
+                print(line, file=self.out, flush=True)
