@@ -2,6 +2,8 @@
 
 import sys
 
+from ehlpetsc.errors import ExitStatus
+
 
 def main(argv):
     """Run the command; returns its exit status."""
@@ -40,7 +42,7 @@ def explain(command):
         return refuse("\n".join(error.faults))
     if first_rank():
         print(text)
-    return 0
+    return ExitStatus.DONE
 
 
 def refuse(text):
@@ -49,7 +51,7 @@ def refuse(text):
 
     if first_rank():
         print(text, file=sys.stderr, flush=True)
-    return 2
+    return ExitStatus.BAD_INPUT
 
 
 def guarded(argv):
@@ -67,8 +69,8 @@ def guarded(argv):
         if "mpi4py.MPI" in sys.modules:
             mpi = sys.modules["mpi4py.MPI"]
             if mpi.COMM_WORLD.size > 1:
-                mpi.COMM_WORLD.Abort(1)
-        return 1
+                mpi.COMM_WORLD.Abort(ExitStatus.BUG)
+        return ExitStatus.BUG
 
 
 if __name__ == "__main__":

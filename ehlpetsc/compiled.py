@@ -20,11 +20,3 @@ def compiled(function=None, **options):
         return njit(cache=True, error_model="numpy", **options)(function)
     except RuntimeError:  # neither the package's directory nor the user's can be written to
         return njit(error_model="numpy", **options)(function)
-
-
-@compiled
-def _nothing():
-    return 0.0
-
-
-_nothing()  # what numba loads at a first call belongs to the imports, not to a run's time

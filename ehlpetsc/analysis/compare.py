@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import read_result
 
@@ -233,7 +233,7 @@ def main(arguments=None):
             print(table(differences, float(one.attrs["a"]), options.rtol, options.atol))
     except OutputError as error:
         print(f"ehlpetsc.analysis.compare: {error}", file=sys.stderr)
-        return 2
+        return ExitStatus.BAD_INPUT
     faults += [d.name for d in differences if not d.same(options.rtol, options.atol)]
     allowed = f"(rtol {options.rtol:g}, atol {options.atol:g})"
     print(f"different: {'; '.join(faults)} {allowed}" if faults else f"same {allowed}")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 
 WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
@@ -57,8 +57,8 @@ def command(name, about, report, arguments):
             print("\n".join(report(open_all(parser.parse_args(arguments).results, stack))))
     except OutputError as error:
         print(f"{name}: {error}", file=sys.stderr)
-        return 2
-    return 0
+        return ExitStatus.BAD_INPUT
+    return ExitStatus.DONE
 
 
 def _files(path):

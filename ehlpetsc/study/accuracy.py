@@ -14,8 +14,9 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.study.runs import DONE, run
+from ehlpetsc.study.runs import run
 
 MEASURES = ("h_min", "h_c", "p_max", "film", "contact", "damage")
 MESH, STEP, NEAR = "mesh.points_per_half_width", "time.courant", "mesh.near_field"
@@ -215,7 +216,7 @@ class Study:
             name=f"run{number}",
             limit=self.limit,
         )
-        found = figures(outcome.result, self.damage) if outcome.status == DONE else None
+        found = figures(outcome.result, self.damage) if outcome.status == ExitStatus.DONE else None
         self._known[known] = outcome, found
         return outcome, found
 
@@ -250,7 +251,7 @@ def row(setting, outcome, measured):
     return {
         "varied": NAMES.get(setting.varied, setting.varied),
         "value": setting.value,
-        "converged": "yes" if outcome.status == DONE else f"exit {outcome.status}",
+        "converged": "yes" if outcome.status == ExitStatus.DONE else f"exit {outcome.status}",
         "wall_s": outcome.wall,
         "newton": outcome.newton,
         "steps": outcome.steps,

@@ -6,11 +6,11 @@ import random
 import tempfile
 from pathlib import Path
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.lines import BARUS, MODULUS, PROFILES, RADIUS, ROELANDS, TABLE_1, inlet_of, load_of
 from ehlpetsc.study.rough_lines import ground, wave
-from ehlpetsc.study.runs import DONE, NOT_CONVERGED, run
+from ehlpetsc.study.runs import run
 
 HEAD = ("number", "status", "steps", "retries", "newton", "file", "words", "overrides")
 STEPS = 50
@@ -92,12 +92,12 @@ def run_all(count, seed, path, limit, say=print):
         writer.writeheader()
         for number in range(count):
             row = run_one(seed + number, Path(folder), limit)
-            converged += row["status"] == DONE
-            if row["status"] not in (DONE, NOT_CONVERGED) or row["file"] == "broken":
+            converged += row["status"] == ExitStatus.DONE
+            if row["status"] not in (ExitStatus.DONE, ExitStatus.NOT_CONVERGED) or row["file"] == "broken":
                 wrong += 1
             writer.writerow(row)
             file.flush()
-            if row["status"] != DONE:
+            if row["status"] != ExitStatus.DONE:
                 say(
                     f"{row['number']}: exit {row['status']}, {row['steps']} steps, file {row['file']}: "
                     f"{row['words']} | {row['overrides']}"

@@ -5,10 +5,11 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.study.lines import steady_lines
 from ehlpetsc.study.reasons import why
 from ehlpetsc.study.rough_lines import time_lines
-from ehlpetsc.study.runs import DONE, run
+from ehlpetsc.study.runs import run
 
 HEAD = (
     "axis",
@@ -84,18 +85,20 @@ def row(line, folder, limit):
     options = ()
     if line.before:
         first = run(case, line.before, folder=folder, name="before", limit=limit)
-        if first.status != DONE:
+        if first.status != ExitStatus.DONE:
             return _row(line, first, f"the run before: {first.words}")
         options = ("-ehl_restart", str(folder / "before.restart.h5"))
     outcome = run(case, line.overrides, options=options, folder=folder, limit=limit)
-    return _row(line, outcome, "" if outcome.status == DONE else why(outcome, case, line.overrides))
+    return _row(
+        line, outcome, "" if outcome.status == ExitStatus.DONE else why(outcome, case, line.overrides)
+    )
 
 
 def _row(line, o, reason):
     return {
         "axis": line.axis,
         "value": line.value,
-        "converged": "yes" if o.status == DONE else f"no, exit {o.status}",
+        "converged": "yes" if o.status == ExitStatus.DONE else f"no, exit {o.status}",
         "steps": o.steps,
         "retries": o.retries,
         "newton": o.newton,

@@ -5,10 +5,11 @@ import math
 import numpy as np
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.physics.film_formulas import moes_central_film
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.study.runs import BAD_INPUT, BUG, TIMED_OUT
+from ehlpetsc.study.runs import TIMED_OUT
 
 SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
 PLASTIC = 6.0  # GPa: asperities of hardened steel yield
@@ -27,7 +28,7 @@ def why(outcome, path, overrides):
     """
     if outcome.status == TIMED_OUT:
         return f"stopped by the time limit after {outcome.steps} steps and {outcome.retries} halved ones"
-    if outcome.status in (BAD_INPUT, BUG):
+    if outcome.status in (ExitStatus.BAD_INPUT, ExitStatus.BUG):
         return outcome.words
     case = load(path, overrides)
     scales = Scales.of(case)

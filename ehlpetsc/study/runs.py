@@ -14,8 +14,9 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.totals import Totals
 
-DONE, BUG, BAD_INPUT, NOT_CONVERGED, STOPPED, TIMED_OUT = 0, 1, 2, 3, 4, -1
+TIMED_OUT = -1  # beside the exit statuses of the program
 
 
 @dataclass
@@ -123,20 +124,15 @@ def _read_figures(path, case, outcome):
     """Enter the figures of a result file; a file that cannot be read is told in the words."""
     try:
         with read_result(path) as result:
-            steps = {
-                name: np.asarray(result.steps(name))
-                for name in ("newton", "retries", "h_min", "p_max", "load_error", "mass_error", "wall")
-            }
+            totals = Totals.of_result(result).values
     except OutputError as error:
         outcome.words = f"{outcome.words} {error}".strip()
         return
-    if not len(steps["newton"]):
+    if not totals:
         return
-    outcome.result, outcome.steps = path, len(steps["newton"]) - 1
-    outcome.newton, outcome.retries = int(steps["newton"].sum()), int(steps["retries"].sum())
-    outcome.h_min, outcome.p_max = steps["h_min"].min(), steps["p_max"].max()
-    outcome.wall = float(steps["wall"].sum())
-    outcome.load_error, outcome.mass_error = steps["load_error"].max(), steps["mass_error"].max()
+    outcome.result, outcome.steps = path, totals["step"]
+    for name in ("newton", "retries", "h_min", "p_max", "wall", "load_error", "mass_error"):
+        setattr(outcome, name, totals[name])
     if case.fluid:
         ratio = viscosity(np.array([outcome.p_max]), case.fluid)[0][0]
         outcome.viscosity = float(case.fluid.viscosity * np.exp(min(ratio, 700.0)))

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.study import accuracy, lines
 from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertainty
 from ehlpetsc.study.draws import draw
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
 from ehlpetsc.study.picture import draw as draw_picture
 from ehlpetsc.study.reasons import why as reason_of
-from ehlpetsc.study.runs import NOT_CONVERGED, TIMED_OUT, Outcome, last_words
+from ehlpetsc.study.runs import TIMED_OUT, Outcome, last_words
 
 
 def figures(error, contact=0.0):
@@ -79,7 +80,7 @@ def test_last_words_are_the_solvers():
 
 
 def test_reasons_are_told_in_words(table_1):
-    outcome = Outcome(NOT_CONVERGED, "SNES stopped", steps=4, h_min=5e-10, p_max=9e9)
+    outcome = Outcome(ExitStatus.NOT_CONVERGED, "SNES stopped", steps=4, h_min=5e-10, p_max=9e9)
     reason = reason_of(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
     for part in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
         assert part in reason
