@@ -7,7 +7,6 @@ for any machine element in SI units and narrow enough that a value in GPa, mm or
 from typing import Any, Literal
 
 from ehlpetsc.case.validation import BaseModel, Extra, Field, confloat, conint, root_validator, validator
-
 from ehlpetsc.quantities import FIELDS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
