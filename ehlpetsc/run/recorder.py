@@ -64,7 +64,9 @@ class Recorder:
             What to know about it, one line each.
         """
         simulation, model = self.simulation, self.simulation.march.problem.model
-        solution, smooth, count, totals, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
+        solution, smooth, count, totals, notes = checkpoint.load(
+            path, simulation.case, simulation.scales, model
+        )
         simulation.resume(solution, smooth)
         self.totals = Totals(totals)
         self._open(solution.step, count)

@@ -135,7 +135,9 @@ class Simulation:
             except NotConverged as error:
                 error.state = self.state
                 raise
-        figures, fields, in_contact = observe(self.case, self.scales, self.march.problem, self.solution, started)
+        figures, fields, in_contact = observe(
+            self.case, self.scales, self.march.problem, self.solution, started
+        )
         figures |= {"step": self.solution.step, "time": self.solution.time}
         self.state = AcceptedState(figures, fields, in_contact, self.solution)
         return self.state
