@@ -19,7 +19,7 @@ every = {every}
 depths = {depths}
 {post}
 """
-A, P0 = 0.335682e-3, 0.999455e9
+LOAD, A, P0 = 527e3, 0.335682e-3, 0.999455e9
 
 
 def ground_profile(s, seed, correlation=12e-6, ra=0.1e-6):
@@ -42,6 +42,7 @@ class Scene:
     ):
         self.x = A * np.arange(-2.5 * per_width, 1.5 * per_width + 0.5) / per_width
         self.dx, self.mean, self.ratio, self.ripple = A / per_width, mean, ratio, ripple
+        self.courant = courant
         self.u1, self.u2 = mean * (1 + ratio / 2), mean * (1 - ratio / 2)
         dt = courant * self.dx / self.u1
         count = steps or int(np.ceil(travel * A / self.u1 / dt)) + 1
@@ -55,7 +56,8 @@ class Scene:
             np.interp(self.x - u * self.time[k], *self.profiles[name])
             for name, u in (("fast", self.u1), ("slow", self.u2))
         )
-        return np.clip(self.hertz * (1 + self.ripple * height), 0, None)
+        p = np.clip(self.hertz * (1 + self.ripple * height), 0, None)
+        return p * LOAD / (p.sum() * self.dx)  # as a run balances it
 
 
 def write(
@@ -76,7 +78,7 @@ def write(
     case = CASE.format(
         mean=scene.mean,
         ratio=scene.ratio,
-        time="" if steady else "[time]\ntravel = 6.0",
+        time="" if steady else f"[time]\ntravel = 6.0\ncourant = {scene.courant}",
         every=every,
         depths=list(depths),
         post=post,

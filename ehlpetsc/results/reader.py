@@ -11,8 +11,10 @@ FORMAT_VERSION = 1
 """Version of the layout; a reader refuses files of a later one."""
 
 
-def open_for_reading(path):
+def open_for_reading(path, **options):
     """Open an HDF5 file that may still be written to, or that a killed writer left open.
+
+    Further options are those of `h5py.File`.
 
     Raises
     ------
@@ -22,13 +24,19 @@ def open_for_reading(path):
     if not Path(path).is_file():
         raise OutputError(f"{path}: no such file")
     try:
-        return h5py.File(path, "r")
-    except OSError as plain:
-        # a live or killed writer leaves its mark in the file, which only a SWMR reader accepts
-        try:
-            return h5py.File(path, "r", swmr=True)
-        except (OSError, ValueError):
-            raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({plain})") from plain
+        return h5py.File(path, "r", swmr=_marked_as_being_written(path), **options)
+    except (OSError, ValueError, RuntimeError) as fault:
+        raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
+
+
+def _marked_as_being_written(path):
+    """Whether a live or killed SWMR writer left its mark, which only a SWMR reader accepts.
+
+    On other files, damaged ones among them, a SWMR reader may wait for ever for a writer to mend them.
+    """
+    with open(path, "rb") as raw:
+        head = raw.read(12)
+    return head.startswith(b"\x89HDF\r\n\x1a\n") and len(head) == 12 and head[8] >= 3 and bool(head[11] & 4)
 
 
 def read_result(path):

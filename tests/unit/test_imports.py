@@ -24,7 +24,7 @@ MAY_IMPORT = {
     "run": {"stepping", "nonlinear", "discretisation", "physics", "case", "surfaces", "results"},
     "analysis": {"results"},
     "plot": {"analysis", "results", "physics"},
-    "post": {"results"},
+    "post": {"results", "physics"},
     "study": {"case", "results", "physics"},  # runs the solver as a user does: by its command
     "compare": {"analysis"},
     "__main__": {"run", "case"},

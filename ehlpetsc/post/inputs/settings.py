@@ -7,8 +7,12 @@ from typing import NamedTuple
 
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.fatigue.strain_life import Material
+from ehlpetsc.post.inputs.reading import in_words
 
 FATIGUE_KEYS = ("b", "c", "cyclic_hardening", "fatigue_strength", "fatigue_ductility", "cyclic_strength")
+TABLES = ("contact", "motion", "mesh", "time", "output", "post")
+DEEPEST = 100.0  # half widths; below it the stresses of a line contact are no one's concern
+MOST_DEPTHS = 1000
 DEPTHS = (
     0.0,
     0.01,
@@ -26,20 +30,22 @@ class Settings(NamedTuple):
     depths: tuple
     fast: Material
     slow: Material
-    transient: bool
-    every: int
 
 
-def _number(value):
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+def is_number(value):
+    """Whether a value of a case is a finite number."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < math.inf
 
 
 def _depths(values, faults):
     if not isinstance(values, list | tuple) or not values:
         faults.append("post.depths: must be a list of z/a values")
         return ()
-    if not all(_number(v) and v >= 0 for v in values):
-        faults.append(f"post.depths = {list(values)}: every depth must be a finite number, 0 or more")
+    if not all(is_number(v) and 0 <= v <= DEEPEST for v in values) or len(values) > MOST_DEPTHS:
+        faults.append(
+            f"post.depths = {in_words(list(values))}: every depth must be a finite number, 0 or more and at "
+            f"most {DEEPEST:g}, and they at most {MOST_DEPTHS}"
+        )
         return ()
     return tuple(sorted({float(v) for v in values}))
 
@@ -47,13 +53,13 @@ def _depths(values, faults):
 def _materials(contact, post, faults):
     constants = {key: post[key] for key in FATIGUE_KEYS if key in post}
     for key, value in constants.items():
-        if not _number(value):
+        if not is_number(value):
             faults.append(f"post.{key} = {value!r}: must be a finite number")
             return None, None
     pairs = []
     for key in ("youngs_modulus", "poisson_ratio"):
         pair = contact.get(key)
-        if not (isinstance(pair, list) and len(pair) == 2 and all(_number(v) for v in pair)):
+        if not (isinstance(pair, list) and len(pair) == 2 and all(is_number(v) for v in pair)):
             faults.append(f"contact.{key} = {pair!r}: must be two numbers, one a surface")
             return None, None
         pairs.append(pair)
@@ -64,25 +70,40 @@ def _materials(contact, post, faults):
         return None, None
 
 
-def read_settings(text, depths=None):
-    """Settings from the case text; `depths` replaces those of [post].
+def parse_case(text):
+    """The tables of a case text, each a dict; those it does not have are empty.
 
     Raises
     ------
     PostError
-        One line a fault: TOML that cannot be read, an unknown key in [post], a value out of range.
+        It is not TOML, or what should be a table is none.
     """
     try:
         case = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as fault:
-        raise PostError(f"the case text stored in it is not valid TOML: {fault}") from None
-    post, faults = case.get("post", {}), []
+    except (ValueError, RecursionError) as fault:
+        raise PostError(f"attribute case: the case text is not valid TOML: {in_words(fault)}") from None
+    tables = {name: case.get(name, {}) for name in TABLES}
+    for name, table in tables.items():
+        if not isinstance(table, dict):
+            raise PostError(f"attribute case: {name} must be a table")
+    return tables
+
+
+def read_settings(case, depths=None):
+    """Settings from a parsed case; `depths` replaces those of [post].
+
+    Raises
+    ------
+    PostError
+        One line a fault: an unknown key in [post], a value out of range.
+    """
+    post, faults = case["post"], []
     for key in post:
         if key not in ("depths", *FATIGUE_KEYS):
             near = difflib.get_close_matches(key, ("depths", *FATIGUE_KEYS), 1)
             faults.append(f"post.{key}: no such key" + (f", did you mean {near[0]}?" if near else ""))
     chosen = _depths(depths if depths is not None else post.get("depths", DEPTHS), faults)
-    fast, slow = _materials(case.get("contact", {}), post, faults)
+    fast, slow = _materials(case["contact"], post, faults)
     if faults:
         raise PostError("\n".join(faults))
-    return Settings(chosen, fast, slow, "time" in case, case.get("output", {}).get("every", 1))
+    return Settings(chosen, fast, slow)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
 from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.inputs.settings import read_settings
+from ehlpetsc.post.inputs.settings import parse_case, read_settings
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.pictures import plots
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
@@ -95,7 +95,7 @@ def damage_picture(result, surface):
         f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g}", fontsize=9
     )
     _bar(figure, plots.damage_contours(main, result, surface, length, plots.decades(largest)), [top, main])
-    main.set_xlabel("along the surface [half widths]")
+    main.set_xlabel("body coordinate s/a")
     figure.align_ylabels([top, main])
     return figure
 
@@ -114,7 +114,7 @@ def stacked_picture(results, surface):
         drawn = plots.damage_contours(row, result, surface, length, levels, LAYER, gap=0.1)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
-    axes[-1].set_xlabel(f"along the {surface} surface [half widths]")
+    axes[-1].set_xlabel(f"body coordinate s/a of the {surface} surface")
     _bar(figure, contours, list(axes))
     figure.align_ylabels(axes)
     return figure
@@ -169,7 +169,7 @@ def field_picture(path, result, frame):
         if not 0 <= frame < loads.time.size:
             raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
         p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = getattr(read_settings(loads.case), surface).poisson_ratio
+        nu = getattr(read_settings(parse_case(loads.case)), surface).poisson_ratio
         z = FIELD_DEPTH * np.linspace(0, 1, 121) ** 2
         fields = plots.stress_fields(*stress(loads.x, z * loads.a, p, q, nu), nu)
         x, time = loads.x / loads.a, loads.time[frame]
@@ -185,15 +185,27 @@ def field_picture(path, result, frame):
     return figure
 
 
+def _check_passed(result, surface, s):
+    """Refuse a body point whose history is not whole, saying which are."""
+    passed, spacing = result.complete[surface], result.s[1] - result.s[0]
+    place = (s - result.s[0]) / spacing
+    around = np.clip(np.array([np.floor(place + 1e-6), np.ceil(place - 1e-6)]), -1, passed.size).astype(int)
+    if not all(0 <= j < passed.size and passed[j] for j in around):
+        first, last = result.s[passed][[0, -1]] / result.a
+        raise PostError(
+            f"--point s/a = {s / result.a:.6g}: not a point of the {surface} surface that passed the whole "
+            f"contact with all its frames stored; s/a = {first:.6g} to {last:.6g} is allowed"
+        )
+
+
 def history_picture(path, result, point):
     """Stress history of one body point and its counted cycles."""
     surface = result.main
+    s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
+    _check_passed(result, surface, s)
     with Loads(path) as loads:
-        s, z = (point[0] * loads.a, point[1]) if point else result.worst_point(surface)
-        material = getattr(read_settings(loads.case), surface)
+        material = getattr(read_settings(parse_case(loads.case)), surface)
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
-    if time.size < 2:
-        raise PostError(f"the point s/a = {s / result.a:.4g} was not in the contact")
     step = time[1] - time[0]
     time = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])
     channel = plots.counted_channel(result.attrs["count"], values, material)

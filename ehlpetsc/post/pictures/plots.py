@@ -23,20 +23,20 @@ def decades(largest):
 
 
 def profile(axes, result, surface, length):
-    """The profile over the points that passed, heights in um; x runs over `length` half widths."""
+    """The profile over the points that passed, heights in um; s/a runs over `length` half widths."""
     axes.set_ylabel("z [µm]")
     axes.axhline(0, color="0.8", lw=0.6)
     axes.yaxis.set_major_locator(MaxNLocator(3))
     if surface in result.profiles:
         s, z = result.profiles[surface]
-        x = _along(result, surface, s)
-        shown = (x >= 0) & (x <= length)
+        x, first = s / result.a, first_passed(result, surface)
+        shown = (x >= first) & (x <= first + length)
         axes.plot(x[shown], z[shown] * 1e6, color=DARK, lw=0.8)
 
 
-def _along(result, surface, s):
-    """Distance from the first point that passed, in half widths."""
-    return (s - result.s[result.complete[surface]][0]) / result.a
+def first_passed(result, surface):
+    """s/a of the first body point that passed."""
+    return result.s[result.complete[surface]][0] / result.a
 
 
 def shown_length(result, surface, longest=None):
@@ -53,11 +53,11 @@ def damage_contours(axes, result, surface, length, levels, deepest=np.inf, gap=0
     """
     complete = result.complete[surface]
     z = result.z[result.z <= max(deepest, result.z[:2].max())]
-    x, values = _along(result, surface, result.s[complete]), result.damage[surface][: z.size, complete]
+    x, values = result.s[complete] / result.a, result.damage[surface][: z.size, complete]
     depth, ticks = _depth_axis(z, gap)
     axes.set_yticks(depth[ticks], [f"{place:g}" for place in z[ticks]])
     axes.set_ylim(depth[-1], depth[0])
-    axes.set_xlim(0, length)
+    axes.set_xlim(first_passed(result, surface), first_passed(result, surface) + length)
     axes.set_ylabel("z/a")
     if levels is None or len(depth) < 2:
         axes.text(

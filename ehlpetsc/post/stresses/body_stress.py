@@ -14,6 +14,7 @@ import numpy as np
 from scipy import fft
 
 from ehlpetsc.post.jit import njit
+from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
 
@@ -127,16 +128,16 @@ class BodyStress:
 
 def history_at(loads, surface, s, depth, quantum=0.0):
     """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
-    place = (s + loads.speeds[surface] * loads.time - loads.x[0]) / loads.dx
-    inside = np.flatnonzero((place >= 0) & (place <= loads.x.size - 1))
+    motion = passage(np.array([s]), loads.x, loads.dx, loads.time, loads.speeds[surface])
+    enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1
     stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
-    values = np.zeros((3, inside.size + 2))
-    for begin in range(0, inside.size, BATCH):
-        frames = inside[begin : begin + BATCH]
-        node = np.floor(place[frames]).astype(int)
+    values = np.zeros((3, max(leave - enter, 0) + 2))
+    for begin in range(enter, leave, BATCH):
+        frames = np.arange(begin, min(begin + BATCH, leave))
         spectra = stress.transform(*loads.read(surface, frames[0], frames[-1] + 1))
-        fields = stress(0, spectra, parity_weights(place[frames] - node))
-        values[:, begin + 1 : begin + 1 + frames.size] = fields[np.arange(frames.size), :, node].T
+        fields = stress(0, spectra, parity_weights(motion.offset[frames]))
+        at = frames - enter + 1
+        values[:, at] = fields[np.arange(frames.size), :, motion.shift[frames]].T
     if quantum:
         values = np.floor(values / quantum + 0.5) * quantum
-    return loads.time[inside], values
+    return loads.time[enter:leave], values

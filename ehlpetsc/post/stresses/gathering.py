@@ -34,14 +34,19 @@ def _gather(stress, begin, first, last, shift, enter, leave, quantum, ring):
 
 
 def blocks(motion, memory, depths, workers=1):
-    """Split the complete points into runs whose open histories fit in `memory` bytes: (points, slots)."""
+    """Split the complete points into runs of consecutive ones whose open histories fit in `memory` bytes.
+
+    Returns
+    -------
+    list of (points, slots)
+    """
     points = np.flatnonzero(motion.complete)
     room = max(1, int(memory / (12 * depths * (motion.samples() + 2))))
-    slots = _slots(points, motion, workers)
-    if slots <= room:
-        return [(points, slots)]
-    parts = np.array_split(points, -(-points.size // room))
-    return [(part, _slots(part, motion, workers)) for part in parts]
+    runs = []
+    for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
+        parts = 1 if _slots(stretch, motion, workers) <= room else -(-stretch.size // room)
+        runs += [(part, _slots(part, motion, workers)) for part in np.array_split(stretch, parts)]
+    return runs
 
 
 def _slots(points, motion, workers):

@@ -1,15 +1,16 @@
-"""The post-processing result: its layout, and the parts from which an interrupted run goes on."""
+"""The post-processing result: its layout, and what may be overwritten by it."""
 
 import hashlib
+import io
 import json
 import os
-import shutil
 from pathlib import Path
 
 import h5py
-import numpy as np
 
 from ehlpetsc import __version__
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.outputs.parts import write_whole
 
 FORMAT_VERSION = 1
 DESCRIPTIONS = {
@@ -25,6 +26,8 @@ DESCRIPTIONS = {
     ),
     "damage/slow_complete": ("1", "1 where a point of the slow surface entered and left the domain"),
     "damage/fast_complete": ("1", "1 where a point of the fast surface entered and left the domain"),
+    "damage/slow_missed": ("1", "frames missing while a point of the slow surface was among the nodes"),
+    "damage/fast_missed": ("1", "frames missing while a point of the fast surface was among the nodes"),
     "damage/cycles": ("1", "counted cycles of a pass"),
     "damage/peak_range": ("Pa", "largest equivalent stress range"),
     "asperities/s": ("m", "body coordinate of asperity peaks"),
@@ -40,58 +43,39 @@ DESCRIPTIONS = {
 }
 
 
-def fingerprint(path, *choices):
-    """Mark of an input file and of what is asked of it; parts of another mark are not used."""
-    stat = os.stat(path)
-    text = json.dumps(
-        [str(Path(path).resolve()), stat.st_size, stat.st_mtime_ns, __version__, choices], default=str
-    )
-    return hashlib.sha256(text.encode()).hexdigest()
+def fingerprint(*parts):
+    """Mark of what goes into a result: the input's digest, choices, version of the program."""
+    return hashlib.sha256(json.dumps([__version__, FORMAT_VERSION, parts], default=repr).encode()).hexdigest()
 
 
-class Parts:
-    """Finished (surface, depth) results beside the output, each written whole and renamed into place."""
+def check_output(path, inputs):
+    """Refuse an output that would overwrite anything but an earlier result of post-processing.
 
-    def __init__(self, output, mark):
-        self.folder = Path(f"{output}.parts")
-        self.mark = mark
-        if self.folder.is_dir() and self._stored_mark() != mark:
-            shutil.rmtree(self.folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
-        _write_whole(self.folder / "mark", lambda file: file.write(mark.encode()))
-
-    def _stored_mark(self):
-        mark = self.folder / "mark"
-        return mark.read_text() if mark.is_file() else None
-
-    def _path(self, surface, depth):
-        return self.folder / f"{surface}_{depth:.9g}.npy"
-
-    def load(self, surface, depth):
-        """Array (points, 3) of damage, cycles, peak range, or None."""
-        path = self._path(surface, depth)
-        return np.load(path) if path.is_file() else None
-
-    def save(self, surface, depth, values):
-        """Store one depth."""
-        _write_whole(self._path(surface, depth), lambda file: np.save(file, values))
-
-    def remove(self):
-        """Delete all parts, once the result holds them."""
-        shutil.rmtree(self.folder, ignore_errors=True)
-
-
-def _write_whole(path, write):
-    beside = path.with_name(f"{path.name}.tmp{os.getpid()}")
-    with open(beside, "wb") as file:
-        write(file)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(beside, path)
+    Raises
+    ------
+    PostError
+        It is one of `inputs`, or exists and is something else, or its folder does not exist.
+    """
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise PostError(f"the folder of the output {path} does not exist")
+    if not path.exists():
+        if path.is_symlink():
+            raise PostError(f"the output {path} is a link to nowhere")
+        return
+    for name in inputs:
+        if Path(name).exists() and path.samefile(name):
+            raise PostError(f"the output {path} is an input: give another -o")
+    if stored_mark(path) is None:
+        raise PostError(
+            f"the output {path} exists and is not a result of post-processing: remove it or give another -o"
+        )
 
 
 def write_result(path, datasets, attrs, group_attrs):
-    """Write the result beside `path` and rename it, so that a file under that name is whole.
+    """Write the result in memory, then beside `path`, and rename it: a file under that name is whole.
+
+    HDF5 itself does not end cleanly on a full disk; a plain write does.
 
     Parameters
     ----------
@@ -100,9 +84,14 @@ def write_result(path, datasets, attrs, group_attrs):
         Name to array; names of a second surface have it before the last part, as in ``weibull/fast/alpha``.
     attrs, group_attrs : dict
         Root attributes; attributes by group name.
+
+    Raises
+    ------
+    OSError
+        No room on the disk, or the folder cannot be written to; nothing is left behind.
     """
-    beside = f"{path}.tmp"
-    with h5py.File(beside, "w") as file:
+    image = io.BytesIO()
+    with h5py.File(image, "w") as file:
         file.attrs.update({"format_version": FORMAT_VERSION, **attrs})
         for name, values in datasets.items():
             units, long_name = DESCRIPTIONS[_plain(name)]
@@ -111,9 +100,7 @@ def write_result(path, datasets, attrs, group_attrs):
         for name, values in group_attrs.items():
             file.require_group(name).attrs.update(values)
         _scales(file)
-    with open(beside, "rb") as file:
-        os.fsync(file.fileno())
-    os.replace(beside, path)
+    write_whole(path, image.getbuffer())
 
 
 def _plain(name):
@@ -136,9 +123,12 @@ def _scales(file):
 
 
 def stored_mark(path):
-    """Fingerprint of a finished result, or None."""
+    """Fingerprint of a finished result; None of anything else."""
+    if not os.path.isfile(path) or not h5py.is_hdf5(path):
+        return None
     try:
         with h5py.File(path, "r") as file:
-            return file.attrs.get("fingerprint")
-    except OSError:
+            mark = file.attrs.get("fingerprint")
+            return mark if isinstance(mark, str) and "damage" in file and "pressure" not in file else None
+    except (OSError, RuntimeError, KeyError):
         return None

@@ -1,0 +1,72 @@
+"""One pass through all frames before anything is computed: finite, plausible, and what identifies them."""
+
+import hashlib
+
+import numpy as np
+
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.inputs.plausibility import Balance, check_shear_size
+
+FRAMES = 128  # at a time
+
+
+def survey(loads, case, surfaces):
+    """Check every frame of the loads that `surfaces` need; return a digest of all that damage depends on.
+
+    The digest holds two weighted sums of each frame: what does not change these in the sixteenth digit does
+    not change the damage either.
+
+    Raises
+    ------
+    PostError
+        A value is nan or infinite, a frame does not carry the load, a pressure is negative, ...
+    """
+    digest = hashlib.sha256()
+    for part in (loads.case.encode(), loads.x, loads.time, loads.step, *_profiles(loads)):
+        digest.update(b"none" if part is None else memoryview(np.ascontiguousarray(part)).cast("B"))
+    digest.update(repr((loads.a, loads.p0, loads.speeds, loads.status, surfaces)).encode())
+    balance = Balance(loads, case)
+    weights = np.stack(
+        [np.ones(loads.x.size), np.arange(1, loads.x.size + 1) * 0.6180339887498949 % 1], axis=1
+    )
+    for first in range(0, loads.time.size, FRAMES):
+        last = min(first + FRAMES, loads.time.size)
+        for name in ("pressure", *(f"shear_stress_{surface}" for surface in surfaces)):
+            rows = loads.rows(name, first, last)
+            with np.errstate(all="ignore"):  # of damaged numbers; they are looked for next
+                sums = rows @ weights
+            _check_finite(loads, name, first, rows, sums)
+            _check_rows(loads, balance, name, first, rows, sums[:, 0])
+            digest.update(sums)
+    return digest.hexdigest()
+
+
+def _profiles(loads):
+    for profile in loads.profiles.values():
+        yield from profile or (None,)
+
+
+def _check_rows(loads, balance, name, first, rows, total):
+    low, high = rows.min(axis=1), rows.max(axis=1)
+    if name == "pressure":
+        balance.check_pressure(first, total, low, high)
+        return
+    check_shear_size(loads, name, first, np.maximum(-low, high))
+    if name == "shear_stress_slow":
+        balance.check_slow_shear(first, total)
+
+
+def _check_finite(loads, name, first, rows, sums):
+    if np.isfinite(sums).all():
+        return
+    wrong = np.argwhere(~np.isfinite(rows))
+    if len(wrong):
+        frame, node = wrong[0]
+        what = rows[frame, node]
+    else:
+        frame, node = np.unravel_index(np.abs(rows).argmax(), rows.shape)
+        what = f"{rows[frame, node]:.3g}"
+    raise PostError(
+        f"dataset {name} is {what} at frame {first + frame} (t = {loads.time[first + frame]:.6g} s), "
+        f"x/a = {loads.x[node] / loads.a:.4g}"
+    )

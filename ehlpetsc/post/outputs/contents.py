@@ -1,0 +1,85 @@
+"""The datasets of a post-processing result, from computed damage."""
+
+import numpy as np
+
+from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
+
+
+class Contents:
+    """Gathers datasets, root attributes and group attributes for `write_result`.
+
+    One surface stands under the fixed names: the slow one, whose asperities meet more others, if it is rough
+    and passed.
+
+    Parameters
+    ----------
+    prepared : ehlpetsc.post.prepare.Prepared
+    regression : str
+        Of the Weibull fit.
+    """
+
+    def __init__(self, prepared, regression):
+        self.prepared, self.regression = prepared, regression
+        self.first = self._first_surface()
+        self.datasets = {"damage/s": prepared.s, "damage/z_over_a": np.array(prepared.settings.depths)}
+        self.groups = {"damage": {"surface": self.first}}
+        self.notes = []
+
+    def _first_surface(self):
+        passed = [name for name, motion in self.prepared.motions.items() if motion.complete.any()]
+        return next((name for name in passed if self.prepared.loads.profiles[name] is not None), passed[0])
+
+    def add(self, surface, values):
+        """Damage, cycles and peak range (depths, points, 3) of a surface, and its asperities' statistics."""
+        other = "" if surface == self.first else f"{surface}_"
+        passage = self.prepared.motions[surface]
+        self.datasets |= {
+            f"damage/{surface}": values[..., 0],
+            f"damage/{surface}_complete": passage.complete.astype(np.uint8),
+            f"damage/{surface}_missed": self.prepared.missed[surface].astype(np.int32),
+            f"damage/{other}cycles": values[..., 1],
+            f"damage/{other}peak_range": values[..., 2],
+        }
+        self._add_asperities(surface, values[..., 0])
+
+    def _add_asperities(self, surface, damage):
+        prepared, inner = self.prepared, "" if surface == self.first else f"{surface}/"
+        profile = prepared.loads.profiles[surface]
+        peaks = asperities(profile, prepared.s, prepared.motions[surface].complete)
+        under = damage[:, peaks.point]
+        fits = np.array([weibull_fit(log_life(row), self.regression) for row in under]).reshape(-1, 3)
+        beyond = (under >= 1).sum(axis=1)
+        self._put("asperities", inner, s=peaks.s, height=peaks.height, damage=under)
+        self._put("weibull", inner, **dict(zip(("alpha", "beta", "r_squared"), fits.T, strict=True)))
+        self._put("weibull", inner, at_least_one=beyond, undamaged=(under == 0).sum(axis=1))
+        for group in ("asperities", "weibull"):
+            self.groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
+        if profile is not None:
+            self.datasets[f"profile/{surface}/s"], self.datasets[f"profile/{surface}/z"] = profile
+        for depth, count in zip(prepared.settings.depths, beyond, strict=True):
+            if count:
+                self.notes.append(
+                    f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 "
+                    f"or more at z/a = {depth:g}: failure in the first pass"
+                )
+
+    def _put(self, group, inner, **values):
+        self.datasets |= {f"{group}/{inner}{name}": value for name, value in values.items()}
+
+    def attributes(self, mark, counting):
+        """Root attributes: where the result comes from and how it was computed."""
+        loads = self.prepared.loads
+        mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
+        return {
+            "title": loads.title,
+            "case": loads.case,
+            "source": str(loads.path),
+            "fingerprint": mark,
+            "a": loads.a,
+            "p0": loads.p0,
+            "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
+            "regression": self.regression,
+            "every": self.prepared.every,
+            **{f"speed_{name}": loads.speeds[name] for name in self.prepared.motions},
+            **counting._asdict(),
+        }

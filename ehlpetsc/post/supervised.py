@@ -1,0 +1,142 @@
+"""Work in a process of its own: HDF5 may crash on a damaged file, or never return from it."""
+
+import mmap
+import os
+import select
+import signal
+import struct
+import sys
+import traceback
+
+from ehlpetsc.errors import ExitStatus
+from ehlpetsc.post.inputs.reading import announced_to
+
+READ_SECONDS = 60  # for one read of some megabytes; longer, and it will not come
+STOP_SECONDS = 10  # to end in order after a signal
+STOPS = (signal.SIGTERM, signal.SIGINT)
+HEAD = struct.Struct("<QQ")
+
+
+class _Note:
+    """What is being read just now, in memory that both processes see, and how many reads there were."""
+
+    def __init__(self):
+        self._shared, self._count = mmap.mmap(-1, 1024), 0
+
+    def write(self, what):
+        """`what` is being read; empty: nothing."""
+        text = what.encode(errors="replace")[: len(self._shared) - HEAD.size]
+        self._count += 1
+        self._shared[: HEAD.size + len(text)] = HEAD.pack(self._count, len(text)) + text
+
+    def read(self):
+        """(count, what)."""
+        count, size = HEAD.unpack(self._shared[: HEAD.size])
+        return count, self._shared[HEAD.size : HEAD.size + size].decode(errors="replace")
+
+
+def stop_on_signals():
+    """From now on the first SIGTERM or SIGINT raises KeyboardInterrupt; returns whether one has come."""
+    asked = []
+
+    def stop(*_):
+        if not asked:
+            asked.append(True)
+            raise KeyboardInterrupt
+
+    for number in STOPS:
+        signal.signal(number, stop)
+    return lambda: bool(asked)
+
+
+class Supervisor:
+    """Runs pieces of work, each in a forked process, and outlives whatever happens to them.
+
+    Parameters
+    ----------
+    say : callable(str)
+        Gets one line about work that crashed or hung.
+    """
+
+    def __init__(self, say):
+        self.say = say
+        self._child, self._asked = None, False
+        for number in STOPS:
+            signal.signal(number, self._stop)
+
+    def _stop(self, *_):
+        self._asked = True
+        if self._child:
+            os.kill(self._child, signal.SIGTERM)
+
+    def __call__(self, name, work):
+        """Exit status of work(), a function that returns one; `name` says what it is about."""
+        note = _Note()
+        ours, theirs = os.pipe()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        child = os.fork()
+        if child == 0:
+            os.close(ours)
+            self._work(work, note)
+        self._child = child
+        os.close(theirs)
+        try:
+            hung = self._wait(ours, note)
+        finally:
+            os.close(ours)
+        status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        self._child = None
+        return self._explain(name, status, note, hung)
+
+    def _work(self, work, note):
+        """In the child: never returns."""
+        status = ExitStatus.BUG
+        try:
+            stop_on_signals()
+            if self._asked:
+                raise KeyboardInterrupt
+            with announced_to(note.write):
+                status = work()
+            sys.stdout.flush()
+        except (KeyboardInterrupt, BrokenPipeError):
+            status = ExitStatus.STOPPED
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(status)
+
+    def _wait(self, pipe, note):
+        """Until the child's end of the pipe closes; True if it had to be killed."""
+        before, same, stopping = None, 0, 0
+        while not select.select([pipe], [], [], 1.0)[0]:
+            now = note.read()
+            same = same + 1 if now == before and now[1] else 0
+            before = now
+            if self._asked:
+                if not stopping:
+                    os.kill(self._child, signal.SIGTERM)  # the first came before there was a child
+                stopping += 1
+            if same >= READ_SECONDS or stopping >= STOP_SECONDS:
+                os.kill(self._child, signal.SIGKILL)
+                return True
+        return False
+
+    def _explain(self, name, status, note, hung):
+        what = note.read()[1]
+        if self._asked:
+            return ExitStatus.STOPPED
+        if status >= 0:
+            return status
+        if hung:
+            self.say(f"{name}: {what}: HDF5 does not return from reading it, the file is damaged")
+            return ExitStatus.BAD_INPUT
+        killed_by = signal.Signals(-status).name
+        if what and -status != signal.SIGKILL:
+            self.say(f"{name}: {what}: HDF5 crashes on it ({killed_by}), the file is damaged")
+            return ExitStatus.BAD_INPUT
+        if -status == signal.SIGKILL:
+            self.say(f"{name}: killed, as when memory runs out; the same command goes on from there")
+            return ExitStatus.STOPPED
+        self.say(f"{name}: crashed ({killed_by}) while nothing was being read: a bug")
+        return ExitStatus.BUG

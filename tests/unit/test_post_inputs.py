@@ -1,0 +1,196 @@
+"""What a result file must not be: in wrong units, of another case, with frames missing, not real numbers."""
+
+import h5py
+import numpy as np
+import pytest
+from post_result_file import A, Scene, write
+
+from ehlpetsc.errors import PostError
+from ehlpetsc.post.inputs.loads import Loads
+from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.post.prepare import prepare
+from ehlpetsc.post.run import Job, run
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return Scene(per_width=20, ratio=0.5, travel=9.0)
+
+
+def refused(path, surfaces=("slow", "fast")):
+    """Why a file is refused before anything is computed."""
+    with pytest.raises(PostError) as fault, Loads(path) as loads:
+        prepare(loads, surfaces, (0.0,), print)
+    return str(fault.value)
+
+
+def scaled(*names, by):
+    """An edit that multiplies datasets or root attributes."""
+
+    def edit(file):
+        for name in names:
+            if name in file:
+                file[name][...] = file[name][:] * by
+            else:
+                file.attrs[name] = file.attrs[name] * by
+
+    return edit
+
+
+def swapped(file):
+    file.attrs["u1"], file.attrs["u2"] = file.attrs["u2"], file.attrs["u1"]
+
+
+def replaced(name, change):
+    """An edit that puts change(values) in the place of a dataset."""
+
+    def edit(file):
+        values = change(file[name][:])
+        del file[name]
+        file[name] = values
+
+    return edit
+
+
+@pytest.mark.parametrize(
+    "edit, said",
+    [
+        (scaled("pressure", by=1e-6), "dataset pressure: its integral over x at frame 0"),
+        (scaled("pressure", by=1 / 0.999455e9), "dataset pressure: its integral over x at frame 0"),
+        (scaled("pressure", by=1.02), "it must be 527000 N/m, the case's load"),
+        (scaled("pressure", by=-1.0), "dataset pressure: its integral"),
+        (scaled("a", by=1e3), "attribute a = 0.335682: its case gives 0.000335682 m"),
+        (scaled("a", "x", by=1e3), "attribute a ="),
+        (scaled("x", by=1e3), "dataset x: from -2.5e+03 to 1.5e+03 half widths"),
+        (scaled("p0", by=1e-9), "attribute p0 = 0.999455: its case gives 9.99455e+08 Pa"),
+        (scaled("u1", "u2", by=1e3), "attribute u1 = 31250: its case gives 31.25 m/s"),
+        (swapped, "attribute u1 = 18.75: its case gives 31.25 m/s"),
+        (scaled("time", by=1e3), "dataset time: the faster surface moves 500 nodes a step, by the case 0.5"),
+        (scaled("time", by=1e6), "times must be in s"),
+        (scaled("time", by=1e-6), "times must be in s"),
+        (scaled("shear_stress_fast", by=1e6), "dataset shear_stress_fast"),
+        (lambda file: file["pressure"].attrs.__setitem__("units", "MPa"), 'unit is "MPa", it must be "Pa"'),
+        (lambda file: file["time"].attrs.__setitem__("units", b"us"), 'unit is "us", it must be "s"'),
+        (lambda file: file["surface/slow"].attrs.__setitem__("speed", 3.0), "surface/slow = 3 m/s"),
+        (lambda file: file["surface/fast/z"].__setitem__(7, np.nan), "surface/fast/z is nan at point 7"),
+        (replaced("surface/fast/z", lambda z: z[:-1]), "not one height a place"),
+        (replaced("pressure", lambda p: p.astype(complex)), "dataset pressure: does not hold real numbers"),
+        (replaced("pressure", lambda p: p[:, :-1]), "do not have one value a node"),
+        (replaced("pressure", lambda p: p[0]), "do not have one value a node"),
+        (replaced("time", lambda t: np.stack([t, t])), "dataset time: has 2 dimensions"),
+        (replaced("step", lambda s: s[::-1]), "dataset step: does not increase"),
+        (lambda file: file["pressure"].__setitem__((40, 30), -2e6), "its least value at frame 40"),
+        (lambda file: file["pressure"].__setitem__((40, 30), 1e300), "its integral over x at frame 40"),
+    ],
+)
+def test_what_does_not_fit_is_named(edit, said, scene, tmp_path):
+    assert said in refused(write(tmp_path / "a.h5", scene, edit=edit))
+
+
+def with_steps(spoil):
+    """An edit that adds the per-step figures as a run writes them, then spoils them."""
+
+    def edit(file):
+        dx = file["x"][1] - file["x"][0]
+        figures = {
+            "step": file["step"][:],
+            "load": file["pressure"][:].sum(axis=1) * dx,
+            "p_max": file["pressure"][:].max(axis=1),
+            "friction": file["shear_stress_slow"][:].sum(axis=1) * dx,
+        }
+        for name, values in figures.items():
+            file[f"steps/{name}"] = values
+        spoil(file)
+
+    return edit
+
+
+@pytest.mark.parametrize(
+    "spoil, said",
+    [
+        (scaled("shear_stress_slow", by=1e-6), "dataset shear_stress_slow: its integral over x at frame 0"),
+        (
+            lambda file: file["pressure"].__setitem__((40, slice(30, 32)), [1.5e9, 0.0]),
+            "dataset pressure: its integral over x at frame 40",
+        ),
+        (scaled("steps/p_max", by=1.001), "as steps/p_max has it"),
+    ],
+)
+def test_frames_must_fit_the_figures_of_their_steps(spoil, said, scene, tmp_path):
+    prepare_whole = write(tmp_path / "whole.h5", scene, edit=with_steps(lambda file: None))
+    with Loads(prepare_whole) as loads:
+        prepare(loads, ("slow",), (0.0,), print)
+    assert said in refused(write(tmp_path / "a.h5", scene, edit=with_steps(spoil)))
+
+
+def without(first, last, numbers=True):
+    """An edit that takes frames first .. last-1 out, and if so the numbers of the steps."""
+
+    def edit(file):
+        for name in ("time", "step", "pressure", "shear_stress_slow", "shear_stress_fast"):
+            replaced(name, lambda values: np.delete(values, slice(first, last), axis=0))(file)
+        if not numbers:
+            del file["step"]
+
+    return edit
+
+
+@pytest.mark.parametrize("numbers", [True, False], ids=["by step", "by movement"])
+def test_points_that_miss_frames_have_no_damage(numbers, tmp_path):
+    scene = Scene(per_width=20, ratio=0.5, travel=14.0)
+    whole, cut = tmp_path / "whole.h5", tmp_path / "cut.h5"
+    write(whole, scene)
+    frame = 60
+    write(cut, scene, edit=without(frame, frame + 40, numbers))
+    said = []
+    for path in (whole, cut):
+        run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)), said.append)
+    assert any("40 frames are missing in one place, after" in line for line in said)
+    with h5py.File(f"{whole}.post") as a, h5py.File(f"{cut}.post") as b:
+        for surface, speed in (("slow", scene.u2), ("fast", scene.u1)):
+            passed, left = (file[f"damage/{surface}_complete"][:].astype(bool) for file in (a, b))
+            place = b["damage/s"][:] + speed * scene.time[[frame - 1, frame + 40]][:, None]
+            inside = (place[0] < scene.x[-1] - 1e-9) & (place[1] > scene.x[0] + 1e-9)
+            assert (b[f"damage/{surface}_missed"][:] == 40 * inside).all()
+            assert (left == passed & ~inside).all() and 0 < left.sum() < passed.sum()
+            found = b[f"damage/{surface}"][:]
+            assert np.isnan(found[:, ~left]).all()
+            np.testing.assert_allclose(found[:, left], a[f"damage/{surface}"][:, left], rtol=1e-6)
+
+
+def test_refused_where_no_point_kept_all_its_frames(scene, tmp_path):
+    def every_tenth(file):
+        keep = np.arange(scene.time.size) % 10 != 9
+        for name in ("time", "step", "pressure", "shear_stress_slow", "shear_stress_fast"):
+            replaced(name, lambda values: values[keep])(file)
+
+    said = refused(write(tmp_path / "a.h5", scene, edit=every_tenth))
+    assert f"{(scene.time.size - 1) // 10} frames are missing in" in said and "no damage is given" in said
+
+
+def test_history_has_every_sample_of_every_point(scene, tmp_path):
+    """As many as the sweep counts, also where a frame finds the point at the first node but for rounding."""
+    from ehlpetsc.post.stresses.body_stress import history_at
+
+    path = write(tmp_path / "a.h5", scene)
+    run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("slow",), depths=(0.0,)))
+    result = PostResult(tmp_path / "o.h5")
+    with Loads(path) as loads:
+        motion = prepare(loads, ("slow",), (0.0,), print).motions["slow"]
+        for j in np.flatnonzero(result.complete["slow"])[::9]:
+            time, values = history_at(loads, "slow", result.s[j], 0.0)
+            assert time.size == motion.leave[j] - motion.enter[j] + 1 == values.shape[1] - 2
+            assert time[0] == loads.time[motion.enter[j]]
+
+
+def test_a_point_of_a_picture_must_have_passed(scene, tmp_path):
+    from ehlpetsc.post.pictures.gallery import history_picture
+
+    path = write(tmp_path / "a.h5", scene)
+    run(Job(str(path), str(tmp_path / "o.h5"), depths=(0.0,)))
+    result = PostResult(tmp_path / "o.h5")
+    allowed = result.s[result.complete[result.main]] / A
+    history_picture(path, result, (allowed[-1], 0.0))
+    for s in (0.0, allowed[-1] + 0.1, allowed[0] - 0.1):  # began inside the contact, did not go through it
+        with pytest.raises(PostError, match=f"{allowed[0]:.6g} to {allowed[-1]:.6g} is allowed"):
+            history_picture(path, result, (s, 0.0))
