@@ -3,22 +3,9 @@
 import numpy as np
 
 from ehlpetsc.analysis import entrapment
-from ehlpetsc.plot.frames import (
-    ACROSS,
-    CONTACT_COLOUR,
-    FILM,
-    PRESSURE,
-    SINGLE_COLOUR,
-    in_contact,
-    pressure_and_film,
-)
+from ehlpetsc.plot.frames import ACROSS, FILM, PRESSURE, in_contact, pressure_and_film
+from ehlpetsc.plot.labels import CONTACT_COLOUR, SINGLE_COLOUR, UNITS, legend_beside
 
-UNITS = {
-    "fluid.viscosity": "viscosity at ambient pressure [Pa s]",
-    "motion.entrainment_speed": "mean speed [m/s]",
-    "motion.slide_roll_ratio": "slide/roll ratio",
-    "mesh.points_per_half_width": "nodes a half width",
-}
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#17becf", "#7f7f7f")
 
 
@@ -75,8 +62,8 @@ def against_value(axes, points, values, key, a):
     lower.set_xlabel(UNITS.get(key, key))
     lower.plot([], [], "o", color="0.4", ms=3, label="film")
     lower.plot([], [], "v", color="0.4", ms=4, label="contact")
-    upper.legend(frameon=False, fontsize="x-small")
-    lower.legend(frameon=False, fontsize="x-small")
+    legend_beside(upper)
+    legend_beside(lower)
     for panel in axes:
         panel.set_ylim(bottom=0.0)
     lower.set_xlim(left=0.0)

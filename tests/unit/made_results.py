@@ -1,12 +1,21 @@
 """Result files with made-up but plausible values, for tests of what reads them."""
 
+import h5py
 import numpy as np
 
 from ehlpetsc.quantities import FIELDS
 from ehlpetsc.results.writer import ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
-TABLE_1 = 'title = "made up"\n[fluid]\nviscosity = {viscosity}\n'
+TABLE_1 = """title = "made up"
+[contact]
+boundary_friction = 0.12
+[fluid]
+viscosity = {viscosity}
+[motion]
+entrainment_speed = {speed}
+"""
+BOUNDARY_FILM = 10e-9
 
 
 def fields_at(x, time, viscosity):
@@ -24,26 +33,41 @@ def fields_at(x, time, viscosity):
 
 
 def make_result(
-    path, *, nodes=161, steps=41, viscosity=0.005, factor=1.0, every=1, status="done", fields=FIELDS
+    path,
+    *,
+    nodes=161,
+    steps=41,
+    viscosity=0.005,
+    factor=1.0,
+    every=1,
+    status="done",
+    fields=FIELDS,
+    speed=5.0,
+    title="made up",
+    p0=P0,
+    rough=False,
 ):
-    """Write a result over 40 us; `factor` scales its pressure.
+    """Write a result over 40 us; `factor` scales its pressure, `rough` gives both surfaces a profile.
 
     Returns
     -------
     path
     """
     x = np.linspace(-2.5, 1.5, nodes)
-    attrs = dict(a=A, p0=P0, h_scale=A**2 / RADIUS, u1=5.6, u2=4.4, ranks=1, petsc_options="")
+    s = np.linspace(-1.0, 0.0, 50) * A
+    attrs = dict(
+        a=A, p0=p0, h_scale=A**2 / RADIUS, u1=1.12 * speed, u2=0.88 * speed, ranks=1, petsc_options=""
+    )
     writer = ResultWriter(
         path,
-        case_text=TABLE_1.format(viscosity=viscosity),
-        title="made up",
+        case_text=TABLE_1.format(viscosity=viscosity, speed=speed),
+        title=title,
         x=x * A,
         scalars_attrs=attrs,
         fields=list(fields),
         every=every,
         precision="float64",
-        profiles={},
+        profiles={side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("fast", "slow") if rough},
     )
     for step, time in enumerate(np.linspace(0, 40e-6, steps)):
         values, contact = fields_at(x, time, viscosity)
@@ -60,4 +84,30 @@ def make_result(
         )
         writer.append(step, time, values, scalars, contact)
     writer.close(status)
+    return path
+
+
+def with_solids(path, share=0.3, coefficient=0.08, scatter=0.2):
+    """Add to a result what a mixed contact stores beside the direct one: `share` of the load on the solids.
+
+    The figures of the steps swing about their mean by `scatter` of it.
+
+    Returns
+    -------
+    path
+    """
+    with h5py.File(path, "r+", libver="latest") as file:
+        touching = file["film_thickness"][:] < BOUNDARY_FILM
+        file["film_thickness"][:] = np.maximum(file["film_thickness"][:], BOUNDARY_FILM)
+        file["contact_pressure"] = np.where(touching, 0.8, 0.0) * file["pressure"][:]
+        steps = file["steps"]
+        swing = 1.0 + scatter * np.cos(np.arange(steps["time"].size) * 2.399)
+        for name, value in (
+            ("friction_coefficient", coefficient),
+            ("contact_share", share),
+            ("lambda_ratio", 1.0 / max(share, 1e-3)),
+        ):
+            if name in steps:
+                del steps[name]
+            steps.create_dataset(name, data=value * swing, maxshape=(None,))
     return path

@@ -2,14 +2,17 @@
 
 import numpy as np
 import pytest
-from made_results import A, make_result
+from made_results import P0, A, make_result, with_solids
 from PIL import Image as image
 
+from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.plot import figures, labels, movies, over_time, stribeck
 from ehlpetsc.plot import frames as drawing
 from ehlpetsc.results import series_index as swept
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.surfaces import roughness
 
 
 @pytest.fixture
@@ -63,8 +66,8 @@ def test_series_is_overlaid(tmp_path, series, kind):
 
 
 def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
-    monkeypatch.setattr(plot, "MOVIE_FRAMES", 4)
-    monkeypatch.setattr(plot, "MOVIE_DPI", 40)
+    monkeypatch.setattr(movies, "FRAMES", 4)
+    monkeypatch.setattr(movies, "DPI", 40)
     assert draw(make_result(tmp_path / "one.h5", nodes=41, steps=9), "--movie") == 0
     with image.open(tmp_path / "one.gif") as movie:
         assert movie.n_frames == 4
@@ -79,8 +82,8 @@ def test_instant_is_the_one_with_most_contacts(result):
     with read_result(result) as r:
         chosen = drawing.frame_with_most_contacts(r)
         assert r["in_contact"][chosen].sum() == r["in_contact"][:].sum(axis=1).max()
-        assert plot.choose_frames([r], step=12) == [12]
-        assert plot.choose_frames([r], time=10.2e-6) == [10]
+        assert drawing.choose_frames([r], step=12) == [12]
+        assert drawing.choose_frames([r], time=10.2e-6) == [10]
 
 
 def test_instant_is_that_of_the_highest_pressure_if_nothing_touches(tmp_path):
@@ -108,34 +111,34 @@ def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
     coarse = make_result(tmp_path / "a.h5", steps=11)
     fine = make_result(tmp_path / "b.h5", steps=41)
     with read_result(coarse) as a, read_result(fine) as b:
-        assert plot.choose_frames([a, b], step=5) == [5, 20]
+        assert drawing.choose_frames([a, b], step=5) == [5, 20]
 
 
 def test_series_is_sorted_and_labelled_by_its_swept_value(series):
     results = [read_result(path) for path in series]
     ordered = swept.in_order(results)
-    colours, labels, key = drawing.series_colours(ordered)
-    assert (key, labels) == ("fluid.viscosity", ["0.002", "0.005", "0.01"])
+    colours, names, key = labels.series_colours(ordered)
+    assert (key, names) == ("fluid.viscosity", ["0.002", "0.005", "0.01"])
     brightness = [sum(colour[:3]) for colour in colours]
     assert brightness == sorted(brightness)
     same = [results[0], results[0]]
-    assert drawing.series_colours(same)[1:] == (["0.01", "0.01"], None)
+    assert labels.series_colours(same)[1:] == (["0.01", "0.01"], None)
 
 
 def test_polynomial_and_mean_follow_the_counts(tmp_path, result):
-    figure, axes = plot.plt.subplots(2)
+    figure, axes = figures.plt.subplots(2)
     with read_result(result) as r:
-        (mean,) = drawing.contact_rates(axes, [r], ["k"])
+        (mean,) = over_time.contact_rates(axes, [r], ["k"])
         inside = np.abs(r.x) <= A
         assert mean == pytest.approx(r.contact_rate()[inside].mean())
         fit = axes[1].lines[0].get_ydata()
         assert np.mean(fit) == pytest.approx(mean, rel=0.02)
-    plot.plt.close(figure)
+    figures.plt.close(figure)
 
 
 def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
     with read_result(result) as r:
-        touching = drawing._contacts(r, slice(0, len(r.x)), 7)
+        touching = over_time._contacts(r, slice(0, len(r.x)), 7)
         assert touching.shape == (6, len(r.x))
         np.testing.assert_array_equal(touching.any(axis=0), r.contact_count > 0)
 
@@ -144,6 +147,11 @@ def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
     "options, message",
     [
         (["--around", 40], "fewer than two nodes from 39.75 a to 40.25 a"),
+        (["--step", 99999], "--step 99999; allowed: 0 to 40"),
+        (["--step", -1], "--step -1; allowed: 0 to 40"),
+        (["--time", 1], "--time 1; allowed: 0 to 4e-05 s"),
+        (["--movie", "-o", "movie.avi"], "allowed for a movie: .gif, .mp4, .webm"),
+        (["--stribeck"], "needs a series over motion.entrainment_speed"),
         (["-o", "/no/where.png"], "No such file or directory"),
         (["-o", "picture.xyz"], "xyz"),
     ],
@@ -162,3 +170,134 @@ def test_what_cannot_be_drawn_is_told(tmp_path, capsys):
     assert "no contacts per millisecond" in capsys.readouterr().err
     assert draw(make_result(tmp_path / "two.h5", fields=["pressure"])) == 2
     assert "does not store film_thickness" in capsys.readouterr().err
+
+
+def test_what_the_solids_carry_is_drawn_under_the_total(tmp_path):
+    path = with_solids(make_result(tmp_path / "mixed.h5", viscosity=0.002))
+    assert draw(path, "--step", 12) == 0
+    with read_result(path) as r:
+        figure, axes = figures.two_panels()
+        drawing.pressure_and_film(axes, [r], [12], ["k"], (-1.2, 1.2))
+        drawing.frame_legend(axes, r, 12, "k")
+        (solids,) = axes[0].collections
+        drawn = solids.get_paths()[0].get_extents()
+        assert drawn.ymax == pytest.approx(1e-9 * r.frame("contact_pressure", 12).max())
+        assert [t.get_text() for t in axes[0].get_legend().texts] == [
+            "oil and solids",
+            "on the solids",
+            "Hertz",
+        ]
+        figures.plt.close(figure)
+
+
+def test_legends_stand_beside_the_axes(tmp_path, series, result):
+    options = plot._parser().parse_args(["x"])
+    for paths in ([result], series):
+        results = swept.in_order([read_result(path) for path in paths])
+        figure = figures.draw_frame(results, options)
+        figure.draw_without_rendering()
+        for axes in figure.axes:
+            if axes.get_legend():
+                assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
+        figures.plt.close(figure)
+
+
+def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
+    paths = [
+        make_result(tmp_path / f"{n}.h5", title=f"case {n}", p0=n * P0, nodes=81, steps=3) for n in (1, 2)
+    ]
+    results = [read_result(path) for path in paths]
+    figure = figures.draw_frame(results, plot._parser().parse_args(["x"]))
+    upper = figure.axes[0]
+    dashed = [line for line in upper.lines if line.get_linestyle() == "--"]
+    assert [line.get_ydata().max() for line in dashed] == pytest.approx([1.0, 2.0], rel=1e-3)
+    told = [text.get_text() for text in upper.get_legend().texts]
+    assert told[0].startswith("case 1\n") and told[1].endswith("p0 = 2 GPa")
+    figures.plt.close(figure)
+    assert draw(*paths) == 0
+
+
+def test_panels_of_a_map_share_their_colours(tmp_path, series):
+    results = swept.in_order([read_result(path) for path in series])
+    figure = figures.draw_map(results, plot._parser().parse_args(["x", "--map"]))
+    limits = {axes.collections[0].get_clim() for axes in figure.axes[:3]}
+    assert len(limits) == 1 and len(figure.axes) == 4  # three panels, one colour bar
+    figures.plt.close(figure)
+
+
+@pytest.mark.parametrize("ending", ["mp4", "webm"])
+def test_movies_by_ffmpeg(tmp_path, monkeypatch, ending, capsys):
+    path, out = make_result(tmp_path / "one.h5", nodes=41, steps=3), tmp_path / f"m.{ending}"
+    if movies.FFMpegWriter.isAvailable():
+        assert draw(path, "--movie", "-o", out) == 0
+        head = out.read_bytes()[:64]
+        assert b"ftyp" in head or b"webm" in head
+    monkeypatch.setattr(movies.FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    assert draw(path, "--movie", "-o", out) == 2
+    assert "needs ffmpeg" in capsys.readouterr().err
+
+
+def test_the_axes_of_a_movie_stand_still(tmp_path, monkeypatch):
+    seen = []
+
+    class Writer(movies.PillowWriter):
+        def grab_frame(self, **keys):
+            self.fig.canvas.draw()
+            seen.append(
+                [(*axes.get_position().bounds, *axes.get_ylim(), *axes.get_xlim()) for axes in self.fig.axes]
+            )
+            super().grab_frame(**keys)
+
+    monkeypatch.setattr(movies, "PillowWriter", Writer)
+    assert draw(make_result(tmp_path / "one.h5", nodes=41, steps=9), "--movie") == 0
+    assert len(seen) == 9 and all(frame == seen[0] for frame in seen)
+
+
+SPEEDS = (0.001, 0.02, 0.5, 5.0, 20.0)
+
+
+@pytest.fixture
+def stribeck_series(tmp_path):
+    """Share on the solids 1/(1 + u), friction between 0.12 of the solids and 0.03."""
+    paths = []
+    for speed in SPEEDS:
+        share = 1.0 / (1.0 + 5.0 * speed)
+        path = make_result(tmp_path / f"u{speed}.h5", speed=speed, nodes=41, steps=81)
+        paths.append(with_solids(path, share, 0.03 + 0.09 * share))
+    return paths
+
+
+def test_the_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
+    results = [read_result(path) for path in stribeck_series]
+    points, short = stribeck.stribeck_points(results)
+    assert [p.speed for p in points] == list(SPEEDS) and short == []
+    for point in points:
+        share = 1.0 / (1.0 + 5.0 * point.speed)
+        friction = point.figures["friction_coefficient"]
+        assert friction.mean == pytest.approx(0.03 + 0.09 * share, rel=0.02)
+        assert point.figures["contact_share"].mean == pytest.approx(share, rel=0.02)
+        # of a cosine of amplitude 0.2 5 and 95 % lie at 0.2 cos(0.05 pi)
+        assert friction.high / friction.mean == pytest.approx(1 + 0.2 * np.cos(0.05 * np.pi), abs=0.02)
+        assert friction.low / friction.mean == pytest.approx(1 - 0.2 * np.cos(0.05 * np.pi), abs=0.02)
+        assert point.boundary == 0.12
+    assert draw(*stribeck_series, "--stribeck", "-o", tmp_path / "s.png") == 0
+    assert colours_in(tmp_path / "s.png") > 100
+
+
+def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, capsys):
+    paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in (5.0, 40.0)]
+    slow, fast = (read_result(path) for path in paths)
+    # the slower surface, 0.88 u, from -2.5 a to a, and the ramp
+    assert stribeck.filled_from(fast) == pytest.approx(3.5 * A * (1 + stribeck.RAMP / 3.5) / (0.88 * 40))
+    points, short = stribeck.stribeck_points([slow, fast])
+    assert ([p.speed for p in points], short) == ([40.0], ["5.0.h5"])  # 40 us are too short for 5 m/s
+    assert stribeck.RAMP == roughness.RAMP
+    assert np.isnan(points[0].figures["contact_share"].mean)
+    with pytest.raises(OutputError, match="no member lasts"):
+        stribeck.stribeck_points([slow, read_result(make_result(tmp_path / "4.h5", speed=4.0, rough=True))])
+
+
+def test_means_over_time_weigh_each_step_by_its_length():
+    found = stribeck.spread(np.array([1.0, 2.0, np.nan, 9.0]), np.array([1.0, 3.0, 1.0, 0.0]))
+    assert found.mean == pytest.approx(1.75)
+    assert 1.0 <= found.low < found.high <= 2.0

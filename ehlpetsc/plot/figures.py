@@ -1,0 +1,134 @@
+"""Whole figures of one or several results, one function a kind; `FIGURES` lists them."""
+
+import matplotlib as mpl
+import numpy as np
+
+mpl.use("Agg")
+from matplotlib import pyplot as plt
+
+from ehlpetsc.analysis import collisions, entrapment
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot import collision_pictures, frames, labels, over_time
+from ehlpetsc.plot.stribeck import draw_stribeck
+from ehlpetsc.results.series_index import from_thick_to_thin
+
+SIZE = (8.0, 5.2)  # inches
+AROUND_WIDTH = 0.5  # of a view around a place, half widths
+COLLISION_WIDTH = 0.12
+POINTS = 8  # most contact points in one picture
+
+
+def two_panels():
+    """Figure and axes of pressure above film."""
+    return plt.subplots(2, 1, figsize=SIZE, sharex=True, layout="constrained")
+
+
+def window(results, options):
+    """Limits of x/a that the user asked for, or the contact."""
+    if options.around is None:
+        return frames.default_window(results)
+    half = 0.5 * (options.width or AROUND_WIDTH)
+    return options.around - half, options.around + half
+
+
+def panel_title(results, index):
+    """What all results have in common of their titles, and the instant."""
+    titles = {result.attrs["title"] for result in results}
+    parts = [titles.pop() if len(titles) == 1 else "", frames.instant(results[0], index)]
+    return ": ".join(part for part in parts if part)
+
+
+def fill_frame(axes, results, indices, options):
+    """Pressure, film and their legends at an instant, into given axes."""
+    colours, names, key = labels.series_colours(results)
+    frames.pressure_and_film(axes, results, indices, colours, window(results, options))
+    if len(results) > 1:
+        labels.series_legend(axes[0], colours, labels.with_hertz(names, results), key)
+    else:
+        frames.frame_legend(axes, results[0], indices[0], colours[0])
+    axes[0].set_title(panel_title(results, indices[0]), fontsize="medium")
+
+
+def draw_frame(results, options):
+    """Figure of pressure and film at an instant."""
+    indices = frames.choose_frames(results, options.step, options.time)
+    figure, axes = two_panels()
+    fill_frame(axes, results, indices, options)
+    return figure
+
+
+def draw_map(results, options):
+    """Figure of pressure over place and time, a panel each result, all in the same colours."""
+    size = (SIZE[0] * max(1.0, 0.6 * len(results)), SIZE[1])
+    figure, axes = plt.subplots(1, len(results), figsize=size, squeeze=False, layout="constrained")
+    views = [window([result], options) for result in results]
+    highest = max(over_time.colour_limit([r], view) for r, view in zip(results, views, strict=True))
+    _, names, key = labels.series_colours(results)
+    titles = names if not key else [f"{key} = {name}" for name in names]
+    for panel, result, view, title in zip(axes[0], results, views, titles, strict=True):
+        image = over_time.space_time_map(panel, result, view, highest)
+        panel.set_title(result.attrs["title"] if len(results) == 1 else title, fontsize="medium")
+    figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
+    return figure
+
+
+def draw_contacts(results, _options):
+    """Figure of the contacts per millisecond along the contact."""
+    colours, names, key = labels.series_colours(results)
+    figure, axes = two_panels()
+    means = over_time.contact_rates(axes, results, colours)
+    parts = [mean / means[0] if means[0] else np.nan for mean in means]
+    names = [f"{n}: {mean:.3g} ({part:.2f})" for n, mean, part in zip(names, means, parts, strict=True)]
+    labels.series_legend(axes[1], colours, names, f"{key or 'file'}:\nmean in |x| < a\n(to the first)")
+    axes[0].set_title(panel_title(results, 0).partition(": step")[0], fontsize="medium")
+    return figure
+
+
+def draw_collision(results, options):
+    """Figure of collisions in all members of a series, a column each; by default of the two best to see."""
+    found = collisions.find(from_thick_to_thin(results)[0])
+    numbers = options.collision or collisions.ranked(found)[:2]
+    if not numbers or not 0 <= min(numbers) <= max(numbers) < len(found):
+        raise OutputError(f"{len(found)} collisions; allowed: --collision 0 to {len(found) - 1}")
+    chosen = [found[number] for number in numbers]
+    colours, names, key = labels.series_colours(results)
+    size = (SIZE[0] * max(1.0, 0.6 * len(chosen)), SIZE[1])
+    panels = dict(figsize=size, squeeze=False, sharex="col", layout="constrained")
+    figure, axes = plt.subplots(2, len(chosen), **panels)
+    width = options.width or COLLISION_WIDTH
+    collision_pictures.collisions(axes, results, chosen, colours, width)
+    labels.series_legend(axes[0, -1], colours, names, key)
+    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+def draw_points(results, _options):
+    """Figure of film and pressure at the points of contact against the swept value."""
+    results, values, key = from_thick_to_thin(results)
+    points = collisions.spread(collisions.contact_points(collisions.find(results)), POINTS)
+    if not points:
+        raise OutputError("no contact point with two full films before it and two members in contact")
+    figure, axes = two_panels()
+    collision_pictures.against_value(axes, points, values, key, results[0].attrs["a"])
+    axes[0].set_title(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+def draw_entrapment(results, options):
+    """Figure of four instants of the strongest entrapment of a result."""
+    size = (1.6 * SIZE[0], SIZE[1])
+    figure, axes = plt.subplots(2, 4, figsize=size, sharex="col", sharey="row", layout="constrained")
+    found = entrapment.find(results[0])[0]
+    collision_pictures.entrapped(axes, results[0], found, options.width or COLLISION_WIDTH)
+    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+FIGURES = {
+    "map": draw_map,
+    "contacts": draw_contacts,
+    "collision": draw_collision,
+    "points": draw_points,
+    "entrapment": draw_entrapment,
+    "stribeck": draw_stribeck,
+}

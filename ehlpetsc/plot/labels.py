@@ -1,0 +1,77 @@
+"""Colours, labels and legends of one or several results."""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ehlpetsc.results.series_index import series_values
+
+SINGLE_COLOUR = "#1f4e79"
+CONTACT_COLOUR = "#d62728"
+SOLIDS_COLOUR = "#e08214"
+LEGEND_ENTRIES = 10
+UNITS = {
+    "fluid.viscosity": "viscosity at ambient pressure [Pa s]",
+    "motion.entrainment_speed": "mean speed [m/s]",
+    "motion.slide_roll_ratio": "slide/roll ratio",
+    "mesh.points_per_half_width": "nodes a half width",
+}
+
+
+def series_colours(results):
+    """Colours and labels of several results: the swept value where there is one, otherwise what names each.
+
+    Returns
+    -------
+    colours, labels : list
+    key : str or None
+        What is swept.
+    """
+    if len(results) == 1:
+        return [SINGLE_COLOUR], [results[0].path.stem], None
+    key, values = series_values(results)
+    # the light end of the map does not show on white
+    colours = [mpl.colormaps["viridis"](0.9 * i / (len(results) - 1)) for i in range(len(results))]
+    labels = [f"{value:g}" for value in values] if key else names(results)
+    return colours, labels, key
+
+
+def names(results):
+    """What tells results apart: their titles, with the file where titles are the same."""
+    titles = [result.attrs["title"] for result in results]
+    if len(set(titles)) == len(titles):
+        return titles
+    if len(set(titles)) == 1:
+        return [result.path.stem for result in results]
+    return [f"{title} ({result.path.stem})" for title, result in zip(titles, results, strict=True)]
+
+
+def one_hertz(results):
+    """Whether all results have the same Hertz contact."""
+    contacts = np.array([(result.attrs["a"], result.attrs["p0"]) for result in results])
+    return np.allclose(contacts, contacts[0], rtol=1e-9, atol=0.0)
+
+
+def with_hertz(labels, results):
+    """Labels with the Hertz contact of each, where they differ in it."""
+    if one_hertz(results):
+        return labels
+    return [
+        f"{label}\na = {1e3 * r.attrs['a']:.3g} mm, p0 = {1e-9 * r.attrs['p0']:.3g} GPa"
+        for label, r in zip(labels, results, strict=True)
+    ]
+
+
+def series_legend(axes, colours, labels, title):
+    """Legend right of the axes: all of a series or, where it is long, every so many members."""
+    step = -(-len(labels) // LEGEND_ENTRIES)
+    lines = [Line2D([], [], color=c, label=n) for c, n in list(zip(colours, labels, strict=True))[::step]]
+    legend_beside(axes, lines, title)
+
+
+def legend_beside(axes, handles=None, title=None):
+    """Legend right of the axes, where no curve runs; by default of what the axes hold."""
+    handles = axes.get_legend_handles_labels()[0] if handles is None else handles
+    place = dict(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    small = dict(fontsize="small", title_fontsize="small", frameon=False)
+    axes.legend(handles=handles, title=title, **small, **place)

@@ -1,0 +1,62 @@
+"""Pressure and film over time as a movie: GIF, or MP4 and WebM by ffmpeg."""
+
+import numpy as np
+from matplotlib.animation import FFMpegWriter, PillowWriter
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot.figures import fill_frame, two_panels
+from ehlpetsc.plot.frames import choose_frames
+
+FRAMES = 150
+RATE = 15  # frames per second
+DPI = 80
+EVEN = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p"]  # what players take
+CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
+
+
+def save_movie(results, options, path):
+    """Write at most `FRAMES` frames, all within the same axes.
+
+    Raises
+    ------
+    OutputError
+        The ending of `path` is none of a movie, or its encoder is not installed.
+    """
+    last = len(results[0].time) - 1
+    steps = np.unique(np.linspace(0, last, min(last + 1, FRAMES)).round().astype(int))
+    figure, axes = two_panels()
+    limits = _limits(results, steps)
+    writer = _writer(path)
+    with writer.saving(figure, str(path), dpi=DPI):
+        for number, index in enumerate(steps):
+            for panel in axes:
+                panel.clear()
+            fill_frame(axes, results, choose_frames(results, time=results[0].time[index]), options)
+            for panel, limit in zip(axes, limits, strict=True):
+                panel.set_ylim(0.0, limit)
+            if number == 0:  # its layout holds for all: the axes stand still
+                figure.draw_without_rendering()
+                figure.set_layout_engine("none")
+            writer.grab_frame()
+
+
+def _writer(path):
+    ending = path.suffix.lower()
+    if ending == ".gif":
+        return PillowWriter(fps=RATE)
+    if ending not in CODECS:
+        raise OutputError(f"{path}: allowed for a movie: .gif, {', '.join(CODECS)}")
+    if not FFMpegWriter.isAvailable():
+        raise OutputError(f"{path}: {ending} needs ffmpeg, which is not installed; without it, allowed: .gif")
+    return FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN)
+
+
+def _limits(results, frames):
+    """Upper ends of the axes [GPa, um]: all pressures, and the film inside the contact."""
+    film = 1e-9
+    for result in results:
+        inside = np.abs(result.x) <= result.attrs["a"]
+        shown = [index for index in frames if index < len(result.time)]
+        film = max(film, *(result.frame("film_thickness", index)[inside].max() for index in shown))
+    pressure = max(np.nanmax(result.steps("p_max")) for result in results)
+    return 1.05e-9 * pressure, 1.15e6 * film

@@ -1,0 +1,107 @@
+"""Pictures over time: pressure over place and time, contacts per millisecond; drawn into given axes."""
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot.frames import ACROSS
+from ehlpetsc.plot.labels import CONTACT_COLOUR
+
+MAP_ROWS = 1000  # rows of pixels worth drawing in a space-time map
+FEW_CONTACTS = 3000  # nodes in contact in a map that would be lost as single pixels
+HIGHEST = 99.9  # percentile of pressure at which colours end: a few sharp peaks would darken all the rest
+POLYNOMIAL_ORDER = 8  # Holmes et al. 2005, figure 7 (ii)
+
+
+def space_time_map(axes, result, window, highest):
+    """Pressure over place and time, contacts marked; returns the image for a colour bar.
+
+    At most `MAP_ROWS` frames are drawn; contacts of the frames between them are marked all the same.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    result : Result
+    window : (float, float)
+        Limits of x/a.
+    highest : float
+        Pressure [GPa] at which the colours end.
+
+    Raises
+    ------
+    OutputError
+        The result has one frame only.
+    """
+    x, time, pressure, columns, stride = _over_time(result, window)
+    rows = time[::stride]
+    mesh = dict(cmap="viridis", shading="nearest", rasterized=True)
+    image = axes.pcolormesh(x, rows, pressure, vmin=0.0, vmax=highest, **mesh)
+    touching, red = _contacts(result, columns, stride), ListedColormap([CONTACT_COLOUR])
+    axes.pcolormesh(x, rows, np.ma.masked_equal(touching, 0), **(mesh | {"cmap": red}))
+    row, node = np.nonzero(touching)
+    if len(row) < FEW_CONTACTS:
+        axes.plot(x[node], rows[row], ".", color=CONTACT_COLOUR, ms=3, mew=0, rasterized=True)
+    axes.set_xlabel(ACROSS)
+    axes.set_ylabel("time [µs]")
+    axes.set_xlim(x[0], x[-1])
+    axes.set_ylim(time[0], time[-1])
+    return image
+
+
+def colour_limit(results, window):
+    """Pressure [GPa] at which the colours of all results end."""
+    return max(float(np.percentile(_over_time(result, window)[2], HIGHEST)) for result in results)
+
+
+def _over_time(result, window):
+    """x/a and time [us] in view, pressure [GPa] of the frames drawn, columns and stride of those."""
+    if len(result.time) < 2:
+        raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
+    x, time = result.x / result.attrs["a"], 1e6 * result.time
+    stride = -(-len(time) // MAP_ROWS)
+    part = np.flatnonzero((x >= window[0]) & (x <= window[1]))
+    columns = slice(part[0], part[-1] + 1)
+    pressure = 1e-9 * result["pressure"][: len(time) : stride, columns].astype(float)
+    return x[columns], time, pressure, columns, stride
+
+
+def _contacts(result, columns, stride):
+    """1 where a node is in contact in any of `stride` frames, a row each `stride` frames."""
+    name = "in_contact" if "in_contact" in result else "film_thickness"
+    rows = []
+    for begin in range(0, len(result.time), stride):
+        block = result[name][begin : min(begin + stride, len(result.time)), columns]
+        rows.append(np.any(block if name == "in_contact" else block <= 0.0, axis=0))
+    return np.array(rows, dtype=int)
+
+
+def contact_rates(axes, results, colours):
+    """Contacts per millisecond along the contact: raw above, a polynomial of 8th order below.
+
+    Returns
+    -------
+    list of float
+        Mean rate inside the Hertz contact.
+
+    Raises
+    ------
+    OutputError
+        A result is steady.
+    """
+    upper, lower = axes
+    means = []
+    for result, colour in zip(results, colours, strict=True):
+        x, rate = result.x / result.attrs["a"], result.contact_rate()
+        inside = np.abs(x) <= 1.0
+        fit = np.polynomial.Polynomial.fit(x[inside], rate[inside], POLYNOMIAL_ORDER)
+        smooth = np.linspace(-1.0, 1.0, 401)
+        upper.plot(x, rate, color=colour, lw=0.6)
+        lower.plot(smooth, fit(smooth), color=colour, lw=1.4)
+        means.append(float(rate[inside].mean()))
+    upper.set_ylabel("contacts per ms")
+    lower.set_ylabel(f"the same, polynomial\nof order {POLYNOMIAL_ORDER}")
+    lower.set_xlabel(ACROSS)
+    lower.set_xlim(-1.5, 1.5)
+    for panel in axes:
+        panel.set_ylim(bottom=0.0)
+    return means

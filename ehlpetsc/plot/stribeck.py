@@ -1,0 +1,179 @@
+"""Stribeck curve of a series over the entrainment speed: friction, share on the solids, lambda ratio.
+
+Means over the time in which both surfaces fill the contact, with the scatter over that time as a band.
+"""
+
+import tomllib
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside
+from ehlpetsc.results.series_index import series_values
+
+SPEED = "motion.entrainment_speed"
+RAMP = 0.1  # half widths over which a profile's heights come in: those belong to the filling
+BAND = (5.0, 95.0)  # percentiles over time
+SIZE = (8.5, 7.5)  # inches
+QUANTITIES = {
+    "friction_coefficient": "friction coefficient",
+    "contact_share": "share of the load\non the solids",
+    "lambda_ratio": "lambda ratio",
+}
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Mean over time and the percentiles `BAND`; nan where a result does not have the quantity."""
+
+    mean: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Point:
+    """One speed of a Stribeck curve.
+
+    Attributes
+    ----------
+    speed : float
+        Mean speed of the surfaces [m/s].
+    figures : dict of str to Spread
+        By the names in `QUANTITIES`.
+    smooth : float
+        Friction coefficient of the smooth contact, before the roughness comes.
+    boundary : float
+        Friction coefficient of the solids.
+    """
+
+    speed: float
+    figures: dict
+    smooth: float
+    boundary: float
+
+
+def filled_from(result):
+    """Time [s] from which on the roughness of both surfaces fills the contact; 0 without a moving one."""
+    a, times = result.attrs["a"], [0.0]
+    for side, speed in (("fast", result.attrs["u1"]), ("slow", result.attrs["u2"])):
+        if result.profile(side) is not None and speed != 0.0 and len(result.steps("time")) > 1:
+            way = a - result.x[0] if speed > 0.0 else result.x[-1] + a
+            times.append((way + RAMP * a) / abs(speed))
+    return max(times)
+
+
+def per_step(result, name):
+    """A per-step figure by its name; the friction coefficient also of files that hold the force alone.
+
+    Returns
+    -------
+    ndarray, shape (nsteps,)
+        nan where the file does not have it.
+    """
+    if f"steps/{name}" in result:
+        values = result.steps(name).astype(float)
+    elif name == "friction_coefficient":
+        values = result.steps("friction") / result.steps("load")
+    else:
+        values = np.full(len(result.steps("time")), np.nan)
+    return np.abs(values) if name == "friction_coefficient" else values
+
+
+def spread(values, weights):
+    """Mean and percentiles of values that each stand for a time `weights`."""
+    known = np.isfinite(values) & (weights > 0.0)
+    if not known.any():
+        return Spread(np.nan, np.nan, np.nan)
+    values, weights = values[known], weights[known]
+    order = np.argsort(values)
+    reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
+    low, high = np.interp(BAND, reached, values[order])
+    return Spread(float(np.average(values, weights=weights)), float(low), float(high))
+
+
+def stribeck_point(result, speed):
+    """Figures of one member; None where it ends before both surfaces fill the contact.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+    speed : float
+        m/s.
+    """
+    time = result.steps("time")
+    steady = len(time) == 1
+    kept = np.ones(1, bool) if steady else time > filled_from(result)
+    if not kept.any():
+        return None
+    weights = np.ones(1) if steady else np.nan_to_num(result.steps("dt"))[kept]
+    figures = {name: spread(per_step(result, name)[kept], weights) for name in QUANTITIES}
+    contact = tomllib.loads(result.attrs["case"]).get("contact", {})
+    smooth = float(per_step(result, "friction_coefficient")[0])
+    return Point(speed, figures, smooth, float(contact.get("boundary_friction", 0.0)))
+
+
+def stribeck_points(results):
+    """Points of a series over the speed, from slow to fast, and names of the members left out.
+
+    Raises
+    ------
+    OutputError
+        The results are no series over the speed, or no member lasts long enough.
+    """
+    key, speeds = series_values(results)
+    if key != SPEED:
+        raise OutputError(
+            f"a Stribeck curve needs a series over {SPEED}, this one is over {key or 'nothing'}"
+        )
+    points, short = [], []
+    for speed, result in sorted(zip(speeds, results, strict=True), key=lambda pair: pair[0]):
+        point = stribeck_point(result, speed)
+        points, short = (points + [point], short) if point else (points, [*short, result.path.name])
+    if not points:
+        raise OutputError(
+            "no member lasts until both surfaces fill the contact: a longer time.travel is needed"
+        )
+    return points, short
+
+
+def draw_stribeck(results, _options):
+    """Figure of friction, share on the solids and lambda ratio against the speed."""
+    points, short = stribeck_points(results)
+    figure, axes = plt.subplots(3, 1, figsize=SIZE, sharex=True, layout="constrained")
+    speeds = np.array([abs(point.speed) for point in points])
+    for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
+        found = [point.figures[name] for point in points]
+        mean, low, high = np.transpose([(one.mean, one.low, one.high) for one in found])
+        panel.fill_between(speeds, low, high, color=SINGLE_COLOUR, alpha=0.2, lw=0)
+        panel.plot(speeds, mean, "o-", color=SINGLE_COLOUR, ms=3.5, lw=1.2)
+        panel.set_ylabel(label)
+        panel.set_xscale("log")
+        panel.grid(lw=0.3)
+        if not np.isfinite(mean).any():
+            panel.text(0.5, 0.5, "not in these results", transform=panel.transAxes, ha="center", va="center")
+    _references(axes[0], points, speeds)
+    axes[1].set_ylim(-0.02, 1.02)
+    if np.isfinite([p.figures["lambda_ratio"].mean for p in points]).any():
+        axes[2].set_yscale("log")
+    axes[2].set_xlabel(UNITS[SPEED])
+    band = f"{BAND[0]:g} to {BAND[1]:g} % of the time"
+    handles = [Line2D([], [], color=SINGLE_COLOUR, marker="o", ms=3.5, lw=1.2, label="mean over time")]
+    legend_beside(axes[1], [*handles, Patch(color=SINGLE_COLOUR, alpha=0.2, lw=0, label=band)])
+    title = results[0].attrs["title"]
+    note = f"\nnot shown, ended too early: {', '.join(short)}" if short else ""
+    axes[0].set_title(title + note, fontsize="medium")
+    return figure
+
+
+def _references(axes, points, speeds):
+    """What the coefficient goes to: the solids' at the slow end, the smooth contact's at the fast one."""
+    solids, smooth = [p.boundary for p in points], [p.smooth for p in points]
+    axes.plot(speeds, solids, color="#b35806", lw=0.9, ls="--", label="solids alone\n(boundary_friction)")
+    axes.plot(speeds, smooth, color="0.35", lw=0.9, ls=":", label="smooth contact")
+    axes.set_ylim(bottom=0.0)
+    legend_beside(axes)
