@@ -147,19 +147,79 @@ def test_a_peak_that_is_not_between_is_no_entrapment(series):
         entrapment.find(series[-1])
 
 
-@pytest.mark.parametrize("kind", ["--collision", "--points"])
-def test_pictures_of_a_series(tmp_path, series, kind):
-    picture = tmp_path / "picture.svg"
-    assert plot.main([*(str(result.path) for result in series), kind, "-o", str(picture)]) == 0
-    lines = picture.read_text().count("<path")
-    assert lines > 30
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that a command would have written to files."""
+    figures = []
+    monkeypatch.setattr(plot.plt.Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    yield figures
+    plot.plt.close("all")
 
 
-def test_picture_of_an_entrapment(tmp_path, capsys):
+def markers(axis, shape):
+    """Points that an axis shows with a marker: x and y of all of them."""
+    lines = [line.get_xydata() for line in axis.lines if line.get_marker() == shape]
+    return np.concatenate(lines) if lines else np.empty((0, 2))
+
+
+def test_picture_of_collisions_shows_every_member_at_the_collisions_time(series, drawn):
+    assert plot.main([*(str(result.path) for result in series), "--collision"]) == 0
+    (figure,) = drawn
+    upper, lower = np.array(figure.axes).reshape(2, -1)
+    for column, collision in enumerate([collisions.find(series)[k] for k in (1, 0)]):  # the best first
+        assert upper[column].get_title() == f"{1e6 * collision.time:.3f} µs"
+        x, frames = (
+            X[np.abs(X - collision.x / A) < 0.05],
+            [r.nearest_frame(time=collision.time) for r in series],
+        )
+        for curves, name, unit in ((upper, "pressure", 1e-9), (lower, "film_thickness", 1e6)):
+            shown = [
+                line
+                for line in curves[column].lines
+                if line.get_marker() == "None" and len(line.get_xdata()) > 9
+            ]
+            for result, frame in zip(series, frames, strict=True):
+                values = unit * np.interp(x * A, result.x, result.frame(name, frame))
+                apart = [np.abs(np.interp(x, *line.get_data()) - values).max() for line in shown]
+                assert min(apart) < 1e-9
+        touching = [result.frame("in_contact", frame) for result, frame in zip(series, frames, strict=True)]
+        inside = np.abs(X - collision.x / A) <= 0.06
+        assert len(markers(upper[column], "v")) == sum((t.astype(bool) & inside).sum() for t in touching) > 0
+
+
+def test_picture_of_contact_points_shows_film_and_pressure_against_viscosity(series, drawn):
+    assert plot.main([*(str(result.path) for result in series), "--points"]) == 0
+    (figure,) = drawn
+    upper, lower = figure.axes
+    (point,) = collisions.contact_points(collisions.find(series))
+    values = [0.010, 0.008, 0.006, 0.004]
+    np.testing.assert_allclose(
+        upper.lines[0].get_xydata(), np.column_stack([values, 1e6 * np.array(point.film)])
+    )
+    np.testing.assert_allclose(
+        lower.lines[0].get_xydata(), np.column_stack([values, 1e-9 * np.array(point.pressure)])
+    )
+    np.testing.assert_allclose(np.sort(markers(lower, "v")[:, 0]), [0.004, 0.006])  # those without a film
+    assert lower.get_xlabel() == "viscosity at ambient pressure [Pa s]"
+
+
+def test_picture_of_an_entrapment_shows_four_instants_between_both_contacts(tmp_path, capsys, drawn):
     dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
     make(tmp_path / "e.h5", 0.01, dips, bumps=[(-SPEED * 20e-6 / A, 6.0)]).close()
     assert plot.main([str(tmp_path / "e.h5"), "--entrapment"]) == 0
-    assert (tmp_path / "e.entrapment.png").stat().st_size > 20000
+    (figure,) = drawn
+    upper, lower = np.array(figure.axes).reshape(2, -1)
+    with read_result(tmp_path / "e.h5") as result:
+        instants = entrapment.instants(result, entrapment.find(result)[0])
+        assert len(upper) == len(instants) == 4
+        for above, below, (frame, place) in zip(upper, lower, instants, strict=True):
+            assert above.get_title().endswith(f"{1e6 * result.time[frame]:.2f} µs")
+            x, p = above.lines[0].get_data()
+            np.testing.assert_allclose(p, 1e-9 * np.interp(x * A, result.x, result.frame("pressure", frame)))
+            slow, fast = (line.get_ydata() for line in below.lines[:2])
+            film = np.interp(x * A, result.x, result.frame("film_thickness", frame))
+            np.testing.assert_allclose(fast - slow, 1e6 * film, atol=1e-9)
+            assert x[0] * A < place < x[-1] * A
     assert plot.main([str(tmp_path / "e.h5"), "--collision"]) == 2
     assert "not a series" in capsys.readouterr().err
 

@@ -7,7 +7,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.study import accuracy, lines
+from ehlpetsc.study import accuracy
 from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertainty
 from ehlpetsc.study.draws import draw
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
@@ -100,14 +100,29 @@ def test_drawn_cases_load_and_come_again(tmp_path):
         assert 0.0005 <= case.fluid.viscosity <= 1.0 and 0.01 <= case.motion.entrainment_speed <= 50.0
 
 
-def test_picture_of_a_table(tmp_path):
+def test_picture_of_a_table_shows_errors_against_both_costs(tmp_path, monkeypatch):
+    """Runs that failed are left out; the case as it is has a star, the reference's own error a line."""
+    import matplotlib.pyplot as plt
+
+    figures = []
+    monkeypatch.setattr(plt, "close", figures.append)
     rows = [
         {"varied": "reference", "value": 1, "converged": "yes", "wall_s": 9.0, "newton": 50, "h_min": 1e-5},
         {"varied": "", "value": "as it is", "converged": "yes", "wall_s": 1.0, "newton": 9, "h_min": 1e-3},
-        {"varied": "mesh", "value": 50, "converged": "yes", "wall_s": 0.3, "newton": 9, "h_min": 1e-2},
+        {"varied": "mesh", "value": 100, "converged": "yes", "wall_s": 0.8, "newton": 8, "h_min": 2e-3},
+        {"varied": "mesh", "value": 50, "converged": "yes", "wall_s": 0.3, "newton": 7, "h_min": 1e-2},
         {"varied": "mesh", "value": 200, "converged": "exit 3", "wall_s": 0.0, "newton": 0, "h_min": np.nan},
     ]
     rows = [{**dict.fromkeys(accuracy.MEASURES, np.nan), **row} for row in rows]
     draw_picture(rows, tmp_path / "study.png", "title")
-    assert (tmp_path / "study.png").stat().st_size > 10_000
-    assert lines.FLOODED > 1.0
+    assert (tmp_path / "study.png").read_bytes().startswith(b"\x89PNG")
+    (figure,) = figures
+    assert len(figure.axes) == 2  # h_min alone has figures: one column
+    for axis, costs, case in zip(figure.axes, ([0.3, 0.8], [7, 8]), (1.0, 9), strict=True):
+        mesh, star, uncertainty = axis.lines
+        np.testing.assert_allclose(mesh.get_xydata(), np.column_stack([costs, [1e-2, 2e-3]]))
+        np.testing.assert_allclose(star.get_xydata(), [[case, 1e-3]])
+        np.testing.assert_allclose(uncertainty.get_ydata(), 1e-5)
+        assert axis.get_xscale() == axis.get_yscale() == "log"
+    monkeypatch.undo()
+    plt.close(figure)
