@@ -207,7 +207,9 @@ def test_a_python_without_the_packages_is_told_what_to_type(case, tmp_path):
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
 
 
-@pytest.mark.parametrize("command", ["compare", "plot", "post", "study", "counts", "collisions"])
+@pytest.mark.parametrize(
+    "command", ["compare", "plot", "post", "study", "analysis.contact_statistics", "analysis.collisions"]
+)
 def test_every_command_tells_a_python_without_the_packages(tmp_path, command):
     done = subprocess.run(
         [PYTHON, "-S", "-m", f"ehlpetsc.{command}", "a b.h5"],
