@@ -1,5 +1,6 @@
 #!/bin/bash
-# Installs what is missing on Debian 12 and runs a case, or the tests, under MPI.
+# Runs a case, or the tests, under MPI, with what the machine has; installs what is missing on Debian 12 and newer.
+# shellcheck disable=SC1091,SC2046,SC2086  # lists of names without blanks are meant to be split
 set -eu
 
 usage() {
@@ -7,43 +8,166 @@ usage() {
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case, on 2 ranks unless told otherwise
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
+export PATH="/path/to/ehlpetsc/bin:$PATH"           then, in any folder: ehlpetsc CASE.toml, on one rank, and
+                                                    ehlpetsc-post, -plot, -compare, -study (each: --help)
 
-What is missing is installed first from Debian's packages: by itself as root, else the command is shown.
+A python3 on the PATH that has everything is used. Else it is Debian's, and what is missing is installed from
+Debian's packages: by itself as root, else the command is shown.
 Own options and PETSc's: ./run_mpi.sh CASE.toml -help
 Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.
 END
 }
 
-run_packages="python3 python3-numpy python3-scipy python3-numba python3-pydantic python3-tomlkit python3-mpi4py
-    python3-h5py-mpi python3-petsc4py-real openmpi-bin"
-post_packages="python3-matplotlib"
-test_packages="$post_packages python3-pytest python3-hypothesis python3-xarray python3-h5netcdf python3-pip"
+# what cannot be imported -> the Debian packages that have it
+declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3-petsc4py-real [mpirun]=openmpi-bin
+    [xdist]=python3-pytest-xdist)
+run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
+drawing="matplotlib"
+testing="$drawing pytest xdist hypothesis xarray h5netcdf pip setuptools"
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+called=$(basename "$0")
+here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
+check="$here/ehlpetsc/environment.py"
 test_only="$here/.test-packages" # what the tests compare with and Debian does not have
-python=/usr/bin/python3
-export PATH=/usr/sbin:/usr/bin:/sbin:/bin${PATH:+:$PATH}
+debian_python=/usr/bin/python3
+apt="apt-get -o DPkg::Lock::Timeout=600"
 
 say() { echo "run_mpi.sh: $*" >&2; }
 
-install_missing() {
-    local missing
-    missing=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null |
-        awk -v wanted="$*" '$1 == "installed" { have[$2] }
-            END { n = split(wanted, p); for (i = 1; i <= n; i++) if (!(p[i] in have)) printf "%s ", p[i] }') || true
-    missing=${missing% }
-    [ -n "$missing" ] || return 0
-    local install="apt-get install -y --no-install-recommends $missing"
+# Sets python and mpirun, with the modules of the first list there, or the way to them told; where something is
+# installed, those of the second come with it
+prepare() {
+    local modules=$1 also=${2-} missing
+    local -x PYTHONDONTWRITEBYTECODE=1
+    python=$(command -v python3 || true) mpirun=mpirun
+    # one that is not Debian's: a virtual environment, modules of a cluster, PETSC_DIR
+    if [ -n "$python" ] && PYTHONPATH="$here${PYTHONPATH:+:$PYTHONPATH}" "$python" "$check" own $modules 2>/dev/null; then
+        command -v mpirun >/dev/null || { say "$python has everything, but there is no mpirun on the PATH"; exit 2; }
+        export PYTHONPATH="$here${PYTHONPATH:+:$PYTHONPATH}"
+    else
+        use_debian
+        missing=$(missing_in_debian $modules)
+        if [ -n "$missing" ]; then
+            is_debian || { other_machine "$missing" >&2; exit 2; }
+            install_packages $missing $(missing_in_debian $also)
+            use_debian
+            missing=$(missing_in_debian $modules)
+            [ -z "$missing" ] || { say "installed, but still not there: $missing"; exit 2; }
+        fi
+    fi
+    set_environment
+}
+
+use_debian() {
+    # another Python's modules, or another PETSc, must not mix with Debian's
+    unset PYTHONHOME PYTHONSTARTUP VIRTUAL_ENV PETSC_ARCH PETSC_DIR
+    export PATH=/usr/sbin:/usr/bin:/sbin:/bin${PATH:+:$PATH} PYTHONNOUSERSITE=1 PYTHONPATH=$here
+    python=$debian_python mpirun=/usr/bin/mpirun.openmpi
+    [ -x $mpirun ] || mpirun=/usr/bin/mpirun
+    local petsc
+    petsc=$(printf '%s\n' /usr/lib/petscdir/petsc*/*-real | sort -V | tail -n 1)
+    [ ! -d "$petsc" ] || export PETSC_DIR=$petsc PYTHONPATH="$here:$petsc/lib/python3/dist-packages"
+}
+
+missing_in_debian() {
+    [ -x $mpirun ] || echo mpirun
+    [ ! -x $python ] || { $python "$check" missing "$@" && return; }
+    printf '%s\n' python "$@"
+}
+
+is_debian() {
+    local ID="" VERSION_ID=""
+    [ ! -r /etc/os-release ] || . /etc/os-release
+    [ "$ID" = debian ] && [ "${VERSION_ID:-99}" -ge 12 ] && command -v apt-get >/dev/null
+}
+
+install_packages() {
+    local packages="" name
+    for name in $(printf '%s\n' "$@" | awk '!seen[$0]++'); do
+        packages+=" ${package_of[$name]-python3-$name}"
+    done
+    packages=${packages/ python3-python/ python3}
+    local install="install -y --no-install-recommends$packages"
     if [ "$(id -u)" != 0 ]; then
         say "these Debian packages are missing. Type this, then run again:"
-        echo "sudo apt-get update && sudo $install"
+        echo "sudo apt-get update && sudo apt-get $install"
         exit 2
     fi
-    say "installing $missing"
+    say "installing$packages"
     export DEBIAN_FRONTEND=noninteractive
-    # shellcheck disable=SC2086  # package names, one word each
-    { quietly apt-get update && quietly $install; } || { say "installation failed"; exit 2; }
+    { update_lists && quietly $apt $install; } || { say "installation failed"; exit 2; }
     say "installed"
+}
+
+# What a machine has that is neither Debian nor prepared
+other_machine() {
+    local PRETTY_NAME="an unknown system" found
+    [ ! -r /etc/os-release ] || . /etc/os-release
+    found=$(python3 "$check" found 2>/dev/null || command -v python3 || echo "no python3")
+    cat <<END
+run_mpi.sh: something is missing, and this is not Debian 12 or newer, where it could be installed.
+found:   $PRETTY_NAME; $found; $(mpirun --version 2>/dev/null | head -n 1 || true)
+needed:  Python 3.11 or newer with numpy, scipy, numba, pydantic, tomlkit, h5py, mpi4py and petsc4py, on PETSc 3.18 or
+         newer of real numbers in double precision, and the mpirun of the MPI that mpi4py and petsc4py were built with
+to go on, make them the first on the PATH and run the same command again:
+  a cluster: module load ... (module avail petsc), until python3 -c 'import petsc4py, mpi4py, h5py' works
+  PETSc of your own, built with petsc4py: export PETSC_DIR=... PETSC_ARCH=...
+  a virtual environment: pip install '${here}[solver,post]' (builds PETSc from source), then activate it
+  a container: tests/Containerfile
+END
+}
+
+set_environment() {
+    # without these, threads of BLAS fight the ranks for the cores
+    export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+    # mpirun gives every rank a terminal, also where the output goes to a file
+    [ -t 1 ] || export TERM=dumb
+    [ -z "${OMPI_COMM_WORLD_SIZE-}${PMI_SIZE-}${PMIX_RANK-}" ] || return 0 # under mpirun, which has set the rest
+    # Open MPI 4 | 5; another MPI does not read them. No binding, as runs side by side would share a core.
+    export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
+    export OMPI_MCA_orte_execute_quiet=1
+    if [ "$(id -u)" = 0 ]; then
+        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    fi
+    [ "$(nodes)" = 1 ] || return 0
+    # one machine: shared memory alone, by copies that a container allows, and no wait for a network or munge
+    export OMPI_MCA_btl=${OMPI_MCA_btl:-^tcp,ofi,openib,uct}
+    export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism:-none}
+    export OMPI_MCA_smsc=${OMPI_MCA_smsc:-^cma}
+    export PMIX_MCA_psec=${PMIX_MCA_psec:-native} PMIX_MCA_gds=${PMIX_MCA_gds:-hash}
+}
+
+# Machines that a batch system has given
+nodes() {
+    local list=${PBS_NODEFILE:-${PE_HOSTFILE:-${LSB_DJOB_HOSTFILE-}}}
+    if [ -n "${SLURM_JOB_NUM_NODES-}" ]; then
+        echo "$SLURM_JOB_NUM_NODES"
+    elif [ -r "$list" ]; then
+        cut -d ' ' -f 1 "$list" | sort -u | wc -l
+    else
+        echo 1
+    fi
+}
+
+more_ranks_than_cores() {
+    if [ "$1" -gt "$(nproc)" ] && [ "$(nodes)" = 1 ]; then
+        export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+    fi
+}
+
+# A list that another apt is fetching: DPkg::Lock::Timeout is for the packages alone
+update_lists() {
+    local log status
+    log=$(mktemp)
+    for _ in {1..120}; do
+        status=0
+        LC_ALL=C $apt update >"$log" 2>&1 </dev/null || status=$?
+        if [ $status = 0 ] || ! grep -q "Could not get lock" "$log"; then break; fi
+        sleep 5
+    done
+    [ $status = 0 ] || cat "$log" >&2
+    rm -f "$log"
+    return $status
 }
 
 # Output only of what goes wrong
@@ -56,45 +180,40 @@ quietly() {
     return $status
 }
 
-set_environment() {
-    # another Python's modules, or another PETSc, must not mix with Debian's
-    unset PYTHONHOME PYTHONSTARTUP VIRTUAL_ENV PETSC_ARCH
-    local petsc=(/usr/lib/petscdir/petsc3.18/*-real)
-    export PETSC_DIR=${petsc[0]} PYTHONNOUSERSITE=1
-    export PYTHONPATH="$here:$PETSC_DIR/lib/python3/dist-packages"
-    # without these, threads of BLAS fight the ranks for the cores
-    export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-    if [ "$(id -u)" = 0 ]; then
-        export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    fi
-    # mpirun gives every rank a terminal, also where the output goes to a file
-    [ -t 1 ] || export TERM=dumb
-    # one machine: shared memory alone, by copies that a container allows, and no wait for a network or munge
-    export OMPI_MCA_btl=${OMPI_MCA_btl:-self,vader}
-    export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism:-none}
-    export PMIX_MCA_psec=${PMIX_MCA_psec:-native} PMIX_MCA_gds=${PMIX_MCA_gds:-hash}
-}
-
-# "--oversubscribe" where there are more ranks than cores; no binding, as runs side by side would share a core
-mpirun_options() {
-    echo "-q -n $1 --bind-to none"
-    [ "$1" -le "$(nproc)" ] || echo "--oversubscribe"
+# What Open MPI 5 cannot be kept from saying when a run ends with a status of its own, which the run has explained
+without_mpiruns_comment() {
+    trap '' INT TERM HUP USR1
+    exec awk '
+        function flush_held() { printf "%s", held; held = ""; fflush() }
+        /^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
+        /^-+$/ && length($0) > 70 {
+            if (held == "") { held = $0 "\n"; next }
+            if (comment) held = ""; else held = held $0 "\n"
+            comment = 0; flush_held(); next
+        }
+        held == "" { print; fflush(); next }
+        /^prterun detected that one or more processes exited with non-zero status/ { comment = 1 }
+        { held = held $0 "\n" }
+        END { if (!comment) flush_held() }'
 }
 
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it hands on, and they stop after the step in hand.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
-    local status=0
-    # shellcheck disable=SC2046  # options, one word each
-    setsid setpriv --pdeathsig TERM /usr/bin/mpirun $(mpirun_options "$ranks") \
-        $python -m ehlpetsc "$@" </dev/null &
-    local mpirun=$!
-    trap 'kill -USR1 $mpirun 2>/dev/null; trap "kill -TERM $mpirun" INT TERM' INT TERM HUP USR1
-    wait $mpirun || status=$?
-    while kill -0 $mpirun 2>/dev/null; do # a signal ends wait, not mpirun
+    local status=0 comments
+    more_ranks_than_cores "$ranks"
+    exec {comments}> >(without_mpiruns_comment >&2)
+    local filter=$!
+    setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null 2>&$comments &
+    local job=$!
+    exec {comments}>&-
+    trap 'kill -USR1 $job 2>/dev/null; trap "kill -TERM $job" INT TERM' INT TERM HUP USR1
+    wait $job || status=$?
+    while kill -0 $job 2>/dev/null; do # a signal ends wait, not mpirun
         status=0
-        wait $mpirun || status=$?
+        wait $job || status=$?
     done
+    wait $filter || true
     [ $status -lt 129 ] || say "a rank was ended by signal $((status - 128))"
     exit $status
 }
@@ -104,10 +223,12 @@ run_mpi_tests() {
     local ranks=$1 status=0 logs
     logs=$(mktemp -d)
     say "tests on $ranks rank(s)"
-    # shellcheck disable=SC2046,SC2016
-    /usr/bin/mpirun $(mpirun_options "$ranks") --timeout 1800 /bin/sh -c '
-        [ "$OMPI_COMM_WORLD_RANK" = 0 ] || exec >"$1/rank$OMPI_COMM_WORLD_RANK.log" 2>&1
-        shift; exec "$@"' sh "$logs" $python -m pytest -p no:cacheprovider -q --color=no -m mpi tests/mpi || status=$?
+    more_ranks_than_cores "$ranks"
+    # shellcheck disable=SC2016
+    timeout 1800 "$mpirun" -n "$ranks" /bin/sh -c '
+        rank=${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-$PMIX_RANK}}
+        [ "$rank" = 0 ] || exec >"$1/rank$rank.log" 2>&1
+        shift; exec "$@"' sh "$logs" "$python" -m pytest -p no:cacheprovider -q --color=no -m mpi tests/mpi || status=$?
     if [ $status != 0 ]; then
         find "$logs" -name '*.log' -exec tail -n 50 {} +
         say "tests on $ranks rank(s) failed"
@@ -120,13 +241,20 @@ run_tests() {
     cd "$here"
     if [ ! -d "$test_only/rainflow" ] && [ ! -e "$test_only/rainflow.py" ]; then
         say "fetching rainflow 3.2.0 from PyPI for the tests alone"
-        quietly $python -m pip install --retries 1 --no-deps --target "$test_only" rainflow==3.2.0 ||
+        quietly "$python" -m pip install --retries 1 --no-deps --target "$test_only" rainflow==3.2.0 ||
             say "PyPI cannot be reached: the comparison with its rainflow is left out"
     fi
     export PYTHONPATH="$PYTHONPATH:$test_only"
-    $python -m pytest -p no:cacheprovider -q -m "not mpi" tests
+    "$python" -m pytest -p no:cacheprovider -q -n 2 --dist loadfile -m "not mpi" "${@:-tests}"
     for ranks in 1 2 3; do run_mpi_tests $ranks; done
 }
+
+case $called in # by a link of bin/: the command of that name, on one rank
+    ehlpetsc | ehlpetsc-*)
+        prepare "$run_modules" "$drawing"
+        exec "$python" -m "${called/-/.}" "$@"
+        ;;
+esac
 
 ranks=2
 if [ "${1-}" = -n ]; then
@@ -138,22 +266,16 @@ case ${1-} in
     "") usage; exit 2 ;;
     -h | --help | -help) usage; exit 0 ;;
     --explain)
-        # shellcheck disable=SC2086
-        install_missing $run_packages $post_packages
-        set_environment
-        $python -m ehlpetsc "$@"
+        prepare "$run_modules" "$drawing"
+        "$python" -m ehlpetsc "$@"
         ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
     test)
-        # shellcheck disable=SC2086
-        install_missing $run_packages $test_packages
-        set_environment
-        run_tests
+        prepare "$run_modules $testing"
+        run_tests "${@:2}"
         ;;
     *)
-        # shellcheck disable=SC2086
-        install_missing $run_packages $post_packages
-        set_environment
+        prepare "$run_modules" "$drawing"
         run_case "$@"
         ;;
 esac

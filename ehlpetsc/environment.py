@@ -1,22 +1,33 @@
-"""What must be there before anything is imported: Debian's PETSc on the path, one thread a rank."""
+"""What must be there before anything is imported: PETSc on the path, one thread a rank, packages.
+
+``run_mpi.sh`` runs this file by itself, in a Python that may have none of them and may be too old::
+
+    environment.py own MODULE ...      status 0: this Python, not Debian's, has all and can load PETSc
+    environment.py missing MODULE ...  prints those that it does not have
+    environment.py found               prints what it is and what it lacks
+"""
 
 import importlib.util
 import os
+import re
 import shlex
 import sys
 from pathlib import Path
 
 DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
-NEEDED = (*NUMERICS, "numba", "pydantic", "tomlkit", "mpi4py", "petsc4py")
+SOLVER = ("mpi4py", "petsc4py")
+NEEDED = (*NUMERICS, "numba", "pydantic", "tomlkit", *SOLVER)
 RANK = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
+OLDEST_PYTHON = (3, 11)
 
 
 def prepare():
     """Make ready for the imports of a run.
 
-    Debian keeps petsc4py beside its PETSc and not on Python's path; without it set, the newest real one is
-    taken. Threads of BLAS would fight the ranks for the cores: one, unless the user says otherwise.
+    Debian keeps petsc4py beside its PETSc and not on Python's path, and so does a PETSc built by hand: that
+    of ``PETSC_DIR`` is taken, without it Debian's newest real one. Threads of BLAS would fight the ranks for
+    the cores: one, unless the user says otherwise.
 
     Returns
     -------
@@ -24,42 +35,117 @@ def prepare():
         Packages that this Python does not have.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    if importlib.util.find_spec("petsc4py") is None:
-        found = sorted(DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages"))
-        sys.path += map(str, found[-1:])
-    return [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if not has("petsc4py"):
+        sys.path += map(str, [*_of_petsc_dir(), *_debians()][:1])
+    return missing(NEEDED)
+
+
+def has(name):
+    """Whether a package can be imported; a folder of its name without a package in it cannot."""
+    spec = importlib.util.find_spec(name)
+    return spec is not None and spec.origin is not None
+
+
+def missing(names):
+    """Those of some packages that this Python does not have.
+
+    Parameters
+    ----------
+    names : iterable of str
+
+    Returns
+    -------
+    list of str
+    """
+    return [name for name in names if not has(name)]
+
+
+def _of_petsc_dir():
+    """Folders of the petsc4py that the PETSc of the environment was built with."""
+    if "PETSC_DIR" not in os.environ:
+        return []
+    home, arch = Path(os.environ["PETSC_DIR"]), os.environ.get("PETSC_ARCH", "")
+    places = (home / arch / "lib", home / "lib", home / "lib/python3/dist-packages")
+    return [place for place in places if (place / "petsc4py").is_dir()]
+
+
+def _debians():
+    """Folders of Debian's petsc4py, newest first."""
+    found = DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages")
+    return sorted(found, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
 
 
 def require_numerics():
     """End a command (exit 2) that this Python cannot import, saying which one can."""
-    missing = [name for name in NUMERICS if importlib.util.find_spec(name) is None]
-    if missing and "ehlpetsc" not in sys.orig_argv:  # a run itself says more: all that it needs
+    lacks = missing(NUMERICS)
+    if lacks and "ehlpetsc" not in sys.orig_argv:  # a run itself says more: all that it needs
         command = shlex.join(sys.orig_argv[1:])
         print(
-            f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(missing)}\n"
-            f"type: /usr/bin/python3 {command}   (./run_mpi.sh installs on Debian 12 what is missing)",
+            f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
+            f"type: /usr/bin/python3 {command}   "
+            "(./run_mpi.sh installs on Debian 12 and newer what is missing)",
             file=sys.stderr,
         )
         sys.exit(2)
 
 
-def advice(missing, arguments):
+def advice(lacks, arguments):
     """What to do about missing packages: one line of why and one to type.
 
     Parameters
     ----------
-    missing : list of str
+    lacks : list of str
     arguments : list of str
         Of the command as it was typed.
     """
     words = " ".join(arguments) or "CASE.toml"
+    said = f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
+    if Path(__file__).parents[1].joinpath("run_mpi.sh").exists():
+        return (
+            f"{said}type: ./run_mpi.sh {words}   (installs what is missing on Debian 12 and newer and runs "
+            f"Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {words}"
+        )
     return (
-        f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(missing)}\n"
-        f"type: ./run_mpi.sh {words}   (installs what is missing on Debian 12 and runs Debian's Python), "
-        f"or, once installed: /usr/bin/python3 -m ehlpetsc {words}"
+        f"{said}type: {sys.executable} -m pip install {' '.join(lacks)}   (builds PETSc from source if "
+        "that is missing), or take Debian's packages and a virtual environment with --system-site-packages"
     )
 
 
 def first_rank():
     """Whether this process is rank 0 of mpirun, or alone; known before MPI is."""
     return next((os.environ[name] for name in RANK if name in os.environ), "0") == "0"
+
+
+def _own(names):
+    """Whether this Python is complete without Debian's PETSc, whose environment run_mpi.sh sets itself."""
+    if sys.version_info < OLDEST_PYTHON:
+        return False
+    prepare()
+    if missing(names) or DEBIAN in Path(importlib.util.find_spec("petsc4py").origin).parents:
+        return False
+    import mpi4py
+
+    mpi4py.rc.initialize = False  # where a batch system starts the ranks, none can be started here
+    from mpi4py import MPI  # noqa: F401  PETSc needs it loaded
+    from petsc4py.lib import ImportPETSc
+
+    return ImportPETSc().ScalarType is float or ImportPETSc().ScalarType.__name__ == "float64"
+
+
+def _found():
+    prepare()
+    lacks = f"without {', '.join(missing(NEEDED))}" if missing(NEEDED) else "with all packages"
+    return f"{sys.executable} is Python {sys.version.split()[0]}, {lacks}"
+
+
+def _answer(question, *names):
+    sys.path.pop(0)  # this file's folder, whose modules are part of a package
+    if question == "own":
+        return 0 if _own(names) else 1
+    prepare()
+    print(_found() if question == "found" else "\n".join(missing(names)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_answer(*sys.argv[1:]))

@@ -15,6 +15,8 @@ world = MPI.COMM_WORLD
 if world.rank == 0:
     print("ARGS", sys.argv[1:], "SIZE", world.size, "CWD", os.getcwd(), "PYTHON", sys.executable)
     print("OMP", os.environ["OMP_NUM_THREADS"], "HOME", os.environ.get("PYTHONHOME"))
+    print("VENV", os.environ.get("VIRTUAL_ENV"))
+    print(sorted(name for name in os.environ if "_MCA_" in name))
 sys.exit(int(os.environ.get("STATUS", "0")))
 """
 
@@ -26,6 +28,7 @@ def script(tmp_path):
     (tmp_path / "ehlpetsc" / "__init__.py").touch()
     (tmp_path / "ehlpetsc" / "__main__.py").write_text(ECHO)
     shutil.copy(ROOT / "run_mpi.sh", tmp_path)
+    shutil.copy(ROOT / "ehlpetsc" / "environment.py", tmp_path / "ehlpetsc")
     (tmp_path / "elsewhere").mkdir()
 
     def run(*arguments, **environment):
@@ -98,22 +101,104 @@ def test_usage(script):
     assert "./run_mpi.sh test" in script("--help").stdout == script().stdout
 
 
-def test_a_user_is_shown_the_command_and_root_runs_it(script, tmp_path):
-    tools = tmp_path / "tools"
+@pytest.fixture
+def machine(script, tmp_path):
+    """The same without a package, on a system of any name; apt-get and id of our own."""
+    tools, log = tmp_path / "tools", tmp_path / "log"
     tools.mkdir()
-    path = tmp_path / "run_mpi.sh"
-    # a package no Debian has, and apt-get and id of our own before the system's
-    text = path.read_text().replace('run_packages="', 'run_packages="python3-nonesuch ', 1)
-    path.write_text(text.replace("PATH=/usr/sbin", f"PATH={tools}:/usr/sbin", 1))
-    for name, body in (("apt-get", 'echo "$@" >>"$LOG"'), ("id", 'echo "$USER_ID"')):
+    for name, body in (("apt-get", f'echo "$@" >>{log}'), ("id", 'echo "$USER_ID"')):
         (tools / name).write_text(f"#!/bin/sh\n{body}\n")
         (tools / name).chmod(0o755)
-    log = tmp_path / "log"
-    user = script("case.toml", USER_ID="1000", LOG=str(log))
-    assert user.returncode == 2
+    path = tmp_path / "run_mpi.sh"
+    text = path.read_text().replace("PATH=/usr/sbin", f"PATH={tools}:/usr/sbin", 1)
+    text = text.replace("/etc/os-release", str(tmp_path / "os-release"))
+
+    def run(user, system, wanted="nonesuch"):
+        (tmp_path / "os-release").write_text(system)
+        path.write_text(text.replace('run_modules="', f'run_modules="{wanted} ', 1))
+        done = script("case.toml", USER_ID=str(user))
+        return done, log.read_text().splitlines() if log.exists() else []
+
+    return run
+
+
+DEBIAN = 'ID=debian\nVERSION_ID="13"\nPRETTY_NAME="Debian GNU/Linux 13 (trixie)"\n'
+ELSEWHERE = 'ID=rocky\nVERSION_ID="9.4"\nPRETTY_NAME="Rocky Linux 9.4"\n'
+
+
+@pytest.mark.parametrize("system", [DEBIAN, DEBIAN.replace("13", "12"), "ID=debian\n"])
+def test_a_user_is_shown_the_command(machine, system):
+    done, typed = machine(1000, system)
     install = "apt-get install -y --no-install-recommends python3-nonesuch"
-    assert user.stdout == f"sudo apt-get update && sudo {install}\n"
-    assert not log.exists()
-    root = script("case.toml", USER_ID="0", LOG=str(log))
-    assert log.read_text() == f"update\n{install.removeprefix('apt-get ')}\n"
-    assert "installing python3-nonesuch" in root.stderr
+    assert done.returncode == 2
+    assert done.stdout == f"sudo apt-get update && sudo {install}\n"
+    assert typed == []
+
+
+def test_root_runs_it_and_waits_for_a_lock(machine):
+    done, (update, install) = machine(0, DEBIAN)
+    assert "installing python3-nonesuch" in done.stderr
+    assert update == "-o DPkg::Lock::Timeout=600 update"
+    assert install.startswith("-o DPkg::Lock::Timeout=600 install -y --no-install-recommends")
+    assert install.endswith(" python3-nonesuch")
+    assert done.returncode == 2  # what was asked for is still not there
+    assert "still not there: nonesuch" in done.stderr
+
+
+@pytest.mark.parametrize("system", [ELSEWHERE, DEBIAN.replace("13", "11"), ""])
+def test_another_machine_is_told_what_was_found_and_what_is_needed(machine, system):
+    done, typed = machine(0, system)
+    assert done.returncode == 2
+    assert done.stdout == "" and typed == []
+    for words in ("found: ", "python3 is Python 3.", "Open MPI", "needed: ", "module load", "PETSC_DIR="):
+        assert words in done.stderr
+    assert ("Rocky Linux 9.4" in done.stderr) == (system == ELSEWHERE)
+
+
+def test_what_is_there_is_used_wherever_it_is(machine):
+    done, typed = machine(0, ELSEWHERE, wanted="")
+    assert done.returncode == 0
+    assert "SIZE 2" in done.stdout
+    assert typed == []
+
+
+def test_a_python_on_the_path_that_has_everything_is_used_as_it_is(script, tmp_path):
+    debians = next(Path("/usr/lib/petscdir").glob("petsc*/*-real/lib/python3/dist-packages/petsc4py"))
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "petsc4py").symlink_to(debians)  # as of another PETSc: not on Debian's path
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "python3").symlink_to("/usr/bin/python3")
+    done = script(
+        "case.toml",
+        PATH=f"{tmp_path / 'bin'}:/usr/bin:/bin",
+        PYTHONPATH=str(tmp_path / "own"),
+        VIRTUAL_ENV="own",
+    )
+    assert done.returncode == 0, done.stderr
+    assert f"PYTHON {tmp_path / 'bin' / 'python3'}" in done.stdout
+    assert "VENV own" in done.stdout
+
+
+@pytest.mark.parametrize("nodes, alone", [("1", True), ("2", False)])
+def test_mpi_is_kept_on_the_machine_only_where_it_is_the_only_one(script, nodes, alone):
+    done = script("-n", "1", "case.toml", SLURM_JOB_NUM_NODES=nodes)
+    assert ("'OMPI_MCA_btl'" in done.stdout, "'PMIX_MCA_psec'" in done.stdout) == (alone, alone)
+
+
+def test_the_commands_are_called_by_name_from_any_folder(script, tmp_path):
+    (tmp_path / "bin").mkdir()
+    for link in (ROOT / "bin").iterdir():
+        shutil.copy(link, tmp_path / "bin", follow_symlinks=False)
+    (tmp_path / "ehlpetsc" / "post.py").write_text("import os, sys; print('POST', sys.argv[1:], os.getcwd())")
+    called = {}
+    for name in ("ehlpetsc", "ehlpetsc-post"):
+        called[name] = subprocess.run(
+            [name, "-n", "a b"],
+            cwd=tmp_path / "elsewhere",
+            env={"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin"},
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+    assert called["ehlpetsc"].stdout.startswith("ARGS ['-n', 'a b'] SIZE 1")
+    assert called["ehlpetsc-post"].stdout == f"POST ['-n', 'a b'] {tmp_path}/elsewhere\n"

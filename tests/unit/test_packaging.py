@@ -1,0 +1,134 @@
+"""What pip makes of the project: what the wheel holds, and that its commands work from any folder."""
+
+import email
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
+# to compile takes longer than these few steps
+OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "NUMBA_DISABLE_JIT": "1"}
+
+
+def pip(*words, **options):
+    done = subprocess.run(
+        [sys.executable, "-m", "pip", *words],
+        env={"PATH": "/usr/bin:/bin", "PIP_CONFIG_FILE": "/dev/null"},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        **options,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """A copy of what git has, in which a build leaves its traces; with a folder that is no part of it."""
+    folder = tmp_path_factory.mktemp("source")
+    names = ["ehlpetsc", "pyproject.toml", "README.md", "LICENSE", "run_mpi.sh", "bin", "cases", "tests"]
+    subprocess.run(["cp", "-r", *names, folder], cwd=ROOT, check=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(source, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wheel")
+    pip("wheel", "--no-deps", "--no-index", "--no-build-isolation", "-w", folder, source)
+    (made,) = folder.iterdir()
+    return made
+
+
+@pytest.fixture(scope="module")
+def environment(wheel, tmp_path_factory):
+    """A virtual environment on the system's packages with the wheel in it, nothing fetched."""
+    folder = tmp_path_factory.mktemp("environment")
+    subprocess.run(
+        [sys.executable, "-m", "venv", "--system-site-packages", "--without-pip", folder], check=True
+    )
+    pip("--python", folder / "bin" / "python", "install", "--no-index", wheel)
+    return folder
+
+
+def test_the_wheel_holds_the_package_and_nothing_else(wheel):
+    modules = {str(path.relative_to(ROOT)) for path in (ROOT / "ehlpetsc").rglob("*.py")}
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name for name in archive.namelist() if ".dist-info/" not in name}
+        about = {Path(name).name for name in archive.namelist()} - {Path(name).name for name in names}
+    assert names == modules
+    assert about <= {"METADATA", "WHEEL", "RECORD", "LICENSE", "entry_points.txt", "top_level.txt"}
+    assert wheel.stat().st_size < 500_000
+
+
+def test_petsc_and_mpi_are_asked_for_by_the_solver_alone(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith("/METADATA")]
+        needed = email.message_from_bytes(archive.read(name)).get_all("Requires-Dist")
+    always = {re.split(r"[ (>]", line)[0] for line in needed if ";" not in line}
+    assert always == {"numpy", "scipy", "numba", "pydantic", "tomlkit"}
+    for module in ("petsc4py", "mpi4py"):
+        assert [line for line in needed if line.startswith(module) and "solver" in line]
+        assert not [line for line in needed if line.startswith(module) and "solver" not in line]
+
+
+def test_an_installation_brings_the_commands_and_replaces_nothing(environment):
+    there = sorted(path.name for path in (environment / "bin").glob("ehlpetsc*"))
+    assert there == COMMANDS
+    assert COMMANDS == sorted(path.name for path in (ROOT / "bin").iterdir())
+    (packages,) = environment.glob("lib/python3*/site-packages")
+    assert {path.name.split("-")[0] for path in packages.iterdir()} == {"ehlpetsc"}
+
+
+def test_the_commands_work_from_any_folder(environment, tmp_path):
+    def call(name, *words):
+        done = subprocess.run(
+            [environment / "bin" / name, *words],
+            cwd=tmp_path,
+            env=OUTSIDE,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    case = ROOT / "cases" / "ridge.toml"
+    short = [
+        "mesh.points_per_half_width=25",
+        "mesh.inlet=-1.5",
+        "mesh.outlet=1.3",
+        "time.travel=3.5",
+        "time.courant=2",
+    ]
+    said = call("ehlpetsc", case, *(word for key in short for word in ("-ehl_set", key)))
+    assert said.splitlines()[-1].startswith("ehlpetsc: done steps=")
+    assert "ridge.post.h5" in call("ehlpetsc-post", "ridge.h5", "--depths", "0.1")
+    assert call("ehlpetsc-plot", "ridge.h5") == "ridge.png\n"
+    assert "same" in call("ehlpetsc-compare", "ridge.h5", "ridge.h5")
+    assert "--meshes" in call("ehlpetsc-study", "--help")
+    for result in ("ridge.h5", "ridge.post.h5", "ridge.png"):
+        assert (tmp_path / result).stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    "name, lacks", [("ehlpetsc-post", "numpy, scipy, h5py"), ("ehlpetsc-plot", "matplotlib")]
+)
+def test_a_command_says_what_it_lacks(environment, tmp_path, name, lacks):
+    (packages,) = environment.glob("lib/python3*/site-packages")
+    done = subprocess.run(
+        [environment / "bin" / "python", "-S", environment / "bin" / name, "result.h5"],
+        cwd=tmp_path,
+        env=OUTSIDE | {"PYTHONPATH": str(packages)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    told, typed = done.stderr.splitlines()
+    assert lacks in told
+    assert "-m pip install" in typed
