@@ -30,6 +30,7 @@ here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 check="$here/ehlpetsc/environment.py"
 test_only="$here/.test-packages" # what the tests compare with and Debian does not have
 debian_python=/usr/bin/python3
+export HOME=${HOME:-/} # Open MPI 5 does not start without one
 apt="apt-get -o DPkg::Lock::Timeout=600"
 
 say() { echo "run_mpi.sh: $*" >&2; }

@@ -7,6 +7,7 @@
     environment.py found               prints what it is and what it lacks
 """
 
+import importlib
 import importlib.util
 import os
 import re
@@ -123,13 +124,11 @@ def _own(names):
     prepare()
     if missing(names) or DEBIAN in Path(importlib.util.find_spec("petsc4py").origin).parents:
         return False
-    import mpi4py
-
-    mpi4py.rc.initialize = False  # where a batch system starts the ranks, none can be started here
-    from mpi4py import MPI  # noqa: F401  PETSc needs it loaded
-    from petsc4py.lib import ImportPETSc
-
-    return ImportPETSc().ScalarType is float or ImportPETSc().ScalarType.__name__ == "float64"
+    # loaded, not started: where a batch system starts the ranks, there can be none here
+    importlib.import_module("mpi4py").rc.initialize = False
+    importlib.import_module("mpi4py.MPI")
+    petsc = importlib.import_module("petsc4py.lib").ImportPETSc()
+    return petsc.ScalarType.__name__ in ("float", "float64")
 
 
 def _found():

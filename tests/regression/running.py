@@ -9,20 +9,26 @@ ROOT = Path(__file__).parents[2]
 PYTHON = "/usr/bin/python3"
 TAMPERED = str(Path(__file__).with_name("tampered.py"))
 # what run_mpi.sh sets; the tests of a bare environment leave out the first two
-DEBIAN = "/usr/lib/petscdir/petsc3.18/x86_64-linux-gnu-real"
+DEBIAN = max(map(str, Path("/usr/lib/petscdir").glob("petsc3.*/*-real")))
 SCRIPT = {
     "PETSC_DIR": DEBIAN,
     "PYTHONPATH": f"{ROOT}:{DEBIAN}/lib/python3/dist-packages",
     "OMP_NUM_THREADS": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_btl": "self,vader",
+    "OMPI_MCA_btl": "^tcp,ofi,openib,uct",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_smsc": "^cma",
+    "OMPI_MCA_orte_execute_quiet": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+    "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "PRTE_MCA_hwloc_default_binding_policy": "none",
     "PMIX_MCA_psec": "native",
     "PMIX_MCA_gds": "hash",
     "OMPI_MCA_mpi_yield_when_idle": "1",  # the cores may be fewer than the ranks, and not ours alone
 }
-BARE = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "TERM": "dumb"}
+BARE = {"PATH": "/usr/bin:/bin", "HOME": "/", "TERM": "dumb"}
 
 # the inlet near the contact, so that a few steps carry the roughness there; 40 steps on 113 nodes
 SHORT = ["mesh.inlet=-1.5", "mesh.outlet=1.3", "mesh.points_per_half_width=40", "time.travel=0.5"]
@@ -36,7 +42,7 @@ def settings(*overrides):
 def command(*words, ranks=0, tampered=()):
     """The command line; with `ranks` under mpirun, with `tampered` words through tampered.py."""
     program = [TAMPERED, *map(str, tampered)] if tampered else ["-m", "ehlpetsc"]
-    mpirun = ["mpirun", "-q", "-n", str(ranks), "--bind-to", "none", "--oversubscribe"] if ranks else []
+    mpirun = ["mpirun", "-n", str(ranks)] if ranks else []
     return [*mpirun, PYTHON, *program, *map(str, words)]
 
 

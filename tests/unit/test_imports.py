@@ -28,6 +28,7 @@ MAY_IMPORT = {
     "study": {"case", "results", "physics"},  # runs the solver as a user does: by its command
     "compare": {"analysis"},
     "__main__": {"run", "case"},
+    "commands": set(),  # starts each command by its name
 } | {name: set() for name in GROUND}
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy

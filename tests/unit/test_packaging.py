@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
 # to compile takes longer than these few steps
-OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/nonexistent", "NUMBA_DISABLE_JIT": "1"}
+OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/", "NUMBA_DISABLE_JIT": "1"}
 
 
 def pip(*words, **options):
