@@ -1,5 +1,6 @@
 """Work in a process of its own: HDF5 may crash on a damaged file, or never return from it."""
 
+import contextlib
 import mmap
 import os
 import select
@@ -98,12 +99,14 @@ class Supervisor:
                 raise KeyboardInterrupt
             with announced_to(note.write):
                 status = work()
-            sys.stdout.flush()
         except (KeyboardInterrupt, BrokenPipeError):
             status = ExitStatus.STOPPED
         except BaseException:
             traceback.print_exc()
         finally:
+            for stream in filter(None, (sys.stdout, sys.stderr)):
+                with contextlib.suppress(OSError):  # whoever read it has gone
+                    stream.flush()
             os._exit(status)
 
     def _wait(self, pipe, note):

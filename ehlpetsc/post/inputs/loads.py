@@ -15,7 +15,7 @@ SURFACES = ("slow", "fast")
 UNITS = {"x": "m", "time": "s", "step": "1", "pressure": "Pa", "s": "m", "z": "m"} | {
     f"shear_stress_{surface}": "Pa" for surface in SURFACES
 }
-MOST_NODES = 10_000_000
+MOST_VALUES = 10_000_000  # of a row: nodes, frames, points of a profile
 FEWEST_NODES = 8  # the slopes between nodes take seven
 
 
@@ -85,7 +85,7 @@ class Loads:
         self.profiles = {surface: self._profile(surface) for surface in SURFACES}
 
     def _read_nodes(self):
-        self.x = self._row("x", MOST_NODES)
+        self.x = self._row("x")
         if self.x.size < FEWEST_NODES:
             raise PostError(f"dataset x: {self.x.size} nodes, at least {FEWEST_NODES} are needed")
         try:
@@ -151,10 +151,10 @@ class Loads:
             raise PostError(f'dataset {name}: its unit is "{in_words(units)}", it must be "{wanted}"')
         return found
 
-    def _row(self, name, most):
+    def _row(self, name, most=MOST_VALUES):
         """The first `most` values of a one-dimensional dataset, as float64."""
         found = self._dataset(name, 1)
-        if most == MOST_NODES and found.shape[0] > most:
+        if min(found.shape[0], most + 1) > MOST_VALUES:
             raise PostError(f"dataset {name}: {found.shape[0]} values are more than can be meant")
         with reading(f"dataset {name}"):
             return found[:most].astype(float)
@@ -169,7 +169,7 @@ class Loads:
             return None
         if not all(is_there.values()):
             raise PostError(f"no dataset {place}/{'z' if is_there['s'] else 's'}")
-        s, z = (self._row(f"{place}/{name}", MOST_NODES) for name in ("s", "z"))
+        s, z = (self._row(f"{place}/{name}") for name in ("s", "z"))
         if s.size != z.size or s.size < 2:
             raise PostError(f"datasets {place}/s and z: {s.size} and {z.size} values, not one height a place")
         for name, values in (("s", s), ("z", z)):
@@ -204,11 +204,12 @@ class Loads:
             return None
         with reading(f"dataset steps/{name}"):
             group = self._file.get("steps")
-            if not isinstance(group, h5py.Group) or name not in group or "step" not in group:
+            found = [group.get(n) if isinstance(group, h5py.Group) else None for n in ("step", name)]
+            if not all(isinstance(d, h5py.Dataset) and d.ndim == 1 and d.dtype.kind in "fiu" for d in found):
                 return None
-            number, values = group["step"][:], group[name][:]
+            number, values = (d[:MOST_VALUES] for d in found)
         rows = np.searchsorted(number, self.step)
-        if values.shape != number.shape or number.ndim != 1 or (rows >= number.size).any():
+        if values.shape != number.shape or (rows >= number.size).any():
             return None
         return values[rows].astype(float) if (number[rows] == self.step).all() else None
 

@@ -1,0 +1,230 @@
+"""What is written and what never is: over other files, by two runs at once, half. Signals, crashes, hangs."""
+
+import faulthandler
+import importlib.util
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from post_result_file import Scene, write
+
+from ehlpetsc.errors import ExitStatus
+from ehlpetsc.post import supervised
+from ehlpetsc.post.command import main
+from ehlpetsc.post.inputs.reading import reading
+from ehlpetsc.post.outputs.parts import Parts
+from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.post.run import Job, run
+from ehlpetsc.post.supervised import Supervisor
+
+ROOT = Path(__file__).resolve().parents[2]
+COMMAND = [sys.executable, "-m", "ehlpetsc.post"]
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return Scene(per_width=20, ratio=0.5, travel=9.0)
+
+
+@pytest.fixture
+def result(scene, tmp_path):
+    return write(tmp_path / "run.h5", scene, depths=(0.0, 0.5))
+
+
+def left_over(folder):
+    """Names of what should not be there after a command."""
+    return [path.name for path in folder.iterdir() if ".parts" in path.name or ".tmp" in path.name]
+
+
+def refused(capsys, *argv):
+    """Exit status 2, and why."""
+    assert main([str(part) for part in argv]) == ExitStatus.BAD_INPUT
+    return capsys.readouterr().err
+
+
+def test_the_input_is_never_the_output(result, tmp_path, capsys):
+    before = result.read_bytes()
+    assert "is an input" in refused(capsys, result, "-o", result)
+    link = tmp_path / "link.h5"
+    link.symlink_to(result)
+    assert "is an input" in refused(capsys, result, "-o", link)
+    assert result.read_bytes() == before and not left_over(tmp_path)
+
+
+def test_the_output_of_one_file_is_never_another_input(result, scene, capsys):
+    assert main([str(result)]) == 0
+    said = refused(capsys, result, result.with_name("run.post.h5"))
+    assert "run.post.h5 is an input" in said and "a result of post-processing, not of ehlpetsc" in said
+
+
+def test_other_files_are_not_overwritten(result, scene, tmp_path, capsys):
+    other = write(tmp_path / "other.h5", scene)
+    text = tmp_path / "notes.txt"
+    text.write_text("mine")
+    before = other.read_bytes()
+    for path in (other, text, tmp_path):
+        assert "exists and is not a result of post-processing" in refused(capsys, result, "-o", path)
+    assert other.read_bytes() == before and text.read_text() == "mine"
+    assert "does not exist" in refused(capsys, result, "-o", tmp_path / "none" / "a.h5")
+
+
+def test_a_folder_of_another_kind_is_not_emptied(result, tmp_path, capsys):
+    mine = tmp_path / "run.post.h5.parts" / "thesis.tex"
+    mine.parent.mkdir()
+    mine.write_text("mine")
+    assert "is in the way" in refused(capsys, result)
+    assert mine.read_text() == "mine"
+
+
+def test_an_earlier_result_is_replaced(result, tmp_path):
+    output = tmp_path / "run.post.h5"
+    assert main([str(result)]) == 0 == main([str(result), "--depths", "0.3"])
+    assert PostResult(output).z.tolist() == [0.3] and not left_over(tmp_path)
+
+
+def test_an_edit_of_the_same_size_and_time_is_seen(result, tmp_path, capsys):
+    output, stamp = tmp_path / "run.post.h5", os.stat(result)
+    assert main([str(result)]) == 0
+    first = PostResult(output).damage["slow"]
+    with h5py.File(result, "r+") as file:
+        file["shear_stress_slow"][200] = file["shear_stress_slow"][200] * 1.5
+    os.utime(result, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
+    assert os.stat(result).st_size == stamp.st_size
+    capsys.readouterr()
+    assert main([str(result)]) == 0 and "already there" not in capsys.readouterr().err
+    assert np.nanmax(np.abs(PostResult(output).damage["slow"] - first)) > 0
+    assert main([str(result)]) == 0 and "already there" in capsys.readouterr().err
+
+
+def test_two_runs_with_one_output(result, tmp_path, capsys):
+    parts = Parts(tmp_path / "run.post.h5", "the mark of a run")
+    parts.save("slow", 0.0, np.zeros((2, 3)))
+    assert "another run is writing" in refused(capsys, result)
+    assert parts.has("slow", 0.0)
+    parts.close()
+    assert main([str(result)]) == 0 and not left_over(tmp_path)
+
+
+@pytest.mark.parametrize("room", [4096, 40_000], ids=["for no part", "for the parts"])
+def test_full_disk(room, result, tmp_path):
+    """A limit to the size of files ends a write as a full disk does."""
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+
+    size = 2 * 3 * 8 * (9 * 20 + 81)  # of a part, about
+    assert 4096 < size < 40_000
+    ended = subprocess.run([*COMMAND, result], cwd=ROOT, preexec_fn=limit, capture_output=True, text=True)
+    assert ended.returncode == 2 and "Traceback" not in ended.stderr
+    assert "run.post.h5: not written" in ended.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
+
+
+def catches(process, number):
+    """Whether a process has a handler of that signal."""
+    status = Path(f"/proc/{process.pid}/status").read_text()
+    caught = next(line.split()[1] for line in status.splitlines() if line.startswith("SigCgt"))
+    return bool(int(caught, 16) >> (number - 1) & 1)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_while_everything_is_being_imported(number, result, tmp_path):
+    process = subprocess.Popen([*COMMAND, result], cwd=ROOT, stderr=subprocess.PIPE, text=True)
+    while not catches(process, signal.SIGTERM):
+        time.sleep(0.001)
+    process.send_signal(number)
+    assert process.wait(30) == 4 and "Traceback" not in process.stderr.read()
+    assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
+
+
+def test_sigterm_at_work_and_going_on(scene, tmp_path):
+    depths = tuple(0.05 * k for k in range(16))
+    path, output = write(tmp_path / "run.h5", scene, depths=depths), tmp_path / "run.post.h5"
+    process = subprocess.Popen([*COMMAND, path], cwd=ROOT, stderr=subprocess.PIPE, text=True)
+    while not list(tmp_path.glob("run.post.h5.parts/*.npy")):
+        assert process.poll() is None
+        time.sleep(0.001)
+    process.terminate()
+    assert process.wait(30) == 4 and "goes on from the finished depths" in process.stderr.read()
+    assert not output.exists() and list(tmp_path.glob("run.post.h5.parts/*.npy"))
+    run(Job(str(path), str(output)))
+    run(Job(str(path), str(tmp_path / "whole.h5")))
+    ours, whole = PostResult(output), PostResult(tmp_path / "whole.h5")
+    np.testing.assert_allclose(ours.damage["slow"], whole.damage["slow"], rtol=1e-9)
+    assert not left_over(tmp_path)
+
+
+def test_a_bad_file_does_not_stop_the_others(result, scene, tmp_path, capsys):
+    bad = tmp_path / "bad.h5"
+    bad.write_text("no HDF5")
+    good = write(tmp_path / "good.h5", Scene(per_width=20, ratio=0.5, travel=9.0, seed=7))
+    assert main([str(result), str(bad), str(good)]) == ExitStatus.BAD_INPUT
+    told = capsys.readouterr()
+    assert f"ehlpetsc.post: {bad}: not an HDF5 file" in told.err
+    assert told.out.count("ehlpetsc.post: done") == 2 and good.with_name("good.post.h5").exists()
+
+
+def test_points_above_the_surface_are_refused(result, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([str(result), "--pictures", "--point", "-3", "-0.1"])
+    assert ended.value.code == 2 and "0 or more" in capsys.readouterr().err
+
+
+@pytest.fixture
+def supervisor(monkeypatch):
+    """What it says goes into `.said`; signal handlers are put back."""
+    handlers = {number: signal.getsignal(number) for number in supervised.STOPS}
+    said = []
+    made = Supervisor(said.append)
+    made.said = said
+    yield made
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+
+
+def test_a_crash_in_reading_names_what_was_read(supervisor):
+    def crash():
+        faulthandler.disable()  # pytest's, which would tell of it at length
+        with reading("dataset pressure"):
+            os.kill(os.getpid(), signal.SIGSEGV)
+
+    assert supervisor("a.h5", crash) == ExitStatus.BAD_INPUT
+    assert supervisor.said == ["a.h5: dataset pressure: HDF5 crashes on it (SIGSEGV), the file is damaged"]
+    assert supervisor("b.h5", lambda: ExitStatus.DONE) == ExitStatus.DONE
+
+
+def test_a_read_that_never_returns(supervisor, monkeypatch):
+    monkeypatch.setattr(supervised, "READ_SECONDS", 2)
+
+    def hang():
+        with reading("dataset time"):
+            time.sleep(60)
+
+    assert supervisor("a.h5", hang) == ExitStatus.BAD_INPUT
+    assert "a.h5: dataset time: HDF5 does not return" in supervisor.said[0]
+
+
+def test_a_crash_of_our_own_is_a_bug(supervisor):
+    def crash():
+        faulthandler.disable()
+        os.kill(os.getpid(), signal.SIGFPE)
+
+    assert supervisor("a.h5", crash) == ExitStatus.BUG
+
+
+def test_damaged_files():
+    """A few of `tests/fuzz/post.py`: every one is refused with its reason, or read."""
+    spec = importlib.util.spec_from_file_location("fuzz_post", ROOT / "tests" / "fuzz" / "post.py")
+    fuzz = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(fuzz)
+    found = fuzz.fuzz(flips=25, structures=25, seed=3)
+    for counts in found.values():
+        assert {word: counts[word] for word in fuzz.BAD} == dict.fromkeys(fuzz.BAD, 0)
+    assert found["flips"]["refused"] > 1 and found["structures"]["refused"] > 15
