@@ -3,18 +3,30 @@
 from importlib import import_module
 
 _HOMES = {
+    "Criteria": "criteria.laws",
     "Damage": "fatigue.accumulate",
     "Material": "fatigue.strain_life",
+    "Passes": "fatigue.passes",
+    "PlaneDamage": "criteria.search",
+    "WeibullBounds": "fatigue.weibull",
     "WeibullFit": "fatigue.statistics",
+    "WeibullLikelihood": "fatigue.weibull",
+    "critical_plane": "criteria.search",
     "cycles_to_failure": "fatigue.strain_life",
     "damage": "fatigue.accumulate",
+    "dang_van": "criteria.search",
     "equivalent_range": "fatigue.strain_life",
+    "fold": "fatigue.passes",
+    "largest_near": "fatigue.passes",
     "out_of_plane": "stresses.half_plane",
+    "pass_statistics": "fatigue.passes",
     "rainflow": "fatigue.cycles",
     "strain_range": "fatigue.strain_life",
     "stress": "stresses.half_plane",
     "von_mises": "stresses.half_plane",
+    "weibull_bounds": "fatigue.weibull",
     "weibull_fit": "fatigue.statistics",
+    "weibull_likelihood": "fatigue.weibull",
 }
 __all__ = list(_HOMES)
 

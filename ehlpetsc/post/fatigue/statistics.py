@@ -6,6 +6,7 @@ import numpy as np
 
 PROMINENCE = 0.1  # of Rq: lower bumps are noise of the measurement, not asperities
 REGRESSIONS = ("x on y", "y on x")
+LEAST_SPREAD = 1e-6  # of the values: damages are sure to some 1e-6, what is closer together has no shape
 
 
 class WeibullFit(NamedTuple):
@@ -54,6 +55,11 @@ def benard_ranks(n):
     return (np.arange(1, n + 1) - 0.3) / (n + 0.4)
 
 
+def too_alike(values):
+    """Whether values above 0 are fewer than two, or spread by less than LEAST_SPREAD of the largest."""
+    return values.size < 2 or values.max() - values.min() <= LEAST_SPREAD * values.max()
+
+
 def weibull_fit(values, regression="x on y"):
     r"""Two-parameter Weibull by median rank regression.
 
@@ -72,7 +78,8 @@ def weibull_fit(values, regression="x on y"):
     Returns
     -------
     WeibullFit
-        nan where fewer than two different values remain.
+        nan where fewer than two values remain or all lie within 1e-6 of each other: a spread that is
+        rounding would give a beta of a million without meaning.
 
     Raises
     ------
@@ -85,7 +92,7 @@ def weibull_fit(values, regression="x on y"):
     if regression not in REGRESSIONS:
         raise ValueError(f"regression must be one of {', '.join(REGRESSIONS)}")
     used = (values > 0) & np.isfinite(values)
-    if np.unique(values[used]).size < 2:
+    if too_alike(values[used]):
         return WeibullFit(np.nan, np.nan, np.nan)
     x = np.log(values[used])
     y = np.log(-np.log1p(-benard_ranks(values.size)[used]))

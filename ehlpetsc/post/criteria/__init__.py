@@ -1,0 +1,1 @@
+"""Fatigue criteria beside the paper's: critical planes in three dimensions, tension, and a fatigue limit."""

@@ -1,0 +1,165 @@
+r"""The worst plane of a history: damage counted on planes in three dimensions, the largest one kept.
+
+A criterion is a quantity whose cycles are counted on a plane and a parameter P of each cycle (laws in
+:mod:`ehlpetsc.post.criteria.laws`). The largest normal stress of a cycle is that within its closed loop.
+
+First all planes of a coarse set are tried on the few samples at which the path turns, those first whose
+widest range promises most, until no other can reach the damage found. From the best two on the plane is
+improved in smaller and smaller steps, and the damage of the best one is counted on all samples.
+"""
+
+from math import exp, log, pi
+
+import numpy as np
+
+from ehlpetsc.post.criteria.planes import (
+    STEP,
+    normal_weights,
+    residual_share,
+    shear_weights,
+    strain_weights,
+)
+from ehlpetsc.post.criteria.turning import turning_samples
+from ehlpetsc.post.fatigue.cycles import find_cycles
+from ehlpetsc.post.fatigue.life_table import interpolate
+from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of
+from ehlpetsc.post.jit import njit
+
+SHEAR, FATEMI_SOCIE, SWT = 0, 1, 2
+STARTS = 2  # planes of the coarse set that are improved
+FINEST = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
+NEGLIGIBLE = 0.2  # of the widest range: cycles left out in the search, below 1e-7 of its damage each
+
+
+@njit(cache=True, nogil=True)
+def _sum(weights, scale, offset, stress, size, out):
+    for k in range(size):
+        out[k] = offset + scale * (
+            weights[0] * float(stress[0, k])
+            + weights[1] * float(stress[1, k])
+            + weights[2] * float(stress[2, k])
+        )
+
+
+@njit(cache=True, nogil=True)
+def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
+    """Fill the counted series (as an equivalent stress) and, where the criterion needs it, normal stress."""
+    theta, phi, psi = angles
+    if kind == SWT:
+        _sum(strain_weights(theta, phi, nu), 1.0, 0.0, stress, size, series)
+    else:
+        _sum(shear_weights(theta, phi, psi, nu), 3**0.5, 0.0, stress, size, series)
+    if kind != SHEAR:
+        offset = residual * residual_share(theta, phi)
+        _sum(normal_weights(theta, phi, nu), 1.0, offset, stress, size, normal)
+
+
+@njit(cache=True, nogil=True)
+def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
+    """1/N of a cycle of a given range and largest normal stress."""
+    if kind == SWT and normal <= 0 or width <= 0:
+        return 0.0
+    parameter = interpolate(2 * log(width), curve)
+    if kind == SWT:
+        parameter += log(normal)
+    elif kind == FATEMI_SOCIE and normal > 0:
+        parameter += log(1 + sensitivity * normal)
+    return exp(min(interpolate(parameter, lives), 700.0))
+
+
+@njit(cache=True, nogil=True)
+def plane_damage(kind, angles, stress, size, law, share, work):
+    """Damage on one plane; cycles below `share` of the widest range are left out."""
+    nu, residual, closed, sensitivity, curve, lives = law
+    stack, first, second, weight, series, normal = work
+    _on_plane(kind, angles, stress, size, nu, residual, series, normal)
+    n = find_cycles(series[:size], closed, stack, first, second, weight)
+    least = 0.0
+    if share > 0:
+        least = share * (series[:size].max() - series[:size].min())
+    total = 0.0
+    for k in range(n):
+        width = abs(series[first[k]] - series[second[k]])
+        if width <= least:
+            continue
+        highest = 0.0
+        if kind != SHEAR:
+            start, count = loop_of(series, size, first[k], second[k], closed)
+            for m in range(start, start + count):
+                highest = max(highest, normal[m if m < size else m - size])
+        total += weight[k] * _cycle_damage(kind, width, highest, sensitivity, curve, lives)
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _coarse(kind, grid, stress, size, law, work, bounds):
+    """The STARTS best planes of the grid: angles (STARTS, 3) and damage, in falling order."""
+    nu, residual, _, sensitivity, curve, lives = law
+    series, normal = work[4], work[5]
+    for g in range(grid.shape[0]):
+        _on_plane(kind, grid[g], stress, size, nu, residual, series, normal)
+        width = series[:size].max() - series[:size].min()
+        highest = normal[:size].max() if kind != SHEAR else 0.0
+        bounds[g] = _cycle_damage(kind, width, highest, sensitivity, curve, lives)
+    best, angles = np.full(STARTS, -1.0), np.zeros((STARTS, 3))
+    for g in np.argsort(-bounds):
+        if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
+            break
+        found = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE, work)
+        place = STARTS
+        while place > 0 and found > best[place - 1]:
+            place -= 1
+        for k in range(STARTS - 1, place, -1):
+            best[k], angles[k] = best[k - 1], angles[k - 1]
+        if place < STARTS:
+            best[place], angles[place] = found, grid[g]
+    return angles, best
+
+
+@njit(cache=True, nogil=True)
+def _improve(kind, angles, damage, stress, size, law, work):
+    """Pattern search over the angles, from half the coarse step down to FINEST."""
+    step = STEP * pi / 180 / 2
+    trial = angles.copy()
+    while step > FINEST:
+        better = False
+        for axis in range(2 if kind == SWT else 3):
+            for way in (-step, step):
+                trial[:] = angles
+                trial[axis] += way
+                found = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE, work)
+                if found > damage:
+                    damage, better = found, True
+                    angles[:] = trial
+                    break
+        if not better:
+            step /= 2
+    return damage
+
+
+@njit(cache=True, nogil=True)
+def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out):
+    """out (3,) = damage on the worst plane of stress (3, :size), and theta and phi of its normal in radians.
+
+    `few` (3, :few_size) are the samples at which the path turns.
+    """
+    starts, damages = _coarse(kind, grid, few, few_size, law, work, bounds)
+    out[:] = 0.0
+    for k in range(STARTS):
+        if damages[k] <= 0:
+            continue
+        _improve(kind, starts[k], damages[k], few, few_size, law, work)
+        found = plane_damage(kind, starts[k], stress, size, law, 0.0, work)
+        if found > out[0]:
+            out[0], out[1], out[2] = found, starts[k, 0], starts[k, 1]
+
+
+@njit(cache=True, nogil=True)
+def reduced(stress, size, nu, points, places, few):
+    """Fill `points` of loops.equivalent_points and `few` (3, :returned) with the samples that turn."""
+    equivalent_points(stress[:, :size], nu, points)
+    count = turning_samples(points, size, places)
+    for k in range(count):
+        for part in range(3):
+            few[part, k] = stress[part, places[k]]
+    return count

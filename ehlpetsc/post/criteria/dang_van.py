@@ -1,0 +1,135 @@
+r"""Dang Van's criterion: is the fatigue limit kept in every grain? A utilisation, not a damage.
+
+.. math::
+    U = \max_t \frac{\tau(t) + a\,\max(\sigma_H(t), 0)}{\tau_w}, \qquad
+    a = 3\Big(\frac{\tau_w}{\sigma_w}-\frac12\Big)
+
+:math:`\tau(t)` is half the difference of the largest and smallest principal values of the deviator less the
+centre of the smallest ball about its path (what a grain that has shaken down still feels), :math:`\sigma_H`
+the hydrostatic stress with the residual stress, :math:`\tau_w` and :math:`\sigma_w` the fatigue limits in
+reversed torsion and reversed bending. Up to U = 1 no crack starts; the margin is 1/U.
+
+Dang Van, Griveau & Message (1989), *On a new multiaxial fatigue limit criterion*, in Biaxial and Multiaxial
+Fatigue, EGF 3; constants from the two limits, smallest ball as in Papadopoulos' thesis (1987). Under the
+pressure of a rolling contact the straight line goes on to let ever more shear pass, which tests do not show
+(Desimone, Bernasconi & Beretta (2006), Wear 260): compression counts as no hydrostatic stress here.
+"""
+
+from math import sqrt
+
+import numpy as np
+
+from ehlpetsc.post.jit import njit
+
+ROUNDS = 200
+INSIDE = 1e-9  # a point outside by this share of the radius is inside
+
+
+@njit(cache=True, nogil=True)
+def _centre(points, corners, count):
+    """Centre of the smallest sphere through 1 to 4 points; False where they span fewer axes."""
+    centre = points[:, corners[0]].copy()
+    n = count - 1
+    if n == 0:
+        return True, centre
+    edges = np.empty((n, 3))
+    for k in range(n):
+        edges[k] = points[:, corners[k + 1]] - centre
+    system = np.empty((n, n + 1))
+    for k in range(n):
+        for m in range(n):
+            system[k, m] = 2 * np.sum(edges[k] * edges[m])
+        system[k, n] = np.sum(edges[k] ** 2)
+    for k in range(n):  # elimination; Gram matrices of a few edges, the largest pivot decides
+        pivot = k
+        for m in range(k + 1, n):
+            if abs(system[m, k]) > abs(system[pivot, k]):
+                pivot = m
+        if abs(system[pivot, k]) <= 1e-12 * system[:, n].max():
+            return False, centre
+        for m in range(n + 1):
+            system[k, m], system[pivot, m] = system[pivot, m], system[k, m]
+        for m in range(n):
+            if m != k:
+                factor = system[m, k] / system[k, k]
+                for q in range(k, n + 1):
+                    system[m, q] -= factor * system[k, q]
+    for k in range(n):
+        centre += system[k, n] / system[k, k] * edges[k]
+    return True, centre
+
+
+@njit(cache=True, nogil=True)
+def _reach(points, corners, count, centre):
+    reach = 0.0
+    for k in range(count):
+        reach = max(reach, np.sum((points[:, corners[k]] - centre) ** 2))
+    return sqrt(reach)
+
+
+@njit(cache=True, nogil=True)
+def _smallest_of_few(points, few, count):
+    """Smallest ball about up to 5 points: that of a part of them which holds the others; and this part."""
+    best, best_centre = np.inf, points[:, few[0]].copy()
+    kept, kept_count = few.copy(), count
+    part = np.empty(5, np.int64)
+    for mask in range(1, 1 << count):
+        size = 0
+        for k in range(count):
+            if mask >> k & 1:
+                part[size] = few[k]
+                size += 1
+        if size > 4:
+            continue
+        found, centre = _centre(points, part, size)
+        if not found:
+            continue
+        radius = _reach(points, part, size, centre)
+        if radius < best and _reach(points, few, count, centre) <= radius * (1 + INSIDE):
+            best, best_centre, kept_count = radius, centre, size
+            kept[:size] = part[:size]
+    return best, best_centre, kept, kept_count
+
+
+@njit(cache=True, nogil=True)
+def smallest_ball(points):
+    """Centre (3,) and radius of the smallest ball about points (3, n).
+
+    The farthest point outside joins the few that carry the ball until none is outside: the radius grows in
+    every round, so that no set of carriers comes back.
+    """
+    few = np.zeros(5, np.int64)
+    count, radius, centre = 1, 0.0, points[:, 0].copy()
+    for _ in range(ROUNDS):
+        farthest, squared = 0, -1.0
+        for k in range(points.shape[1]):
+            away = (
+                (points[0, k] - centre[0]) ** 2
+                + (points[1, k] - centre[1]) ** 2
+                + (points[2, k] - centre[2]) ** 2
+            )
+            if away > squared:
+                farthest, squared = k, away
+        if sqrt(squared) <= radius * (1 + INSIDE):
+            break
+        few[count] = farthest
+        larger, new_centre, few, count = _smallest_of_few(points, few, count + 1)
+        if not larger > radius:
+            break
+        radius, centre = larger, new_centre
+    return centre, radius
+
+
+@njit(cache=True, nogil=True)
+def utilisation(stress, points, nu, residual, slope, limit):
+    """U of a history (3, samples) with its `points` of :mod:`ehlpetsc.post.fatigue.loops`; `slope` is a."""
+    centre, _ = smallest_ball(points)
+    root, largest = sqrt(3.0), 0.0
+    for k in range(stress.shape[1]):
+        u = abs(points[0, k] - centre[0])
+        d, t = (points[1, k] - centre[1]) / root, (points[2, k] - centre[2]) / root
+        inside = sqrt(d * d + t * t)  # the deviator is (u/3 + d, -2u/3, u/3 - d) and t
+        shear = max(inside, (u + inside) / 2)
+        hydrostatic = ((1 + nu) * (float(stress[0, k]) + float(stress[1, k])) + 2 * residual) / 3
+        largest = max(largest, shear + slope * max(hydrostatic, 0.0))
+    return largest / limit

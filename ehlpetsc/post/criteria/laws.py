@@ -1,0 +1,121 @@
+r"""The criteria beside the paper's: their equations, sources and the constants they need.
+
+Plain shear strain (the plane of the largest damage by shear alone) and Fatemi & Socie (1988), Fatigue Fract.
+Engng Mater. Struct. 11, whose normal stress opens the crack that shear makes:
+
+.. math::
+    \frac{\Delta\gamma}{2} \quad\text{or}\quad
+    \frac{\Delta\gamma}{2}\Big(1+k\frac{\sigma_{n,\max}}{\sigma_y}\Big)
+    = \frac{\tau_f'}{G}(2N)^b + \gamma_f'(2N)^c
+
+with :math:`\tau_f'=\sigma_f'/\sqrt3`, :math:`\gamma_f'=\sqrt3\,\varepsilon_f'` (von Mises; for hardened
+steel McClaflin & Fatemi (2004), Int. J. Fatigue 26, who take k = 1 where no test tells it). Smith, Watson &
+Topper (1970), J. Mater. 5, on the plane of the largest damage (Socie (1987), J. Eng. Mater. Technol. 109),
+for cracks that tension makes:
+
+.. math::
+    \sigma_{n,\max}\frac{\Delta\varepsilon_n}{2}
+    = \frac{\sigma_f'^2}{E}(2N)^{2b} + \sigma_f'\varepsilon_f'(2N)^{b+c}
+
+Strain ranges come from elastic ones by the same rule as in the paper's criterion (13), the shear as
+:math:`\Delta\gamma = \sqrt3\,\Delta\varepsilon(\sqrt3\Delta\tau)` with 3G for E, a normal strain as that of
+the uniaxial stress :math:`E\Delta\varepsilon_n`. The largest normal stress stays elastic and holds the
+residual stress; compression counts as none, so that it helps no further than down to a cycle which ends at
+zero stress.
+"""
+
+from dataclasses import dataclass
+from math import exp, inf, log, sqrt
+
+from ehlpetsc.post.fatigue.elastic_plastic import log_local_range
+from ehlpetsc.post.fatigue.life_table import HIGHEST, LOWEST, curve_table
+from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude, rule_of
+
+PLASTIC_STRAIN = 0.002  # at which the cyclic yield strength is read
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """Constants of the criteria beside those of the strain-life curves, SI units.
+
+    Attributes
+    ----------
+    normal_sensitivity : float
+        k of Fatemi and Socie; 1 where no test tells it (McClaflin & Fatemi 2004).
+    yield_strength : float or None
+        sigma_y, Pa; None: the cyclic one at 0.2 % plastic strain, K' 0.002^n'.
+    torsion_limit : float
+        tau_w of Dang Van, Pa. Default: 375 MPa, the amplitude 0.25 p of the shear stress parallel to the
+        surface under the 1.5 GPa that ISO 281:2007 takes for the fatigue limit of bearing steel.
+    bending_limit : float
+        sigma_w of Dang Van, Pa. Default: sqrt(3) tau_w (von Mises).
+    """
+
+    normal_sensitivity: float = 1.0
+    yield_strength: float | None = None
+    torsion_limit: float = 375e6
+    bending_limit: float = 375e6 * sqrt(3)
+
+    def __post_init__(self):
+        for name in ("normal_sensitivity", "yield_strength", "torsion_limit", "bending_limit"):
+            value = getattr(self, name)
+            least = 0 <= value if name == "normal_sensitivity" else value is None or value > 0
+            if not least or value is not None and not value < inf:
+                raise ValueError(f"{name} = {value}: must be a finite number above 0")
+        if self.torsion_limit < self.bending_limit / 2:
+            raise ValueError(
+                f"torsion_limit = {self.torsion_limit}: must be half of bending_limit or more (Dang Van's "
+                "constant a would be negative)"
+            )
+
+    @property
+    def hydrostatic_slope(self):
+        """a of Dang Van's criterion."""
+        return 3 * (self.torsion_limit / self.bending_limit - 0.5)
+
+    def sensitivity(self, material):
+        """k/sigma_y of Fatemi and Socie, 1/Pa."""
+        cyclic = material.hardening_coefficient * PLASTIC_STRAIN**material.cyclic_hardening
+        return self.normal_sensitivity / (self.yield_strength or cyclic)
+
+
+def _amplitude_table(modulus, material, rule):
+    """ln of the strain amplitude over ln of the squared elastic range (Pa), with `modulus` for E."""
+    _, hardening, exponent, strength, *_ = material.constants()
+
+    def log_amplitude(log_squared):
+        local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
+        value = log_strain_amplitude(local, modulus, hardening, exponent)
+        elastic = exp(local - log(2 * modulus) - value)
+        return value, (elastic + (1 - elastic) / exponent) * rate / 2
+
+    return curve_table(2 * log(LOWEST * strength), 2 * log(HIGHEST * strength), log_amplitude)
+
+
+def _life_table(curve, strength, modulus, ductility, b, c):
+    """ln(1/N) over ln P of strength/modulus (2N)^b + ductility (2N)^c = P, as far as the amplitudes go."""
+
+    def log_damage(log_parameter):
+        y = log_reversals(log_parameter, strength, modulus, ductility, b, c)
+        elastic = exp(log(strength / modulus) + b * y - log_parameter)
+        return log(2.0) - y, -1 / (b * elastic + c * (1 - elastic))
+
+    start, stop = curve
+    return curve_table(start, stop, log_damage)
+
+
+def shear_tables(material, strain="direct"):
+    """Amplitude and life tables of both shear criteria, strains over sqrt(3): uniaxial with 3G for E."""
+    modulus = 1.5 * material.youngs_modulus / (1 + material.poisson_ratio)
+    amplitudes = _amplitude_table(modulus, material, rule_of(strain))
+    _, _, _, strength, ductility, b, c = material.constants()
+    ends = amplitudes[0, 0], amplitudes[-2, 0]
+    return amplitudes, _life_table(ends, strength, modulus, ductility, b, c)
+
+
+def swt_tables(material, strain="direct"):
+    """Amplitude and life tables of Smith, Watson and Topper's criterion."""
+    modulus, _, _, strength, ductility, b, c = material.constants()
+    amplitudes = _amplitude_table(modulus, material, rule_of(strain))
+    ends = amplitudes[0, 0] + log(LOWEST * strength), amplitudes[-2, 0] + log(HIGHEST * strength)
+    return amplitudes, _life_table(ends, strength**2, modulus, strength * ductility, 2 * b, b + c)

@@ -1,0 +1,179 @@
+"""Criteria over many histories: what :mod:`ehlpetsc.post` calls from Python and for result files."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, reduced, worst_plane
+from ehlpetsc.post.criteria.dang_van import utilisation
+from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
+from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
+from ehlpetsc.post.fatigue.cycles import RESIDUES, workspace
+from ehlpetsc.post.fatigue.loops import equivalent_points
+from ehlpetsc.post.jit import njit
+
+KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
+CRITERIA = (*KINDS, "dang-van")
+
+
+class PlaneDamage(NamedTuple):
+    """Damage of each history on its worst plane, and the plane's normal in degrees.
+
+    `inclination` is from x towards z in the section (90: the plane is parallel to the surface), `tilt` out of
+    the section.
+    """
+
+    damage: np.ndarray
+    inclination: np.ndarray
+    tilt: np.ndarray
+
+
+@njit(cache=True, nogil=True)
+def _worst_planes(kind, grid, stress, lengths, law, work, spare, out):
+    points, places, few, bounds = spare
+    for p in range(stress.shape[0]):
+        history, size = stress[p], lengths[p]
+        count = reduced(history, size, law[0], points, places, few)
+        worst_plane(kind, grid, history, size, few, count, law, work, bounds, out[p])
+
+
+@njit(cache=True, nogil=True)
+def _utilisations(stress, lengths, nu, residual, slope, limit, points, out):
+    for p in range(stress.shape[0]):
+        history = stress[p, :, : lengths[p]]
+        equivalent_points(history, nu, points)
+        out[p, 0] = utilisation(history, points[:, : lengths[p]], nu, residual, slope, limit)
+
+
+class PlaneCounter:
+    """Damage on the worst plane of blocks of histories under one criterion."""
+
+    columns = ("damage", "inclination", "tilt")
+
+    def __init__(self, criterion, material, constants, residue, strain, samples):
+        self.kind = KINDS[criterion]
+        self.grid = planes() if self.kind == SWT else planes_and_directions()
+        self.tables = (swt_tables if self.kind == SWT else shear_tables)(material, strain)
+        self.head = (material.poisson_ratio, residue == "closed", constants.sensitivity(material))
+        self.work = (*workspace(samples), np.empty(samples), np.empty(samples))
+        self.spare = (
+            np.empty((3, samples)),
+            np.empty(samples, np.int64),
+            np.empty((3, samples)),
+            np.empty(len(self.grid)),
+        )
+
+    def __call__(self, stress, lengths, out, residual=0.0):
+        """Stress (points, 3, samples), lengths (points,) -> out (points, 3): as in PlaneDamage."""
+        nu, closed, sensitivity = self.head
+        law = (nu, float(residual), closed, sensitivity, *self.tables)
+        found = np.empty((len(stress), 3))
+        stress = np.ascontiguousarray(stress, float)  # one compiled version for files and arrays
+        _worst_planes(self.kind, self.grid, stress, lengths, law, self.work, self.spare, found)
+        out[:, 0] = found[:, 0]
+        out[:, 1], out[:, 2] = described(found[:, 1], found[:, 2])
+
+
+class LimitCounter:
+    """Dang Van's utilisation of blocks of histories."""
+
+    columns = ("utilisation",)
+
+    def __init__(self, poisson_ratio, constants, samples):
+        self.nu = poisson_ratio
+        self.limits = constants.hydrostatic_slope, constants.torsion_limit
+        self.points = np.empty((3, samples))
+
+    def __call__(self, stress, lengths, out, residual=0.0):
+        """Stress (points, 3, samples), lengths (points,) -> out (points, 1)."""
+        stress = np.ascontiguousarray(stress, float)
+        _utilisations(stress, lengths, self.nu, float(residual), *self.limits, self.points, out)
+
+
+def counter_of(criterion, material, constants, residue, strain, samples):
+    """The counter of one of CRITERIA; ValueError for one that does not exist."""
+    if criterion not in CRITERIA:
+        raise ValueError(f"criterion = {criterion!r}: must be one of {', '.join(CRITERIA)}")
+    if residue not in RESIDUES:
+        raise ValueError(f"residue = {residue!r}: must be one of {', '.join(RESIDUES)}")
+    if criterion == "dang-van":
+        return LimitCounter(material.poisson_ratio, constants, samples)
+    return PlaneCounter(criterion, material, constants, residue, strain, samples)
+
+
+def _evaluate(sx, sz, txz, make, residual_stress):
+    stress = np.stack(np.broadcast_arrays(*(np.asarray(part, float) for part in (sx, sz, txz))), axis=-2)
+    if not (np.isfinite(stress).all() and np.isfinite(residual_stress)):
+        raise ValueError("stress histories and residual stress must be finite")
+    shape, samples = stress.shape[:-2], stress.shape[-1]
+    counter = make(samples)
+    blocks = np.ascontiguousarray(stress).reshape(-1, 3, samples)
+    out = np.empty((len(blocks), len(counter.columns)))
+    counter(blocks, np.full(len(blocks), samples), out, residual_stress)
+    return [column.reshape(shape)[()] for column in out.T]
+
+
+def critical_plane(
+    sx,
+    sz,
+    txz,
+    material,
+    criterion="fatemi-socie",
+    constants=None,
+    residue="closed",
+    strain="direct",
+    residual_stress=0.0,
+):
+    """Damage of one pass of each history on its worst plane, planes in three dimensions.
+
+    Parameters
+    ----------
+    sx, sz, txz : array_like, shape (..., samples)
+        Stress histories, Pa; sigma_y follows by plane strain.
+    material : Material
+    criterion : {"fatemi-socie", "shear", "swt"}
+        Equations and sources: :mod:`ehlpetsc.post.criteria.laws`.
+    constants : Criteria, optional
+    residue, strain
+        As of :func:`ehlpetsc.post.damage`.
+    residual_stress : float
+        Along the surface, the same in x and y, none in z, Pa; adds to the normal stress of a plane.
+
+    Returns
+    -------
+    PlaneDamage
+        Arrays of shape (...).
+
+    Raises
+    ------
+    ValueError
+        Unknown choice, unequal shapes, nan.
+    """
+    if criterion not in KINDS:
+        raise ValueError(f"criterion = {criterion!r}: must be one of {', '.join(KINDS)}")
+
+    def make(samples):
+        return counter_of(criterion, material, constants or Criteria(), residue, strain, samples)
+
+    return PlaneDamage(*_evaluate(sx, sz, txz, make, residual_stress))
+
+
+def dang_van(sx, sz, txz, poisson_ratio, constants=None, residual_stress=0.0):
+    """Dang Van's utilisation of the fatigue limit by each history: up to 1 no crack starts; margin 1/U.
+
+    Parameters
+    ----------
+    sx, sz, txz : array_like, shape (..., samples)
+        Stress histories, Pa; sigma_y follows by plane strain.
+    poisson_ratio : float
+    constants : Criteria, optional
+        Its two fatigue limits.
+    residual_stress : float
+        Along the surface, the same in x and y, Pa; adds to the hydrostatic stress.
+
+    Returns
+    -------
+    float or ndarray, shape (...)
+    """
+    constants = constants or Criteria()
+    return _evaluate(sx, sz, txz, lambda n: LimitCounter(poisson_ratio, constants, n), residual_stress)[0]

@@ -1,0 +1,123 @@
+r"""Damage of several passes of the same points: mean, scatter, and passes to failure by Miner's sum.
+
+One pass meets one part of the other surface; the next one meets another. After M passes
+:math:`\sum_m D_m = M\bar D`, and failure is expected after :math:`1/\bar D` passes (Palmgren-Miner).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Passes(NamedTuple):
+    """What several passes say about each point.
+
+    Attributes
+    ----------
+    mean, deviation, largest : ndarray
+        Of D over the passes; deviation with n - 1, nan of one pass.
+    count : ndarray of int
+        Passes of each point.
+    life : ndarray
+        Passes to failure 1/mean; infinite without damage.
+    """
+
+    mean: np.ndarray
+    deviation: np.ndarray
+    largest: np.ndarray
+    count: np.ndarray
+    life: np.ndarray
+
+
+def pass_statistics(damages):
+    """Statistics over passes.
+
+    Parameters
+    ----------
+    damages : array_like, shape (passes, ...)
+        D of each pass; nan where a point did not pass.
+
+    Returns
+    -------
+    Passes
+        Arrays of shape (...); nan where no pass is.
+
+    Raises
+    ------
+    ValueError
+        No passes, a negative damage.
+    """
+    damages = np.asarray(damages, float)
+    if damages.ndim == 0 or not len(damages):
+        raise ValueError("there must be one pass or more")
+    if (damages < 0).any():
+        raise ValueError("damages must not be negative")
+    there = ~np.isnan(damages)
+    count = there.sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = np.where(there, damages, 0).sum(axis=0) / count
+        squares = np.where(there, (damages - mean) ** 2, 0).sum(axis=0)
+        deviation = np.where(count > 1, np.sqrt(squares / (count - 1)), np.nan)
+        largest = np.where(count > 0, np.where(there, damages, -np.inf).max(axis=0), np.nan)
+        return Passes(mean, deviation, largest, count, 1 / mean)
+
+
+def fold(s, damage, stretch):
+    """Passes of the same points within one result: a body that repeats itself every `stretch`.
+
+    Parameters
+    ----------
+    s : ndarray, shape (ns,)
+        Uniform body coordinates, m.
+    damage : ndarray, shape (..., ns)
+        nan where a point did not pass.
+    stretch : float
+        m; rounded to whole spacings of s.
+
+    Returns
+    -------
+    ndarray, shape (passes, ..., points)
+        Of the points s[0] .. s[0] + stretch, the earliest pass first (points of larger s come first).
+
+    Raises
+    ------
+    ValueError
+        The stretch is shorter than a spacing or longer than s.
+    """
+    points = int(round(stretch / (s[1] - s[0]))) if np.isfinite(stretch) else 0
+    if not 1 <= points <= s.size:
+        raise ValueError(f"a stretch of {stretch:g} m does not fit the {s[-1] - s[0]:g} m that were computed")
+    number = -(-s.size // points)
+    padded = np.full((*damage.shape[:-1], number * points), np.nan)
+    padded[..., : s.size] = damage
+    rows = padded.reshape(*damage.shape[:-1], number, points)
+    rows = np.moveaxis(rows, -2, 0)[::-1]
+    passed = ~np.isnan(rows).reshape(number, -1).all(axis=1)
+    return rows[passed]
+
+
+def largest_near(s, damage, places, distance):
+    """Largest damage within a distance of each place along the surface.
+
+    Parameters
+    ----------
+    s : ndarray, shape (ns,)
+        Rising body coordinates, m.
+    damage : ndarray, shape (..., ns)
+        nan where a point did not pass: left out.
+    places : ndarray, shape (n,)
+    distance : float
+        m; the nearest point always counts.
+
+    Returns
+    -------
+    ndarray, shape (..., n)
+    """
+    known = np.where(np.isnan(damage), -np.inf, damage)
+    out = np.empty((*damage.shape[:-1], len(places)))
+    for k, place in enumerate(places):
+        first = np.searchsorted(s, place - distance, "left")
+        last = np.searchsorted(s, place + distance, "right")
+        nearest = int(np.abs(s - place).argmin())
+        out[..., k] = known[..., min(first, nearest) : max(last, nearest + 1)].max(axis=-1)
+    return np.where(np.isinf(out), np.nan, out)

@@ -1,0 +1,240 @@
+"""Criteria against closed cases: pure shear, uniaxial, hydrostatic, proportional; and against all planes."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.post import (
+    Criteria,
+    Material,
+    critical_plane,
+    cycles_to_failure,
+    damage,
+    dang_van,
+    strain_range,
+)
+from ehlpetsc.post.criteria.critical_plane import plane_damage
+from ehlpetsc.post.criteria.dang_van import smallest_ball
+from ehlpetsc.post.criteria.planes import (
+    normal_weights,
+    planes,
+    planes_and_directions,
+    shear_weights,
+    strain_weights,
+)
+from ehlpetsc.post.criteria.search import KINDS, PlaneCounter
+
+STEEL = Material()
+WAVE = np.sin(np.linspace(0, 2 * np.pi, 41))  # reversed, its peaks among the samples
+PULSE = np.sin(np.linspace(0, np.pi, 41)) ** 2
+NONE = 0 * WAVE
+
+
+def life(parameter, elastic, plastic, b, c):
+    """N of elastic (2N)^b + plastic (2N)^c = parameter, by bisection."""
+    low, high = -50.0, 100.0
+    for _ in range(200):
+        y = (low + high) / 2
+        above = np.log(elastic * np.exp(b * y) + plastic * np.exp(c * y)) > np.log(parameter)
+        low, high = (y, high) if above else (low, y)
+    return np.exp(y) / 2
+
+
+def shear_life(amplitude, opening, steel):
+    """N under shear stress +-amplitude whose strain amplitude counts `opening` times."""
+    G = steel.youngs_modulus / (2 * (1 + steel.poisson_ratio))
+    plastic = (np.sqrt(3) * amplitude / steel.hardening_coefficient) ** (1 / steel.cyclic_hardening)
+    strain = amplitude / G + np.sqrt(3) * plastic
+    strength, ductility = steel.fatigue_strength / np.sqrt(3), steel.fatigue_ductility * np.sqrt(3)
+    return life(strain * opening, strength / G, ductility, steel.b, steel.c)
+
+
+@pytest.mark.parametrize("tau", [2e8, 5e8, 9e8])
+def test_pure_shear(tau):
+    found = critical_plane(NONE, NONE, tau * WAVE, STEEL, "shear")
+    assert found.damage == pytest.approx(1 / shear_life(tau, 1.0, STEEL), rel=1e-8)
+    assert found.inclination % 90 == pytest.approx(0, abs=1e-9) and found.tilt == 0
+    soft = Material(poisson_ratio=0.5)  # 3G = E: the paper's equivalent range says the same
+    assert critical_plane(NONE, NONE, tau * WAVE, soft, "shear").damage == pytest.approx(
+        damage(NONE, NONE, tau * WAVE, soft).damage, rel=1e-8
+    )
+
+
+def test_pure_shear_opens_a_plane_beside_that_of_the_largest_shear():
+    tau, k = 5e8, Criteria().sensitivity(STEEL)
+    turned = np.radians(np.linspace(0, 45, 400))
+    lives = [shear_life(tau * np.cos(2 * t), 1 + k * tau * np.sin(2 * t), STEEL) for t in turned]
+    found = critical_plane(NONE, NONE, tau * WAVE, STEEL)
+    assert found.damage == pytest.approx(1 / min(lives), rel=5e-3) and found.damage <= 1.000001 / min(lives)
+    best = np.degrees(turned[np.argmin(lives)])
+    assert min(abs(found.inclination - place) for place in (best, 90 - best, 90 + best, 180 - best)) < 1.0
+
+
+@pytest.mark.parametrize("sigma", [5e8, 1e9, 1.6e9])
+def test_uniaxial(sigma):
+    bar = Material(poisson_ratio=0.0)  # no stress out of the section
+    found = critical_plane(NONE, sigma * WAVE, NONE, bar, "shear")
+    assert found.damage == pytest.approx(1 / shear_life(sigma / 2, 1.0, bar), rel=1e-8)
+    found = critical_plane(NONE, sigma * WAVE, NONE, bar, "swt")
+    parameter = sigma * strain_range(2 * sigma, bar) / 2
+    elastic = bar.fatigue_strength**2 / bar.youngs_modulus
+    plastic = bar.fatigue_strength * bar.fatigue_ductility
+    expected = 1 / life(parameter, elastic, plastic, 2 * bar.b, bar.b + bar.c)
+    assert found.damage == pytest.approx(expected, rel=1e-8)
+    assert found.inclination == pytest.approx(90) and found.tilt == 0
+
+
+def test_uniaxial_fatemi_socie_is_the_worst_of_all_planes():
+    bar, sigma = Material(poisson_ratio=0.0), 8e8
+    k = Criteria().sensitivity(bar)
+    angles = np.radians(np.linspace(1, 89, 600))  # of the normal from the load
+    shear, normal = sigma * np.sin(2 * angles) / 2, sigma * np.cos(angles) ** 2
+    worst = min(shear_life(t, 1 + k * n, bar) for t, n in zip(shear, normal, strict=True))
+    assert critical_plane(NONE, sigma * WAVE, NONE, bar).damage == pytest.approx(1 / worst, rel=5e-3)
+
+
+def test_hydrostatic_stress_moves_nothing_but_the_limit():
+    fluid, size = Material(poisson_ratio=0.5), 4e8
+    for criterion in KINDS:
+        assert critical_plane(size * WAVE, size * WAVE, NONE, fluid, criterion).damage < 1e-30
+    limits = Criteria(torsion_limit=4e8, bending_limit=6e8)
+    slope = 3 * (4 / 6 - 0.5)
+    assert dang_van(size * WAVE, size * WAVE, NONE, 0.5, limits) == pytest.approx(slope * size / 4e8)
+    assert dang_van(-size * PULSE, -size * PULSE, NONE, 0.5, limits) == pytest.approx(0, abs=1e-12)
+
+
+def test_surface_under_pressure_fails_on_planes_out_of_the_section():
+    """At z = 0 sx = sz = -p: no shear in the section, (1 - 2 nu) p/2 half way out of it."""
+    p = 4e9
+    found = critical_plane(-p * PULSE, -p * PULSE, NONE, STEEL)
+    assert found.tilt == pytest.approx(45, abs=1e-6)
+    expected = 1 / shear_life((1 - 0.6) * p / 4, 1.0, STEEL)
+    assert found.damage == pytest.approx(expected, rel=1e-8)
+    in_section = planes()[:12]
+    assert on_planes("shear", in_section, -p * PULSE, -p * PULSE, NONE) < 1e-30
+
+
+def on_planes(criterion, grid, sx, sz, txz):
+    """Largest damage of one history on planes of a grid, each counted on all samples."""
+    counter = PlaneCounter(criterion, STEEL, Criteria(), "closed", "direct", sx.size)
+    nu, closed, sensitivity = counter.head
+    law = (nu, 0.0, closed, sensitivity, *counter.tables)
+    history = np.stack([sx, sz, txz])
+    return max(plane_damage(counter.kind, g, history, sx.size, law, 0.0, counter.work) for g in grid)
+
+
+def contact_like(seed, samples=300):
+    """A smooth passage of pressure with ripples and friction: non-proportional, tension behind."""
+    rng = np.random.default_rng(seed)
+    x = np.linspace(-2, 2, samples)
+    ripple = np.interp(x, np.linspace(-2, 2, 40), rng.normal(size=40))
+    load = np.exp(-(x**2) * 2) * (1 + 0.5 * ripple) * 1.5e9
+    return -0.6 * load + 4e8 * x * np.exp(-(x**2)), -load, 0.5e9 * x * np.exp(-(x**2)) * (1 + 0.3 * ripple)
+
+
+@pytest.mark.parametrize("criterion", KINDS)
+def test_search_finds_what_trying_all_planes_finds(criterion):
+    grid = planes(6.0) if criterion == "swt" else planes_and_directions(9.0)
+    for seed in range(3):
+        parts = contact_like(seed)
+        tried = on_planes(criterion, grid, *parts)
+        found = critical_plane(*parts, STEEL, criterion)
+        assert found.damage >= 0.98 * tried > 0
+
+
+def test_the_same_forwards_and_backwards():
+    for criterion in KINDS:
+        parts = np.array(contact_like(7))
+        forwards = critical_plane(*parts, STEEL, criterion).damage
+        assert critical_plane(*parts[:, ::-1], STEEL, criterion).damage == pytest.approx(forwards, rel=0.02)
+
+
+def test_proportional_load_keeps_its_plane():
+    parts = np.array([0.3, -1.0, 0.4])[:, None] * WAVE
+    small, large = (critical_plane(*(size * parts), STEEL, "shear") for size in (4e8, 8e8))
+    assert (small.inclination, small.tilt) == pytest.approx((large.inclination, large.tilt), abs=1e-9)
+    assert small.damage < large.damage
+    assert dang_van(*(8e8 * parts), 0.3) == pytest.approx(2 * dang_van(*(4e8 * parts), 0.3), rel=1e-9)
+
+
+def test_weights_are_those_of_the_tensor():
+    rng = np.random.default_rng(3)
+    nu, E = 0.3, 207e9
+    for theta, phi, psi in rng.uniform(0, np.pi, (20, 3)):
+        sx, sz, txz = rng.normal(size=3)
+        tensor = np.array([[sx, 0, txz], [0, nu * (sx + sz), 0], [txz, 0, sz]])
+        n = np.array([np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)])
+        across = np.array([-np.sin(theta), 0, np.cos(theta)])
+        t = np.cos(psi) * across + np.sin(psi) * np.cross(across, n)
+        strain = ((1 + nu) * tensor - nu * np.trace(tensor) * np.eye(3)) / E
+        values = np.array([sx, sz, txz])
+        assert values @ np.array(shear_weights(theta, phi, psi, nu)) == pytest.approx(t @ tensor @ n)
+        assert values @ np.array(normal_weights(theta, phi, nu)) == pytest.approx(n @ tensor @ n)
+        assert values @ np.array(strain_weights(theta, phi, nu)) == pytest.approx(E * (n @ strain @ n))
+
+
+def test_tension_and_residual_stress():
+    pulse = -1.5e9 * PULSE
+    assert critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, "swt").damage == 0  # compression alone
+    shear = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, "shear").damage
+    plain = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL).damage
+    assert plain == pytest.approx(shear, rel=1e-9)  # no plane is opened
+    pulled = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, residual_stress=5e8)
+    pressed = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, residual_stress=-5e8)
+    assert pulled.damage > 1.5 * plain and pressed.damage == pytest.approx(plain, rel=1e-9)
+    along = critical_plane(-pulse, 0 * pulse, 0 * pulse, STEEL, "swt")
+    relieved = critical_plane(-pulse, 0 * pulse, 0 * pulse, STEEL, "swt", residual_stress=-5e8)
+    assert 0 < relieved.damage < 0.5 * along.damage
+
+
+def test_dang_van_stands_at_one_at_both_limits():
+    limits = Criteria(torsion_limit=4e8, bending_limit=6e8)
+    assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits) == pytest.approx(1, rel=1e-9)
+    assert dang_van(NONE, 6e8 * WAVE, NONE, 0.0, limits) == pytest.approx(1, rel=1e-9)
+    assert dang_van(0 * PULSE, 0 * PULSE, 4e8 * PULSE, 0.3, limits) == pytest.approx(0.5, rel=1e-9)
+    residual = dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=3e8)
+    assert residual == pytest.approx(1 + limits.hydrostatic_slope * 2e8 / 4e8, rel=1e-9)
+    assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=-3e8) == pytest.approx(1)
+
+
+def test_smallest_ball():
+    rng = np.random.default_rng(0)
+    for count in (1, 2, 3, 4, 50, 1000):
+        points = rng.normal(size=(3, count))
+        centre, radius = smallest_ball(points)
+        away = np.linalg.norm(points - centre[:, None], axis=0)
+        assert away.max() == pytest.approx(radius, rel=1e-8, abs=1e-12)
+        for step in 1e-3 * rng.normal(size=(30, 3)):  # no centre near by does better
+            moved = np.linalg.norm(points - (centre + step)[:, None], axis=0).max()
+            assert moved >= radius - 1e-12
+    line = np.outer([1.0, 2.0, 2.0], np.linspace(-1, 2, 31))
+    centre, radius = smallest_ball(line)
+    assert radius == pytest.approx(4.5) and centre == pytest.approx([0.5, 1, 1])
+
+
+def test_strain_rule_reaches_the_planes():
+    direct = critical_plane(NONE, NONE, 9e8 * WAVE, STEEL, "shear").damage
+    neuber = critical_plane(NONE, NONE, 9e8 * WAVE, STEEL, "shear", strain="neuber").damage
+    uniaxial = Material(youngs_modulus=1.5 * 207e9 / 1.3)
+    dsv = np.sqrt(3) * 1.8e9
+    assert neuber == pytest.approx(1 / cycles_to_failure(dsv, uniaxial, strain="neuber"), rel=1e-8)
+    assert neuber < direct / 10
+
+
+def test_faults():
+    with pytest.raises(ValueError, match="criterion"):
+        critical_plane(NONE, NONE, WAVE, STEEL, "tresca")
+    with pytest.raises(ValueError, match="residue"):
+        critical_plane(NONE, NONE, WAVE, STEEL, residue="open")
+    with pytest.raises(ValueError, match="finite"):
+        dang_van(NONE, NONE, WAVE * np.nan, 0.3)
+    for fault in ({"torsion_limit": 1e8}, {"yield_strength": 0.0}, {"normal_sensitivity": -1.0}):
+        with pytest.raises(ValueError, match=next(iter(fault))):
+            Criteria(**fault)
+
+
+def test_blocks_keep_their_shape():
+    parts = np.array([contact_like(k) for k in range(4)]).transpose(1, 0, 2).reshape(3, 2, 2, -1)
+    found = critical_plane(*parts, STEEL)
+    assert found.damage.shape == found.tilt.shape == (2, 2)
+    single = critical_plane(*parts[:, 1, 0], STEEL)
+    assert np.ndim(single.damage) == 0 and single.damage == found.damage[1, 0]
