@@ -1,8 +1,39 @@
-"""Transient mixed lubrication and contact of rough line contacts on PETSc."""
+"""Transient mixed lubrication and contact of rough line contacts on PETSc.
 
+``load`` a case, ``solve`` it, or iterate over the accepted states of a ``Simulation``; ``read_result`` opens
+a file. They are imported when first asked for.
+"""
+
+import importlib
 import sys
 
 __version__ = "0.1.0"
+
+_HOMES = {
+    "load": "ehlpetsc.api",
+    "members": "ehlpetsc.api",
+    "solve": "ehlpetsc.api",
+    "Simulation": "ehlpetsc.run.simulation",
+    "read_result": "ehlpetsc.api",
+    "Result": "ehlpetsc.api",
+    "CaseError": "ehlpetsc.errors",
+    "NotConverged": "ehlpetsc.errors",
+    "OutputError": "ehlpetsc.errors",
+    "UsageError": "ehlpetsc.errors",
+}
+
+
+def __getattr__(name):
+    if name not in _HOMES:
+        raise AttributeError(f"module 'ehlpetsc' has no attribute {name!r}")
+    if _HOMES[name].startswith("ehlpetsc.run."):
+        importlib.import_module("ehlpetsc.api").need_solver()
+    return getattr(importlib.import_module(_HOMES[name]), name)
+
+
+def __dir__():
+    return [*globals(), *_HOMES]
+
 
 if sys.argv[0] == "-m":  # a command of this package, about to be imported: what it needs may not be there
     from ehlpetsc.environment import require_numerics

@@ -11,9 +11,11 @@ import tomlkit
 from ehlpetsc.case.faults import describe, show
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Post, Series, Surface, Table, Time
+from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.errors import CaseError
 
+DICT = "case"  # what faults call a case that is no file
 __all__ = ["Case", "CaseError", "load", "members"]
 
 
@@ -60,15 +62,17 @@ class Case(Table):
         return self._path
 
 
-def load(path, overrides=()):
-    """Read and check a case file.
+def load(case, overrides=None):
+    """Read and check a case.
 
     Parameters
     ----------
-    path : str or path-like
-        The TOML file.
-    overrides : iterable of str
-        ``table.key=value``, the value in TOML syntax, else taken as text.
+    case : str, path-like or dict
+        The TOML file, or its tables; profile files of a dict are sought in the present folder, and heights of
+        a surface may be arrays, ``{"surface": {"fast": {"x": x, "z": z}}}`` [m].
+    overrides : dict, or iterable of str, optional
+        ``{"fluid.viscosity": 0.003}``, None leaving the key out; or ``table.key=value``, the value in TOML
+        syntax, else taken as text.
 
     Returns
     -------
@@ -78,11 +82,19 @@ def load(path, overrides=()):
     ------
     CaseError
         With all faults, one line each.
+
+    Examples
+    --------
+    >>> import ehlpetsc
+    >>> case = ehlpetsc.load("cases/table1_smooth.toml", {"fluid.viscosity": 0.003})
+    >>> case.fluid.viscosity, case.contact.radius  # Pa s, m
+    (0.003, 0.0191)
     """
-    text = _read(path)
-    data = _parse(path, text)
+    path, text = (DICT, None) if isinstance(case, dict) else (case, _read(case))
+    data = plain(case) if text is None else _parse(path, text)
     faults, settings = [], []
-    for override in overrides:
+    from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
+    for override in list(overrides.items()) if isinstance(overrides, dict) else overrides or ():
         try:
             settings.append(_setting(override))
             _set(data, *settings[-1])
@@ -93,7 +105,7 @@ def load(path, overrides=()):
         faults += _series_faults(path, data)
     if faults:
         raise CaseError(faults)
-    return _made(path, data, _with_settings(text, settings))
+    return _made(path, data, toml_text(data) if from_python else _with_settings(text, settings))
 
 
 def members(case):
@@ -144,7 +156,9 @@ def _parse(path, text):
 
 
 def _setting(override):
-    """("a.b=value") -> (["a", "b"], value)."""
+    """("a.b=value") or ("a.b", value) -> (["a", "b"], value)."""
+    if isinstance(override, tuple):
+        return override[0].split("."), plain(override[1])
     name, equals, raw = override.partition("=")
     keys = name.strip().split(".")
     if not equals or not all(keys):
@@ -161,7 +175,10 @@ def _set(data, keys, value):
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
             raise ValueError(key)
-    data[keys[-1]] = value
+    if value is None:
+        data.pop(keys[-1], None)
+    else:
+        data[keys[-1]] = value
 
 
 def _with_settings(text, settings, without=None):

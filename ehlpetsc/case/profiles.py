@@ -30,11 +30,14 @@ def profile_faults(folder, surface, case):
     faults = []
     for side in ("fast", "slow"):
         table = surface.get(side) if isinstance(surface, dict) else None
-        if isinstance(table, dict) and isinstance(table.get("file"), str) and table["file"]:
+        if not isinstance(table, dict):
+            continue
+        key, kind = ("z", list) if "z" in table else ("file", str)
+        if isinstance(table.get(key), kind) and table[key]:
             try:
                 _try(folder, table, case)
             except ProfileError as error:
-                faults.append(f"surface.{side}.file = {show(table['file'])}: {error}")
+                faults.append(f"surface.{side}.{key} = {show(table[key])}: {error}")
     return faults
 
 
@@ -44,6 +47,8 @@ def _try(folder, table, case):
     except ValidationError:  # its keys are told; without them the file cannot be understood, only sought
         spec = None
     if spec is None:
+        if "file" not in table:
+            return None
         return _sought(folder / table["file"])
     given = samples(folder, spec)
     if case is None:

@@ -210,6 +210,12 @@ class SurfaceProfile(Table):
     fill_gaps: float | None = Field(
         None, ge=0, le=1, unit="m", description="longest gap of missing heights that the spline bridges"
     )
+    z: list[confloat(ge=-1e9, le=1e9)] | None = Field(
+        None, min_items=4, description="heights in unit, here instead of in a file"
+    )
+    x: list[confloat(ge=-1e9, le=1e9)] | None = Field(
+        None, min_items=4, description="of the heights z, in x_unit; with spacing left out"
+    )
     level: bool = Field(False, description="subtract the least-squares line")
     cutoff: Length | None = Field(None, unit="m", description="Gaussian high-pass, ISO 16610-21")
     short_cutoff: Length | None = Field(
@@ -237,9 +243,19 @@ class SurfaceProfile(Table):
 
     @root_validator(skip_on_failure=True)
     def _one_source(cls, values):
-        if (values["file"] is None) == (values["synthetic"] is None):
-            raise ValueError("needs either file or synthetic, one of the two")
-        for_a_file = [key for key in values if key not in ("file", "synthetic", "scale")]
+        sources = ("file", "synthetic", "z")
+        if sum(values[key] is not None for key in sources) != 1:
+            raise ValueError("needs either file or synthetic, or the heights z: one of them")
+        if values["z"] is None and values["x"] is not None:
+            raise ValueError("x is for heights z")
+        if values["z"] is not None and (values["x"] is None) == (values["spacing"] is None):
+            raise ValueError("heights z need either x or spacing")
+        if values["x"] is not None and len(values["x"]) != len(values["z"]):
+            raise ValueError(f"x has {len(values['x'])} values, z {len(values['z'])}; allowed: as many")
+        of_text = [key for key in ("columns", "decimal", "header_lines") if values[key] is not None]
+        if values["z"] is not None and of_text:
+            raise ValueError(f"{', '.join(of_text)}: for a file, not for heights z")
+        for_a_file = [key for key in values if key not in (*sources, "scale")]
         if values["synthetic"] and any(values[key] not in (None, False) for key in for_a_file):
             raise ValueError(f"{', '.join(for_a_file)} are for a file, not for a synthetic profile")
         return values

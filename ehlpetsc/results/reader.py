@@ -56,6 +56,11 @@ def read_result(path):
     OutputError
         Missing, damaged, not a result file, or of a later format version.
     """
+    return Result(open_result(path), path)
+
+
+def open_result(path):
+    """The HDF5 file of a result, checked to be one; for the errors see `read_result`."""
     file = open_for_reading(path)
     version = file.attrs.get("format_version")
     fault = None
@@ -66,7 +71,7 @@ def read_result(path):
     if fault:
         file.close()
         raise OutputError(f"{path}: {fault}")
-    return Result(file, path)
+    return file
 
 
 def _whole_rows(group):
@@ -75,8 +80,31 @@ def _whole_rows(group):
     return min(rows, default=0)
 
 
+class Steps:
+    """Figures of every step by name: ``steps.h_min``, ``steps("h_min")``; arrays of shape (nsteps,).
+
+    Attributes
+    ----------
+    names : list of str
+    """
+
+    def __init__(self, group, count):
+        self._group, self._count, self.names = group, count, list(group)
+
+    def __call__(self, name):
+        return self._group[name][: self._count]
+
+    def __getattr__(self, name):
+        if name in self.__dict__.get("names", ()):
+            return self(name)
+        raise AttributeError(f"{name}: no figure of the steps; there are {', '.join(self.names)}")
+
+    def __dir__(self):
+        return [*super().__dir__(), *self.names]
+
+
 class Result:
-    """A result file, read lazily.
+    """A result file, read lazily; each of its `fields` is also an attribute, shape (nt, nx), kept once read.
 
     Attributes
     ----------
@@ -89,21 +117,24 @@ class Result:
         Times [s] and step numbers of the stored frames.
     fields, figures : list of str
         Names of the fields stored in every frame, and of the figures of every step.
+    steps : Steps
+        Figures of every step, stored or not.
     contact_count : ndarray, shape (nx,)
         Time steps in contact over the whole run.
     """
 
     def __init__(self, file, path):
-        self._file = file
+        self._file, self._read = file, {}
         self.path = Path(path)
         self.attrs = dict(file.attrs)
         self.x = file["x"][:]
         # a killed writer may have lengthened some datasets and not yet others
-        self._frames, self._steps = _whole_rows(file), _whole_rows(file["steps"])
+        self._frames = _whole_rows(file)
+        self.steps = Steps(file["steps"], _whole_rows(file["steps"]))
         self.time, self.step = file["time"][: self._frames], file["step"][: self._frames]
         self.contact_count = file["contact_count"][:]
         self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
-        self.figures = list(file["steps"])
+        self.figures = self.steps.names
 
     def __enter__(self):
         return self
@@ -122,13 +153,60 @@ class Result:
     def __contains__(self, name):
         return name in self._file
 
+    def __getattr__(self, name):
+        if name not in self.__dict__.get("fields", ()):
+            raise AttributeError(f"{name}: no field of this result")
+        if name not in self._read:
+            self._read[name] = self._file[name][: self._frames]
+        return self._read[name]
+
+    def __dir__(self):
+        return [*super().__dir__(), *self.fields]
+
+    def __repr__(self):
+        size = f"{len(self.x)} nodes, {len(self.time)} frames"
+        return f"<Result {self.attrs['title']!r}: {size}, {self.attrs['status']}; {', '.join(self.fields)}>"
+
+    def to_xarray(self):
+        """Fields over (time, x) and figures over (step), with units, long names and the root attributes.
+
+        Returns
+        -------
+        xarray.Dataset
+            The time at the end of each step is ``step_time``, the step of each frame ``frame_step``.
+
+        Examples
+        --------
+        >>> import ehlpetsc
+        >>> result = ehlpetsc.solve("cases/dry_hertz.toml", options={})
+        >>> data = result.to_xarray()
+        >>> data.pressure.dims, data.pressure.units, data.h_min.dims
+        (('time', 'x'), 'Pa', ('step',))
+        """
+        import xarray
+
+        def variable(dims, name, values):
+            about = {key: self._file[name].attrs[key] for key in ("units", "long_name")}
+            return xarray.Variable(dims, values, about)
+
+        fields = {name: variable(("time", "x"), name, getattr(self, name)) for name in self.fields}
+        names = set(self.figures) - {"step", "time"}
+        figures = {name: variable("step", f"steps/{name}", self.steps(name)) for name in names}
+        return xarray.Dataset(
+            fields | figures | {"contact_count": variable("x", "contact_count", self.contact_count)},
+            {
+                "x": variable("x", "x", self.x),
+                "time": variable("time", "time", self.time),
+                "frame_step": variable("time", "step", self.step),
+                "step": variable("step", "steps/step", self.steps.step),
+                "step_time": variable("step", "steps/time", self.steps.time),
+            },
+            self.attrs,
+        )
+
     def frame(self, name, index):
         """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""
         return self._file[name][range(len(self.time))[index]].astype(float)
-
-    def steps(self, name):
-        """Per-step scalar `name`, shape (nsteps,)."""
-        return self._file["steps"][name][: self._steps]
 
     def nearest_frame(self, *, time=None, step=None):
         """Index of the stored frame nearest to a time [s] or to a step number."""

@@ -43,7 +43,8 @@ class ResultWriter:
 
     Parameters
     ----------
-    path : str or path-like
+    path : str, path-like or None
+        None: in memory, for :meth:`image`.
     case_text, title : str
         The case as run, and its title.
     x : ndarray, shape (nx,)
@@ -90,13 +91,13 @@ class ResultWriter:
         resume_step=None,
         contact_count=None,
     ):
-        self.path = Path(path)
+        self.path = None if path is None else Path(path)
         self.every = every
         self.contact_count = np.zeros(len(x), dtype="i8")
         self.last_step = resume_step
         if contact_count is not None:
             self.contact_count[:] = contact_count
-        beside = self.path.with_name(self.path.name + ".tmp")
+        beside = self.path and self.path.with_name(self.path.name + ".tmp")
         try:
             with self._plain_faults("not created"):
                 self._file = create(beside)
@@ -105,11 +106,12 @@ class ResultWriter:
                     lay_out(
                         self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles
                     )
-                if resume_step is not None and self.path.exists():
-                    self._copy_up_to(resume_step, contact_count is None)
-                self._file.swmr_mode = True
-                self._file.flush()
-                os.replace(beside, self.path)
+                if beside:
+                    if resume_step is not None and self.path.exists():
+                        self._copy_up_to(resume_step, contact_count is None)
+                    self._file.swmr_mode = True
+                    self._file.flush()
+                    os.replace(beside, self.path)
         except OutputError:
             with contextlib.suppress(OSError):
                 beside.unlink()
@@ -175,6 +177,11 @@ class ResultWriter:
         self.flush()
         with self._plain_faults("not closed"):
             close(self._file, status)
+
+    def image(self):
+        """The bytes of a file in memory, once it is closed."""
+        self._file.flush()
+        return self._file.id.get_file_image()
 
     @contextlib.contextmanager
     def _plain_faults(self, what):

@@ -30,8 +30,14 @@ def on_terminal(stream):
         return True
 
 
+def in_notebook():
+    """Whether a notebook shows what is written."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return type(shell).__name__ == "ZMQInteractiveShell"
+
+
 class Progress:
-    """Says how far a run is: fixed-column lines into a file, a bar on a terminal.
+    """Says how far a run is: fixed-column lines into a file, a bar on a terminal or in a notebook.
 
     Parameters
     ----------
@@ -44,7 +50,7 @@ class Progress:
     def __init__(self, begin, end, stream=None):
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
-        self._bar = on_terminal(self._stream)
+        self._bar = on_terminal(self._stream) or in_notebook()
         self._started = clock.monotonic()
         self._shown = None
         self._pending = None
@@ -92,7 +98,7 @@ class Progress:
         width = max(10, columns - len(text) - 3)
         filled = round(done * width)
         bar = f"[{'#' * filled}{'.' * (width - filled)}]{text}"[: columns - 1]
-        self._stream.write(f"\r{bar}\x1b[K")
+        self._stream.write("\r" + bar.ljust(columns - 1))
 
 
 def _scaled(figures):

@@ -4,17 +4,20 @@ import time as clock
 from pathlib import Path
 
 import mpi4py
+import numpy as np
 import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run import checkpoint
 from ehlpetsc.stepping.step_control import on_level
+
+MESSAGE_BYTES = 2**30  # MPI counts to twice as many
 
 
 def on_root(comm, action, *arguments):
@@ -37,8 +40,8 @@ class Recorder:
     Parameters
     ----------
     simulation : run.simulation.Simulation
-    output : path-like
-        Result file; the restart file gets its name too.
+    output : path-like or None
+        Result file; the restart file gets its name too. None: in memory, without a restart file.
 
     Attributes
     ----------
@@ -49,11 +52,18 @@ class Recorder:
 
     def __init__(self, simulation, output):
         self.simulation, self.comm = simulation, simulation.comm
-        self.output = Path(output)
-        self.restart = self.output.with_suffix(".restart.h5")
+        self.output = None if output is None else Path(output)
+        self.restart = self.output and self.output.with_suffix(".restart.h5")
         self.totals = Totals()
         self._writer, self._opened = None, False
         self._saved = clock.monotonic()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        if kind and self._writer:  # no agreement with other ranks: they may not know of the error
+            self._writer.close(ExitStatus.STOPPED.words)
 
     def resume(self, path):
         """Put the simulation where a restart file was written, and go on with its result.
@@ -90,7 +100,9 @@ class Recorder:
             self._saved = clock.monotonic()
 
     def checkpoint(self):
-        """Write the restart file."""
+        """Write the restart file, where there is one."""
+        if self.restart is None:
+            return
         on_root(self.comm, self._save)
 
     def close(self, status):
@@ -102,6 +114,17 @@ class Recorder:
         """
         if self._opened:
             on_root(self.comm, lambda: self._writer.close(status.words))
+
+    def image(self):
+        """The bytes of a result in memory, on every rank."""
+        image = self._writer.image() if self.comm.rank == 0 else None
+        if self.comm.size == 1:
+            return image
+        size = self.comm.bcast(image and len(image))
+        whole = np.frombuffer(image, "u1") if image else np.empty(size, "u1")
+        for begin in range(0, size, MESSAGE_BYTES):
+            self.comm.Bcast(whole[begin : begin + MESSAGE_BYTES])
+        return whole.tobytes()
 
     def _open(self, step=None, count=None):
         on_root(self.comm, self._create, step, count)

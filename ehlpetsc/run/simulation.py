@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.errors import NotConverged
+from ehlpetsc.case.loading import Case, load
+from ehlpetsc.errors import CaseError, NotConverged
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.newton import NewtonSolver
@@ -56,12 +57,12 @@ class Simulation:
 
     Parameters
     ----------
-    case : case.loading.Case
+    case : case.loading.Case, or what `load` takes
     comm : mpi4py communicator, optional
         The ranks that share the work; every one of them iterates. By default this process alone.
-    options : dict of str to str, optional
-        PETSc options without the dash, before all others; PETSc's table holds them only while the
-        simulation is solving.
+    options : dict, optional
+        PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, before all others;
+        PETSc's table holds them only while the simulation is solving.
 
     Attributes
     ----------
@@ -73,12 +74,34 @@ class Simulation:
     state : AcceptedState or None
         The last one of this process.
     solution : stepping.time_stepping.State or None
-        Its unknowns, or that of a restart file.
+        Its unknowns, or those of a restart file.
+
+    Raises
+    ------
+    CaseError
+        The case is faulty, or it is a series.
+    UsageError
+        An option that cannot be.
+
+    Examples
+    --------
+    >>> import ehlpetsc
+    >>> short = {"mesh.points_per_half_width": 20, "time.travel": 0.1}
+    >>> simulation = ehlpetsc.Simulation(ehlpetsc.load("cases/ridge.toml", short))
+    >>> [state.step for state in simulation]
+    [0, 1, 2, 3, 4]
+    >>> simulation.state.pressure.shape, simulation.state.h_min < 1e-6  # Pa, m
+    ((81,), True)
     """
 
     def __init__(self, case, comm=None, options=None):
-        self.case, self.comm = case, comm or MPI.COMM_SELF
-        self.options = RunOptions(case.petsc, options or {})
+        self.case = case = case if isinstance(case, Case) else load(case)
+        if case.series:
+            raise CaseError(
+                [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
+            )
+        self.comm = comm or MPI.COMM_SELF
+        self.options = RunOptions(case.petsc, {name: _text(v) for name, v in (options or {}).items()})
         self.scales = Scales.of(case)
         self.roughness = Roughness.of(case, self.scales)
         film = expected_film(case, self.scales)
@@ -161,3 +184,10 @@ class Simulation:
         """Head PETSc's own lines, where the user asked for some."""
         if self._followed:
             PETSc.Sys.Print(what, comm=self.comm)
+
+
+def _text(value):
+    """An option's value for PETSc: None, where it has none, True, False and numbers too."""
+    if value is None:
+        return ""
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -26,15 +26,56 @@ class Outcome:
     wall: float
 
 
+def record(simulation, recorder, stop=None, stream=None):
+    """Keep the states of a simulation up to its end, where it does not converge or is to stop.
+
+    Parameters
+    ----------
+    simulation : run.simulation.Simulation
+    recorder : run.recorder.Recorder
+    stop : callable, optional
+        Asked before every time step with the communicator: whether to end there.
+    stream : file, optional
+        Where to show progress, on rank 0.
+
+    Returns
+    -------
+    status : errors.ExitStatus
+    failure : errors.NotConverged or None
+    """
+    progress = status = failure = None
+    while status is None:
+        begun = simulation.solution is not None
+        if simulation.finished:
+            status = ExitStatus.DONE
+        elif begun and stop and stop(simulation.comm):
+            status = ExitStatus.STOPPED
+        else:
+            if stream and begun and progress is None:
+                progress = Progress(simulation.solution.time, simulation.scales.duration, stream)
+            try:
+                recorder.take(simulation.advance())
+            except NotConverged as error:
+                status, failure = ExitStatus.NOT_CONVERGED, error
+            if progress and not failure:
+                progress.step(simulation.state.figures)
+    if progress:
+        progress.close()
+    if status is not ExitStatus.DONE and begun:
+        recorder.checkpoint()
+    recorder.close(status)
+    return status, failure
+
+
 class Run:
-    """A simulation that is recorded.
+    """A simulation that is recorded and told of, for the command.
 
     Parameters
     ----------
     simulation : run.simulation.Simulation
     output : path-like
     stop : callable, optional
-        Asked before every step with the communicator: whether to end there.
+        As of `record`.
     out, err : file, optional
         Where rank 0 speaks; standard output and error by default.
     """
@@ -60,35 +101,13 @@ class Run:
         with self.simulation.options:
             notes = self.recorder.resume(restart) if restart else []
             self._say(*(f"restart: {note}" for note in notes))
-            status, failure = self._all_states()
-            self.recorder.close(status)
+            status, failure = record(
+                self.simulation, self.recorder, self.stop, self.out if self.root else None
+            )
         outcome = Outcome(status, failure, clock.monotonic() - begun)
         if self.root:
             self._report(outcome)
         return outcome
-
-    def _all_states(self):
-        simulation, progress = self.simulation, None
-        status = failure = None
-        while status is None:
-            if simulation.finished:
-                status = ExitStatus.DONE
-            elif simulation.solution is not None and self.stop and self.stop(simulation.comm):
-                status = ExitStatus.STOPPED
-            else:
-                if self.root and progress is None and simulation.solution is not None:
-                    progress = Progress(simulation.solution.time, simulation.scales.duration, self.out)
-                try:
-                    self.recorder.take(simulation.advance())
-                except NotConverged as error:
-                    status, failure = ExitStatus.NOT_CONVERGED, error
-                if progress and not failure:
-                    progress.step(simulation.state.figures)
-        if progress:
-            progress.close()
-        if status is not ExitStatus.DONE and simulation.solution is not None:
-            self.recorder.checkpoint()
-        return status, failure
 
     def _report(self, outcome):
         recorder, state = self.recorder, self.simulation.solution

@@ -81,7 +81,7 @@ def read_profile(path, layout=None):
 @functools.lru_cache(maxsize=4)  # a case is checked, described and run: the file is read once for all
 def _read(path, layout, _modified, _size):
     text = path.suffix.lower() in TEXT
-    x, z, notes = _checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
+    x, z, notes = checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, tuple(notes)
 
@@ -149,7 +149,8 @@ def _from_surface_topography(path, layout):
     return x[:, middle], z[:, middle]
 
 
-def _checked(x, z, layout):
+def checked(x, z, layout):
+    """A profile from 0 on with x increasing and gaps filled, or a ProfileError that says what is wrong."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
     bad = ~np.isfinite(x) | np.isinf(z)

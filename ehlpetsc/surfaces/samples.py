@@ -6,7 +6,7 @@ import numpy as np
 
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
-from ehlpetsc.surfaces.profile_files import KEYS, Layout, read_profile
+from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 OFFSET = 1e-3  # of Rq: a mean beyond rounding
 
@@ -60,7 +60,12 @@ def samples(folder, spec):
     if spec.synthetic is not None:
         X, z, repeats = synthetic.sampled(spec.synthetic)
         return Samples(X, spec.scale * z, repeats)
-    X, z, notes = read_profile(folder / spec.file, layout_of(spec))
+    if spec.z is not None:
+        unit, x_unit = spec.unit or "m", spec.x_unit or spec.unit or "m"
+        steps = spec.spacing * np.arange(len(spec.z)) if spec.x is None else UNITS[x_unit] * np.array(spec.x)
+        X, z, notes = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
+    else:
+        X, z, notes = read_profile(folder / spec.file, layout_of(spec))
     notes = list(notes)
     if spec.level:
         z = levelled(X, z)

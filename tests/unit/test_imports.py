@@ -27,6 +27,7 @@ MAY_IMPORT = {
     "post": {"results", "physics"},
     "study": {"case", "results", "physics"},  # runs the solver as a user does: by its command
     "compare": {"analysis"},
+    "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
     "__main__": {"run", "case"},
     "commands": set(),  # starts each command by its name
 } | {name: set() for name in GROUND}
@@ -34,7 +35,7 @@ SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run"},
-    "matplotlib": {"plot", "post", "study"},
+    "matplotlib": {"plot", "post", "study", "api"},
     "numba": {"compiled", "post"},
 }
 

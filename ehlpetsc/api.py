@@ -1,0 +1,144 @@
+"""What ``import ehlpetsc`` offers; see ``ehlpetsc.load``, ``solve``, ``Simulation``, ``read_result``.
+
+Nothing heavy is imported before it is needed: a result is read and drawn without PETSc and MPI.
+"""
+
+import io
+import sys
+from pathlib import Path
+
+import h5py
+
+from ehlpetsc import environment
+from ehlpetsc.case.loading import load, members
+from ehlpetsc.results import reader
+
+__all__ = ["Result", "load", "members", "read_result", "solve"]
+
+
+class Result(reader.Result):
+    """A result, of a file or in memory: see :class:`ehlpetsc.results.reader.Result`."""
+
+    def plot(self, step=None, time=None, window=None):
+        """Pressure and film over x/a at one stored frame, contacts marked.
+
+        Parameters
+        ----------
+        step : int, optional
+        time : float, optional
+            [s]; the frame nearest to either, by default that with most contacts.
+        window : (float, float), optional
+            Limits of x/a.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Examples
+        --------
+        >>> import ehlpetsc
+        >>> figure = ehlpetsc.solve("cases/dry_hertz.toml").plot(window=(-1.2, 1.2))
+        >>> [axes.get_ylabel() for axes in figure.axes]
+        ['pressure [GPa]', 'film thickness [µm]']
+        """
+        from matplotlib import pyplot
+
+        from ehlpetsc.plot import frames
+
+        index = frames.frame_with_most_contacts(self)
+        if step is not None or time is not None:
+            index = self.nearest_frame(step=step, time=time)
+        figure, axes = pyplot.subplots(2, 1, sharex=True, layout="constrained")
+        frames.pressure_and_film(
+            axes, [self], [index], [frames.SINGLE_COLOUR], window or frames.default_window([self])
+        )
+        frames.frame_legend(axes, self, index)
+        axes[0].set_title(self.attrs["title"], fontsize="medium")
+        return figure
+
+
+def read_result(path):
+    """Open a result file; it may be one that is still being written.
+
+    Parameters
+    ----------
+    path : str or path-like
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    OutputError
+        Missing, damaged, not a result file, or of a later format version.
+    """
+    return Result(reader.open_result(path), path)
+
+
+def solve(case, output=None, options=None, comm=None, *, restart=None, progress=None):
+    """Solve a case.
+
+    Parameters
+    ----------
+    case : case.loading.Case, or what `load` takes
+    output : path-like, optional
+        Result file; by default the result is in memory alone.
+    options : dict, optional
+        PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``; before those of
+        the case and of PETSC_OPTIONS, and only for this call.
+    comm : mpi4py communicator, optional
+        The ranks that share the work, each of which calls this and gets the result; by default this process
+        alone.
+    restart : path-like, optional
+        Restart file to go on from.
+    progress : bool, optional
+        Whether to show progress; by default on a terminal and in a notebook.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    CaseError
+        The case is faulty: all faults are told.
+    NotConverged
+        Its `state` is the last good one; with `output` that is also in the restart file.
+    UsageError, OutputError
+        An option that cannot be, a file that cannot be read or written.
+
+    Examples
+    --------
+    >>> import ehlpetsc
+    >>> result = ehlpetsc.solve("cases/dry_hertz.toml")
+    >>> print(f"{result.pressure.max() / result.attrs['p0']:.2f} p0 on {len(result.x)} nodes")
+    1.00 p0 on 1001 nodes
+    """
+    need_solver()
+    from ehlpetsc.run.progress import in_notebook, on_terminal
+    from ehlpetsc.run.recorder import Recorder
+    from ehlpetsc.run.simulation import Simulation
+    from ehlpetsc.run.solve import record
+
+    simulation = Simulation(case, comm, options)
+    if progress is None:
+        progress = on_terminal(sys.stdout) or in_notebook()
+    stream = sys.stdout if progress and simulation.comm.rank == 0 else None
+    recorder = Recorder(simulation, output)
+    with simulation.options, recorder:
+        if restart is not None:
+            recorder.resume(restart)
+        _, failure = record(simulation, recorder, stream=stream)
+    if failure:
+        raise failure
+    if output is None:
+        return Result(h5py.File(io.BytesIO(recorder.image()), "r"), Path("memory.h5"))
+    return read_result(output)
+
+
+def need_solver():
+    """Find Debian's PETSc; ImportError with what to do where something is missing."""
+    missing = environment.prepare()
+    if missing:
+        raise ImportError(environment.advice(missing, []))

@@ -1,0 +1,257 @@
+"""The package from Python: cases from files, dicts and arrays; results in memory; options given back."""
+
+import doctest
+import importlib
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ehlpetsc
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT / "cases"
+QUICK = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40, "time.travel": 0.05}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return ehlpetsc.load(CASES / "table1_rough.toml", QUICK)
+
+
+@pytest.fixture(scope="module")
+def result(case):
+    return ehlpetsc.solve(case)
+
+
+def table():
+    from petsc4py import PETSc
+
+    return PETSc.Options().getAll()
+
+
+def test_a_case_from_a_dict_is_that_of_the_file():
+    path = CASES / "table1_smooth.toml"
+    data = tomllib.loads(path.read_text())
+    one = ehlpetsc.load(data, {"fluid.viscosity": np.float64(0.003)})
+    assert one == ehlpetsc.load(path, ["fluid.viscosity=0.003"])
+    assert ehlpetsc.load(tomllib.loads(one.text)) == one  # the text of the result runs the same case
+
+
+def test_none_leaves_a_key_out():
+    assert ehlpetsc.load(CASES / "table1_rough.toml", {"time": None, "surface": None}).time is None
+
+
+def test_profiles_may_be_arrays():
+    x = np.linspace(0.0, 1e-3, 501)
+    z = 1e-7 * np.cos(x / 20e-6)
+    in_metres = {"x": x, "z": z}
+    in_um = {"z": 1e6 * z, "spacing": x[1], "unit": "um"}
+    for given in (in_metres, in_um):
+        case = ehlpetsc.load(CASES / "table1_rough.toml", {"surface.fast": given, "surface.slow": None})
+        profile = ehlpetsc.Simulation(case).roughness.fast
+        assert profile.ra == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "surface, fault",
+    [
+        ({"z": [0.0] * 5}, "heights z need either x or spacing"),
+        ({"z": [0.0] * 5, "x": [0.0, 1.0, 2.0, 3.0]}, "x has 4 values, z 5"),
+        ({"z": [0.0] * 5, "spacing": 1e-6, "columns": [1]}, "columns: for a file"),
+        (
+            {"z": [0.0, 1e-7, np.nan, 0.0], "spacing": 1e-6},
+            "surface.fast.z = [0.0, 1e-07, NaN, 0.0]: allowed",
+        ),
+        ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "x falls after"),
+    ],
+)
+def test_arrays_that_are_no_profile_are_refused(surface, fault):
+    with pytest.raises(ehlpetsc.CaseError) as caught:
+        ehlpetsc.load(CASES / "table1_rough.toml", {"surface.fast": surface})
+    assert fault in str(caught.value)
+
+
+def test_all_faults_come_as_one_exception():
+    with pytest.raises(ehlpetsc.CaseError) as caught:
+        ehlpetsc.solve({"title": "x", "mesh": {"inlet": 3}})
+    assert len(caught.value.faults) >= 4
+    assert all(fault.startswith("case: ") for fault in caught.value.faults)
+
+
+def test_a_result_in_memory_has_fields_figures_and_attributes(case, result, tmp_path):
+    assert result.pressure.shape == result.film_thickness.shape == (len(result.time), len(result.x))
+    assert len(result.time) == len(result.steps.h_min) == 5
+    assert result.steps.h_min[-1] == result.film_thickness[-1].min()
+    assert result.attrs["status"] == "done" and result.attrs["case"] == case.text
+    assert "film_thickness" in dir(result) and "p_max" in dir(result.steps)
+    with pytest.raises(AttributeError, match="no field"):
+        result.presure  # noqa: B018
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_result_on_disk_is_that_in_memory(case, result, tmp_path):
+    stored = ehlpetsc.solve(case, output=tmp_path / "run.h5")
+    assert [p.name for p in tmp_path.iterdir()] == ["run.h5"]
+    np.testing.assert_array_equal(stored.pressure, result.pressure)
+    again = ehlpetsc.read_result(tmp_path / "run.h5")
+    np.testing.assert_array_equal(again.steps.p_max, result.steps.p_max)
+
+
+def test_xarray_has_units_and_steps(result):
+    data = result.to_xarray()
+    assert data.pressure.dims == ("time", "x") and data.pressure.units == "Pa"
+    assert data.h_min.dims == ("step",) and data.h_min.long_name == "least film thickness"
+    assert float(data.film_thickness.isel(time=-1).min()) == result.steps.h_min[-1]
+
+
+def test_states_can_be_left_and_gone_on_with(case, result):
+    simulation = ehlpetsc.Simulation(case)
+    for state in simulation:
+        if state.step == 2:
+            break
+    assert state.time == result.time[2] and not simulation.finished
+    np.testing.assert_array_equal(state.pressure, result.pressure[2])
+    rest = list(simulation)
+    assert [state.step for state in rest] == [3, 4] and simulation.finished
+    np.testing.assert_array_equal(rest[-1].film_thickness, result.film_thickness[-1])
+    assert rest[-1].figures["h_min"] == rest[-1].h_min == result.steps.h_min[-1]
+
+
+def test_options_are_used_and_given_back(case, capfd):
+    from petsc4py import PETSc
+
+    options = PETSc.Options()
+    options["snes_rtol"] = "1e-30"
+    before = table()
+    try:
+        ehlpetsc.solve(case, options={"snes_rtol": 1e-20, "snes_converged_reason": None})
+        assert table() == before
+    finally:
+        options.delValue("snes_rtol")
+    out = capfd.readouterr().out
+    assert out.count("Nonlinear solve converged") == 5
+    assert "step 4 from" in out
+
+
+def test_runs_that_take_turns_do_not_disturb_each_other(case, result):
+    thick = ehlpetsc.load(CASES / "table1_rough.toml", QUICK | {"fluid.viscosity": 0.01})
+    alone = [state.h_min for state in ehlpetsc.Simulation(thick)]
+    pairs = list(zip(ehlpetsc.Simulation(case), ehlpetsc.Simulation(thick), strict=True))
+    np.testing.assert_array_equal([one.h_min for one, _ in pairs], result.steps.h_min)
+    np.testing.assert_array_equal([other.h_min for _, other in pairs], alone)
+
+
+def test_no_convergence_is_an_exception_with_the_last_good_state(case, result, tmp_path, monkeypatch):
+    from ehlpetsc.errors import SolveFailed
+
+    def fail(*_):
+        raise SolveFailed("MADE_UP", 1)
+
+    simulation = ehlpetsc.Simulation(case)
+    simulation.advance()
+    monkeypatch.setattr(simulation.march.solver, "solve", fail)
+    before = table()
+    with pytest.raises(ehlpetsc.NotConverged, match="step 1, time ") as caught:
+        simulation.advance()
+    assert caught.value.state.step == 0 and table() == before
+    np.testing.assert_array_equal(caught.value.state.pressure, result.pressure[0])
+    with pytest.raises(ehlpetsc.NotConverged, match="steady start") as caught:
+        ehlpetsc.solve(case, tmp_path / "r.h5", options={"snes_max_it": 1, "snes_atol": 1e-30})
+    assert caught.value.state is None and not list(tmp_path.iterdir())
+
+
+def test_options_that_cannot_be_are_exceptions(case):
+    before = table()
+    with pytest.raises(ehlpetsc.UsageError, match="nosuch"):
+        ehlpetsc.solve(case, options={"pc_type": "nosuch"})
+    assert table() == before
+
+
+def test_a_series_is_solved_member_by_member():
+    case = ehlpetsc.load(CASES / "fig4.toml")
+    with pytest.raises(ehlpetsc.CaseError, match="members"):
+        ehlpetsc.solve(case)
+    assert [value for value, _ in ehlpetsc.members(case)][0] == 0.01
+
+
+def test_a_run_goes_on_from_a_restart_file(case, result, tmp_path):
+    recorded = tmp_path / "run.h5"
+    from ehlpetsc.run.recorder import Recorder
+
+    simulation = ehlpetsc.Simulation(case)
+    with Recorder(simulation, recorded) as recorder:
+        for _ in range(3):
+            recorder.take(simulation.advance())
+        recorder.checkpoint()
+    whole = ehlpetsc.solve(case, recorded, restart=tmp_path / "run.restart.h5")
+    assert list(whole.steps.step) == [0, 1, 2, 3, 4]
+    np.testing.assert_allclose(whole.pressure, result.pressure, rtol=1e-9)
+
+
+def test_an_error_in_the_middle_leaves_a_whole_file(case, tmp_path):
+    from ehlpetsc.run.recorder import Recorder
+
+    simulation = ehlpetsc.Simulation(case)
+    with pytest.raises(KeyboardInterrupt), Recorder(simulation, tmp_path / "r.h5") as recorder:
+        recorder.take(simulation.advance())
+        raise KeyboardInterrupt
+    left = ehlpetsc.read_result(tmp_path / "r.h5")
+    assert left.attrs["status"] == "stopped" and len(left.time) == 1
+
+
+def test_the_picture_shows_the_frame_asked_for(result):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    figure = result.plot(step=3)
+    drawn = figure.axes[0].lines[1].get_ydata()
+    np.testing.assert_allclose(drawn, 1e-9 * result.pressure[3])
+
+
+LIGHT = """
+import sys, ehlpetsc
+assert not {"numpy", "petsc4py", "mpi4py", "h5py"} & sys.modules.keys(), "import"
+ehlpetsc.read_result
+assert not {"petsc4py", "mpi4py", "matplotlib", "numba"} & sys.modules.keys(), "read_result"
+ehlpetsc.Simulation
+assert "petsc4py" in sys.modules and "matplotlib" not in sys.modules
+"""
+
+
+def test_importing_is_light_and_finds_petsc_by_itself(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", LIGHT],
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    "module", ["ehlpetsc.api", "ehlpetsc.case.loading", "ehlpetsc.run.simulation", "ehlpetsc.results.reader"]
+)
+def test_examples_in_docstrings_work(module, monkeypatch):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    monkeypatch.chdir(ROOT)
+    failed, tried = doctest.testmod(importlib.import_module(module))
+    assert tried >= 3 and failed == 0
+
+
+def test_the_page_shows_what_works(monkeypatch, capsys):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    monkeypatch.chdir(ROOT)
+    page = (ROOT / "ehlpetsc" / "run" / "README.md").read_text(encoding="utf-8")
+    code, printed = re.search(r"```python\n(.*?)```\n\nprints\n\n```\n(.*?)```", page, re.DOTALL).groups()
+    exec(compile(code, "README.md", "exec"), {})
+    assert capsys.readouterr().out == printed
