@@ -43,17 +43,14 @@ class Result(reader.Result):
         """
         from matplotlib import pyplot
 
-        from ehlpetsc.plot import frames
+        from ehlpetsc.plot import frames, labels
 
-        index = frames.frame_with_most_contacts(self)
-        if step is not None or time is not None:
-            index = self.nearest_frame(step=step, time=time)
-        figure, axes = pyplot.subplots(2, 1, sharex=True, layout="constrained")
-        frames.pressure_and_film(
-            axes, [self], [index], [frames.SINGLE_COLOUR], window or frames.default_window([self])
-        )
-        frames.frame_legend(axes, self, index)
-        axes[0].set_title(self.attrs["title"], fontsize="medium")
+        (index,), ((colour,), *_) = frames.choose_frames([self], step, time), labels.series_colours([self])
+        figure, axes = pyplot.subplots(2, 1, figsize=(8.0, 5.2), sharex=True, layout="constrained")
+        frames.pressure_and_film(axes, [self], [index], [colour], window or frames.default_window([self]))
+        frames.frame_legend(axes, self, index, colour)
+        title = ": ".join(filter(None, [self.attrs["title"], frames.instant(self, index)]))
+        axes[0].set_title(title, fontsize="medium")
         return figure
 
 
