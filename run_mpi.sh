@@ -8,6 +8,7 @@ usage() {
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case, on 2 ranks unless told otherwise
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
+./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
 export PATH="/path/to/ehlpetsc/bin:$PATH"           then, in any folder: ehlpetsc CASE.toml, on one rank, and
                                                     ehlpetsc-post, -plot, -compare, -study (each: --help)
 
@@ -270,6 +271,7 @@ case ${1-} in
         prepare "$run_modules" "$drawing"
         "$python" -m ehlpetsc "$@"
         ;;
+    --install) prepare "$run_modules $drawing" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
     test)
         prepare "$run_modules $testing"

@@ -1,0 +1,93 @@
+#!/bin/bash
+# The README's two commands on a Debian that has nothing yet, in a folder that is removed afterwards:
+#   tests/fresh_machine.sh bookworm|trixie [TESTS ...]      as root; without TESTS the whole suite
+# The release comes by debootstrap from the mirror that this machine's apt uses, the project from its last commit.
+# Exit status: 0 as the README says, 1 not, 77 cannot be tried here.
+set -eu
+
+release=${1:?usage: tests/fresh_machine.sh bookworm|trixie [TESTS ...]}
+shift
+here=$(cd "$(dirname "$0")/.." && pwd -P)
+say() { echo "fresh_machine.sh: $*"; }
+cannot() { say "cannot be tried here: $*" >&2; exit 77; }
+fail() { say "$*" >&2; exit 1; }
+
+if [ "${FRESH_ROOT-}" = "" ]; then # the outer half: what must be undone, whatever happens
+    [ "$(id -u)" = 0 ] || cannot "debootstrap needs root"
+    command -v debootstrap >/dev/null || apt-get -o DPkg::Lock::Timeout=600 install -y -qq debootstrap >/dev/null 2>&1 ||
+        { apt-get update -qq && apt-get install -y -qq debootstrap; } >/dev/null 2>&1 || cannot "no debootstrap"
+    unshare --mount true 2>/dev/null || cannot "file systems cannot be mounted"
+    FRESH_ROOT=$(mktemp -d)
+    export FRESH_ROOT
+    chmod 755 "$FRESH_ROOT"
+    trap 'rm -rf --one-file-system "$FRESH_ROOT"' EXIT
+    trap 'exit 1' INT TERM HUP
+    status=0
+    # mounts are seen inside alone and end with it; so do its processes
+    unshare --mount --pid --fork --kill-child --propagation private "$0" "$release" "$@" || status=$?
+    exit $status
+fi
+root=$FRESH_ROOT
+
+mirror() {
+    local VERSION_CODENAME=""
+    . /etc/os-release
+    # shellcheck disable=SC2016  # apt's own
+    apt-get indextargets --format '$(SUITE) $(RELEASE) $(COMPONENT) $(REPO_URI)' 'Created-By: Packages' |
+        awk -v name="$VERSION_CODENAME" '($1 == name || $2 == name) && $3 == "main" { print $4; exit }'
+}
+
+in_root() { # USER COMMAND: in the fresh machine, with nothing of this one's environment
+    local home=/root
+    [ "$1" = root ] || home=/home/$1
+    chroot --userspec="$1" --groups="" "$root" /usr/bin/env -i HOME="$home" USER="$1" LANG=C.UTF-8 \
+        PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin /bin/bash -c "cd && cd ehlpetsc 2>/dev/null; $2"
+}
+
+expect() { # STATUS USER COMMAND WORDS ...: what it ends with and prints
+    local wanted=$1 user=$2 command=$3 status=0 words
+    shift 3
+    say "$release, $user: $command"
+    in_root "$user" "$command" </dev/null >"$root/said" 2>&1 || status=$?
+    sed 's/^/    /' "$root/said"
+    [ $status = "$wanted" ] || fail "ended with $status, not $wanted"
+    for words in "$@"; do
+        grep -qE -- "$words" "$root/said" || fail "did not print: $words"
+    done
+}
+
+from=$(mirror)
+[ -n "$from" ] || cannot "no mirror of Debian among apt's sources"
+say "$release from the mirror of this machine's apt"
+log=$(debootstrap --variant=minbase "$release" "$root" "$from" 2>&1) ||
+    { tail -n 5 <<<"$log" >&2; cannot "debootstrap of $release failed"; }
+mount -t proc proc "$root/proc"
+mount --rbind /sys "$root/sys"
+mount --rbind /dev "$root/dev"
+# the way to the net: name server, proxies, certificates
+cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+grep -lsi proxy /etc/apt/apt.conf /etc/apt/apt.conf.d/* | xargs -r cp -t "$root/etc/apt/apt.conf.d" || true
+mkdir -p "$root/usr/local/share/ca-certificates"
+cp /usr/local/share/ca-certificates/*.crt "$root/usr/local/share/ca-certificates" 2>/dev/null || true
+
+in_root root 'apt-get update -qq && apt-get install -y -qq --no-install-recommends git ca-certificates' >/dev/null 2>&1 ||
+    cannot "git cannot be installed"
+in_root root 'useradd --create-home guest'
+git -C "$here" bundle create -q "$root/project" HEAD
+for user in root guest; do
+    in_root "$user" 'git clone -q /project ehlpetsc'
+done
+began=$SECONDS
+
+line='^sudo apt-get update && sudo apt-get install -y .*python3-petsc4py-real'
+done='^ehlpetsc: done steps=2400 newton=[0-9]+ h_min=0 p_max=6\.88[0-9]*e\+09 contacts=[0-9]+ load_error=[0-9.]+e-1'
+expect 2 guest './run_mpi.sh cases/table1_rough.toml' "$line"
+expect 0 root './run_mpi.sh cases/table1_rough.toml' '^run_mpi.sh: installed$' '^result: table1_rough.h5$' "$done"
+say "$release: $((SECONDS - began)) s from the clone to the first result"
+expect 0 guest './run_mpi.sh cases/table1_rough.toml' '2 ranks' "$done"
+expect 0 guest 'cd /tmp && ~/ehlpetsc/bin/ehlpetsc-plot ~/ehlpetsc/table1_rough.h5' '^/home/guest/ehlpetsc/table1_rough.png$'
+began=$SECONDS
+expect 0 root "./run_mpi.sh test $*" '^[0-9]+ passed' 'tests on 3 rank'
+! grep -E '^(FAILED|ERROR)|[0-9]+ failed' "$root/said" || fail "tests failed"
+say "$release: tests in $((SECONDS - began)) s"
+say "$release: all as the README says"
