@@ -47,3 +47,16 @@ def test_a_job_stopped_before_its_time_is_over_goes_on_when_queued_again(tmp_pat
         assert whole.attrs["status"] == "done"
         assert int(whole.steps("step")[-1]) == max(40, stopped_at)
     assert os.path.getsize(tmp_path / "requeued") == len("requeue 17\n")
+
+
+def test_the_modules_of_a_cluster_are_loaded_before_the_run(tmp_path):
+    environment = slurm(tmp_path) | {
+        "MODULES": "petsc petsc4py",
+        "BASH_FUNC_module%%": '() { echo "$@" >>loaded; }',
+        "EHLPETSC": str(tmp_path),
+    }
+    (tmp_path / "run_mpi.sh").write_text("#!/bin/sh\ncat loaded\n")
+    (tmp_path / "run_mpi.sh").chmod(0o755)
+    job = subprocess.run(JOB, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
+    assert job.stdout == "load petsc petsc4py\n", job.stderr
+    assert job.returncode == 0
