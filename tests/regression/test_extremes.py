@@ -18,6 +18,7 @@ def environment(monkeypatch):
         monkeypatch.setenv(name, value)
 
 
+@pytest.mark.slow
 def test_short_table_of_extremes(tmp_path):
     rows = table(tmp_path / "extremes.csv", short=True, limit=120, say=lambda text: None)
     assert len(rows) == len(lines(short=True)) > 25
@@ -33,6 +34,7 @@ def test_short_table_of_extremes(tmp_path):
     assert len((tmp_path / "extremes.csv").read_text().splitlines()) == len(rows) + 1
 
 
+@pytest.mark.slow
 def test_random_cases_end_in_0_or_3_and_leave_whole_files(tmp_path):
     said = []
     count = int(os.environ.get("EHL_DRAWS", "6"))

@@ -16,6 +16,7 @@ from ehlpetsc.analysis import contact_statistics as counts
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import from_thick_to_thin, in_order, open_all
 
+pytestmark = pytest.mark.slow
 SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
 
 

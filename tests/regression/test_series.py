@@ -7,6 +7,7 @@ from running import ROOT, SHORT, run, settings, summary
 
 from ehlpetsc.results.reader import read_result
 
+pytestmark = pytest.mark.slow
 CASE = ROOT / "cases" / "fig4.toml"
 VALUES = (0.01, 0.006, 0.003)
 QUICK = [*SHORT[:-1], "time.travel=0.5"]

@@ -1,10 +1,16 @@
-"""Bad input from the command line to the exit status: what is said, and that nothing is left behind."""
+"""Bad input: what is said, and from the command line to the exit status that nothing is left behind.
+
+What is said is the same in a process of its own as from `load`, which is quicker to ask.
+"""
 
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases"
@@ -52,6 +58,22 @@ def refused(run, text, profile=None):
     return done.stderr.splitlines()
 
 
+@pytest.fixture
+def faults(tmp_path, monkeypatch):
+    """What is said of a case text on loading."""
+    monkeypatch.chdir(tmp_path)
+
+    def of(text, profile=None):
+        Path("my.toml").write_text(text)
+        if profile is not None:
+            Path("p.csv").write_text(profile)
+        with pytest.raises(CaseError) as refusal:
+            load("my.toml", ())
+        return refusal.value.faults
+
+    return of
+
+
 @pytest.mark.parametrize(
     "text, words",
     [
@@ -73,8 +95,8 @@ def refused(run, text, profile=None):
     ],
     ids=["unknown key", "missing key", "wrong type", "nan", "negative radius", "zero entrainment"],
 )
-def test_a_bad_key(run, text, words):
-    said = "\n".join(refused(run, text))
+def test_a_bad_key(faults, text, words):
+    said = "\n".join(faults(text))
     assert said.startswith("my.toml: ")
     for word in words:
         assert word in said
@@ -90,13 +112,13 @@ def test_a_bad_key(run, text, words):
     ],
     ids=["missing", "text", "unsorted", "duplicate"],
 )
-def test_a_bad_roughness_file(run, profile, words):
-    said = refused(run, SMOOTH + SURFACE, profile)
+def test_a_bad_roughness_file(faults, profile, words):
+    said = faults(SMOOTH + SURFACE, profile)
     assert len(said) == 1
     assert said[0].startswith('my.toml: surface.fast.file = "p.csv": ') and words in said[0]
 
 
-def test_everything_wrong_is_told_at_once(run):
+def test_everything_wrong_is_told_at_once_by_the_command_and_on_loading(run, faults):
     text = SMOOTH + SURFACE + "[surface.slow]\nfile = 'nowhere.csv'\n"
     for old, new in (
         ("radius = 0.0191", "radius = -1"),
@@ -108,6 +130,7 @@ def test_everything_wrong_is_told_at_once(run):
         assert text.count(old) == 1
         text = text.replace(old, new)
     said = refused(run, text, LEVEL + "7e-6,0\n")
+    assert said == faults(text)
     for key in (
         "contact.radius =",
         "fluid.viscosity =",

@@ -125,6 +125,7 @@ def _used(loaded):
     tomllib.loads(loaded.text)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 def test_corrupted_files_end_in_case_errors(tmp_path):
     rng = random.Random(SEED)
@@ -147,6 +148,7 @@ def test_corrupted_files_end_in_case_errors(tmp_path):
     assert refused > 0.7 * DRAWS
 
 
+@pytest.mark.slow
 def test_corrupted_overrides_end_in_case_errors():
     rng = random.Random(SEED)
     keys = [

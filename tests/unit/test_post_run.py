@@ -36,6 +36,7 @@ def fault(capsys, *argv):
     return said
 
 
+@pytest.mark.slow
 def test_result_has_the_fixed_names(result, scene, capsys):
     assert main([str(result)]) == 0
     assert "ehlpetsc.post: done" in capsys.readouterr().out
@@ -64,6 +65,7 @@ def test_result_has_the_fixed_names(result, scene, capsys):
     assert not result.with_name("run.post.h5.parts").exists()
 
 
+@pytest.mark.slow
 def test_imports_no_petsc_mpi_or_solver(result):
     code = (
         "import sys; from ehlpetsc.post.command import main; import ehlpetsc.post.pictures.gallery; "
@@ -242,6 +244,7 @@ def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
         assert file["asperities"].attrs["surface"] == "fast"
 
 
+@pytest.mark.slow
 def test_smooth_surfaces(scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface"))
     assert main([str(path), "--pictures"]) == 0
@@ -249,6 +252,7 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
         assert file["asperities/damage"].shape == (3, 0) and np.isnan(file["weibull/beta"]).all()
 
 
+@pytest.mark.slow
 def test_pictures_of_two_ratios(scene, tmp_path, capsys):
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))

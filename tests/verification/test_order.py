@@ -15,6 +15,8 @@ both   1.975  2.136
 =====  =====  ========
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 from driving import Scene, observed_order
@@ -31,6 +33,7 @@ SCENE = (
 )
 
 
+@cache
 def solution(points, steps):
     """Film [um] and pressure [p0] in the window at the end, and how near the schemes came to their limiter.
 
@@ -60,6 +63,7 @@ def orders(solutions):
     return [observed_order(differences) for differences in norms]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "refinements",
     [

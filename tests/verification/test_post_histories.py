@@ -63,6 +63,7 @@ def linear(scene, s, frames):
     return out
 
 
+@pytest.mark.slow
 def test_damage_on_ripples_of_ten_nodes_within_a_fifth_of_a_percent(scene, loads):
     motion_s = scene.x[0] - np.array([10.0, 25.37, 41.81]) * scene.dx
     losses = []

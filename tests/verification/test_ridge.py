@@ -22,6 +22,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.physics.published_values import RIDGE
 
 
+@pytest.mark.slow
 def test_ridge_in_the_centre_of_the_contact():
     scene = Scene("ridge.toml", "mesh.points_per_half_width=150", "time.courant=0.75").start()
     s = scene.scales

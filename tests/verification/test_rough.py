@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from driving import Scene
 
+pytestmark = pytest.mark.slow
 # the inlet near the contact, thin oil: the asperities touch within few steps
 SHORT = ("mesh.inlet=-1.3", "mesh.points_per_half_width=100", "time.travel=1.5", "fluid.viscosity=0.001")
 TOLERANCE = 1e-7  # of the residual

@@ -42,6 +42,7 @@ def amplitude_left(ratio, points, nodes, half_periods):
     return fourier / amplitude, 0.5 * np.ptp(film) / amplitude
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", SETTINGS)
 def test_amplitude_within_four_percent(ratio):
     fourier, peaks = amplitude_left(ratio, *SETTINGS[ratio])
