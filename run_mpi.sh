@@ -202,20 +202,21 @@ without_mpiruns_comment() {
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it hands on, and they stop after the step in hand.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
-    local status=0 comments
+    local status=0 comments killed=""
     more_ranks_than_cores "$ranks"
     exec {comments}> >(without_mpiruns_comment >&2)
     local filter=$!
     setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null 2>&$comments &
     local job=$!
     exec {comments}>&-
-    trap 'kill -USR1 $job 2>/dev/null; trap "kill -TERM $job" INT TERM' INT TERM HUP USR1
+    trap 'kill -USR1 $job 2>/dev/null; trap "killed=143; kill -TERM $job" INT TERM' INT TERM HUP USR1
     wait $job || status=$?
     while kill -0 $job 2>/dev/null; do # a signal ends wait, not mpirun
         status=0
         wait $job || status=$?
     done
     wait $filter || true
+    status=${killed:-$status} # Open MPI 5 ends with 1 when it is killed
     [ $status -lt 129 ] || say "a rank was ended by signal $((status - 128))"
     exit $status
 }

@@ -1,18 +1,22 @@
 """Running the program as its users do: as processes of their own, under mpirun or without."""
 
+import importlib.util
 import re
 import subprocess
+import sys
 import time
 from pathlib import Path
 
+from ehlpetsc import environment
+
 ROOT = Path(__file__).parents[2]
-PYTHON = "/usr/bin/python3"
+PYTHON = sys.executable
 TAMPERED = str(Path(__file__).with_name("tampered.py"))
-# what run_mpi.sh sets; the tests of a bare environment leave out the first two
-DEBIAN = max(map(str, Path("/usr/lib/petscdir").glob("petsc3.*/*-real")))
+environment.prepare()
+PETSC = Path(importlib.util.find_spec("petsc4py").origin).parents[1]
+# what run_mpi.sh sets; the tests of a bare environment leave out some
 SCRIPT = {
-    "PETSC_DIR": DEBIAN,
-    "PYTHONPATH": f"{ROOT}:{DEBIAN}/lib/python3/dist-packages",
+    "PYTHONPATH": f"{ROOT}:{PETSC}",
     "OMP_NUM_THREADS": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",

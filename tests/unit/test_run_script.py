@@ -2,7 +2,9 @@
 
 import os
 import shutil
+import signal
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -70,6 +72,52 @@ def test_the_exit_status_is_that_of_the_run_without_comment(script, status):
     done = script("case.toml", STATUS=str(status))
     assert done.returncode == status
     assert done.stderr == ""
+
+
+WAITING = """\
+import os, pathlib, signal, sys, time
+from mpi4py import MPI
+told = []
+signal.signal(signal.SIGUSR1, lambda number, frame: told.append(number))
+pathlib.Path(f"ready{MPI.COMM_WORLD.rank}").touch()
+while not MPI.COMM_WORLD.allreduce(len(told)) or "deaf" in sys.argv:
+    time.sleep(0.05)
+print("RANK", MPI.COMM_WORLD.rank, "TOLD", flush=True)
+sys.exit(4)
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGUSR1"])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_signal_is_handed_on_to_every_rank_and_the_status_is_theirs(script, tmp_path, name, ranks):
+    done = signalled(script, tmp_path, ranks, [name], "case.toml")
+    assert done.returncode == 4, done.stderr
+    assert sorted(done.stdout.splitlines()) == [f"RANK {rank} TOLD" for rank in range(ranks)]
+    assert done.stderr == ""
+
+
+def test_a_second_signal_ends_ranks_that_do_not_listen(script, tmp_path):
+    done = signalled(script, tmp_path, 2, ["SIGTERM", "SIGTERM"], "deaf")
+    assert done.returncode == 143
+    assert done.stderr.endswith("run_mpi.sh: a rank was ended by signal 15\n")
+
+
+def signalled(script, tmp_path, ranks, names, *arguments):
+    """Run the script, send it signals once all ranks are there, and wait for its end."""
+    (tmp_path / "ehlpetsc" / "__main__.py").write_text(WAITING)
+    command = [tmp_path / "run_mpi.sh", "-n", str(ranks), *arguments]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    folder = tmp_path / "elsewhere"
+    with subprocess.Popen(command, cwd=folder, env={"PATH": "/usr/bin:/bin"}, **pipes) as job:
+        for _ in range(600):
+            if len(list(folder.glob("ready*"))) == ranks:
+                break
+            time.sleep(0.1)
+        for name in names:
+            job.send_signal(signal.Signals[name])
+            time.sleep(1)
+        stdout, stderr = job.communicate(timeout=60)
+    return subprocess.CompletedProcess(command, job.returncode, stdout, stderr)
 
 
 def test_leftovers_of_another_python_do_not_matter(script):
