@@ -7,9 +7,9 @@ import pytest
 from running import SCRIPT
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.study.draws import run_all
 from ehlpetsc.study.extremes import lines, table
-from ehlpetsc.study.runs import NOT_CONVERGED
 
 
 @pytest.fixture(autouse=True)
@@ -25,7 +25,7 @@ def test_short_table_of_extremes(tmp_path):
     failed = [row for row in rows if row["converged"] != "yes"]
     assert len(failed) <= 0.05 * len(rows), failed
     for row in failed:
-        assert row["converged"] == f"no, exit {NOT_CONVERGED}" and row["reason"]
+        assert row["converged"] == f"no, exit {ExitStatus.NOT_CONVERGED}" and row["reason"]
     for row in rows:
         if row not in failed:
             assert float(row["h_min_um"]) >= 0.0
