@@ -25,7 +25,7 @@ MAY_IMPORT = {
     "analysis": {"results"},
     "plot": {"analysis", "results", "physics"},
     "post": {"results", "physics"},
-    "study": {"case", "results", "physics"},  # runs the solver as a user does: by its command
+    "study": {"case", "analysis", "results", "physics"},  # runs the solver as a user does: by its command
     "compare": {"analysis"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
     "__main__": {"run", "case"},

@@ -63,6 +63,16 @@ def test_functions_that_the_map_names_exist():
         assert any(re.search(rf"\b(def|class) {last}\b", text) for text in homes), name
 
 
+def test_every_case_is_told_with_its_picture():
+    text = (ROOT / "cases" / "README.md").read_text(encoding="utf-8")
+    for case in sorted((ROOT / "cases").glob("*.toml")):
+        if re.fullmatch(r"fig[1-7]", case.stem):
+            assert f"(pictures/{case.stem}.png)" in text, case.name
+        else:
+            (row,) = re.findall(rf"^\| `{case.name}` .*$", text, re.MULTILINE)
+            assert re.search(r"\(pictures/\w+\.png\)", row), case.name
+
+
 def test_the_main_page_is_one_page():
     assert len(MAIN.splitlines()) <= 150
 
