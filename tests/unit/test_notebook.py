@@ -1,4 +1,4 @@
-"""The notebook runs and prints what is stored in it; ``python3 tests/unit/test_notebook.py`` stores it anew."""
+"""The notebook runs and prints what is stored in it; ``python3 tests/unit/test_notebook.py`` stores it."""
 
 import base64
 import contextlib
