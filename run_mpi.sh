@@ -50,7 +50,7 @@ prepare() {
         use_debian
         missing=$(missing_in_debian $modules)
         if [ -n "$missing" ]; then
-            is_debian || { other_machine "$missing" >&2; exit 2; }
+            is_debian || { other_machine $modules >&2; exit 2; }
             install_packages $missing $(missing_in_debian $also)
             use_debian
             missing=$(missing_in_debian $modules)
@@ -105,7 +105,7 @@ install_packages() {
 other_machine() {
     local PRETTY_NAME="an unknown system" found
     [ ! -r /etc/os-release ] || . /etc/os-release
-    found=$(python3 "$check" found 2>/dev/null || command -v python3 || echo "no python3")
+    found=$(python3 "$check" found "$@" 2>/dev/null || command -v python3 || echo "no python3")
     cat <<END
 run_mpi.sh: something is missing, and this is not Debian 12 or newer, where it could be installed.
 found:   $PRETTY_NAME; $found; $(mpirun --version 2>/dev/null | head -n 1 || true)

@@ -4,7 +4,7 @@
 
     environment.py own MODULE ...      status 0: this Python, not Debian's, has all and can load PETSc
     environment.py missing MODULE ...  prints those that it does not have
-    environment.py found               prints what it is and what it lacks
+    environment.py found MODULE ...    prints what it is and what it lacks
 """
 
 import importlib
@@ -71,8 +71,9 @@ def _of_petsc_dir():
 
 
 def _debians():
-    """Folders of Debian's petsc4py, newest first."""
-    found = DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages")
+    """Folders of Debian's petsc4py of this release of Python, newest first."""
+    built = f"petsc4py/lib/PETSc.{sys.implementation.cache_tag}-*.so"
+    found = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
     return sorted(found, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
 
 
@@ -131,9 +132,8 @@ def _own(names):
     return petsc.ScalarType.__name__ in ("float", "float64")
 
 
-def _found():
-    prepare()
-    lacks = f"without {', '.join(missing(NEEDED))}" if missing(NEEDED) else "with all packages"
+def _found(names):
+    lacks = f"without {', '.join(missing(names))}" if missing(names) else "with all packages"
     return f"{sys.executable} is Python {sys.version.split()[0]}, {lacks}"
 
 
@@ -142,7 +142,7 @@ def _answer(question, *names):
     if question == "own":
         return 0 if _own(names) else 1
     prepare()
-    print(_found() if question == "found" else "\n".join(missing(names)))
+    print(_found(names) if question == "found" else "\n".join(missing(names)))
     return 0
 
 
