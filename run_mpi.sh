@@ -248,6 +248,7 @@ run_tests() {
             say "PyPI cannot be reached: the comparison with its rainflow is left out"
     fi
     export PYTHONPATH="$PYTHONPATH:$test_only"
+    export OMPI_MCA_mpi_yield_when_idle=1 # ranks that wait would take the cores from those they wait for
     "$python" -m pytest -p no:cacheprovider -q -n 2 --dist loadfile -m "not mpi" "${@:-tests}"
     for ranks in 1 2 3; do run_mpi_tests $ranks; done
 }

@@ -25,7 +25,7 @@ if [ "${FRESH_ROOT-}" = "" ]; then # the outer half: what must be undone, whatev
     status=0
     # mounts are seen inside alone and end with it; so do its processes
     unshare --mount --pid --fork --kill-child --propagation private "$0" "$release" "$@" &
-    trap 'kill $!' INT TERM HUP
+    trap 'kill -KILL $!' INT TERM HUP # the first process of the fresh machine dies with it, and so do all others
     wait $! || status=$?
     exit $status
 fi
