@@ -3,6 +3,8 @@
 import numpy as np
 
 MARKERS = "osD^vP"
+TICKS = 5  # labels of an axis that stand apart
+MANTISSAS = ((1, 1.5, 2, 3, 4, 6, 8), (1, 2, 3, 5), (1, 2, 5), (1, 3), (1,))
 TITLES = {"film": "local film, max norm", "damage": "damage, decades"}
 
 
@@ -50,7 +52,7 @@ def draw(rows, path, title):
 
 
 def _panel(axis, rows, measure, cost):
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
     base = next(r for r in rows if r["value"] == "as it is")
     varied = dict.fromkeys(r["varied"] for r in rows if r["varied"] not in ("", "reference"))
@@ -69,12 +71,31 @@ def _panel(axis, rows, measure, cost):
     axis.axhline(_shown(rows[0][measure]), color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
     axis.set_xscale("log")
     axis.set_yscale("log")
-    costs = [r[cost] for r in rows[1:] if r["converged"] == "yes"]
-    few = max(costs) < 5.0 * min(costs)
-    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 4.0, 6.0) if few else (1.0, 2.0, 5.0)))
+    axis.xaxis.set_major_locator(FixedLocator(ticks(*axis.get_xlim())))
+    axis.xaxis.set_minor_locator(NullLocator())
     axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.xaxis.set_minor_formatter(NullFormatter())
     axis.grid(True, which="major", lw=0.3)
+
+
+def ticks(low, high):
+    """Round values for a logarithmic axis from `low` to `high`, few enough that their labels stand apart.
+
+    Returns
+    -------
+    list of float
+        At most `TICKS`, at least two.
+    """
+    decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+    for mantissas in MANTISSAS:
+        found = [d * m for d in decades for m in mantissas if low <= d * m <= high]
+        if 2 <= len(found) <= TICKS:
+            return found
+    if len(found) > TICKS:  # many decades: every so many of them
+        return found[:: -(-len(found) // TICKS)]
+    step = 10.0 ** np.floor(np.log10((high - low) / 2.0))
+    step *= next(m for m in (5, 2, 1) if m * step <= (high - low) / 2.0)
+    first = np.ceil(low / step - 1e-9)
+    return list(np.arange(first, np.floor(high / step + 1e-9) + 1) * step)
 
 
 def _shown(error):

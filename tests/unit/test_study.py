@@ -7,11 +7,10 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.study import accuracy
+from ehlpetsc.study import accuracy, picture
 from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertainty
 from ehlpetsc.study.draws import draw
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
-from ehlpetsc.study.picture import draw as draw_picture
 from ehlpetsc.study.reasons import why as reason_of
 from ehlpetsc.study.runs import TIMED_OUT, Outcome, last_words
 
@@ -126,3 +125,40 @@ def test_picture_of_a_table_shows_errors_against_both_costs(tmp_path, monkeypatc
         assert axis.get_xscale() == axis.get_yscale() == "log"
     monkeypatch.undo()
     plt.close(figure)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "expected"),
+    [
+        (9.0, 26.0, [10, 15, 20]),
+        (8.0, 110.0, [10, 20, 30, 50, 100]),
+        (2.0, 3000.0, [10, 100, 1000]),
+        (0.5, 2e6, [1, 100, 1e4, 1e6]),
+        (31.0, 37.0, [32, 34, 36]),
+        (100.2, 100.9, [100.2, 100.4, 100.6, 100.8]),
+    ],
+)
+def test_labels_of_an_axis_are_few_and_round(low, high, expected):
+    found = picture.ticks(low, high)
+    assert 2 <= len(found) <= picture.TICKS
+    assert found == pytest.approx(expected)
+
+
+def test_labels_of_an_axis_do_not_overlap(tmp_path, monkeypatch):
+    from matplotlib import pyplot as plt
+
+    monkeypatch.setattr(plt, "close", lambda figure: None)
+    names = ("h_min", "h_c", "p_max", "film", "contact", "damage")
+    for low, high in ((10.0, 25.0), (10.0, 95.0), (3.0, 2500.0), (31.0, 37.0)):
+        rows = [("reference", "", 9 * high), ("", "as it is", low)]
+        rows += [("mesh", k, cost) for k, cost in enumerate(np.geomspace(low, high, 4))]
+        errors = dict.fromkeys(names, 1e-3) | {"converged": "yes"}
+        table = [dict(varied=v, value=k, wall_s=c, newton=100 * c, **errors) for v, k, c in rows]
+        picture.draw(table, tmp_path / "p.png", "title")
+        for axes in plt.gcf().axes:
+            left, right = axes.get_xlim()
+            shown = [label for label in axes.get_xticklabels() if left <= label.get_position()[0] <= right]
+            boxes = [label.get_window_extent() for label in shown]
+            assert len(boxes) >= 2
+            assert all(one.x1 < other.x0 for one, other in zip(boxes, boxes[1:], strict=False))
+    plt.close("all")
