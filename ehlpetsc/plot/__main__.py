@@ -3,8 +3,8 @@
 Pressure and film of one frame, by default that with most contacts; of several files, a series, the same
 instant of each in one picture. Or a map of pressure over place and time, contacts per millisecond, a movie;
 of a series its collisions, film and pressure at contact points against the swept value, its Stribeck curve;
-of one result oil trapped between two contacts. The ending of the file given by -o chooses the format (png,
-svg, pdf; of a movie gif, mp4, webm).
+of one result oil trapped between two contacts, or all of it as one HTML page. The ending of the file given by
+-o chooses the format (png, svg, pdf; of a movie gif, mp4, webm).
 
 Exit status: 0 drawn, 2 bad input.
 """
@@ -22,6 +22,7 @@ from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_f
 from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160
+ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
 WITHOUT_FRAMES = ("contacts", "stribeck")  # kinds that need the figures of the steps alone
 
 
@@ -58,6 +59,7 @@ def _parser():
     kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")
     kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")
     kind.add_argument("--stribeck", action="store_true", help="friction against speed, of a series over it")
+    kind.add_argument("--report", action="store_true", help="all of one result as one HTML page")
     kind.add_argument("--movie", action="store_true", help="pressure and film over time, as a GIF, MP4, WebM")
     return parser
 
@@ -69,6 +71,12 @@ def draw(results, kind, options, output):
         from ehlpetsc.plot.movies import save_movie
 
         save_movie(results, options, output)
+    elif kind == "report":
+        from ehlpetsc.plot.report import save_report
+
+        if len(results) > 1:
+            raise OutputError(f"{len(results)} results; allowed: --report of one")
+        save_report(results[0], output)
     else:
         FIGURES.get(kind, draw_frame)(results, options).savefig(output, dpi=DPI)
 
@@ -76,8 +84,8 @@ def draw(results, kind, options, output):
 def main(arguments=None):
     """Run the command; returns its exit status."""
     options = _parser().parse_args(arguments)
-    kind = next((k for k in (*FIGURES, "movie") if getattr(options, k) not in (None, False)), None)
-    ending = ".gif" if kind == "movie" else f".{kind}.png" if kind else ".png"
+    kind = next((k for k in (*FIGURES, *ENDINGS) if getattr(options, k) not in (None, False)), None)
+    ending = ENDINGS.get(kind, f".{kind}.png" if kind else ".png")
     output = options.output or Path(re.sub(r"(\.series\.json|\.h5)$", "", options.results[0]) + ending)
     try:
         with contextlib.ExitStack() as stack:

@@ -131,11 +131,14 @@ def _from_surface_topography(path, layout):
         raise ProfileError(f"{given[0]}: for text alone, the format {path.suffix!r} tells it; leave it out")
     try:
         from SurfaceTopography import read_topography
-    except ImportError:
+    except ModuleNotFoundError:
         raise ProfileError(
             f"format {path.suffix!r} needs the package SurfaceTopography (pip install SurfaceTopography); "
             "without it, allowed: .csv or two-column text, x and z in m"
         ) from None
+    except Exception as error:  # its own libraries do not fit together
+        reason = str(error).strip().splitlines()[-1:] or [type(error).__name__]
+        raise ProfileError(f"the package SurfaceTopography does not start: {reason[0]}") from None
     try:
         topography = read_topography(str(path)).to_unit("m")
         if topography.dim == 1:

@@ -204,3 +204,16 @@ def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeyp
     with pytest.raises(ProfileError) as caught:
         read_profile(path)
     assert str(caught.value) == f"SurfaceTopography cannot read it: {told}"
+
+
+def test_a_package_that_does_not_start_is_told_in_one_line(tmp_path, monkeypatch):
+    package = tmp_path / "SurfaceTopography"
+    package.mkdir()
+    (package / "__init__.py").write_text("import numpy\nnumpy.no_such_thing\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "SurfaceTopography", raising=False)
+    path = tmp_path / "p.x3p"
+    path.write_bytes(b"PK")
+    with pytest.raises(ProfileError, match="does not start: module 'numpy' has no attribute") as caught:
+        read_profile(path)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,31 @@
+"""One result as one HTML page that needs nothing else: no network, no files beside it."""
+
+import html
+import json
+from importlib.resources import files
+
+from ehlpetsc.plot.report_data import report_data
+
+PARTS = {"style": "report.css", "script": "report.js"}
+
+
+def save_report(result, path):
+    """Write the page.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+    path : pathlib.Path
+    """
+    data = report_data(result)
+    page = files("ehlpetsc.plot") / "page"
+    text = page.joinpath("report.html").read_text(encoding="utf-8")
+    for name, file in PARTS.items():
+        text = text.replace("{{" + name + "}}", page.joinpath(file).read_text(encoding="utf-8"))
+    rows = "".join(f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in data["facts"])
+    for name, value in (("title", data["title"]), ("case", data["case"])):
+        text = text.replace("{{" + name + "}}", html.escape(value))
+    text = text.replace("{{facts}}", rows)
+    # within a script element only "<" can end it
+    text = text.replace("{{data}}", json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,150 @@
+"""What the page of one result shows, as numbers: thinned to what a screen can tell apart."""
+
+import base64
+import tomllib
+
+import h5py
+import numpy as np
+
+from ehlpetsc.plot.frames import default_window, frame_with_most_contacts, in_contact
+from ehlpetsc.quantities import STEP_SCALARS
+
+FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
+STEADY = 1e-9  # relative change over a run that is none
+LEAST = {"h_min", "film_central", "lambda_ratio"}  # of several steps the least one counts, else the greatest
+SHOWN_IN = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
+UNSHOWN = {"step", "time", "load", "wall"}
+
+
+def report_data(result):
+    """Everything the page draws, to be written as JSON.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+
+    Returns
+    -------
+    dict
+    """
+    attrs = result.attrs
+    return {
+        "title": str(attrs["title"]),
+        "facts": facts(result),
+        "case": str(attrs["case"]),
+        "frames": frames(result),
+        "steps": step_figures(result),
+        "damage": damage(result.path.with_suffix(".post.h5")),
+    }
+
+
+def facts(result):
+    """Rows of the table at the top: what, figure."""
+    attrs = result.attrs
+    motion = tomllib.loads(str(attrs["case"])).get("motion", {})
+    rows = [
+        ("ended as", str(attrs.get("status", "unknown"))),
+        ("half width a, pressure p0", f"{1e3 * attrs['a']:.4g} mm, {1e-9 * attrs['p0']:.4g} GPa"),
+        ("speeds, fast and slow", f"{attrs['u1']:.4g} and {attrs['u2']:.4g} m/s") if motion else None,
+        ("nodes, steps", f"{len(result.x)}, {len(result.steps('time')) - 1}"),
+        ("least film", f"{1e6 * np.nanmin(result.steps('h_min')):.4g} µm"),
+        ("greatest pressure", f"{1e-9 * np.nanmax(result.steps('p_max')):.4g} GPa"),
+        ("node-steps in contact", f"{int(result.steps('contacts').sum())}"),
+    ]
+    for name, words in (
+        ("load_error", "greatest error of the load"),
+        ("mass_error", "greatest error of the oil balance"),
+    ):
+        values = result.steps(name)
+        if np.isfinite(values).any():
+            rows.append((words, f"{np.nanmax(values):.2g}"))
+    return [row for row in rows if row]
+
+
+def frames(result):
+    """Pressure, film and contacts of the stored frames in view."""
+    low, high = default_window([result])
+    x = result.x / result.attrs["a"]
+    part = np.flatnonzero((x >= low) & (x <= high))
+    columns, width = slice(part[0], part[-1] + 1), -(-len(part) // NODES)
+    last = len(result.time) - 1
+    fullest = frame_with_most_contacts(result)
+    chosen = np.unique(np.append(np.linspace(0, last, min(last + 1, FRAMES)).round().astype(int), fullest))
+    names = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
+    stored = {name: how for name, how in names.items() if name in result}
+    fields = {
+        name: _packed([binned(factor * result.frame(name, k)[columns], width, take) for k in chosen])
+        for name, (factor, take) in stored.items()
+    }
+    touching = [binned(in_contact(result, k)[columns], width, np.max) for k in chosen]
+    return {
+        "x": _packed(binned(x[columns], width, np.mean)),
+        "time": _packed(1e6 * result.time[chosen]),
+        "step": [int(step) for step in result.step[chosen]],
+        "first": int(np.searchsorted(chosen, fullest)),
+        "p0": 1e-9 * float(result.attrs["p0"]),
+        "width": width,
+        "contact": _packed(touching, np.uint8),
+        **fields,
+    }
+
+
+def step_figures(result):
+    """Per-step figures that vary, against time; nothing of a steady result."""
+    time = result.steps("time")
+    if len(time) < 2:
+        return {"time": _packed([]), "figures": []}
+    width, figures, stored = -(-len(time) // ROWS), [], result["steps"]
+    for name in sorted(set(stored) - UNSHOWN, key=lambda name: (name not in STEP_SCALARS, name)):
+        values = result.steps(name).astype(float)[1:]
+        if not np.isfinite(values).any() or np.nanmax(values) - np.nanmin(values) <= STEADY * np.nanmax(
+            np.abs(values)
+        ):
+            continue
+        units = stored[name].attrs.get("units", "1")
+        unit, factor = SHOWN_IN.get(units, (units, 1.0))
+        words = stored[name].attrs.get("long_name", name.replace("_", " "))
+        take = np.fmin.reduce if name in LEAST else np.fmax.reduce
+        label = f"{words} [{unit}]" if unit else words
+        figures.append({"name": label, "y": _packed(binned(factor * values, width, take))})
+    return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
+
+
+def damage(path):
+    """Damage below the surfaces from the post-processing result beside, None without one."""
+    if not path.is_file():
+        return None
+    with h5py.File(path, "r") as file:
+        if "damage" not in file:
+            return None
+        group = file["damage"]
+        s, depths = group["s"][:] / float(file.attrs["a"]), group["z_over_a"][:]
+        width, surfaces = -(-len(s) // POINTS), {}
+        for side in ("fast", "slow"):
+            if side in group:
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    decades = np.log10(group[side][:])
+                decades[~np.isfinite(decades)] = np.nan
+                surfaces[side] = [_packed(binned(row, width, np.fmax.reduce)) for row in decades]
+    return {
+        "s": _packed(binned(s, width, np.mean)),
+        "depths": [float(z) for z in depths],
+        "surfaces": surfaces,
+    }
+
+
+def binned(values, width, take):
+    """One of every `width` values, chosen by `take(values, axis=-1)`."""
+    values = np.asarray(values)
+    if width == 1:
+        return values
+    short = -len(values) % width
+    whole = np.concatenate([values, np.repeat(values[-1:], short)])
+    return take(whole.reshape(-1, width), axis=-1)
+
+
+def _packed(values, kind=np.float32):
+    """Numbers as text: little-endian bytes in base64."""
+    return base64.b64encode(np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<"))).decode(
+        "ascii"
+    )

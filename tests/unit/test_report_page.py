@@ -1,0 +1,109 @@
+"""A result as one page: what is in it, and that it needs nothing else."""
+
+import base64
+import html.parser
+import json
+import re
+
+import h5py
+import numpy as np
+import pytest
+from made_results import make_result, with_solids
+
+from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.plot import report_data
+from ehlpetsc.results.reader import read_result
+
+
+def unpacked(text, kind="<f4"):
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+class Page(html.parser.HTMLParser):
+    """Elements and attributes of a page, and the text of its scripts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.attributes, self.open, self.texts = [], [None], {}
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append((tag, dict(attrs).get("id")))
+        self.attributes += [(tag, *pair) for pair in attrs]
+
+    def handle_data(self, data):
+        self.texts[self.open[-1]] = self.texts.get(self.open[-1], "") + data
+
+
+@pytest.fixture
+def page(tmp_path, capsys):
+    def made(path):
+        assert plot.main([str(path), "--report"]) == 0
+        found = Page(path.with_suffix(".html").read_text(encoding="utf-8"))
+        return found, json.loads(found.texts["script", "data"])
+
+    return made
+
+
+def test_the_page_holds_the_fields_and_needs_no_network(tmp_path, page):
+    path = with_solids(make_result(tmp_path / "r.h5", title="a <b> & </script>"))
+    found, data = page(path)
+    assert not [a for a in found.attributes if a[1] in ("src", "href", "srcset", "action")]
+    text = path.with_suffix(".html").read_text(encoding="utf-8")
+    assert not re.search(r"https?://|@import|url[(]|fetch[(]|XMLHttpRequest|WebSocket", text)
+    assert data["title"] == "a <b> & </script>" and text.count("</script>") == 2
+    frames = data["frames"]
+    x = unpacked(frames["x"])
+    with read_result(path) as r:
+        part = np.isin(np.float32(r.x / r.attrs["a"]), x)
+        for name, factor in (("pressure", 1e-9), ("film_thickness", 1e6), ("contact_pressure", 1e-9)):
+            shown = unpacked(frames[name]).reshape(-1, x.size)
+            np.testing.assert_allclose(shown, factor * r[name][:][:, part], rtol=1e-6)
+        touching = unpacked(frames["contact"], "u1").reshape(-1, x.size)
+        np.testing.assert_array_equal(touching, r["in_contact"][:][:, part])
+        contacts = next(f for f in data["steps"]["figures"] if f["name"] == "nodes in contact")
+        np.testing.assert_array_equal(unpacked(contacts["y"]), r.steps("contacts")[1:])
+        assert frames["step"][frames["first"]] == r.step[plot_first(r)]
+    assert data["damage"] is None
+    names = [figure["name"] for figure in data["steps"]["figures"]]
+    assert "contact share" in names and "time step [µs]" not in names  # what does not change is left out
+
+
+def plot_first(result):
+    from ehlpetsc.plot.frames import frame_with_most_contacts
+
+    return frame_with_most_contacts(result)
+
+
+def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
+    monkeypatch.setattr(report_data, "NODES", 40)
+    monkeypatch.setattr(report_data, "ROWS", 9)
+    path = make_result(tmp_path / "r.h5", nodes=321)
+    _, data = page(path)
+    with read_result(path) as r:
+        assert unpacked(data["frames"]["pressure"]).max() == pytest.approx(1e-9 * r["pressure"][:].max())
+        highest = next(f for f in data["steps"]["figures"] if f["name"].startswith("greatest pressure"))
+        assert len(unpacked(highest["y"])) == 8  # 40 steps in bins of 5: at most 9
+        assert unpacked(highest["y"]).max() == pytest.approx(1e-9 * r.steps("p_max")[1:].max())
+
+
+def test_damage_of_the_file_beside_is_shown_in_decades(tmp_path, page):
+    path = make_result(tmp_path / "r.h5", nodes=41, steps=3)
+    with h5py.File(tmp_path / "r.post.h5", "w") as file:
+        file.attrs["a"] = 2.0
+        group = file.create_group("damage")
+        group["s"], group["z_over_a"] = [1.0, 2.0, 4.0], [0.0, 0.5]
+        group["slow"] = [[1e-3, 0.0, 1e-5], [np.nan, 1e-7, 1e-8]]
+    _, data = page(path)
+    assert data["damage"]["depths"] == [0.0, 0.5] and list(data["damage"]["surfaces"]) == ["slow"]
+    np.testing.assert_allclose(unpacked(data["damage"]["s"]), [0.5, 1.0, 2.0])
+    rows = [unpacked(row) for row in data["damage"]["surfaces"]["slow"]]
+    np.testing.assert_allclose(rows, [[-3, np.nan, -5], [np.nan, -7, -8]], rtol=1e-6)
+
+
+def test_steady_results_have_a_page_and_several_results_none(tmp_path, page, capsys):
+    steady = make_result(tmp_path / "s.h5", steps=1)
+    _, data = page(steady)
+    assert data["steps"]["figures"] == [] and len(data["frames"]["step"]) == 1
+    assert plot.main([str(steady), str(steady), "--report"]) == 2
+    assert "2 results; allowed: --report of one" in capsys.readouterr().err
