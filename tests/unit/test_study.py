@@ -113,7 +113,7 @@ def test_picture_of_a_table_shows_errors_against_both_costs(tmp_path, monkeypatc
         {"varied": "mesh", "value": 200, "converged": "exit 3", "wall_s": 0.0, "newton": 0, "h_min": np.nan},
     ]
     rows = [{**dict.fromkeys(accuracy.MEASURES, np.nan), **row} for row in rows]
-    draw_picture(rows, tmp_path / "study.png", "title")
+    picture.draw(rows, tmp_path / "study.png", "title")
     assert (tmp_path / "study.png").read_bytes().startswith(b"\x89PNG")
     figure = figures[-1]  # a change of backend closes all that there were
     assert len(figure.axes) == 2  # h_min alone has figures: one column
