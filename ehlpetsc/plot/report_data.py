@@ -11,6 +11,7 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
 STEADY = 1e-9  # relative change over a run that is none
+ERRORS = {"load_error", "mass_error"}  # relative: those of rounding are as good as none
 LEAST = {"h_min", "film_central", "lambda_ratio"}  # of several steps the least one counts, else the greatest
 SHOWN_IN = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
 UNSHOWN = {"step", "time", "load", "wall"}
@@ -97,9 +98,8 @@ def step_figures(result):
     width, figures, stored = -(-len(time) // ROWS), [], result["steps"]
     for name in sorted(set(stored) - UNSHOWN, key=lambda name: (name not in STEP_SCALARS, name)):
         values = result.steps(name).astype(float)[1:]
-        if not np.isfinite(values).any() or np.nanmax(values) - np.nanmin(values) <= STEADY * np.nanmax(
-            np.abs(values)
-        ):
+        known = values[np.isfinite(values)]
+        if not known.size or np.ptp(known) <= STEADY * max(np.abs(known).max(), name in ERRORS):
             continue
         units = stored[name].attrs.get("units", "1")
         unit, factor = SHOWN_IN.get(units, (units, 1.0))

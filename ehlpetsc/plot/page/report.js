@@ -167,7 +167,7 @@ class Chart {
     pen.fillText(this.options.xlabel, MARGIN.left + this.width / 2, bottom + 22);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
-    for (const v of ticks(...this.y, Math.max(3, this.height / 45))) {
+    for (const v of ticks(...this.y, Math.max(3, this.height / 32))) {
       const py = this.toY(v);
       pen.beginPath(); pen.moveTo(MARGIN.left - 4, py); pen.lineTo(MARGIN.left, py); pen.stroke();
       pen.fillText(written(v, this.y[1] - this.y[0]), MARGIN.left - 6, py);
@@ -316,9 +316,11 @@ function stepFigures(steps) {
 function damage(found) {
   const parent = document.getElementById("damage");
   if (!found) return parent.remove();
-  const s = unpacked(found.s), across = [s[0], s[s.length - 1]];
+  const s = unpacked(found.s);
   for (const [side, rows] of Object.entries(found.surfaces)) {
     const values = rows.map(row => unpacked(row)), [low, high] = extent(values);
+    const passed = s.filter((_, i) => values.some(row => Number.isFinite(row[i])));  // wholly through the contact
+    const across = extent([passed.length ? passed : s]);
     const chart = new Chart(parent, { xlabel: `s/a, ${side} surface`, ylabel: "log10 of damage", x: across, y: [Math.max(low, high - 12), high + 0.5] });
     chart.show(values.map((y, k) => ({ name: `z = ${found.depths[k]} a`, colour: COLOURS[k % COLOURS.length], thin: true, x: s, y })));
   }
