@@ -13,6 +13,8 @@ def main(argv):
     missing = environment.prepare()
     if missing:
         return refuse(environment.advice(missing, argv[1:]))
+    if argv[1:2] in (["--keys"], ["--template"]):
+        return tell_keys(argv[1:])
     from ehlpetsc.run.command_line import parse_command_line
 
     try:
@@ -27,6 +29,21 @@ def main(argv):
     from ehlpetsc.run.command import run
 
     return run(command.case, command.overrides)
+
+
+def tell_keys(words):
+    """Print every key of a case file, of one table, or a commented case."""
+    from ehlpetsc.case import reference
+    from ehlpetsc.environment import first_rank
+    from ehlpetsc.errors import UsageError
+
+    try:
+        text = reference.template() if words[0] == "--template" else reference.keys(*words[1:2]) + "\n"
+    except UsageError as error:
+        return refuse(f"ehlpetsc: {error}")
+    if first_rank():
+        print(text, end="")
+    return ExitStatus.DONE
 
 
 def explain(command):

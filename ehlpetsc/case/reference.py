@@ -1,0 +1,139 @@
+"""Every key of a case file as text, made from the schema: a list, a page, a commented case to begin from."""
+
+import json
+
+from ehlpetsc.case.faults import allowed
+from ehlpetsc.case.loading import Case
+from ehlpetsc.case.schema import SYNTHETIC, Table
+from ehlpetsc.errors import UsageError
+
+# what a case cannot do without, or would hardly be written without: Table 1 of Holmes et al. 2005
+EXAMPLE = {
+    "title": '"My contact"',
+    "contact.radius": "0.0191",
+    "contact.load": "527e3",
+    "contact.youngs_modulus": "[207e9, 207e9]",
+    "contact.poisson_ratio": "[0.3, 0.3]",
+    "contact.boundary_friction": "0.1",
+    "fluid.viscosity": "0.005",
+    "fluid.law": '"seed"',
+    "fluid.pressure_viscosity": "11.1e-9",
+    "fluid.kappa": "63.2e-6",
+    "fluid.chi": "5.1e-9",
+    "fluid.density": '"dowson-higginson"',
+    "fluid.gamma": "2.27e-9",
+    "fluid.lambda": "1.68e-9",
+    "fluid.eyring_stress": "10e6",
+    "motion.entrainment_speed": "5.0",
+    "motion.slide_roll_ratio": "0.25",
+    "mesh.inlet": "-2.5",
+    "mesh.outlet": "1.5",
+    "mesh.points_per_half_width": "200",
+    "time.travel": "6.0",
+}
+PAGE = """# Every key of a case file
+
+`python3 -m ehlpetsc --keys` prints them too, `--keys fluid` those of one table, `--template` a commented case
+to begin from. SI units; an unknown key, a value out of its bounds, nan and inf are refused. A key whose
+default is "none" must be there where its table is. Made from the schema by
+`python3 -m ehlpetsc.case.reference > cases/keys.md`.
+"""
+
+
+def tables():
+    """Tables of a case file with their models, in the order of the file.
+
+    Returns
+    -------
+    dict of str to type
+        By dotted name, "" for the keys above all tables; kinds of synthetic profiles as
+        ``surface.fast.synthetic (ridge)``.
+    """
+    found = {"": Case}
+    for name, model in _below(Case):
+        found[name] = model
+        if name == "surface.fast":
+            found |= {f"{name}.synthetic ({kind})": made for kind, made in SYNTHETIC.items()}
+    return found
+
+
+def _below(model, above=""):
+    for field in model.__fields__.values():
+        if _is_table(field):
+            name = above + field.alias
+            if not any(_is_table(f) for f in field.type_.__fields__.values()):
+                yield name, field.type_
+            yield from _below(field.type_, name + ".")
+
+
+def _is_table(field):
+    return isinstance(field.type_, type) and issubclass(field.type_, Table)
+
+
+def _keys(model):
+    return [field for field in model.__fields__.values() if not _is_table(field)]
+
+
+def _default(field):
+    if field.required:
+        return "none"
+    return "left out" if field.default is None else json.dumps(field.default)
+
+
+def keys(table=None):
+    """Every key with what it takes and its default, a line each.
+
+    Parameters
+    ----------
+    table : str, optional
+        Only that one, as in "fluid" or "surface.fast".
+
+    Raises
+    ------
+    UsageError
+        There is no such table.
+    """
+    found = tables()
+    if table is not None:
+        found = {name: found[name] for name in found if name == table or name.startswith(f"{table}.")}
+        if not found:
+            names = [name for name in tables() if name and " " not in name]
+            raise UsageError(f"--keys {table}: no such table; allowed: {', '.join(names)}")
+    lines = []
+    for name, model in found.items():
+        lines += [f"[{name}]" if name else "above all tables"]
+        lines += [f"  {f.alias}: {allowed(f)}; default: {_default(f)}" for f in _keys(model)]
+    return "\n".join(lines)
+
+
+def page():
+    """The same as a page of Markdown."""
+    parts = [PAGE]
+    for name, model in tables().items():
+        heading = f"`[{name}]`" if name else "Above all tables"
+        parts.append(f"\n## {heading}\n\n| key | takes | default |\n|---|---|---|\n")
+        for field in _keys(model):
+            takes = allowed(field).replace("|", r"\|")
+            parts.append(f"| `{field.alias}` | {takes} | {_default(field)} |\n")
+    return "".join(parts)
+
+
+def template():
+    """A case that runs, with every other key in a comment."""
+    lines = []
+    for name, model in tables().items():
+        written = [EXAMPLE.get(f"{name}.{f.alias}" if name else f.alias) for f in _keys(model)]
+        if name in ("surface.slow", "post", "petsc", "series") or " (" in name:
+            continue
+        if name:
+            lines += ["", f"[{name}]" if any(written) else f"# [{name}]"]
+        for field, value in zip(_keys(model), written, strict=True):
+            if isinstance(field.default, dict):
+                continue
+            given = value or ("..." if field.default is None else json.dumps(field.default))
+            lines.append(f"{'' if value else '# '}{field.alias} = {given}  # {allowed(field)}")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    print(page(), end="")

@@ -1,0 +1,58 @@
+"""Every key as text: complete, equal to the page, and a template that is a case."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc.case import reference
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import UsageError
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_page_is_what_the_schema_says():
+    assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == reference.page()
+
+
+def test_every_key_of_the_cases_here_is_listed():
+    listed = reference.keys()
+    for path in (ROOT / "cases").glob("*.toml"):
+        text = path.read_text(encoding="utf-8").partition("[petsc]")[0]
+        for key in re.findall(r"^(\w+) *=", text, re.MULTILINE):
+            assert f"\n  {key}: " in listed, (path.name, key)
+
+
+def test_a_table_alone_has_units_bounds_and_defaults():
+    told = reference.keys("motion").splitlines()
+    assert told[0] == "[motion]" and len(told) == 3
+    assert told[1].startswith("  entrainment_speed: a number >= 1e-09 and <= 1000 [m/s] (mean of both")
+    assert told[2].endswith("default: 0.0")
+    assert "[surface.fast.synthetic (ridge)]" in reference.keys("surface.fast")
+    assert "[surface.slow]" in reference.keys("surface")
+    with pytest.raises(UsageError, match="--keys fluids: no such table; allowed: contact, fluid"):
+        reference.keys("fluids")
+
+
+def test_the_template_is_a_case_and_its_comments_are_keys(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(reference.template())
+    case = load(path)
+    assert case.fluid.viscosity == 0.005 and case.time.travel == 6.0
+    commented = re.findall(r"^# (\w+) = ", reference.template(), re.MULTILINE)
+    assert {"minimum_film", "inlet_film", "file", "short_cutoff", "courant", "every"} <= set(commented)
+
+
+def test_the_command_prints_them(tmp_path):
+    def run(*words):
+        command = [sys.executable, "-m", "ehlpetsc", *words]
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+
+    assert run("--keys").stdout == reference.keys() + "\n"
+    assert run("--keys", "mesh").stdout == reference.keys("mesh") + "\n"
+    assert run("--template").stdout == reference.template()
+    wrong = run("--keys", "mush")
+    assert (wrong.returncode, wrong.stdout) == (2, "") and "no such table" in wrong.stderr
