@@ -22,6 +22,7 @@ BATCH = 144  # frames a thread takes at a time
 IN_CACHE = 8  # frames whose spectra and stresses stay in the cache, where threads do not wait for each other
 QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single precision on this grid, so that the
 #                     rounding noise of the transforms in an unloaded stretch is no cycle
+TILE = 128  # frequencies whose kernels stay in the first cache
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements, even about one half
 
 
@@ -65,27 +66,90 @@ def parity_weights(offset):
     return np.concatenate([left + right, left - right], axis=1)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath={"contract"})
 def _kernel(rows, w, f):
-    return complex(
+    return (
         w[0] * rows[0, f] + w[1] * rows[1, f] + w[2] * rows[2, f],
         w[3] * rows[3, f] + w[4] * rows[4, f] + w[5] * rows[5, f],
     )
 
 
+@njit(cache=True, nogil=True, fastmath={"contract"})
+def _stress_spectra(tables, w, loads, frame, start, stop, out):
+    """Real and imaginary parts of the stress spectra of one frame, frequencies start .. stop-1: out (6, f).
+
+    Under p, q and their slopes, shifted by half an element. Kernels B, E under values, A, C under slopes are
+    i times what the tables hold.
+    """
+    for f in range(start, stop):
+        ar, ai = _kernel(tables[0], w, f)
+        bi, br = _kernel(tables[1], w, f)
+        cr, ci = _kernel(tables[2], w, f)
+        ei, er = _kernel(tables[3], w, f)
+        dai, dar = _kernel(tables[4], w, f)
+        dbr, dbi = _kernel(tables[5], w, f)
+        dci, dcr = _kernel(tables[6], w, f)
+        der, dei = _kernel(tables[7], w, f)
+        br, er, dar, dcr = -br, -er, -dar, -dcr
+        pr, pi, qr, qi = (
+            loads[0, frame, f].real,
+            loads[0, frame, f].imag,
+            loads[1, frame, f].real,
+            loads[1, frame, f].imag,
+        )
+        xr, xi, yr, yi = (
+            loads[2, frame, f].real,
+            loads[2, frame, f].imag,
+            loads[3, frame, f].real,
+            loads[3, frame, f].imag,
+        )
+        g = f - start
+        out[0, g] = cr * pr - ci * pi + er * qr - ei * qi + dcr * xr - dci * xi + der * yr - dei * yi
+        out[1, g] = cr * pi + ci * pr + er * qi + ei * qr + dcr * xi + dci * xr + der * yi + dei * yr
+        out[2, g] = ar * pr - ai * pi + br * qr - bi * qi + dar * xr - dai * xi + dbr * yr - dbi * yi
+        out[3, g] = ar * pi + ai * pr + br * qi + bi * qr + dar * xi + dai * xr + dbr * yi + dbi * yr
+        out[4, g] = br * pr - bi * pi + cr * qr - ci * qi + dbr * xr - dbi * xi + dcr * yr - dci * yi
+        out[5, g] = br * pi + bi * pr + cr * qi + ci * qr + dbr * xi + dbi * xr + dcr * yi + dci * yr
+
+
 @njit(cache=True, nogil=True)
-def _spectra(tables, weights, loads, out):
-    """out (frames, 3, f) = stress spectra under p, q and their slopes, shifted by half an element."""
-    for frame in range(out.shape[0]):
-        w, (p, q, dp, dq) = weights[frame], loads[:, frame]
-        for f in range(out.shape[2]):
-            a, b = _kernel(tables[0], w, f), 1j * _kernel(tables[1], w, f)
-            c, e = _kernel(tables[2], w, f), 1j * _kernel(tables[3], w, f)
-            da, db = 1j * _kernel(tables[4], w, f), _kernel(tables[5], w, f)
-            dc, de = 1j * _kernel(tables[6], w, f), _kernel(tables[7], w, f)
-            out[frame, 0, f] = c * p[f] + e * q[f] + dc * dp[f] + de * dq[f]
-            out[frame, 1, f] = a * p[f] + b * q[f] + da * dp[f] + db * dq[f]
-            out[frame, 2, f] = b * p[f] + c * q[f] + db * dp[f] + dc * dq[f]
+def _paired_spectra(tables, weights, loads, out):
+    """out (pairs, 3, n): spectra of a frame's stresses plus i times those of the next frame.
+
+    Two real inverse transforms then cost one complex one. The tables of TILE frequencies stay in the cache.
+    """
+    frames, half, n = weights.shape[0], loads.shape[2], out.shape[2]
+    one, other = np.zeros((6, TILE)), np.zeros((6, TILE))
+    for start in range(0, half, TILE):
+        stop = min(start + TILE, half)
+        for pair in range(out.shape[0]):
+            _stress_spectra(tables, weights[2 * pair], loads, 2 * pair, start, stop, one)
+            if 2 * pair + 1 < frames:
+                _stress_spectra(tables, weights[2 * pair + 1], loads, 2 * pair + 1, start, stop, other)
+            else:
+                other[:] = 0.0
+            for part in range(3):
+                row = out[pair, part]
+                for f in range(start, stop):
+                    xr, xi = one[2 * part, f - start], one[2 * part + 1, f - start]
+                    yr, yi = other[2 * part, f - start], other[2 * part + 1, f - start]
+                    if f == 0 or 2 * f == n:  # of real functions these are real
+                        row[f] = complex(xr, yr)
+                    else:
+                        row[f] = complex(xr - yi, xi + yr)
+                        row[n - f] = complex(xr + yi, yr - xi)
+
+
+@njit(cache=True, nogil=True)
+def _separate(paired, half, out):
+    """Spectra (2, frames, f) of two real functions from that of one plus i times the other, times half."""
+    n = paired.shape[1]
+    for frame in range(paired.shape[0]):
+        row = paired[frame]
+        for f in range(half.size):
+            a, b = row[f], row[n - f if f else 0].conjugate()
+            out[0, frame, f] = 0.5 * (a + b) * half[f]
+            out[1, frame, f] = complex(0.5 * (a - b).imag, -0.5 * (a - b).real) * half[f]
 
 
 class BodyStress:
@@ -115,15 +179,27 @@ class BodyStress:
         limited_slopes(loads[0], loads[2])
         limited_slopes(loads[1], loads[3])
         spectra = np.empty((4, len(pressure), self.n // 2 + 1), complex)
+        paired = np.zeros((2, IN_CACHE, self.n), complex)
         for part in in_cache(len(pressure)):
-            np.multiply(fft.rfft(loads[:, part], self.n), self._half, out=spectra[:, part])
+            paired[:, : part.stop - part.start, : pressure.shape[1]].real = loads[::2, part]
+            paired[:, : part.stop - part.start, : pressure.shape[1]].imag = loads[1::2, part]
+            for k, values in enumerate(fft.fft(paired[:, : part.stop - part.start])):
+                _separate(values, self._half, spectra[2 * k : 2 * k + 2, part])
         return spectra
 
+    def paired(self, depth, spectra, weights):
+        """Stresses (pairs, 3, n, 2) of depth number `depth` at offsets with these :func:`parity_weights`.
+
+        The last axis is a frame and the next; without a next one its values are 0.
+        """
+        out = np.empty(((len(weights) + 1) // 2, 3, self.n), complex)
+        _paired_spectra(self.tables[depth], weights, spectra, out)
+        return fft.ifft(out, overwrite_x=True).view(float).reshape(*out.shape, 2)
+
     def __call__(self, depth, spectra, weights):
-        """Stresses (frames, 3, n) of depth number `depth` at offsets with these :func:`parity_weights`."""
-        out = np.empty((len(weights), 3, self.n // 2 + 1), complex)
-        _spectra(self.tables[depth], weights, spectra, out)
-        return fft.irfft(out, self.n, overwrite_x=True)
+        """The same as (frames, 3, n)."""
+        pairs = np.moveaxis(self.paired(depth, spectra, weights), -1, 1)
+        return pairs.reshape(-1, *pairs.shape[2:])[: len(weights)]
 
 
 def history_at(loads, surface, s, depth, quantum=0.0):
@@ -139,5 +215,5 @@ def history_at(loads, surface, s, depth, quantum=0.0):
         at = frames - enter + 1
         values[:, at] = fields[np.arange(frames.size), :, motion.shift[frames]].T
     if quantum:
-        values = np.floor(values / quantum + 0.5) * quantum
+        values = np.rint(values * (1 / quantum)) * quantum
     return loads.time[enter:leave], values

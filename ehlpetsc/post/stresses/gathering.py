@@ -17,18 +17,21 @@ LARGEST_KEPT = 31 << 20  # bytes of a block that malloc keeps: new pages for eve
 
 
 @njit(cache=True, nogil=True)
-def _gather(stress, begin, first, last, shift, enter, leave, quantum, ring):
-    """Move the stresses of frames begin .. into the histories of points first .. last-1, point by point."""
-    frames = stress.shape[0]
+def _gather(stress, begin, end, first, last, shift, enter, leave, quantum, ring):
+    """Move the stresses (pairs, 3, n, 2) of frames begin .. end-1 into histories of points first .. last-1.
+
+    Point by point, rounded to a multiple of the quantum.
+    """
+    inverse = 1.0 / quantum
     for j in range(first, last):
         history = ring[j % ring.shape[0]]
-        start, stop = max(begin, enter[j]), min(begin + frames, leave[j] + 1)
+        start, stop = max(begin, enter[j]), min(end, leave[j] + 1)
         for part in range(3):
             if start == enter[j]:
                 history[part, 0] = 0.0
             for k in range(start, stop):
-                value = np.floor(stress[k - begin, part, j + shift[k]] / quantum + 0.5) * quantum
-                history[part, k - enter[j] + 1] = value
+                value = stress[(k - begin) // 2, part, j + shift[k], (k - begin) % 2]
+                history[part, k - enter[j] + 1] = np.rint(value * inverse) * quantum
             if stop == leave[j] + 1:
                 history[part, stop - enter[j] + 1] = 0.0
 
@@ -139,8 +142,9 @@ class Sweep:
         begin, end = points[0], points[-1] + 1
         for depth, ring in enumerate(rings):
             for part in in_cache(last - first):
-                fields = self.stress(depth, spectra[:, part], self.weights[first:last][part])
-                _gather(fields, first + part.start, begin, end, m.shift, m.enter, m.leave, self.quantum, ring)
+                fields = self.stress.paired(depth, spectra[:, part], self.weights[first:last][part])
+                frames = first + part.start, first + part.stop
+                _gather(fields, *frames, begin, end, m.shift, m.enter, m.leave, self.quantum, ring)
 
     def _hand_over(self, rings, points, finish):
         """Give the finished points in stretches that are consecutive in the ring."""
