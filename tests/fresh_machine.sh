@@ -77,7 +77,7 @@ in_root root 'apt-get update -qq && apt-get install -y -qq --no-install-recommen
 in_root root 'useradd --create-home guest'
 git -C "$here" bundle create -q "$root/project" HEAD
 for user in root guest; do
-    in_root "$user" 'git clone -q /project ehlpetsc'
+    in_root "$user" 'git -c init.defaultBranch=main -c advice.detachedHead=false clone -q /project ehlpetsc'
 done
 began=$SECONDS
 
