@@ -10,6 +10,7 @@ from ehlpetsc.errors import ProfileError
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
+FARTHEST = 1e6  # m: beyond it squares and cubes of a spline overflow
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
 
@@ -156,9 +157,11 @@ def checked(x, z, layout):
     """A profile from 0 on with x increasing and gaps filled, or a ProfileError that says what is wrong."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
-    bad = ~np.isfinite(x) | np.isinf(z)
+    bad = ~(np.abs(x) < FARTHEST) | (np.abs(z) >= FARTHEST)
     if bad.any():
-        raise ProfileError(f"point {bad.argmax() + 1} is not a finite number; allowed: finite x and z")
+        raise ProfileError(
+            f"point {bad.argmax() + 1} is not a number below {FARTHEST:g} m; allowed: finite x and z"
+        )
     if x.size < 4:
         raise ProfileError(f"{x.size} points; allowed: at least 4")
     step = np.diff(x)

@@ -106,8 +106,8 @@ REFUSED = {
     "text in it": (lines("{},{}\n") + "end\n", {}, "line 7: 'end'; allowed: numbers alone below"),
     "no numbers": ("a\nb\n", {}, "0 points"),
     "few points": ("0,0\n1,1\n", {}, "2 points; allowed: at least 4"),
-    "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, "point 7 is not a finite number"),
-    "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, "point 7 is not a finite number"),
+    "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, "point 7 is not a number below"),
+    "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, "point 7 is not a number below"),
     "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "stands twice; allowed: every x once, or spacing"),
 }
 

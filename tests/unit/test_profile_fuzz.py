@@ -1,0 +1,122 @@
+"""Corrupted profile files: a fault in words or heights that a run can use, never another exception.
+
+EHL_FUZZ=10000 in the environment draws that many; EHL_FUZZ_SEED another series of them.
+"""
+
+import os
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.describe import explain
+from ehlpetsc.surfaces.roughness import Roughness
+
+CASES = Path(__file__).parents[2] / "cases"
+DRAWS = int(os.environ.get("EHL_FUZZ", "300")) // 2
+SEED = int(os.environ.get("EHL_FUZZ_SEED", "1"))
+WORDS = (
+    "nan",
+    "inf",
+    "-inf",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "0",
+    "",
+    "x",
+    "1_0",
+    "0x1",
+    "1,5",
+    "1.000,5",
+    "1;2",
+    "\0",
+    "é",
+    "--",
+)
+KEYS = (
+    "unit='um'",
+    "x_unit='mm'",
+    "spacing=1e-6",
+    "columns=[1]",
+    "columns=[2, 1]",
+    "columns=[9]",
+    "decimal=','",
+    "decimal='.'",
+    "header_lines=3",
+    "header_lines=99999",
+    "fill_gaps=1",
+    "level=true",
+    "cutoff=80e-6",
+    "short_cutoff=5e-6",
+    "flip=true",
+    "scale=0",
+    "scale=1e4",
+)
+
+
+def corrupted(lines, rng):
+    """One to four faults in words, lines, separators and bytes."""
+    lines = list(lines)
+    for _ in range(rng.randint(1, 4)):
+        n = rng.randrange(len(lines))
+        words = lines[n].split(",")
+        kind = rng.randrange(8)
+        if kind < 3:
+            words[rng.randrange(len(words))] = rng.choice(WORDS)
+            lines[n] = ",".join(words)
+        elif kind == 3:
+            lines[n:n] = [rng.choice(("", "# c", "text", "1", "1,2,3", lines[n]))]
+        elif kind == 4:
+            separator = rng.choice((";", "\t", " ", "; ", ",,"))
+            lines = [separator.join(line.split(",")) for line in lines]
+        elif kind == 5:
+            lines = lines[::-1] if rng.random() < 0.5 else lines[: rng.randrange(1, 12)]
+        elif kind == 6:
+            lines = [line.replace(".", ",") for line in lines]
+        else:
+            factor = 10.0 ** rng.randint(-12, 12)
+            lines = [",".join(_scaled(word, factor) for word in line.split(",")) for line in lines]
+    raw = bytearray("\n".join(lines).encode(rng.choice(("utf-8", "utf-16", "latin-1")), "replace"))
+    if rng.random() < 0.2:
+        raw[rng.randrange(len(raw))] = rng.randrange(256)
+    return bytes(raw)
+
+
+def _scaled(word, factor):
+    try:
+        return f"{float(word) * factor:.6e}"
+    except ValueError:
+        return word
+
+
+@pytest.mark.filterwarnings("error")
+def test_corrupted_profiles_end_in_words_or_in_finite_heights(tmp_path):
+    rng = random.Random(SEED)
+    lines = (CASES / "profiles" / "alicona_meander_profile.csv").read_text().splitlines()[1:401]
+    text = (CASES / "table1_rough.toml").read_text().replace("profiles/alicona_meander_profile.csv", "p.csv")
+    case, refused = tmp_path / "c.toml", 0
+    case.write_text(text)
+    for draw in range(DRAWS):
+        (tmp_path / "p.csv").write_bytes(corrupted(lines, rng))
+        keys = [f"surface.fast.{key}" for key in rng.sample(KEYS, rng.choice((0, 0, 1, 2)))]
+        try:
+            loaded = load(case, ["mesh.points_per_half_width=20", *keys])
+            scales = Scales.of(loaded)
+            rough = Roughness.of(loaded, scales)
+            for cell in (None, scales.dx):
+                assert np.isfinite(rough.gap(scales.x * scales.a, 0.5 * scales.duration, cell)).all()
+            assert explain(loaded)
+        except CaseError as error:
+            refused += 1
+            assert error.faults and all(
+                line.startswith(str(case)) and "\n" not in line for line in error.faults
+            )
+        except Exception as error:
+            head = (tmp_path / "p.csv").read_bytes()[:300]
+            pytest.fail(f"draw {draw}: {type(error).__name__}: {error}\n{keys}\n{head}")
+    assert 0.3 * DRAWS < refused < DRAWS
