@@ -113,7 +113,7 @@ def pressure_and_film(axes, results, indices, colours, window):
         if len(results) == 1:
             if "contact_pressure" in result:
                 solids = 1e-9 * result.frame("contact_pressure", index)
-                upper.fill_between(x, 0.0, solids, color=SOLIDS_COLOUR, lw=0.6, zorder=1.5)
+                upper.fill_between(x, 0.0, solids, color=SOLIDS_COLOUR, lw=0, zorder=1.5)
             touching = shown & in_contact(result, index)
             lower.plot(x[touching], film[touching], "v", color=CONTACT_COLOUR, ms=4, clip_on=False, zorder=3)
     upper.set_ylabel(PRESSURE)
