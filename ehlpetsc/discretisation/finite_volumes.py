@@ -2,16 +2,19 @@ r"""Compiled loops of the finite volumes: what flows through faces, what cells g
 
 The Couette flux and the storage are second-order upwind (BDF2 in time), both by
 :func:`positive_extrapolation`: second order where the film is resolved, and never
-a negative outflow, so that no node is emptied by the scheme itself. The pressure flow through a face takes
-the mean of both nodes' :math:`\rho h^3S/(12\eta)`, as central differences do. With the viscosity at the
-mean pressure instead, the flow out of a node would fall again when its pressure exceeds its neighbour's by
-more than about 2/alpha: a fold, at which Newton's method cycles, and which asperities two nodes wide reach.
+a negative outflow, so that no node is emptied by the scheme itself.
+
+The pressure flow through a face is that of the film at the face, the mean of both nodes', with the mean of
+both nodes' fluidities :math:`\rho/\eta` (and S): a node without film then does not drain at the rate of its
+thick neighbour. The viscosities stay the nodes': with the one at the mean pressure, the flow out of a node
+would fall again when its pressure exceeds its neighbour's by more than about 2/alpha: a fold, at which
+Newton's method cycles, and which asperities two nodes wide reach.
 """
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.physics.rheology import mobility
+from ehlpetsc.physics.rheology import mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
 OWN = 4  # place of q_i in a row, before h_i
@@ -69,7 +72,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip):
     per_length, per_film : float
         p0 over the spacing [Pa/m]; a^2/R [m].
     eyring, slip : float
-        As of :func:`ehlpetsc.physics.rheology.mobility`.
+        As of :func:`ehlpetsc.physics.rheology.mobilities`.
 
     Returns
     -------
@@ -78,21 +81,22 @@ def flux_through(at, left, per_length, per_film, eyring, slip):
     right, behind = left + 1, max(left - 1, 0)
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
-    flow_l, h_l, gradient_l, eta_l = mobility(at[H, left], gradient, at[FLUIDITY, left], eyring, slip)
-    flow_r, h_r, gradient_r, eta_r = mobility(at[H, right], gradient, at[FLUIDITY, right], eyring, slip)
+    film = 0.5 * (at[H, left] + at[H, right])
+    flow_l, flow_r = mobilities(film, gradient, at[FLUIDITY, left], at[FLUIDITY, right], eyring, slip)
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
-    mean = 0.5 * (rho_l * flow_l + rho_r * flow_r)
-    by_difference = (mean + half * (rho_l * gradient_l + rho_r * gradient_r)) * per_length
-    by_p_l = half * (at[RHO_P, left] * flow_l + at[LN_ETA_P, left] * rho_l * eta_l) - by_difference
-    by_p_r = half * (at[RHO_P, right] * flow_r + at[LN_ETA_P, right] * rho_r * eta_r) + by_difference
+    mean = 0.5 * (rho_l * flow_l[0] + rho_r * flow_r[0])
+    by_film = half * 0.5 * per_film * (rho_l * flow_l[1] + rho_r * flow_r[1])
+    by_difference = (mean + half * (rho_l * flow_l[2] + rho_r * flow_r[2])) * per_length
+    by_p_l = half * (at[RHO_P, left] * flow_l[0] + at[LN_ETA_P, left] * rho_l * flow_l[3]) - by_difference
+    by_p_r = half * (at[RHO_P, right] * flow_r[0] + at[LN_ETA_P, right] * rho_r * flow_r[3]) + by_difference
     return (
         couette - mean * gradient,
         by_behind * at[M_Q, behind],
         by_behind * at[M_H, behind],
         by_left * at[M_Q, left] - by_p_l * at[DP, left],
-        by_left * at[M_H, left] - half * per_film * rho_l * h_l,
+        by_left * at[M_H, left] - by_film,
         -by_p_r * at[DP, right],
-        -half * per_film * rho_r * h_r,
+        -by_film,
     )
 
 

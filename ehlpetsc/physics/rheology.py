@@ -90,27 +90,40 @@ def flow_factors(sigma):
 
 
 @compiled
-def mobility(h, gradient, fluidity, eyring, slip):
-    r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, as one quantity; of numbers.
+def mobilities(h, gradient, fluidity_l, fluidity_r, eyring, slip):
+    r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, of two oils in one gap.
 
     :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
-    :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987). It stays finite both for
-    :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`.
+    :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987), as one quantity. It stays finite both for
+    :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`. The gap and the
+    gradient are a face's, the viscosities those of the nodes on both sides; numbers, not arrays.
 
     Parameters
     ----------
-    h, gradient, fluidity : float
-        Film [m], pressure gradient [Pa/m], :math:`1/\eta` [1/(Pa s)] at the same place.
+    h, gradient : float
+        Film [m] and pressure gradient [Pa/m] of the face.
+    fluidity_l, fluidity_r : float
+        :math:`1/\eta` [1/(Pa s)] on both sides.
     eyring, slip : float
         :math:`\tau_0` [Pa], infinite for a Newtonian fluid, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
 
     Returns
     -------
-    value, d_h, d_gradient, d_ln_eta : float
+    left, right : tuple of 4 floats
         M [m^3/(Pa s)] and its derivatives with respect to h, gradient and :math:`\ln\eta`.
     """
     per_film = gradient * (0.5 / eyring)
-    s0, ds0, el, del_ = flow_factors(h * per_film)
+    factors = flow_factors(h * per_film)
+    return (
+        _mobility(h, per_film, fluidity_l, eyring, slip, factors),
+        _mobility(h, per_film, fluidity_r, eyring, slip, factors),
+    )
+
+
+@compiled
+def _mobility(h, per_film, fluidity, eyring, slip, factors):
+    """One of :func:`mobilities`; `per_film` is Sigma/h."""
+    s0, ds0, el, del_ = factors
     square = h * h
     cube = h * square * fluidity
     rolling, sliding = cube * s0, slip * square * el
