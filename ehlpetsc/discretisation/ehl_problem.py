@@ -81,6 +81,8 @@ class EHLProblem:
         self.dx = self.x[1] - self.x[0]
         self.first, self.last, self.local = first, last, last - first
         self.fluid, self.dry = case.fluid, case.fluid is None
+        if case.contact.model == "mixed":  # what is drawn in passes there at least
+            film_scale = max(film_scale, case.contact.boundary_film / scales.h)
         self.film_scale = film_scale
         self.model = contact_model(case, scales, film_scale)
         self.deflection = Deflection(self.n, self.dx, first, last)

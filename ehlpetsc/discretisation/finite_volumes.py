@@ -154,3 +154,19 @@ def flow_product(flow, v_q, v_h, first, out):
             node = min(max(first + row + k - 2, 0), last)
             total += flow[row, 2 * k] * v_q[node] + flow[row, 2 * k + 1] * v_h[node]
         out[row] = total
+
+
+@compiled
+def flow_rounding(flow, q, h, first):
+    """Sum of squares of what a rounding of all q and h may change in Reynolds' rows.
+
+    Parameters as of :func:`flow_product`.
+    """
+    last, total = len(q) - 1, 0.0
+    for row in range(len(flow)):
+        change = 0.0
+        for k in range(4):
+            node = min(max(first + row + k - 2, 0), last)
+            change += abs(flow[row, 2 * k] * q[node]) + abs(flow[row, 2 * k + 1] * h[node])
+        total += (1.1e-16 * change) ** 2
+    return total

@@ -14,6 +14,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.finite_volumes import flow_rounding
 from ehlpetsc.discretisation.interleaving import firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
@@ -24,6 +25,7 @@ from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 
 LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is small enough
 LONGER_START = 7  # times the iterations of a time step
+ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
 OPENED = 1e-3  # of the expected film: what solids that part get in that iteration
 
 
@@ -196,9 +198,22 @@ class NewtonSolver:
             self.snes.ksp.setTolerances(atol=LINEAR_ATOL * self.snes.atol)
         if self.factors:
             self.factors.of_a_new_solve()
+        atol = self.snes.atol
+        self.snes.setTolerances(atol=max(atol, self._rounding()))
         self.snes.solve(None, self.x)
         self.snes.max_it = usual
+        self.snes.setTolerances(atol=atol)
         return self._solution()
+
+    def _rounding(self):
+        """What rounding of the unknowns leaves of the residual at the first guess: nothing less can be asked.
+
+        Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
+        """
+        evaluation = self._evaluation(self.x)
+        q, _, _ = self._parts(self.place)
+        mine = flow_rounding(evaluation.flow, q, evaluation.relations.film, self.first)
+        return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
     def _solution(self):
         reason, iterations = self.snes.getConvergedReason(), self.snes.getIterationNumber()
