@@ -86,11 +86,12 @@ SCENES = {
 
 FIELDS = {
     "pressure": Field("Pa", "pressure"),
+    "contact_pressure": Field("Pa", "pressure of the solids, part of the pressure", only="mixed"),
     "film_thickness": Field("m", "film thickness"),
     "void_fraction": Field("1", "void fraction of the film", only="fluid"),
     "shear_stress_fast": Field("Pa", "shear stress on the fast solid"),
     "shear_stress_slow": Field("Pa", "shear stress on the slow solid"),
-    "in_contact": Field("1", "surfaces in contact (film thickness at its bound)", dtype="u1"),
+    "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
 }
 """Fields over (stored frame, node), in the order in which files list them."""
 
@@ -146,6 +147,17 @@ STEP_SCALARS = {
     "mass_error": Figure("1", "relative defect of the mass balance", over_run="max", summary=".2e"),
     "approach": Figure("m", "undeformed separation h00", compared=True),
     "friction": Figure("N/m", "friction force on the slow solid", compared=True),
+    "friction_coefficient": Figure("1", "friction force over load", over_run="last", summary=".4g"),
+    "film_central": Figure(
+        "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"
+    ),
+    "lambda_ratio": Figure("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
+    "contact_share": Figure(
+        "1", "share of the load on the solids", over_run="max", summary=".4g", compared=True, only="mixed"
+    ),
+    "contact_length": Figure("m", "length where solids carry", compared=True, only="mixed"),
+    "thin_length": Figure("m", "length where the film is thin", compared=True, only="mixed"),
+    "thin_share": Figure("1", "share of the load where the film is thin", compared=True, only="mixed"),
     "wall": Figure("s", "wall clock time of the step", over_run="sum"),
 }
 """Scalars of every time step, below ``steps/``, in the order in which progress and summary tell them."""

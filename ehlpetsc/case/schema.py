@@ -283,6 +283,9 @@ class Output(Table):
     every: int = Field(1, ge=1, le=10**9, description="steps between stored fields")
     fields: list[Literal[tuple(FIELDS)]] = Field(list(FIELDS), min_items=1, description="stored fields")
     precision: Literal["float64", "float32"] = Field("float64", description="of the stored fields")
+    thin_film: float = Field(
+        2.0, ge=1, le=1000, unit="boundary films", description="mixed contact: films below it count as thin"
+    )
     checkpoint: float = Field(10.0, gt=0, le=1e5, unit="minutes", description="between restart files")
 
 

@@ -1,21 +1,25 @@
-"""Traction of the film and of dry nodes on the two solids."""
+"""Traction of the film and of solids that touch on the two solids."""
 
 import numpy as np
 
 from ehlpetsc.physics import rheology
 
 
-def shear_stresses(case, scales, p, h, void, in_contact):
+def shear_stresses(case, scales, oil, solids, h, void, touching):
     """Shear stress in +x on the fast (upper) and the slow (lower) solid.
 
-    In the film :func:`ehlpetsc.physics.rheology.wall_shear`, less the void fraction; at contact nodes
-    ``boundary_friction * p``, + on the slow solid and - on the fast one where u1 > u2, none in pure rolling.
+    In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, less the void fraction;
+    where solids touch ``boundary_friction * solids``, + on the slow solid and - on the fast one
+    where u1 > u2, none in pure rolling. In mixed contact both act side by side, in direct contact solids
+    leave no film.
 
     Parameters
     ----------
-    p, h, void : ndarray, shape (nx,)
-        Pressure [Pa], film [m], void fraction.
-    in_contact : ndarray of bool, shape (nx,)
+    oil, solids : ndarray, shape (nx,)
+        Pressures [Pa].
+    h, void : ndarray, shape (nx,)
+        Film [m], void fraction.
+    touching : ndarray of bool, shape (nx,)
 
     Returns
     -------
@@ -23,12 +27,13 @@ def shear_stresses(case, scales, p, h, void, in_contact):
         [Pa]
     """
     sliding = scales.u1 - scales.u2
-    slow = case.contact.boundary_friction * np.sign(sliding) * p
+    slow = np.where(touching, case.contact.boundary_friction * np.sign(sliding) * solids, 0.0)
     fast = -slow
     if case.fluid is None:
-        return np.where(in_contact, fast, 0.0), np.where(in_contact, slow, 0.0)
-    film = np.where(in_contact, 1.0, h)
-    ln_eta, _ = rheology.viscosity(p, case.fluid)
-    lower, upper = rheology.wall_shear(film, np.gradient(p, scales.dx), ln_eta, case.fluid, sliding)
-    left = 1.0 - void
-    return np.where(in_contact, fast, -upper * left), np.where(in_contact, slow, lower * left)
+        return fast, slow
+    without = touching & (case.contact.model == "direct")
+    ln_eta, _ = rheology.viscosity(oil, case.fluid)
+    film = np.where(without, 1.0, h)
+    lower, upper = rheology.wall_shear(film, np.gradient(oil, scales.dx), ln_eta, case.fluid, sliding)
+    left = np.where(without, 0.0, 1.0 - void)
+    return fast - upper * left, slow + lower * left

@@ -158,8 +158,9 @@ class Simulation:
             except NotConverged as error:
                 error.state = self.state
                 raise
+        rq = self.roughness.rq if self.roughness else 0.0
         figures, fields, in_contact = observe(
-            self.case, self.scales, self.march.problem, self.solution, started
+            self.case, self.scales, rq, self.march.problem, self.solution, started
         )
         figures |= {"step": self.solution.step, "time": self.solution.time}
         self.state = AcceptedState(figures, fields, in_contact, self.solution)

@@ -84,11 +84,12 @@ class TimeStepping:
         self.smooth = None
 
     def phi(self, time):
-        """What the roughness adds to the gap at `time` [s], in a^2/R."""
+        """What the roughness adds to the gap at `time` [s], in a^2/R: means over the cells of the mesh."""
         if self.roughness is None:
             return np.zeros(self.problem.n)
         with events.ROUGHNESS:
-            return self.roughness.gap(self.scales.x * self.scales.a, time) / self.scales.h
+            places, cell = self.scales.x * self.scales.a, self.scales.dx
+            return self.roughness.gap(places, time, cell) / self.scales.h
 
     def start(self):
         """Steady solution at time 0."""

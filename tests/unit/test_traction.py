@@ -34,7 +34,7 @@ def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
 def shear(case, scales, p, h, void=0.0, touching=()):
     in_contact = np.zeros(scales.nx, bool)
     in_contact[list(touching)] = True
-    return shear_stresses(case, scales, p, h, np.full(scales.nx, void), in_contact)
+    return shear_stresses(case, scales, p, p, h, np.full(scales.nx, void), in_contact)
 
 
 @pytest.mark.parametrize("ratio", [0.5, -0.5])
@@ -90,3 +90,16 @@ def test_void_carries_no_shear():
     for side in (0, 1):
         np.testing.assert_array_equal(empty[side], 0.0)
         np.testing.assert_allclose(half[side], 0.5 * full[side], rtol=1e-12)
+
+
+def test_in_mixed_contact_the_oil_drags_beside_the_solids():
+    case, scales, p, h = scene(0.5)
+    mixed = case.copy(update={"contact": case.contact.copy(update={"model": "mixed"})})
+    touching = np.zeros(scales.nx, bool)
+    touching[[30, 60]] = True
+    solids, void = np.where(touching, 0.2e9, 0.0), np.zeros(scales.nx)
+    oil_alone = shear_stresses(mixed, scales, p, np.zeros_like(p), h, void, np.zeros_like(touching))
+    for sign, both, oil in zip(
+        (-1.0, 1.0), shear_stresses(mixed, scales, p, solids, h, void, touching), oil_alone, strict=True
+    ):
+        np.testing.assert_allclose(both - oil, sign * FRICTION * solids, atol=1e-6)
