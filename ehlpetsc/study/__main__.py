@@ -1,7 +1,8 @@
 """``python3 -m ehlpetsc.study``: how accurate, how fast, how robust.
 
 ``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
-at the edge of the ranges. ``--random N``: N random cases within the ranges, which must end in 0 or 3.
+at the edge of the ranges. ``--contact CASE.toml``: how much solids carry, against mesh, time step, boundary
+film and contact model. ``--random N``: N random cases within the ranges, which must end in 0 or 3.
 """
 
 import argparse
@@ -44,6 +45,17 @@ def arguments():
     )
     parser.add_argument("--ranks", type=int, nargs="+", default=[2], help="ranks besides one (default: 2)")
     parser.add_argument("--damage", action="store_true", help="the error in damage too")
+    parser.add_argument("--contact", action="store_true", help="how much contact, against mesh and model")
+    parser.add_argument(
+        "--models",
+        nargs="+",
+        choices=["direct", "mixed"],
+        default=["direct", "mixed"],
+        help="contact models (default: both)",
+    )
+    parser.add_argument(
+        "--boundary-films", type=float, nargs="+", default=[10e-9], metavar="M", help="[m] (default: 10e-9)"
+    )
     parser.add_argument("--extremes", action="store_true", help="run the table of extremes")
     parser.add_argument("--short", action="store_true", help="its short form: coarser, fewer steps")
     parser.add_argument("--random", type=int, metavar="N", help="run N random cases of 50 steps")
@@ -67,7 +79,7 @@ def main(argv):
         return random_cases(chosen)
     if not chosen.case:
         parser.error("which case? CASE.toml, --extremes or --random N")
-    return accuracy(chosen)
+    return (contact if chosen.contact else accuracy)(chosen)
 
 
 def say(text):
@@ -88,6 +100,18 @@ def random_cases(chosen):
 
     table = f"{chosen.output or 'random'}.csv"
     return 1 if run_all(chosen.random, chosen.seed, table, chosen.limit, say) else 0
+
+
+def contact(chosen):
+    """How much contact there is."""
+    from ehlpetsc.study.contact import settings, table
+
+    stem = chosen.output or f"{Path(chosen.case).stem}.contact"
+    runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
+    with tempfile.TemporaryDirectory() as folder:
+        table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say)
+    say(f"{stem}.csv")
+    return 0
 
 
 def accuracy(chosen):

@@ -1,0 +1,172 @@
+"""How much contact there is, against mesh, time step, boundary film and contact model.
+
+``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination asked for, a line each in
+table and CSV; means over the time both rough surfaces fill the contact. Where a sequence of meshes halves its
+spacing, the observed order and the extrapolated value of each figure follow.
+"""
+
+import csv
+import itertools
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.analysis.contact_statistics import both_fill
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.study.runs import run
+
+THIN = (2.0, 5.0)  # boundary films below which a film counts as thin
+FIGURES = ("length", "share", "thin_length", "thin_share", "share_below_5", "p_max", "p_mean")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One run: contact model, points per half width, courant number, boundary film [m]."""
+
+    model: str
+    mesh: int
+    courant: float
+    boundary_film: float
+
+    def overrides(self):
+        """``table.key=value`` of the case; fields are stored at one place in time whatever the step."""
+        chosen = [
+            f"contact.model={self.model}",
+            f"mesh.points_per_half_width={self.mesh}",
+            f"time.courant={self.courant}",
+            f"output.every={max(1, round(2.0 * self.mesh / 100 * 0.5 / self.courant))}",
+            'output.fields=["pressure", "film_thickness", "contact_pressure", "in_contact"]',
+        ]
+        return chosen + ([f"contact.boundary_film={self.boundary_film}"] if self.model == "mixed" else [])
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Figures of a run; lengths in half widths, pressures in GPa, shares of the load.
+
+    Attributes
+    ----------
+    length, share
+        Where solids touch, and what they carry; in direct contact what the nodes at the bound carry.
+    thin_length, thin_share, share_below_5
+        Where the film is below two boundary films, what is carried there, and below five.
+    p_max, p_mean
+        Largest pressure, and the mean over the stored frames of the largest of each.
+    iterations, halved, mass_error, seconds
+        Newton's a step, steps that had to be halved, largest oil imbalance, processor time of the steps.
+    """
+
+    length: float
+    share: float
+    thin_length: float
+    thin_share: float
+    share_below_5: float
+    p_max: float
+    p_mean: float
+    iterations: float
+    halved: int
+    mass_error: float
+    seconds: float
+
+
+def measured(path, boundary_film):
+    """Figures of a result file.
+
+    Parameters
+    ----------
+    path : path-like
+    boundary_film : float
+        [m], also of a direct contact, to which it means nothing by itself.
+    """
+    with read_result(path) as result:
+        a, dx = result.attrs["a"], np.diff(result.x).mean()
+        frames = np.flatnonzero(both_fill(result, result.time))
+        rows = np.array([_of_frame(result, frame, boundary_film) for frame in frames])
+        filled = both_fill(result, result.steps("time"))
+        dt, load = result.steps("dt"), result.steps("load").mean()
+        touching = (result.steps("contacts") * dt)[filled].sum() / dt[filled].sum()
+        share, below, thin, below_5, greatest = rows.mean(axis=0)
+        return Measured(
+            touching * dx / a,
+            share * dx / load,
+            below * dx / a,
+            thin * dx / load,
+            below_5 * dx / load,
+            1e-9 * result.steps("p_max")[filled].max(),
+            1e-9 * greatest,
+            result.steps("newton")[1:].mean(),
+            int(np.count_nonzero(result.steps("retries"))),
+            result.steps("mass_error").max(),
+            result.steps("wall").sum(),
+        )
+
+
+def _of_frame(result, frame, boundary_film):
+    """Solids' load per node, thin nodes, loads where the film is thin, largest pressure."""
+    p, h = result.frame("pressure", frame), result.frame("film_thickness", frame)
+    name = "contact_pressure" if "contact_pressure" in result else "pressure"
+    solids = result.frame(name, frame)[result["in_contact"][frame].astype(bool)].sum()
+    thin, thicker = (h < factor * boundary_film for factor in THIN)
+    return solids, thin.sum(), p[thin].sum(), p[thicker].sum(), p.max()
+
+
+def order(coarse, middle, fine):
+    """Observed order of three values at halved spacing, and the value they go to; nan where they do not."""
+    one, other = coarse - middle, middle - fine
+    if one * other <= 0.0 or abs(other) >= abs(one):
+        return np.nan, np.nan
+    ratio = one / other
+    return float(np.log2(ratio)), float(fine - other / (ratio - 1.0))
+
+
+def settings(models, meshes, courants, boundary_films):
+    """Every combination; direct contact knows no boundary film."""
+    for model, film, courant, mesh in itertools.product(models, boundary_films, courants, meshes):
+        if model == "mixed" or film == boundary_films[0]:
+            yield Setting(model, mesh, courant, film)
+
+
+def table(case, overrides, chosen, path, folder, limit, say=print):
+    """Run the settings; rows to a CSV file and lines to `say`.
+
+    Returns
+    -------
+    list of (Setting, Measured or None)
+        None: the run did not come to its end.
+    """
+    rows = []
+    head = [*Setting.__dataclass_fields__, *Measured.__dataclass_fields__]
+    with open(path, "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        say(" ".join(f"{name:>13}" for name in head))
+        for setting in chosen:
+            outcome = run(case, [*overrides, *setting.overrides()], folder=folder, limit=limit)
+            found = measured(outcome.result, setting.boundary_film) if outcome.status == 0 else None
+            rows.append((setting, found))
+            values = [*asdict(setting).values(), *(asdict(found).values() if found else ())]
+            writer.writerow(values)
+            file.flush()
+            shown = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in values]
+            say(" ".join(f"{v:>13}" for v in shown) + ("" if found else f" {outcome.words}"))
+            if outcome.result:
+                Path(outcome.result).unlink()
+    for line in orders(rows):
+        say(line)
+    return rows
+
+
+def orders(rows):
+    """Lines of observed orders and limits, for each three meshes of which one is twice the other."""
+    found = {setting: value for setting, value in rows if value}
+    for setting, fine in found.items():
+        finer = [
+            found.get(Setting(setting.model, setting.mesh // k, setting.courant, setting.boundary_film))
+            for k in (4, 2)
+        ]
+        if setting.mesh % 4 or None in finer:
+            continue
+        for name in FIGURES:
+            exponent, limit = order(*(getattr(value, name) for value in (*finer, fine)))
+            yield f"{setting}: {name} order {exponent:.2f}, limit {limit:.4g}"
