@@ -24,9 +24,9 @@ SHORT = [
 ]
 
 
-def marched(comm):
+def marched(comm, model):
     """Pressures, films and contacts of all steps; Newton iterations in all."""
-    simulation = Simulation(load(CASE, SHORT), comm)
+    simulation = Simulation(load(CASE, [*SHORT, f"contact.model={model}"]), comm)
     states, scales = list(simulation), simulation.scales
     return (
         np.array([s.pressure for s in states]) / scales.p0,
@@ -36,9 +36,10 @@ def marched(comm):
     )
 
 
-def test_a_rough_run_is_the_same_on_every_number_of_ranks():
-    pressure, film, touching, newton = marched(MPI.COMM_WORLD)
-    alone = marched(MPI.COMM_SELF)
+@pytest.mark.parametrize("model", ["direct", "mixed"])
+def test_a_rough_run_is_the_same_on_every_number_of_ranks(model):
+    pressure, film, touching, newton = marched(MPI.COMM_WORLD, model)
+    alone = marched(MPI.COMM_SELF, model)
     assert touching.any()
     np.testing.assert_array_equal(touching, alone[2])
     np.testing.assert_allclose(pressure, alone[0], rtol=0, atol=1e-9)  # p0

@@ -1,0 +1,181 @@
+"""Mixed contact: oil conserved everywhere, complementarity exact, the direct model's answer in full film."""
+
+import numpy as np
+import pytest
+from driving import CASES, Scene
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.rheology import density, viscosity
+from ehlpetsc.run.simulation import Simulation
+
+MIXED = "contact.model=mixed"
+# the inlet near the contact, thin oil: the asperities touch within few steps
+SHORT = ("mesh.inlet=-1.3", "mesh.points_per_half_width=100", "time.travel=1.5", "fluid.viscosity=0.001")
+
+
+@pytest.fixture(scope="module")
+def rough():
+    """States of a run in contact: (figures and fields, unknowns)."""
+    simulation = Simulation(load(CASES / "table1_mixed.toml", SHORT))
+    return simulation, list(simulation)
+
+
+def test_solids_and_film_are_complementary_to_the_bit(rough):
+    simulation, states = rough
+    bound = simulation.case.contact.boundary_film
+    touching = sum(int(s.in_contact.sum()) for s in states)
+    assert touching > 500
+    for state in states:
+        over = state.film_thickness - simulation.march.solver.bound * simulation.scales.h
+        assert state.film_thickness.min() >= bound * (1.0 - 1e-15)
+        assert (over >= 0.0).all() and (state.contact_pressure >= 0.0).all()
+        assert (state.contact_pressure * over == 0.0).all()
+        np.testing.assert_array_equal(state.in_contact, state.contact_pressure > 0.0)
+
+
+def test_load_and_oil_balance_hold_at_every_step(rough):
+    _, states = rough
+    assert max(s.load_error for s in states) < 1e-10
+    assert max(s.mass_error for s in states) < 1e-6
+
+
+def test_steps_are_few_and_none_is_halved(rough):
+    _, states = rough
+    assert sum(s.retries for s in states) == 0
+    assert np.mean([s.newton for s in states[1:]]) < 7.0
+
+
+@pytest.mark.parametrize(
+    "name, overrides",
+    [
+        ("ridge.toml", ("mesh.points_per_half_width=60", "time.travel=1.5", "mesh.inlet=-1.5")),
+        ("waviness.toml", ("mesh.points_per_half_width=50", "time.travel=1.5")),
+        (
+            "table1_rough.toml",
+            ("fluid.viscosity=0.02", "mesh.points_per_half_width=60", "mesh.inlet=-1.3", "time.travel=1.5"),
+        ),
+    ],
+)
+def test_in_full_film_both_models_give_the_same(name, overrides):
+    tight = {"snes_atol": "1e-10"}
+    direct, mixed = (
+        list(Simulation(load(CASES / name, [*overrides, *model]), options=tight)) for model in ((), (MIXED,))
+    )
+    assert len(direct) == len(mixed) > 30
+    for one, other in zip(direct, mixed, strict=True):
+        assert not one.in_contact.any() and not other.in_contact.any()
+        np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=1e-9 * one.pressure.max())
+        np.testing.assert_allclose(
+            other.film_thickness, one.film_thickness, rtol=0, atol=1e-9 * one.film_thickness.max()
+        )
+
+
+@pytest.mark.parametrize("speed", [5.0, 0.1, 0.01, 1e-3, 1e-4])
+def test_smooth_starts_from_full_film_to_boundary_lubrication(speed):
+    scene = Scene(
+        "table1_smooth.toml", MIXED, f"motion.entrainment_speed={speed}", "mesh.points_per_half_width=100"
+    )
+    state = scene.start().state
+    share = scene.problem.model.contact_pressure(state.w).sum() / state.p.sum()
+    assert (share == 0.0) if speed == 5.0 else (0.1 < share < 0.2) if speed == 0.1 else (share > 0.999)
+
+
+def flow(case, scales, state, left):
+    """Oil through the face right of node `left`, over rho0 u a^2/R: by the textbook's formulas, in SI units.
+
+    Conry, Wang & Cusano 1987 for the Eyring factor, with the film at the face and both nodes' viscosities.
+    """
+    fluid, at = case.fluid, [left, left + 1]
+    p = np.maximum(state.q[at], 0.0) * scales.p0
+    void, film = np.maximum(-state.q, 0.0), state.h * scales.h
+    rho, eta = density(p, fluid)[0], fluid.viscosity * np.exp(viscosity(p, fluid)[0])
+    gradient, h = (p[1] - p[0]) / scales.dx, film[at].mean()
+    factor = np.ones(2)
+    if fluid.eyring_stress:
+        sigma = abs(h * gradient / (2.0 * fluid.eyring_stress)) + 1e-12
+        zeta = eta * (scales.u1 - scales.u2) / (fluid.eyring_stress * h)
+        rolling, sliding = 1.0 + sigma**2 / 10.0, 1.0 - sigma**2 / 15.0
+        if sigma > 0.02:
+            rolling = 3.0 * (sigma * np.cosh(sigma) - np.sinh(sigma)) / sigma**3
+            sliding = 3.0 * (sigma / np.tanh(sigma) - 1.0) / sigma**2
+        factor = np.sqrt(rolling**2 + (zeta * sliding) ** 2)
+    pressure_flow = (rho * h**3 * factor / (12.0 * eta)).mean() * gradient
+    content = state.m[left] + (0.5 * (state.m[left] - state.m[left - 1]) if left else 0.0)
+    assert void[left] < 1.0
+    carried = max(content, 0.5 * state.m[left])
+    return carried - pressure_flow / (scales.u * scales.h)
+
+
+def stored(state):
+    """What BDF2 keeps of the film content of equal steps, at every node."""
+    return np.maximum(state.m + 0.5 * (state.m - state.m_older), 0.5 * state.m)
+
+
+def test_oil_in_less_oil_out_is_what_is_stored():
+    """Over a whole run with contact, to 1e-8 of what has passed, from the flows at both ends."""
+    simulation = Simulation(load(CASES / "table1_mixed.toml", SHORT), options={"snes_atol": "1e-9"})
+    case, scales = simulation.case, simulation.scales
+    passed = gained = 0.0
+    begin = None
+    for accepted in simulation:
+        state = accepted.solution
+        if state.step < 2:  # the first step is of another order
+            continue
+        if begin is None:
+            begin = stored(state)
+            continue
+        count = scales.u * state.dt / scales.dx
+        inflow, outflow = flow(case, scales, state, 0), flow(case, scales, state, scales.nx - 2)
+        passed, gained = passed + count * inflow, gained + count * (inflow - outflow)
+    change = (stored(state) - begin)[1:-1].sum()
+    assert abs(change) > 1e-3 * passed
+    assert abs(change - gained) < 1e-8 * passed
+
+
+RIDGES = """
+[surface.slow]
+file = "ridges.csv"
+[time]
+travel = 2.0
+courant = 1.0
+"""
+POCKET = (
+    "motion.slide_roll_ratio=0.0",
+    "motion.entrainment_speed=0.2",
+    "fluid.viscosity=0.005",
+    "fluid.law=barus",
+    "fluid.pressure_viscosity=2e-8",
+    "fluid.density=incompressible",
+    "mesh.inlet=-1.5",
+    "mesh.outlet=1.3",
+)
+
+
+def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
+    """Two flat ridges, 1 um high, 90 um apart, in pure rolling: one node a step, as windows travel along."""
+    x, first, apart = np.arange(0.0, 600e-6, 0.5e-6), 100e-6, 90e-6
+    z = 1e-6 * sum(np.exp(-(((x - place) / 15e-6) ** 6)) for place in (first, first + apart))
+    np.savetxt(tmp_path / "ridges.csv", np.column_stack([x, z]), delimiter=",")
+    text = (CASES / "table1_mixed.toml").read_text()
+    (tmp_path / "case.toml").write_text(text[: text.index("[surface.fast]")] + RIDGES)
+    simulation = Simulation(load(tmp_path / "case.toml", POCKET), options={"snes_atol": "1e-9"})
+    case, scales = simulation.case, simulation.scales
+    front = round((first + apart) / scales.dx)  # nodes that the second ridge is behind
+    contents, leak = [], 0.0
+    for accepted in simulation:
+        state, left = accepted.solution, accepted.step - front
+        right = left + round(apart / scales.dx)
+        if left < 10 or not (accepted.in_contact[left - 2 : left + 2].all()):
+            continue
+        assert accepted.in_contact[right - 2 : right + 2].all()
+        if contents:
+            leak += flow(case, scales, state, left - 2) - flow(case, scales, state, right - 2)
+            # the window moves on by a node: what enters it and what is left behind
+            leak += stored(state)[right - 1] - stored(state)[left - 1]
+        contents.append(stored(state)[left:right].sum())
+        middle, width = (left + right) // 2, (right - left) // 2
+        within, beyond = accepted.pressure[middle], accepted.pressure[[left - width, right + width]]
+    assert len(contents) > 200
+    assert contents[-1] - contents[0] == pytest.approx(leak, abs=1e-9 * contents[0])
+    assert abs(leak) < 3e-3 * contents[0]
+    assert within > beyond.max()
