@@ -26,6 +26,7 @@ from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is small enough
 LONGER_START = 7  # times the iterations of a time step
 ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
+LOOSEST = 10.0  # times Newton's absolute tolerance: what rounding may make of it
 OPENED = 1e-3  # of the expected film: what solids that part get in that iteration
 
 
@@ -199,7 +200,7 @@ class NewtonSolver:
         if self.factors:
             self.factors.of_a_new_solve()
         atol = self.snes.atol
-        self.snes.setTolerances(atol=max(atol, self._rounding()))
+        self.snes.setTolerances(atol=min(max(atol, self._rounding()), LOOSEST * atol))
         self.snes.solve(None, self.x)
         self.snes.max_it = usual
         self.snes.setTolerances(atol=atol)

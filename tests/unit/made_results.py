@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-from ehlpetsc.quantities import FIELDS
+from ehlpetsc.quantities import FIELDS, of_every_case
 from ehlpetsc.results.writer import ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
@@ -16,6 +16,7 @@ viscosity = {viscosity}
 entrainment_speed = {speed}
 """
 BOUNDARY_FILM = 10e-9
+DIRECT = (*of_every_case(FIELDS), "void_fraction")  # what a direct contact stores
 
 
 def fields_at(x, time, viscosity):
@@ -28,8 +29,14 @@ def fields_at(x, time, viscosity):
     film = film + A**2 / (2 * RADIUS) * (outside * np.sqrt(outside**2 - 1) - np.arccosh(outside))
     shear = 0.05 * pressure
     contact = film == 0
-    values = [pressure, film, np.where(x > 1.05, 0.3, 0.0), -shear, shear, contact]
-    return dict(zip(FIELDS, values, strict=True)), contact
+    return {
+        "pressure": pressure,
+        "film_thickness": film,
+        "void_fraction": np.where(x > 1.05, 0.3, 0.0),
+        "shear_stress_fast": -shear,
+        "shear_stress_slow": shear,
+        "in_contact": contact,
+    }, contact
 
 
 def make_result(
@@ -41,7 +48,7 @@ def make_result(
     factor=1.0,
     every=1,
     status="done",
-    fields=FIELDS,
+    fields=DIRECT,
     speed=5.0,
     title="made up",
     p0=P0,

@@ -7,7 +7,7 @@ import pytest
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.quantities import FIELDS
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.describe import explain, warnings
 from ehlpetsc.run.forecast import dowson_higginson, file_size, steps
@@ -82,7 +82,8 @@ def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides)
         title=c.title,
         x=s.x,
         scalars_attrs={},
-        fields=c.output.fields,
+        fields=[name for name in c.output.fields if name in of_case(FIELDS, c)],
+        figures=of_case(STEP_SCALARS, c),
         every=c.output.every,
         precision=c.output.precision,
         profiles={},

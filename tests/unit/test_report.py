@@ -119,6 +119,9 @@ def test_summary_line_can_be_grepped_and_read_back():
             contacts=27,
             load_error=2.5e-12,
             mass_error=3e-4,
+            friction_coefficient=0.05,
+            film_central=2e-7,
+            lambda_ratio=1.5,
             retries=3,
         )
     )
@@ -133,5 +136,8 @@ def test_summary_line_can_be_grepped_and_read_back():
         contacts=27,
         load_error=2.5e-12,
         mass_error=3e-4,
+        friction_coefficient=0.05,
+        film_central=2e-7,
+        lambda_ratio=1.5,
         wall=12.3,
     )
