@@ -38,7 +38,6 @@ SHORT = {
     "moes": (),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.slow.synthetic.position=0.0"),
-    "stribeck": (*QUICK, "series.values=[5.0, 0.05]"),
     "table1_damage": QUICK,
     "table1_mixed": QUICK,
     "table1_rough": QUICK,
