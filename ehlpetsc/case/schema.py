@@ -17,6 +17,7 @@ Ratio = confloat(ge=0.0, le=0.5)
 Height = confloat(ge=1e-12, le=1e-2)
 Length = confloat(ge=1e-9, le=1.0)
 Depth = confloat(ge=0, le=100)
+Residual = confloat(ge=-1e10, le=1e10)
 Column = conint(ge=1, le=1000)
 UNITS = ("m", "mm", "um", "nm")  # of profile files
 
@@ -301,6 +302,15 @@ class Post(Table):
     cyclic_strength: float | None = Field(
         None, ge=1e6, le=1e12, unit="Pa", description="K'; left out: sigma_f'/eps_f'^n'"
     )
+    residual_stress: list[tuple[Depth, Residual]] | None = Field(
+        None, min_items=1, description="[[z/a, Pa], ...] along the surface, depths rising"
+    )
+    normal_sensitivity: float | None = Field(None, ge=0, le=10, description="k of Fatemi and Socie")
+    yield_strength: float | None = Field(
+        None, ge=1e6, le=1e12, unit="Pa", description="of Fatemi and Socie; left out: cyclic, 0.2 %"
+    )
+    torsion_limit: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="of Dang Van")
+    bending_limit: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="of Dang Van")
 
 
 class Series(Table):

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus, PostError
+from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
 from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
@@ -17,7 +18,7 @@ from ehlpetsc.post.inputs.loads import SURFACES
 from ehlpetsc.post.jit import COMPILED
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.outputs.result_file import check_output
-from ehlpetsc.post.run import Job, run
+from ehlpetsc.post.run import WITHIN, Job, run
 from ehlpetsc.post.supervised import Supervisor
 
 SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.STOPPED)
@@ -70,6 +71,22 @@ def arguments(argv=None):
         help="how the elastic range enters the cyclic stress-strain curve: as it is (default, as in the "
         "paper), by Neuber's or by Glinka's rule",
     )
+    add(
+        "--criterion",
+        nargs="+",
+        choices=CRITERIA,
+        default=(),
+        metavar="NAME",
+        help="also compute, beside the paper's damage: " + ", ".join(CRITERIA),
+    )
+    add(
+        "--within",
+        type=float,
+        default=WITHIN,
+        metavar="W/A",
+        help=f"half widths either side of an asperity's peak in which its largest damage is sought "
+        f"(default {WITHIN:g})",
+    )
     add("--regression", choices=REGRESSIONS, default="x on y", help="of the median ranks")
     add("--jobs", type=_jobs, default=1, metavar="N", help="threads (default 1)")
     add(
@@ -92,6 +109,8 @@ def arguments(argv=None):
         parser.error("-o names one file: give one RESULT.h5, or leave it out")
     if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):
         parser.error(f"--point {chosen.point[0]:g} {chosen.point[1]:g}: the depth z/a must be 0 or more")
+    if not 0 <= chosen.within < math.inf:
+        parser.error(f"--within {chosen.within:g}: must be 0 or more")
     return chosen
 
 
@@ -134,7 +153,10 @@ def _process(path, chosen):
     surfaces = SURFACES if chosen.surface == "both" else (chosen.surface,)
     counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress, chosen.strain)
     depths = None if chosen.depths is None else tuple(chosen.depths)
-    job = Job(path, output, surfaces, depths, counting, chosen.regression, chosen.jobs)
+    criteria = tuple(name for name in CRITERIA if name in chosen.criterion)
+    job = Job(
+        path, output, surfaces, depths, counting, chosen.regression, chosen.jobs, criteria, chosen.within
+    )
     start = time.perf_counter()
     run(job, lambda text: say(text if text.startswith(output) else f"{path}: {text}"), Progress(path))
     _summary(output, time.perf_counter() - start)

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import PostError
-from ehlpetsc.post.fatigue.accumulate import Counter, Counting
+from ehlpetsc.post.counters import PAPER, Counters, columns
+from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import SURFACES, Loads
 from ehlpetsc.post.outputs.contents import Contents
 from ehlpetsc.post.outputs.parts import Parts
@@ -16,6 +17,7 @@ from ehlpetsc.post.stresses.body_stress import QUANTUM
 from ehlpetsc.post.stresses.gathering import Sweep, blocks, workers
 
 MEMORY = 1e9  # bytes of open histories; too few and frames are gone through twice
+WITHIN = 0.02  # half widths either side of an asperity's peak in which its largest damage is sought
 DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
 
 
@@ -29,6 +31,8 @@ class Job(NamedTuple):
     counting: Counting = Counting()
     regression: str = "x on y"
     jobs: int = 1
+    criteria: tuple = ()
+    within: float = WITHIN
 
 
 class Task(NamedTuple):
@@ -64,10 +68,13 @@ def run(job, report=None, progress=None):
     check_output(job.output, [job.path])
     with Loads(job.path) as loads:
         prepared = prepare(loads, job.surfaces, job.depths, report)
-        mark = fingerprint(prepared.digest, job.surfaces, prepared.settings, job.counting, job.regression)
+        choices = job.counting, job.regression, job.criteria, job.within
+        mark = fingerprint(prepared.digest, job.surfaces, prepared.settings, *choices)
         if stored_mark(job.output) == mark:
             report(f"{job.output}: already there, of the same file and options")
             return
+        if prepared.settings.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
+            report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
         with Parts(job.output, mark) as parts:
             try:
                 _work_off(job, prepared, parts, progress or (lambda done, of: None))
@@ -106,9 +113,11 @@ def _tasks(missing):
 
 
 def solve(job, prepared, task, spread=map, share=None):
-    """Damage, cycles and peak range (depths, points, 3) of a task; nan at points that did not pass."""
+    """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan where none passed."""
     loads, motion = prepared.loads, prepared.motions[task.surface]
-    out = np.full((len(task.depths), prepared.s.size, 3), np.nan)
+    width = len(PAPER) + len(columns(job.criteria))
+    out = np.full((len(task.depths), prepared.s.size, width), np.nan)
+    residual = [prepared.settings.residual(depth) for depth in task.depths]
     if not motion.complete.any():
         return out
     lengths = motion.leave - motion.enter + 3
@@ -117,7 +126,7 @@ def solve(job, prepared, task, spread=map, share=None):
     done = 0
 
     def finish(counter, depth, first, last, histories):
-        counter(histories, lengths[first:last], out[depth, first:last])
+        counter(histories, lengths[first:last], out[depth, first:last], residual[depth])
 
     def advance(count):
         nonlocal done
@@ -125,8 +134,8 @@ def solve(job, prepared, task, spread=map, share=None):
         if share:
             share(done / frames)
 
-    material = getattr(prepared.settings, task.surface)
-    counters = spread(partial(Counter, material, job.counting), [motion.samples() + 2] * job.jobs)
+    make = partial(Counters, prepared.settings, task.surface, job.counting, job.criteria)
+    counters = spread(make, [motion.samples() + 2] * job.jobs)
     sweep = Sweep(
         loads,
         task.surface,
@@ -143,7 +152,7 @@ def solve(job, prepared, task, spread=map, share=None):
 
 
 def _store(job, prepared, parts, mark, report):
-    contents = Contents(prepared, job.regression)
+    contents = Contents(prepared, job.regression, columns(job.criteria), job.within)
     for surface in prepared.motions:
         contents.add(surface, np.stack([parts.load(surface, d) for d in prepared.settings.depths]))
     for note in contents.notes:

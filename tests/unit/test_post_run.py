@@ -281,3 +281,76 @@ def test_one_output_for_one_input(result, capsys):
     with pytest.raises(SystemExit) as end:
         main([str(result), str(result), "-o", "x.h5"])
     assert end.value.code == 2
+
+
+@pytest.fixture(scope="module")
+def judged(scene, tmp_path_factory):
+    """A result with all criteria, residual stress and a distance about the peaks, as the command makes it."""
+    folder = tmp_path_factory.mktemp("judged")
+    residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
+    path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
+    argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt", "--within", "0.05"]
+    assert main([*argv, "--pictures", str(folder)]) == 0
+    assert (folder / "a.criteria_slow.png").is_file()
+    return folder / "a.post.h5"
+
+
+def test_criteria_stand_beside_the_papers_damage(judged, scene, tmp_path):
+    plain = write(tmp_path / "a.h5", scene, depths=(0.0, 0.5))
+    run(Job(str(plain), str(tmp_path / "plain.h5")))
+    with h5py.File(judged) as file, h5py.File(tmp_path / "plain.h5") as other:
+        np.testing.assert_array_equal(file["damage/slow"], other["damage/slow"])  # the paper's stays
+        assert "criteria" not in other
+        passed = file["damage/slow_complete"][:].astype(bool)
+        assert set(file["criteria"]) == {"fatemi_socie", "shear", "swt", "dang_van"}
+        for name in ("fatemi_socie", "shear"):
+            group = file[f"criteria/{name}"]
+            assert (group["slow_damage"][:, passed] > 0).all() and (group["slow_tilt"][0, passed] > 40).all()
+            assert np.isnan(group["slow_damage"][:, ~passed]).all()
+            assert group["slow_rank_correlation"][0] > 0.9
+            assert group["slow_damage"].dims[1][0] == file["damage/s"]
+        opened = file["criteria/fatemi_socie/slow_damage"][:, passed]
+        assert (opened >= 0.95 * file["criteria/shear/slow_damage"][:, passed]).all()
+        use = file["criteria/dang_van/slow_utilisation"][1, passed]
+        assert 0.6 < use.min() and use.max() < 0.75  # Hertz at 1 GPa: 1.5 GPa uses up the limit
+        assert file.attrs["residual_stress"].tolist() == [[0.0, -4e8], [1.0, 0.0]]
+
+
+def test_asperities_and_the_sureness_of_their_distribution(judged):
+    with h5py.File(judged) as file:
+        assert file.attrs["within"] == 0.05
+        assert (file["asperities/largest"][:] >= file["asperities/damage"][:]).all()
+        assert (file["asperities/largest"][0] > file["asperities/damage"][0]).any()
+        for name in ("alpha", "beta"):
+            low, fit, high = (file[f"weibull/{name}{end}"][:] for end in ("_low", "", "_high"))
+            assert (low < fit).all() and (fit < high).all()
+            best = file[f"weibull/{name}_likelihood"][:]
+            assert (best > low / 2).all() and (best < 2 * high).all()
+
+
+def test_residual_stress_without_a_mean_stress_term_is_told(scene, tmp_path, capsys):
+    path = write(tmp_path / "a.h5", scene, depths=(0.5,), post="residual_stress = [[0.0, -4e8]]")
+    assert main([str(path), "--surface", "fast"]) == 0
+    assert "residual_stress changes nothing without" in capsys.readouterr().err
+    damages = []
+    for post in ("", "residual_stress = [[0.0, 1e9], [1.0, 8e8]]"):
+        path = write(tmp_path / "b.h5", scene, depths=(0.5,), post=post)
+        assert main([str(path), "--surface", "fast", "--mean-stress", "morrow"]) == 0
+        with h5py.File(tmp_path / "b.post.h5") as file:
+            damages.append(np.nanmax(file["damage/fast"][:]))
+    assert damages[1] > 2 * damages[0] > 0
+
+
+@pytest.mark.parametrize(
+    "post, text",
+    [
+        ("residual_stress = [[0.1, 1e8], [0.0, 1e8]]", "post.residual_stress"),
+        ("residual_stress = [0.1, 1e8]", "list of [z/a, Pa]"),
+        ("residual_stress = [[0.0, 1e12]]", "beyond 1e+10 Pa"),
+        ("residual_stress = [[0.0, nan]]", "post.residual_stress"),
+        ("torsion_limit = 1e8", "torsion_limit = 100000000.0: must be half of bending_limit"),
+        ("normal_sensitivity = true", "post.normal_sensitivity"),
+    ],
+)
+def test_faults_in_residual_stress_and_criteria(post, text, scene, tmp_path, capsys):
+    assert text in fault(capsys, write(tmp_path / "a.h5", scene, post=post))

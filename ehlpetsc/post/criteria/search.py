@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, reduced, worst_plane
 from ehlpetsc.post.criteria.dang_van import utilisation
 from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
@@ -13,7 +14,6 @@ from ehlpetsc.post.fatigue.loops import equivalent_points
 from ehlpetsc.post.jit import njit
 
 KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
-CRITERIA = (*KINDS, "dang-van")
 
 
 class PlaneDamage(NamedTuple):
@@ -88,6 +88,11 @@ class LimitCounter:
         """Stress (points, 3, samples), lengths (points,) -> out (points, 1)."""
         stress = np.ascontiguousarray(stress, float)
         _utilisations(stress, lengths, self.nu, float(residual), *self.limits, self.points, out)
+
+
+def columns_of(criterion):
+    """Names of what a criterion gives for each history."""
+    return (LimitCounter if criterion == "dang-van" else PlaneCounter).columns
 
 
 def counter_of(criterion, material, constants, residue, strain, samples):

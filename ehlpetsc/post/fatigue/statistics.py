@@ -102,6 +102,15 @@ def weibull_fit(values, regression="x on y"):
     return WeibullFit(float(alpha), float(beta), float((dx @ dy) ** 2 / (dx @ dx * (dy @ dy))))
 
 
+def rank_correlation(first, second):
+    """Spearman's correlation of two sets of values, ties at their mean rank; nan where one is constant."""
+    from scipy.stats import rankdata  # a second to import, for pictures and criteria alone
+
+    if first.size < 2 or np.ptp(first) == 0 or np.ptp(second) == 0:
+        return np.nan
+    return float(np.corrcoef(rankdata(first), rankdata(second))[0, 1])
+
+
 def log_life(damage):
     """-log10 D; infinite without damage."""
     with np.errstate(divide="ignore"):

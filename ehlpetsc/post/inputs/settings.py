@@ -5,12 +5,18 @@ import math
 import tomllib
 from typing import NamedTuple
 
+import numpy as np
+
 from ehlpetsc.errors import PostError
+from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.inputs.reading import in_words
 
 FATIGUE_KEYS = ("b", "c", "cyclic_hardening", "fatigue_strength", "fatigue_ductility", "cyclic_strength")
+CRITERIA_KEYS = ("normal_sensitivity", "yield_strength", "torsion_limit", "bending_limit")
+KEYS = ("depths", *FATIGUE_KEYS, *CRITERIA_KEYS, "residual_stress")
 TABLES = ("contact", "motion", "mesh", "time", "output", "post")
+LARGEST_RESIDUAL = 1e10  # Pa
 DEEPEST = 100.0  # half widths; below it the stresses of a line contact are no one's concern
 MOST_DEPTHS = 1000
 DEPTHS = (
@@ -25,11 +31,20 @@ DEPTHS = (
 
 
 class Settings(NamedTuple):
-    """Depths z/a and one material a surface."""
+    """Depths z/a, one material a surface, constants of the criteria, residual stress (z/a, Pa)."""
 
     depths: tuple
     fast: Material
     slow: Material
+    criteria: Criteria = Criteria()
+    residual_stress: tuple = ()
+
+    def residual(self, depth):
+        """Residual stress along the surface at a depth z/a, Pa: straight lines, constant beyond its ends."""
+        if not self.residual_stress:
+            return 0.0
+        depths, values = zip(*self.residual_stress, strict=True)
+        return float(np.interp(depth, depths, values))
 
 
 def is_number(value):
@@ -70,6 +85,36 @@ def _materials(contact, post, faults):
         return None, None
 
 
+def _criteria(post, faults):
+    constants = {key: post[key] for key in CRITERIA_KEYS if key in post}
+    for key, value in constants.items():
+        if not is_number(value):
+            faults.append(f"post.{key} = {in_words(value)}: must be a finite number")
+            return Criteria()
+    try:
+        return Criteria(**constants)
+    except ValueError as fault:
+        faults.append(f"post.{fault}")
+        return Criteria()
+
+
+def _residual_stress(rows, faults):
+    whole = isinstance(rows, list) and all(
+        isinstance(row, list) and len(row) == 2 and all(map(is_number, row)) for row in rows
+    )
+    depths = [row[0] for row in rows] if whole else []
+    if not whole or any(depth < 0 for depth in depths) or sorted(set(depths)) != depths:
+        faults.append(
+            f"post.residual_stress = {in_words(rows)}: must be a list of [z/a, Pa], its "
+            "depths 0 or more and rising"
+        )
+        return ()
+    if any(abs(row[1]) > LARGEST_RESIDUAL for row in rows):
+        faults.append(f"post.residual_stress = {in_words(rows)}: beyond {LARGEST_RESIDUAL:g} Pa")
+        return ()
+    return tuple((float(depth), float(value)) for depth, value in rows)
+
+
 def parse_case(text):
     """The tables of a case text, each a dict; those it does not have are empty.
 
@@ -99,11 +144,13 @@ def read_settings(case, depths=None):
     """
     post, faults = case["post"], []
     for key in post:
-        if key not in ("depths", *FATIGUE_KEYS):
-            near = difflib.get_close_matches(key, ("depths", *FATIGUE_KEYS), 1)
+        if key not in KEYS:
+            near = difflib.get_close_matches(key, KEYS, 1)
             faults.append(f"post.{key}: no such key" + (f", did you mean {near[0]}?" if near else ""))
     chosen = _depths(depths if depths is not None else post.get("depths", DEPTHS), faults)
     fast, slow = _materials(case["contact"], post, faults)
+    criteria = _criteria(post, faults)
+    residual = _residual_stress(post.get("residual_stress", []), faults)
     if faults:
         raise PostError("\n".join(faults))
-    return Settings(chosen, fast, slow)
+    return Settings(chosen, fast, slow, criteria, residual)

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
+from ehlpetsc.post.fatigue.passes import largest_near
+from ehlpetsc.post.fatigue.statistics import asperities, log_life, rank_correlation, weibull_fit
+from ehlpetsc.post.fatigue.weibull import LEVEL, weibull_bounds, weibull_likelihood
 
 
 class Contents:
@@ -16,10 +18,14 @@ class Contents:
     prepared : ehlpetsc.post.prepare.Prepared
     regression : str
         Of the Weibull fit.
+    columns : sequence of (criterion, column)
+        What stands behind damage, cycles and peak range.
+    within : float
+        Half widths either side of a peak in which the largest damage of its asperity is sought.
     """
 
-    def __init__(self, prepared, regression):
-        self.prepared, self.regression = prepared, regression
+    def __init__(self, prepared, regression, columns=(), within=0.0):
+        self.prepared, self.regression, self.columns, self.within = prepared, regression, columns, within
         self.first = self._first_surface()
         self.datasets = {"damage/s": prepared.s, "damage/z_over_a": np.array(prepared.settings.depths)}
         self.groups = {"damage": {"surface": self.first}}
@@ -30,7 +36,7 @@ class Contents:
         return next((name for name in passed if self.prepared.loads.profiles[name] is not None), passed[0])
 
     def add(self, surface, values):
-        """Damage, cycles and peak range (depths, points, 3) of a surface, and its asperities' statistics."""
+        """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a surface; its asperities."""
         other = "" if surface == self.first else f"{surface}_"
         passage = self.prepared.motions[surface]
         self.datasets |= {
@@ -40,6 +46,14 @@ class Contents:
             f"damage/{other}cycles": values[..., 1],
             f"damage/{other}peak_range": values[..., 2],
         }
+        for place, (criterion, column) in enumerate(self.columns, start=3):
+            group = f"criteria/{criterion.replace('-', '_')}"
+            self.datasets[f"{group}/{surface}_{column}"] = values[..., place]
+            if column in ("damage", "utilisation"):
+                complete = passage.complete
+                pairs = zip(values[:, complete, 0], values[:, complete, place], strict=True)
+                ranks = np.array([rank_correlation(paper, other) for paper, other in pairs])
+                self.datasets[f"{group}/{surface}_rank_correlation"] = ranks
         self._add_asperities(surface, values[..., 0])
 
     def _add_asperities(self, surface, damage):
@@ -47,10 +61,12 @@ class Contents:
         profile = prepared.loads.profiles[surface]
         peaks = asperities(profile, prepared.s, prepared.motions[surface].complete)
         under = damage[:, peaks.point]
+        near = largest_near(prepared.s, damage, peaks.s, self.within * prepared.loads.a)
         fits = np.array([weibull_fit(log_life(row), self.regression) for row in under]).reshape(-1, 3)
         beyond = (under >= 1).sum(axis=1)
-        self._put("asperities", inner, s=peaks.s, height=peaks.height, damage=under)
+        self._put("asperities", inner, s=peaks.s, height=peaks.height, damage=under, largest=near)
         self._put("weibull", inner, **dict(zip(("alpha", "beta", "r_squared"), fits.T, strict=True)))
+        self._put_sureness(inner, [log_life(row) for row in under])
         self._put("weibull", inner, at_least_one=beyond, undamaged=(under == 0).sum(axis=1))
         for group in ("asperities", "weibull"):
             self.groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
@@ -62,6 +78,15 @@ class Contents:
                     f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 "
                     f"or more at z/a = {depth:g}: failure in the first pass"
                 )
+
+    def _put_sureness(self, inner, lives):
+        """Maximum likelihood and bounds by resampling, for each depth."""
+        best = np.array([weibull_likelihood(row) for row in lives]).reshape(-1, 2)
+        bounds = [weibull_bounds(row, self.regression) for row in lives]
+        for k, name in enumerate(("alpha", "beta")):
+            ends = np.array([bound[k] for bound in bounds]).reshape(-1, 2)
+            self._put("weibull", inner, **{f"{name}_likelihood": best[:, k]})
+            self._put("weibull", inner, **{f"{name}_low": ends[:, 0], f"{name}_high": ends[:, 1]})
 
     def _put(self, group, inner, **values):
         self.datasets |= {f"{group}/{inner}{name}": value for name, value in values.items()}
@@ -80,6 +105,9 @@ class Contents:
             "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
             "regression": self.regression,
             "every": self.prepared.every,
+            "within": self.within,
+            "bounds_level": LEVEL,
+            "residual_stress": np.array(self.prepared.settings.residual_stress, float).reshape(-1, 2),
             **{f"speed_{name}": loads.speeds[name] for name in self.prepared.motions},
             **counting._asdict(),
         }

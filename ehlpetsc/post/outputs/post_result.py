@@ -1,9 +1,21 @@
 """A post-processing result read back for the summary and the pictures."""
 
+from copy import copy
+
 import h5py
 import numpy as np
 
 from ehlpetsc.post.fatigue.statistics import WeibullFit
+
+BOUNDS = tuple(f"{name}_{what}" for name in ("alpha", "beta") for what in ("likelihood", "low", "high"))
+
+
+def _criteria(file, surfaces):
+    found = {}
+    for name, group in file.get("criteria", {}).items():
+        kind = "utilisation" if name == "dang_van" else "damage"
+        found[name.replace("_", "-")] = {surface: group[f"{surface}_{kind}"][:] for surface in surfaces}
+    return found
 
 
 class PostResult:
@@ -24,6 +36,10 @@ class PostResult:
     under : ndarray (nz, n_peaks)
         Damage under the asperity peaks.
     fits : list of WeibullFit, one a depth
+    bounds : list of dict
+        alpha and beta of the largest likelihood and their bounds, one a depth; empty in older results.
+    criteria : dict
+        By criterion, then surface: damage or utilisation (nz, ns).
     a, ratio, title, attrs
     """
 
@@ -45,7 +61,17 @@ class PostResult:
             self.height, self.under = file["asperities/height"][:], file["asperities/damage"][:]
             weibull = file["weibull"]
             columns = (weibull[name][:] for name in WeibullFit._fields)
+            self.bounds = [
+                {name: weibull[name][k] for name in BOUNDS if name in weibull} for k in range(len(self.z))
+            ]
+            self.criteria = _criteria(file, self.surfaces)
             self.fits = [WeibullFit(*row) for row in zip(*columns, strict=True)]
+
+    def shown_as(self, surface, values):
+        """A copy whose damage of one surface is `values` (nz, ns)."""
+        other = copy(self)
+        other.damage = {**self.damage, surface: values}
+        return other
 
     def largest(self, surface, depth):
         """Largest damage of a surface at depth number `depth`; nan if no point passed."""

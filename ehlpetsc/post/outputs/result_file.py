@@ -33,8 +33,20 @@ DESCRIPTIONS = {
     "asperities/s": ("m", "body coordinate of asperity peaks"),
     "asperities/height": ("m", "height of asperity peaks"),
     "asperities/damage": ("1", "damage under asperity peaks, at the nearest body point"),
+    "asperities/largest": ("1", "largest damage near asperity peaks, within the root attribute within (z/a)"),
+    "criteria/damage": ("1", "damage of one pass on the worst plane"),
+    "criteria/inclination": ("degrees", "of the worst plane's normal, from x towards z in the section"),
+    "criteria/tilt": ("degrees", "of the worst plane's normal, out of the section"),
+    "criteria/utilisation": ("1", "of the fatigue limit; up to 1 no crack starts"),
+    "criteria/rank_correlation": ("1", "Spearman's, with the damage of the paper's criterion, by depth"),
     "weibull/alpha": ("1", "Weibull scale of -log10 of damage"),
     "weibull/beta": ("1", "Weibull shape"),
+    "weibull/alpha_likelihood": ("1", "Weibull scale of the largest likelihood"),
+    "weibull/beta_likelihood": ("1", "Weibull shape of the largest likelihood"),
+    "weibull/alpha_low": ("1", "lower bound of alpha, by resampling, at the root attribute bounds_level"),
+    "weibull/alpha_high": ("1", "upper bound of alpha"),
+    "weibull/beta_low": ("1", "lower bound of beta, by resampling, at the root attribute bounds_level"),
+    "weibull/beta_high": ("1", "upper bound of beta"),
     "weibull/r_squared": ("1", "squared correlation of the median rank regression"),
     "weibull/at_least_one": ("1", "asperities with damage of 1 or more"),
     "weibull/undamaged": ("1", "asperities without damage, censored in the fit"),
@@ -114,6 +126,11 @@ def _scales(file):
     s, z = file["damage/s"], file["damage/z_over_a"]
     s.make_scale("s")
     z.make_scale("z_over_a")
+    for group in file.get("criteria", {}).values():
+        for dataset in group.values():
+            dataset.dims[0].attach_scale(z)
+            if dataset.ndim == 2:
+                dataset.dims[1].attach_scale(s)
     for dataset in file["damage"].values():
         if isinstance(dataset, h5py.Dataset) and dataset.ndim == 2:
             dataset.dims[0].attach_scale(z)

@@ -13,6 +13,7 @@ from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.inputs.settings import parse_case, read_settings
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.pictures import plots
+from ehlpetsc.post.pictures.criteria import criteria_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 
@@ -57,6 +58,9 @@ def draw(inputs, outputs, folder, point=None, frame=None):
         for surface in result.surfaces:
             if result.complete[surface].any():
                 names += _save(damage_picture(result, surface), f"{stem}.damage_{surface}")
+        for surface in result.surfaces:
+            if result.criteria and result.complete[surface].any():
+                names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
         if result.height.size:
             names += _save(depth_picture(result), f"{stem}.exceedance")
         names += _save(field_picture(path, result, frame), f"{stem}.stress")
@@ -137,11 +141,15 @@ def _colours(count):
 
 
 def depth_picture(result):
-    """Distributions of damage at the asperities of one surface, by depth (figure 10)."""
+    """Distributions of damage at the asperities of one surface, by depth (figure 10).
+
+    Bands: 90 % of the fits to asperities drawn anew; dashes: the fit of the largest likelihood.
+    """
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
     for k, color in enumerate(_colours(len(result.z))):
         plots.exceedance_curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
+        plots.sureness(axes, result.under[k], result.attrs["regression"], color)
     plots.finish_exceedance(
         axes, f"{result.height.size} asperities, {result.main} surface, slide/roll ratio {result.ratio:.3g}"
     )

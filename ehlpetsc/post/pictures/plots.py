@@ -5,7 +5,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from ehlpetsc.post.fatigue.accumulate import CHANNELS
 from ehlpetsc.post.fatigue.cycles import rainflow
-from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
+from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
+from ehlpetsc.post.fatigue.weibull import LEVEL, WeibullLikelihood, weibull_bounds, weibull_likelihood
 from ehlpetsc.post.stresses.half_plane import von_mises
 
 DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
@@ -66,6 +67,38 @@ def damage_contours(axes, result, surface, length, levels, deepest=np.inf, gap=0
         return None
     shown = np.log10(np.maximum(values, 10.0 ** (levels[0] - 1.0)))
     return axes.contourf(x, depth, shown, levels=levels, cmap="inferno_r", extend="min")
+
+
+def utilisation_contours(figure, axes, result, surface, values, length):
+    """Filled contours of the utilisation of a fatigue limit, and the line where it is used up."""
+    complete = result.complete[surface]
+    x, shown = result.s[complete] / result.a, values[:, complete]
+    depth, ticks = _depth_axis(result.z, 0.1)
+    axes.set_yticks(depth[ticks], [f"{place:g}" for place in result.z[ticks]])
+    axes.set_ylim(depth[-1], depth[0])
+    axes.set_xlim(first_passed(result, surface), first_passed(result, surface) + length)
+    axes.set_ylabel("z/a")
+    if len(depth) < 2:
+        return
+    levels = MaxNLocator(10).tick_values(0, np.quantile(shown, 0.999))
+    mesh = axes.contourf(x, depth, shown, levels=levels, cmap="viridis", extend="max")
+    if shown.min() < 1 < shown.max():
+        axes.contour(x, depth, shown, levels=[1.0], colors="white", linewidths=0.8)
+    figure.colorbar(mesh, ax=axes, pad=0.01, ticks=ticks_within(levels))
+
+
+def sureness(axes, under, regression, color):
+    """Where the fitted share lies when asperities are drawn anew, and the fit of the largest likelihood."""
+    lives = log_life(under)
+    bounds, best = weibull_bounds(lives, regression), weibull_likelihood(lives)
+    if not (bounds.draws.size and np.isfinite(best.beta)):
+        return
+    damaged = under[under > 0]
+    values = np.logspace(np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5), 120)
+    drawn = [fitted_exceedance(values, WeibullLikelihood(*row)) for row in bounds.draws]
+    low, high = np.quantile(drawn, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
+    axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
+    axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
 
 
 def _depth_axis(z, gap):
