@@ -312,6 +312,16 @@ class Post(Table):
     torsion_limit: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="of Dang Van")
     bending_limit: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="of Dang Van")
 
+    @validator("residual_stress", pre=True)
+    def _rows_of_numbers(cls, value):
+        rows = [row for row in value if isinstance(row, list)] if isinstance(value, list) else []
+        if not all(_is(float, item) for row in rows for item in row):
+            raise TypeError("numbers expected")
+        depths = [row[0] for row in rows if row]
+        if sorted(set(depths)) != depths:
+            raise ValueError("depths must rise")
+        return value
+
 
 class Series(Table):
     """`[series]`: one key swept over values, one member a value."""
