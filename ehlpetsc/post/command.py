@@ -97,6 +97,12 @@ def arguments(argv=None):
         help="also draw PNG and SVG, in FOLDER or beside the result",
     )
     add(
+        "--passes",
+        choices=SURFACES,
+        help="the results are passes of this surface against other parts or alignments of the other one: "
+        "with --pictures damage a pass, its scatter and Miner's sum to failure",
+    )
+    add(
         "--point",
         nargs=2,
         type=float,
@@ -109,6 +115,8 @@ def arguments(argv=None):
         parser.error("-o names one file: give one RESULT.h5, or leave it out")
     if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):
         parser.error(f"--point {chosen.point[0]:g} {chosen.point[1]:g}: the depth z/a must be 0 or more")
+    if chosen.passes and len(chosen.results) < 2:
+        parser.error("--passes: give the results of two passes or more")
     if not 0 <= chosen.within < math.inf:
         parser.error(f"--within {chosen.within:g}: must be 0 or more")
     return chosen
@@ -183,7 +191,7 @@ def _draw(paths, chosen):
     from ehlpetsc.post.pictures.gallery import draw
 
     outputs = [_output(path, chosen) for path in paths]
-    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame):
+    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame, chosen.passes):
         print(name)
 
 

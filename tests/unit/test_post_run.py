@@ -12,6 +12,8 @@ from post_result_file import Scene, write
 
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
+from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.post.pictures.passes import same_points
 from ehlpetsc.post.run import Job, run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -275,6 +277,23 @@ def test_pictures_of_two_ratios(scene, tmp_path, capsys):
     assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
     said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
+
+
+def test_passes_of_one_surface(tmp_path, capsys):
+    """The slow surface is one; that it meets is another in each pass."""
+    scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
+    scenes[1].profiles["slow"] = scenes[0].profiles["slow"]
+    paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.0, 0.1))) for k, scene in enumerate(scenes)]
+    assert main([*paths, "--passes", "slow", "--pictures", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out" / "passes.damage_slow.png").is_file()
+    results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
+    s, damages = same_points(results, "slow")
+    assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20
+    place = np.argmin(np.abs(results[1].s - s[3]))
+    assert damages[1][:, 3] == pytest.approx(results[1].damage["slow"][:, place], rel=1e-12)
+    assert "profiles of the fast surface differ" in fault(capsys, *paths, "--passes", "fast", "--pictures")
+    with pytest.raises(SystemExit):
+        main([paths[0], "--passes", "slow"])
 
 
 def test_one_output_for_one_input(result, capsys):

@@ -14,6 +14,7 @@ from ehlpetsc.post.inputs.settings import parse_case, read_settings
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.pictures import plots
 from ehlpetsc.post.pictures.criteria import criteria_picture
+from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 
@@ -35,7 +36,7 @@ def _save(figure, stem):
     return names
 
 
-def draw(inputs, outputs, folder, point=None, frame=None):
+def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
     """Draw everything there is to draw; returns the names of the files.
 
     Parameters
@@ -48,6 +49,8 @@ def draw(inputs, outputs, folder, point=None, frame=None):
         s/a and z/a of the history picture.
     frame : int, optional
         Stored frame of the stress picture.
+    passes : {"slow", "fast"}, optional
+        The results are passes of this surface: statistics over them instead of a comparison.
     """
     names = []
     if folder:
@@ -65,7 +68,10 @@ def draw(inputs, outputs, folder, point=None, frame=None):
             names += _save(depth_picture(result), f"{stem}.exceedance")
         names += _save(field_picture(path, result, frame), f"{stem}.stress")
         names += _save(history_picture(path, result, point), f"{stem}.history")
-    if len(results) > 1:
+    if passes:
+        beside = Path(folder or Path(outputs[0]).parent)
+        names += _save(passes_picture(results, passes), beside / f"passes.damage_{passes}")
+    elif len(results) > 1:
         names += _compared(sorted(results, key=lambda r: r.ratio), Path(folder or Path(outputs[0]).parent))
     return names
 
