@@ -73,7 +73,7 @@ def read_result(path):
     return Result(reader.open_result(path), path)
 
 
-def solve(case, output=None, options=None, comm=None, *, restart=None, progress=None):
+def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite=False, progress=None):
     """Solve a case.
 
     Parameters
@@ -89,6 +89,9 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, progress=
         alone.
     restart : path-like, optional
         Restart file to go on from.
+    overwrite : bool
+        Whether to replace whatever stands in the place of `output`; else only the complete result of the
+        very same case is made again.
     progress : bool, optional
         Whether to show progress; by default on a terminal and in a notebook.
 
@@ -124,6 +127,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, progress=
     stream = sys.stdout if progress and simulation.comm.rank == 0 else None
     recorder = Recorder(simulation, output)
     with simulation.options, recorder:
+        recorder.reserve(restart, overwrite)
         if restart is not None:
             recorder.resume(restart)
         _, failure = record(simulation, recorder, stream=stream)

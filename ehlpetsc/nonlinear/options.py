@@ -14,9 +14,15 @@ class Option:
     default: str
     text: str
 
+    @property
+    def shown(self):
+        """Its value as ``-help`` shows it."""
+        return self.value and f" <{self.value}>"
+
 
 OWN = {
     "ehl_output": Option("FILE.h5", "CASE.h5 in this folder", "result file, the restart file beside it"),
+    "ehl_overwrite": Option("", "no", "replace what stands in the place of the result, whatever it is"),
     "ehl_ranks_per_member": Option("RANKS", "1", "of a [series], how many ranks compute one member"),
     "ehl_restart": Option("FILE.restart.h5", "begin at time 0", "go on from there and append to the result"),
     "ehl_scheme": Option("newton|sweep", "newton", "iteration; sweep is the paper's own, slower"),
@@ -54,7 +60,7 @@ def help_text():
         "Options come from: program defaults < [petsc] of the case < PETSC_OPTIONS < command line.",
         "Own options:",
     ]
-    lines += [f"  -{name} <{o.value}>: {o.text} (default: {o.default})" for name, o in OWN.items()]
+    lines += [f"  -{name}{o.shown}: {o.text} (default: {o.default})" for name, o in OWN.items()]
     lines += [
         "  --explain: tell the scene in words, with expected film, run time and file size; nothing is run",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",

@@ -156,6 +156,7 @@ class ResultWriter:
 
     def flush(self):
         """Hand everything taken so far to the operating system; afterwards a kill does not lose it."""
+        self._check_still_there()
         with self._plain_faults("not written on"), room(self._file, self._bytes_held()):
             steps, frames = slice(self._steps_held), slice(self._frames_held)
             for name, column in self._columns.items():
@@ -177,6 +178,17 @@ class ResultWriter:
         self.flush()
         with self._plain_faults("not closed"):
             close(self._file, status)
+
+    def _check_still_there(self):
+        """The file of that name must be the one that is written."""
+        if self.path is None:
+            return
+        with contextlib.suppress(OSError):
+            if os.path.samestat(os.stat(self.path), os.fstat(self._file.id.get_vfd_handle())):
+                return
+        with contextlib.suppress(Exception):
+            close(self._file, "stopped")
+        raise OutputError(f"{self.path}: result file removed or replaced by others during the run")
 
     def image(self):
         """The bytes of a file in memory, once it is closed."""

@@ -58,12 +58,13 @@ def run(path, overrides):
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
         if case.series:
             return Series(comm, case, options, stop, output).go()
-        return run_single(comm, case, stop, output, text_of(options, "ehl_restart"))
+        overwrite = options.getBool("ehl_overwrite", False)
+        return run_single(comm, case, stop, output, text_of(options, "ehl_restart"), overwrite)
     except (OutputError, UsageError) as error:
         return refuse(comm, [f"ehlpetsc: {error}"])
 
 
-def run_single(comm, case, stop, output, restart):
+def run_single(comm, case, stop, output, restart, overwrite):
     """A case that is no series, on all ranks. Returns the exit status."""
     simulation = Simulation(case, comm)
     if comm.rank == 0:
@@ -71,4 +72,4 @@ def run_single(comm, case, stop, output, restart):
             print(line)
         for line in warnings(case, simulation.scales):
             print(f"warning: {line}", flush=True)
-    return Run(simulation, output, stop).go(restart).status
+    return Run(simulation, output, stop).go(restart, overwrite).status

@@ -12,6 +12,7 @@ from petsc4py import PETSc
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.results.output_guard import Lock, check_place, check_replaceable, inputs_of
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run import checkpoint
@@ -53,17 +54,48 @@ class Recorder:
     def __init__(self, simulation, output):
         self.simulation, self.comm = simulation, simulation.comm
         self.output = None if output is None else Path(output)
-        self.restart = self.output and self.output.with_suffix(".restart.h5")
+        self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
         self.totals = Totals()
-        self._writer, self._opened = None, False
+        self._writer, self._opened, self._lock = None, False, None
         self._saved = clock.monotonic()
 
     def __enter__(self):
         return self
 
     def __exit__(self, kind, *_):
-        if kind and self._writer:  # no agreement with other ranks: they may not know of the error
-            self._writer.close(ExitStatus.STOPPED.words)
+        try:
+            if kind and self._writer:  # no agreement with other ranks: they may not know of the error
+                self._writer.close(ExitStatus.STOPPED.words)
+        finally:
+            if self._lock:
+                self._lock.give_back()
+
+    def reserve(self, restart=None, overwrite=False):
+        """Make sure, before anything is computed, that the result may be written; lock it until the end.
+
+        Parameters
+        ----------
+        restart : path-like, optional
+            Restart file to go on from: the result is then continued.
+        overwrite : bool
+            Whether whatever stands there may be replaced.
+
+        Raises
+        ------
+        OutputError
+        """
+        if self.output is not None:
+            on_root(self.comm, self._reserve, restart, overwrite)
+
+    def _reserve(self, restart, overwrite):
+        case = self.simulation.case
+        read = inputs_of(case)
+        check_place(self.output, [*read, Path(restart)] if restart else read)
+        check_place(self.restart, read)
+        self._lock = Lock(self.output)
+        self._lock.take()
+        if not (restart or overwrite):
+            check_replaceable(self.output, self.restart, case.text)
 
     def resume(self, path):
         """Put the simulation where a restart file was written, and go on with its result.

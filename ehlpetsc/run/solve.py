@@ -85,20 +85,23 @@ class Run:
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
 
-    def go(self, restart=None):
+    def go(self, restart=None, overwrite=False):
         """Run to the end, tell how it ended.
 
         Parameters
         ----------
         restart : path-like, optional
             Restart file to go on from.
+        overwrite : bool
+            As of `Recorder.reserve`.
 
         Returns
         -------
         Outcome
         """
         begun = clock.monotonic()
-        with self.simulation.options:
+        with self.simulation.options, self.recorder:
+            self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._say(*(f"restart: {note}" for note in notes))
             status, failure = record(

@@ -158,7 +158,7 @@ def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
     assert done.returncode == 0
     own = done.stdout.split("Own options:\n")[1].splitlines()
     for line, (name, option) in zip(own, OWN.items(), strict=False):
-        assert line == f"  -{name} <{option.value}>: {option.text} (default: {option.default})"
+        assert line == f"  -{name}{option.shown}: {option.text} (default: {option.default})"
     assert done.stdout.count("Own options:") == 1
     for petscs in ("-snes_linesearch_type", "-ksp_rtol", "-pc_type"):
         assert petscs in done.stdout

@@ -84,6 +84,9 @@ def test_a_rerun_does_only_what_is_missing(finished):
     one, two = summary(first.stdout), summary(again.stdout)
     assert all(one[name] == two[name] for name in ("steps", "newton", "contacts", "h_min"))
     other = series(folder, "-ehl_set", "time.courant=1.0", ranks=1)
+    assert other.returncode == 2 and "out_viscosity_0.01.h5, out_viscosity_0.006.h5" in other.stderr
+    assert "the result of another case" in other.stderr
+    other = series(folder, "-ehl_set", "time.courant=1.0", "-ehl_overwrite", ranks=1)
     assert other.returncode == 0 and "3 of them to compute" in other.stdout
 
 

@@ -42,6 +42,14 @@ class Member:
             pass
         return "waiting"
 
+    def is_foreign(self):
+        """Whether in the place of its result there is that of another case."""
+        try:
+            with read_result(self.output) as result:
+                return result.attrs["case"] != self.case.text
+        except (OutputError, KeyError):
+            return False  # none, or a damaged one: it is computed again
+
     def weight(self):
         """For dealing the longest first: nodes times steps; of equals, the thinner film."""
         scales = Scales.of(self.case)

@@ -15,9 +15,11 @@ from ehlpetsc.case.loading import members
 from ehlpetsc.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.describe import warnings
 from ehlpetsc.run.progress import summary_line
+from ehlpetsc.run.recorder import on_root
 from ehlpetsc.run.series.member import Member
 from ehlpetsc.run.series.work_queue import Dealer
 from ehlpetsc.run.simulation import Simulation
@@ -65,7 +67,7 @@ class Series:
             raise UsageError("-ehl_restart with a [series]: leave it out, begun members are gone on with")
         self.world, self.case, self.stop = world, case, stop
         output = Path(output)
-        self.index = output.with_suffix(".series.json")
+        self.index = output.parent / f"{output.stem}.series.json"
         self.members = [
             Member(number, case.series.key, value, member, output)
             for number, (value, member) in enumerate(members(case))
@@ -73,6 +75,14 @@ class Series:
         if len({member.output for member in self.members}) < len(self.members):
             raise UsageError("series.values: two values have the same name; allowed: values that differ")
         ranks = ranks_per_member(options, world.size)
+        foreign = world.bcast([m.output for m in self.members if m.is_foreign()] if world.rank == 0 else None)
+        if foreign and not options.getBool("ehl_overwrite", False):
+            raise OutputError(
+                f"{', '.join(map(str, foreign))}: the result of another case, or of other -ehl_set; "
+                "give another -ehl_output, or -ehl_overwrite to lose it"
+            )
+        self._lock = Lock(self.index)
+        on_root(world, self._lock.take)
         self.states = world.bcast([m.stands() for m in self.members] if world.rank == 0 else None)
         self.states = ["waiting" if state == "begun" else state for state in self.states]
         missing = [n for n, state in enumerate(self.states) if state != "done"]
@@ -91,7 +101,10 @@ class Series:
             if number is None:
                 break
             report = (number, *self._run(self.members[number]))
-        return self.dealer.finish(lambda: self._conclude(clock.monotonic() - begun))
+        try:
+            return self.dealer.finish(lambda: self._conclude(clock.monotonic() - begun))
+        finally:
+            self._lock.give_back()
 
     def _run(self, member):
         """Run one member on this group; its exit status and why it failed."""
@@ -100,7 +113,7 @@ class Series:
         begun = group.bcast(group.rank == 0 and member.stands() == "begun")
         try:
             run = Run(Simulation(member.case, group), member.output, self._stop, out, err)
-            outcome = run.go(member.restart if begun else None)
+            outcome = run.go(member.restart if begun else None, overwrite=True)  # looked at before: ours
             return outcome.status, str(outcome.failure or "")
         except (OutputError, UsageError) as error:
             if group.rank == 0:

@@ -1,0 +1,127 @@
+"""What stands in an output's place before a run, and the lock that keeps a second run away from it."""
+
+import contextlib
+import fcntl
+import os
+import socket
+from pathlib import Path
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.reader import open_result
+
+
+def check_place(path, inputs):
+    """Refuse an output that is an input, or no plain file.
+
+    Parameters
+    ----------
+    path : Path
+    inputs : iterable of Path
+        Files that the run reads.
+
+    Raises
+    ------
+    OutputError
+    """
+    if path.exists() and not path.is_file():
+        kind = "a folder" if path.is_dir() else "a device or pipe"
+        raise OutputError(f"{path}: {kind}, not a file to write a result to; give another -ehl_output")
+    for read in inputs:
+        with contextlib.suppress(OSError):
+            if path.exists() and read.exists() and path.samefile(read):
+                raise OutputError(f"{path}: is read by this run ({read}); give another -ehl_output")
+
+
+def check_replaceable(path, restart, case_text):
+    """Refuse to replace anything but the complete result of the very same case.
+
+    Parameters
+    ----------
+    path, restart : Path
+        The result file and the restart file beside it.
+    case_text : str
+
+    Raises
+    ------
+    OutputError
+        With the options to choose from.
+    """
+    ways = "give another -ehl_output, or -ehl_overwrite to lose it"
+    waiting = restart.exists() and f"go on with -ehl_restart {restart}, {ways}"
+    if not path.exists():
+        if waiting:
+            raise OutputError(f"{restart}: a restart file waits there; {waiting}")
+        return
+    try:
+        with open_result(path) as file:
+            status, case = file.attrs.get("status"), file.attrs.get("case")
+    except OutputError:
+        raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {ways}") from None
+    if status != "done":
+        raise OutputError(f"{path}: holds a run that is {status}, not done; {waiting or ways}")
+    if case != case_text:
+        raise OutputError(f"{path}: holds the result of another case, or of other -ehl_set; {ways}")
+
+
+class Lock:
+    """Keeps an output for one run; for a ``with`` statement, or :meth:`take` and :meth:`give_back`.
+
+    The lock is one of the operating system's on ``OUTPUT.lock``: a killed run loses it.
+
+    Parameters
+    ----------
+    path : Path
+        The output.
+    """
+
+    def __init__(self, path):
+        self._output, self._path, self._file = path, path.with_name(path.name + ".lock"), None
+
+    def take(self):
+        """Take it; OutputError names who has it."""
+        file = self._locked()
+        while not self._path.exists() or not self._path.samefile(f"/proc/self/fd/{file.fileno()}"):
+            file.close()  # the one before gave it back between our opening and our locking
+            file = self._locked()
+        file.truncate(0)
+        file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
+        file.flush()
+        self._file = file
+
+    def _locked(self):
+        try:
+            file = open(self._path, "a+")
+        except OSError as error:
+            raise OutputError(f"{self._output}: result file not created, {error.strerror}") from error
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            whose = file.read().strip() or "another process"
+            file.close()
+            raise OutputError(
+                f"{self._output}: is being written by {whose}; wait for it, or give another -ehl_output"
+            ) from None
+        except OSError:
+            pass  # a file system without locks
+        return file
+
+    def give_back(self):
+        """Give it back; once is enough."""
+        if self._file:
+            with contextlib.suppress(OSError):
+                self._path.unlink()
+            self._file.close()
+            self._file = None
+
+
+def inputs_of(case):
+    """Files that a case is read from.
+
+    Parameters
+    ----------
+    case : ehlpetsc.case.loading.Case
+    """
+    sides = (case.surface.fast, case.surface.slow)
+    folder = Path(case.path).parent
+    return [Path(case.path), *(folder / side.file for side in sides if side and side.file)]

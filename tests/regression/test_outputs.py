@@ -1,0 +1,126 @@
+"""Nothing is lost: what stands in the place of an output, locks, results removed in mid-run."""
+
+import os
+import subprocess
+
+import pytest
+from running import BARE, ROOT, SCRIPT, command, run, settings, wait_for
+
+from ehlpetsc.results.reader import read_result
+
+COARSE = ["mesh.inlet=-1.5", "mesh.points_per_half_width=20"]
+CASE = [ROOT / "cases" / "table1_smooth.toml", *settings(*COARSE)]
+LONG = [ROOT / "cases" / "table1_rough.toml", *settings("mesh.points_per_half_width=40", "time.travel=500")]
+
+
+@pytest.fixture
+def done(tmp_path):
+    """Folder with a complete result, table1_smooth.h5."""
+    assert run(*CASE, cwd=tmp_path).returncode == 0
+    return tmp_path
+
+
+def test_the_same_case_is_made_again_and_another_is_refused(done):
+    path = done / "table1_smooth.h5"
+    assert run(*CASE, cwd=done).returncode == 0
+    before = path.read_bytes()
+    other = [*CASE, *settings("fluid.viscosity=0.004")]
+    refused = run(*other, cwd=done)
+    assert refused.returncode == 2 and path.read_bytes() == before
+    assert refused.stderr == (
+        "ehlpetsc: table1_smooth.h5: holds the result of another case, or of other -ehl_set; "
+        "give another -ehl_output, or -ehl_overwrite to lose it\n"
+    )
+    assert run(*other, "-ehl_overwrite", cwd=done).returncode == 0
+    with read_result(path) as result:
+        assert "viscosity = 0.004" in result.attrs["case"]
+    assert [p.name for p in done.iterdir()] == ["table1_smooth.h5"]
+
+
+def test_a_run_that_waits_for_its_restart_is_not_lost(tmp_path):
+    case = [*LONG, "-ehl_output", "r.h5"]
+    stopped = run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5))
+    assert stopped.returncode == 4
+    before = (tmp_path / "r.h5").read_bytes()
+    refused = run(*case, cwd=tmp_path)
+    assert refused.returncode == 2 and (tmp_path / "r.h5").read_bytes() == before
+    assert (
+        "r.h5: holds a run that is stopped, not done; go on with -ehl_restart r.restart.h5" in refused.stderr
+    )
+    (tmp_path / "r.h5").unlink()
+    refused = run(*case, cwd=tmp_path)
+    assert refused.returncode == 2 and "r.restart.h5: a restart file waits there" in refused.stderr
+
+
+def make_fifo(folder):
+    os.mkfifo(folder / "there")
+
+
+@pytest.mark.parametrize(
+    "make, output, fault",
+    [
+        (lambda folder: (folder / "there").write_text("mine"), "there", "is not a result of ehlpetsc"),
+        (lambda folder: (folder / "there").mkdir(), "there", "a folder, not a file"),
+        (make_fifo, "there", "a device or pipe"),
+        (lambda folder: None, "/dev/null", "a device or pipe"),
+        (lambda folder: None, "/", "a folder"),
+    ],
+)
+def test_what_is_no_result_is_refused_and_left(tmp_path, make, output, fault):
+    make(tmp_path)
+    refused = run(*CASE, "-ehl_output", output, cwd=tmp_path)
+    assert refused.returncode == 2 and fault in refused.stderr
+    assert len(refused.stderr.splitlines()) == 1
+    names = [p.name for p in tmp_path.iterdir()]
+    assert names in ([], ["there"])
+    if (tmp_path / "there").is_file():
+        assert (tmp_path / "there").read_text() == "mine"
+
+
+@pytest.mark.parametrize("words", [[], ["-ehl_overwrite"]])
+def test_an_input_is_never_an_output(tmp_path, words):
+    case = (ROOT / "cases" / "table1_rough.toml").read_text().replace("profiles/", "")
+    profile = (ROOT / "cases" / "profiles" / "alicona_meander_profile.csv").read_text()
+    (tmp_path / "case.toml").write_text(case)
+    (tmp_path / "alicona_meander_profile.csv").write_text(profile)
+    os.link(tmp_path / "case.toml", tmp_path / "link.h5")
+    for name in ("link.h5", "alicona_meander_profile.csv"):
+        refused = run("case.toml", "-ehl_output", name, *words, cwd=tmp_path)
+        assert refused.returncode == 2 and f"{name}: is read by this run" in refused.stderr
+    assert (tmp_path / "case.toml").read_text() == case
+    assert (tmp_path / "alicona_meander_profile.csv").read_text() == profile
+
+
+def running(folder):
+    """A long run, once its result is there."""
+    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
+    words = command(*LONG, "-ehl_output", "r.h5")
+    process = subprocess.Popen(words, cwd=folder, env=BARE | SCRIPT, **pipes)
+    wait_for(folder / "r.h5", process)
+    return process
+
+
+def test_a_second_run_is_kept_away_and_a_killed_one_is_not_in_the_way(tmp_path):
+    process = running(tmp_path)
+    try:
+        second = run(*LONG, "-ehl_output", "r.h5", "-ehl_overwrite", cwd=tmp_path)
+        assert second.returncode == 2
+        assert f"r.h5: is being written by process {process.pid} on " in second.stderr
+    finally:
+        process.kill()
+        process.communicate()
+    (tmp_path / "r.h5").unlink()
+    after = run(*CASE, "-ehl_output", "r.h5", cwd=tmp_path)
+    assert after.returncode == 0, after.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
+
+
+def test_a_result_removed_in_mid_run_is_seen(tmp_path):
+    process = running(tmp_path)
+    try:
+        (tmp_path / "r.h5").unlink()
+        _, errors = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 2
+    assert "r.h5: result file removed or replaced by others during the run" in errors
