@@ -66,6 +66,10 @@ class SolveFailed(Exception):
         self.reason, self.iterations = reason, iterations
 
 
+class Stopped(Exception):
+    """The run was to stop while it had nothing yet to go on with."""
+
+
 class NoSteadyStart(Exception):
     """No steady solution was found.
 

@@ -1,5 +1,7 @@
 """PETSc's table of options as a run needs it, and as it was before."""
 
+import ctypes
+
 from petsc4py import PETSc
 
 DEFAULTS = {
@@ -20,6 +22,7 @@ DEFAULTS = {
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 
 
+READ_AT_THE_END = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
 
 
@@ -38,11 +41,13 @@ class RunOptions:
     views : list of str
         ``snes_view`` and ``ksp_view``, where they are asked for without a value: held back, because PETSc
         would repeat them at every solve.
+    unread : set of str
+        Those of `of_case` and `given` that nobody has read yet.
     """
 
     def __init__(self, of_case=(), given=()):
         self._of_case, self._given, self._depth = dict(of_case), dict(given), 0
-        self.views = []
+        self.views, self.unread = [], {*self._of_case, *self._given}
 
     def __enter__(self):
         self._depth += 1
@@ -69,8 +74,22 @@ class RunOptions:
             table[name] = wanted[name]
 
     def _leave(self, table):
+        self.unread = {name for name in self.unread if not was_read(name)} - set(self.views)
         for name in self._entered:
             table.delValue(name)
         for name, value in self._held.items():
             table[name] = value
             table.hasName(name)  # it has been read, for -options_left
+
+
+def unread():
+    """Names in PETSc's table that nobody has read, but for own ones and those that PETSc reads at its end."""
+    names = PETSc.Options().getAll()
+    return sorted(n for n in names if not (n.startswith("ehl_") or n in READ_AT_THE_END or was_read(n)))
+
+
+def was_read(name):
+    """Whether anybody has asked for an option; petsc4py does not tell."""
+    answer = ctypes.c_int(1)
+    ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(answer))
+    return bool(answer.value)

@@ -130,6 +130,7 @@ class GaussSeidelSolver:
     """
 
     start_iterations = EVALUATIONS
+    watch = None  # as of NewtonSolver
 
     def __init__(self, case, scales, film_scale):
         self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
@@ -163,6 +164,8 @@ class GaussSeidelSolver:
         q, h = q.copy(), np.maximum(h, self.bound)
         most = max_it or EVALUATIONS
         for iteration in range(most):
+            if self.watch:
+                self.watch()
             p = np.maximum(q, 0.0)
             h00, still_open = self._correct(p, h, h00, inputs.phi)
             norm = self._evaluate(q, h, h00, inputs)

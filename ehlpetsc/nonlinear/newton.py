@@ -38,6 +38,11 @@ class NewtonSolver:
     case, scales, film_scale
         As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
     comm : MPI communicator
+
+    Attributes
+    ----------
+    watch : callable or None
+        Called in every iteration on every rank; what it raises ends the solve.
     """
 
     def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
@@ -54,7 +59,7 @@ class NewtonSolver:
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self.near_field = case.mesh.near_field
         self._create_bounds()
-        self.jacobian = self.place = None
+        self.jacobian = self.place = self.watch = None
         self._create_snes()
 
     @property
@@ -145,6 +150,8 @@ class NewtonSolver:
         operator.assemble()
 
     def _limit_step(self, x, y):
+        if self.watch:
+            self.watch()
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
         model, dry = self.model, self.problem.dry
         if model.is_mixed:

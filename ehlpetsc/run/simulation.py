@@ -76,6 +76,9 @@ class Simulation:
     solution : stepping.time_stepping.State or None
         Its unknowns, or those of a restart file.
 
+    watch : callable or None
+        Called in every iteration of the steady start; what it raises ends it.
+
     Raises
     ------
     CaseError
@@ -105,7 +108,7 @@ class Simulation:
         self.scales = Scales.of(case)
         self.roughness = Roughness.of(case, self.scales)
         film = expected_film(case, self.scales)
-        self.state = self.solution = None
+        self.state = self.solution = self.watch = None
         with self.options:
             table = PETSc.Options()
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
@@ -168,8 +171,10 @@ class Simulation:
 
     def _start(self):
         self._head("steady start")
+        self.march.solver.watch = self.watch
         with events.START:
             solution = self.march.start()
+        self.march.solver.watch = None
         if isinstance(self.march.solver, NewtonSolver):
             for name in self.options.views:
                 snes = self.march.solver.snes

@@ -3,8 +3,10 @@
 import sys
 import time as clock
 from dataclasses import dataclass
+from functools import partial
 
-from ehlpetsc.errors import ExitStatus, NotConverged
+from ehlpetsc.errors import ExitStatus, NotConverged, Stopped
+from ehlpetsc.nonlinear.defaults import unread
 from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.run.recorder import Recorder
 
@@ -44,6 +46,7 @@ def record(simulation, recorder, stop=None, stream=None):
     failure : errors.NotConverged or None
     """
     progress = status = failure = None
+    simulation.watch = stop and partial(_end_where_asked, stop, simulation.comm)
     while status is None:
         begun = simulation.solution is not None
         if simulation.finished:
@@ -57,6 +60,8 @@ def record(simulation, recorder, stop=None, stream=None):
                 recorder.take(simulation.advance())
             except NotConverged as error:
                 status, failure = ExitStatus.NOT_CONVERGED, error
+            except Stopped:
+                status = ExitStatus.STOPPED
             if progress and not failure:
                 progress.step(simulation.state.figures)
     if progress:
@@ -65,6 +70,11 @@ def record(simulation, recorder, stop=None, stream=None):
         recorder.checkpoint()
     recorder.close(status)
     return status, failure
+
+
+def _end_where_asked(stop, comm):
+    if stop(comm):
+        raise Stopped
 
 
 class Run:
@@ -117,8 +127,13 @@ class Run:
         if outcome.failure:
             saved = f". Last good state: {recorder.restart}" if state else ""
             print(f"ehlpetsc: not converged: {outcome.failure}{saved}", file=self.err, flush=True)
+        elif outcome.status is ExitStatus.STOPPED and state is None:
+            self._say("ehlpetsc: stopped during the steady start; nothing to go on with")
         elif outcome.status is ExitStatus.STOPPED:
             self._say(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
+        ignored = sorted({*self.simulation.options.unread, *unread()})
+        if ignored:
+            self._say(f"note: options that nobody read: -{', -'.join(ignored)}")
         if state is not None:
             self._say(f"result: {recorder.output}")
         self._say(summary_line(outcome.status, recorder.totals, outcome.wall))

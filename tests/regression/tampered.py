@@ -1,11 +1,13 @@
 """The program with an accident at one step of one rank: ``tampered.py ACCIDENT RANK STEP arguments``.
 
-ACCIDENT is "raise", an error in the code, or the name of a signal that the rank gets during the step.
+ACCIDENT is "raise", an error in the code, "late", the end of the time limit, or the name of a signal that the rank gets during the step.
 """
 
+import math
 import os
 import signal
 import sys
+from types import SimpleNamespace
 
 from ehlpetsc.__main__ import guarded
 from ehlpetsc.environment import prepare
@@ -15,6 +17,7 @@ from ehlpetsc.run.command_line import parse_command_line
 def tamper(accident, rank, step):
     from mpi4py import MPI
 
+    from ehlpetsc.run import stop
     from ehlpetsc.run.simulation import Simulation
 
     advance = Simulation.advance
@@ -23,6 +26,9 @@ def tamper(accident, rank, step):
         if self.solution and self.solution.step + 1 == step and MPI.COMM_WORLD.rank == rank:
             if accident == "raise":
                 raise ValueError("an accident")
+            if accident == "late":
+                stop.clock = SimpleNamespace(monotonic=lambda: math.inf)
+                return advance(self)
             os.kill(os.getpid(), getattr(signal, accident))
         return advance(self)
 

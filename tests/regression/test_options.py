@@ -153,6 +153,16 @@ def test_options_left_speaks_of_the_users_options_alone(case, tmp_path):
     assert "There are no unused options." in text
 
 
+def test_options_that_nobody_read_are_named(case, tmp_path):
+    with_petsc_table(case, "ksp_rtoll = 1e-7\nksp_atol = 1e-12")
+    words = ["-snes_monitr", "-snes_rtol", "1e-12", "-log_view", ":log", "-snes_view", "-options_left", "no"]
+    done = run(case, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    notes = [line for line in done.stdout.splitlines() if line.startswith("note: options")]
+    assert notes == ["note: options that nobody read: -ksp_rtoll, -snes_monitr"]
+    assert "nobody read" not in run(case, "-ehl_set", "petsc={}", "-ehl_overwrite", cwd=tmp_path).stdout
+
+
 def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
     done = run(case, "-help", cwd=tmp_path, ranks=2)
     assert done.returncode == 0

@@ -81,10 +81,21 @@ def test_a_killed_run_leaves_its_last_checkpoint_and_goes_on_from_there(whole, t
 
 
 def test_the_time_limit_stops_with_a_restart_file(tmp_path):
-    done = run(*CASE, "-ehl_time_limit", "1e-6", cwd=tmp_path)
+    done = run(*CASE, "-ehl_time_limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
     assert done.returncode == 4
-    assert last_step(tmp_path / "table1_rough.h5")[1] == "stopped"
+    assert last_step(tmp_path / "table1_rough.h5") == (5, "stopped")
     assert (tmp_path / "table1_rough.restart.h5").exists()
+
+
+@pytest.mark.parametrize("words, ranks", [([], 0), ([], 2), (["-ehl_scheme", "sweep"], 0)])
+def test_the_time_limit_ends_the_steady_start_too(tmp_path, words, ranks):
+    done = run(*CASE, "-ehl_time_limit", "1e-6", *words, cwd=tmp_path, ranks=ranks)
+    assert done.returncode == 4, done.stderr
+    assert done.stderr == ""
+    told, last = done.stdout.splitlines()[-2:]
+    assert told == "ehlpetsc: stopped during the steady start; nothing to go on with"
+    assert last.startswith("ehlpetsc: stopped steps=0 ")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.fixture(scope="session")
