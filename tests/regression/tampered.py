@@ -1,6 +1,7 @@
 """The program with an accident at one step of one rank: ``tampered.py ACCIDENT RANK STEP arguments``.
 
-ACCIDENT is "raise", an error in the code, "late", the end of the time limit, or the name of a signal that the rank gets during the step.
+ACCIDENT is "raise", an error in the code, "late", the end of the time limit, or the name of a signal that the
+rank gets during the step.
 """
 
 import math
