@@ -46,8 +46,10 @@ def test_a_whole_file_of_the_same_case_stands(tmp_path, monkeypatch):
     member = series(tmp_path)[0]
     assert member.stands() == "waiting" and member.totals().values == {}
     make_result(member.output)
-    assert member.stands() == "waiting"  # of another case
-    member.case._text = 'title = "made up"\n[fluid]\nviscosity = 0.005\n'
+    assert member.stands() == "waiting" and member.is_foreign()  # of another case
+    with read_result(member.output) as result:
+        member.case._text = str(result.attrs["case"])
+    assert not member.is_foreign()
     assert member.stands() == "done"
     make_result(member.output, status="stopped")
     assert member.stands() == "waiting"  # and no restart file to go on with
