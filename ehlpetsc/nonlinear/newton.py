@@ -82,6 +82,7 @@ class NewtonSolver:
             self.snes.setFromOptions()
         except PETSc.Error as error:
             reason = str(error).splitlines()[-1].split("] ")[-1]
+            self.snes.destroy()  # left to the end of the process, it would crash there
             raise UsageError(f"PETSc refuses an option: {reason}") from None
         self.follows = not PETSc.Options().hasName("ksp_atol")
         self._check_type()
@@ -95,6 +96,7 @@ class NewtonSolver:
     def _check_type(self):
         kind = self.snes.getType()
         if kind == "vinewtonssls":
+            self.snes.destroy()
             raise UsageError(
                 "-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
                 "allowed: vinewtonrsls, and types without bounds where nothing touches"
