@@ -14,7 +14,7 @@ def solver():
 
 def post():
     """``ehlpetsc-post RESULT.h5 ...``: damage, statistics and pictures."""
-    return _command("ehlpetsc.post.__main__", NUMERICS).main()
+    return _command("ehlpetsc.post.command", NUMERICS).command()
 
 
 def plot():
