@@ -11,6 +11,7 @@ from ehlpetsc.post import (
     damage,
     dang_van,
     strain_range,
+    stress,
 )
 from ehlpetsc.post.criteria.critical_plane import plane_damage
 from ehlpetsc.post.criteria.dang_van import smallest_ball
@@ -194,6 +195,15 @@ def test_dang_van_stands_at_one_at_both_limits():
     residual = dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=3e8)
     assert residual == pytest.approx(1 + limits.hydrostatic_slope * 2e8 / 4e8, rel=1e-9)
     assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=-3e8) == pytest.approx(1)
+
+
+def test_dang_van_under_hertz_uses_the_limit_up_where_the_standard_says():
+    """The default limit is read from 1.5 GPa of ISO 281: half a half width below the contact U is 1."""
+    x = np.linspace(-6, 6, 1201)
+    pressure = 1.5e9 * np.sqrt(np.clip(1 - x**2, 0, None))
+    use = [dang_van(*stress(x, z, pressure, None, 0.3), 0.3) for z in (0.0, 0.3, 0.5, 0.7)]
+    assert use[2] == pytest.approx(1.0, rel=1e-3) and max(use) == use[2]
+    assert use[0] == pytest.approx((1 - 0.6) * 1.5e9 / 4 / 375e6, rel=1e-6)  # out of the section
 
 
 def test_smallest_ball():
