@@ -57,7 +57,8 @@ def environment(wheel, tmp_path_factory):
 
 
 def test_the_wheel_holds_the_package_and_nothing_else(wheel):
-    inside = [path for path in (ROOT / "ehlpetsc").rglob("*") if path.suffix in (".py", ".html", ".css", ".js")]
+    parts = {".py", ".html", ".css", ".js"}
+    inside = [path for path in (ROOT / "ehlpetsc").rglob("*") if path.suffix in parts]
     modules = {str(path.relative_to(ROOT)) for path in inside}
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
