@@ -108,7 +108,13 @@ def signalled(script, tmp_path, ranks, names, *arguments):
     command = [tmp_path / "run_mpi.sh", "-n", str(ranks), *arguments]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     folder = tmp_path / "elsewhere"
-    with subprocess.Popen(command, cwd=folder, env={"PATH": "/usr/bin:/bin"}, **pipes) as job:
+    with subprocess.Popen(
+        command,
+        cwd=folder,
+        env={"PATH": "/usr/bin:/bin"},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a shell's job
+        **pipes,
+    ) as job:
         for _ in range(600):
             if len(list(folder.glob("ready*"))) == ranks:
                 break
