@@ -33,12 +33,12 @@ def main(argv):
 
 def tell_keys(words):
     """Print every key of a case file, of one table, or a commented case."""
-    from ehlpetsc.case import reference
+    from ehlpetsc.case import key_page
     from ehlpetsc.environment import first_rank
     from ehlpetsc.errors import UsageError
 
     try:
-        text = reference.template() if words[0] == "--template" else reference.keys(*words[1:2]) + "\n"
+        text = key_page.template() if words[0] == "--template" else key_page.keys(*words[1:2]) + "\n"
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
     if first_rank():

@@ -33,7 +33,7 @@ class StepInputs:
         What the roughness adds to the gap, in a^2/R.
     history : reynolds.FilmHistory or None
         Previous time levels; None: steady.
-    fluid : case.Fluid or None
+    fluid : case.schema.Fluid or None
         None: dry.
     inlet_film : float or None
         Oil given at the inlet in a^2/R; None: flooded.
@@ -68,7 +68,7 @@ class EHLProblem:
 
     Parameters
     ----------
-    case : case.Case
+    case : case.loading.Case
     scales : scales.Scales
     film_scale : float
         What Reynolds' rows are divided by, about the expected film, in a^2/R.

@@ -13,7 +13,7 @@ def scheme(options):
 
     Raises
     ------
-    options.UsageError
+    UsageError
         There is none of that name.
     """
     name = text_of(options, "ehl_scheme") or ALLOWED[0]
@@ -27,7 +27,7 @@ def solver_of(case, scales, film_scale, comm, options):
 
     Raises
     ------
-    options.UsageError
+    UsageError
         Sweeps are asked for, but the contact is dry or mixed.
     """
     if scheme(options) == "newton":

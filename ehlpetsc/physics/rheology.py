@@ -22,7 +22,7 @@ def viscosity(p, fluid):
     ----------
     p : ndarray
         Pressure [Pa].
-    fluid : case.Fluid
+    fluid : case.schema.Fluid
 
     Returns
     -------

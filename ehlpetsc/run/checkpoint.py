@@ -18,7 +18,7 @@ def save(path, state, smooth, contact_count, totals, case, scales, model):
     Parameters
     ----------
     path : path-like
-    state : march.State
+    state : time_stepping.State
     smooth : pair of ndarray
         Steady q and w that the predictor starts from.
     contact_count : ndarray of int, shape (nx,)
@@ -58,7 +58,7 @@ def load(path, case, scales, model):
 
     Returns
     -------
-    state : march.State
+    state : time_stepping.State
     smooth : pair of ndarray
     contact_count : ndarray
     totals : dict

@@ -57,7 +57,7 @@ def run(path, overrides):
             return ExitStatus.DONE
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
         if case.series:
-            return Series(comm, case, options, stop, output).go()
+            return Series(comm, case, options, stop, output).run()
         overwrite = options.getBool("ehl_overwrite", False)
         return run_single(comm, case, stop, output, text_of(options, "ehl_restart"), overwrite)
     except (OutputError, UsageError) as error:
@@ -72,4 +72,4 @@ def run_single(comm, case, stop, output, restart, overwrite):
             print(line)
         for line in warnings(case, simulation.scales):
             print(f"warning: {line}", flush=True)
-    return Run(simulation, output, stop).go(restart, overwrite).status
+    return Run(simulation, output, stop).run(restart, overwrite).status

@@ -18,7 +18,7 @@ def explain(case):
 
     Parameters
     ----------
-    case : case.Case
+    case : case.loading.Case
 
     Returns
     -------
@@ -51,7 +51,7 @@ def banner(case, scales, rough, ranks):
 
     Parameters
     ----------
-    case : case.Case
+    case : case.loading.Case
     scales : scales.Scales
     rough : roughness.Roughness or None
     ranks : int
@@ -84,7 +84,7 @@ def warnings(case, scales):
 
     Parameters
     ----------
-    case : case.Case
+    case : case.loading.Case
     scales : scales.Scales
     """
     rough = [f"surface.{name}" for name in ("fast", "slow") if getattr(case.surface, name)]

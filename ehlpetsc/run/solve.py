@@ -95,7 +95,7 @@ class Run:
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
 
-    def go(self, restart=None, overwrite=False):
+    def run(self, restart=None, overwrite=False):
         """Run to the end, tell how it ended.
 
         Parameters

@@ -65,7 +65,7 @@ def plan(case, meshes, steps, ranks):
 
     Parameters
     ----------
-    case : case.Case
+    case : case.loading.Case
     meshes : sequence of int
         Points per half width.
     steps : sequence of float

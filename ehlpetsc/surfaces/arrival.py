@@ -31,7 +31,7 @@ def arrival_warnings(case, scales, rough):
 
     Parameters
     ----------
-    case : case.Case
+    case : case.loading.Case
     scales : scales.Scales
     rough : ehlpetsc.surfaces.roughness.Roughness or None
     """

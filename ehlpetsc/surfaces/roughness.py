@@ -23,7 +23,7 @@ class Roughness:
 
         Parameters
         ----------
-        case : case.Case
+        case : case.loading.Case
         scales : scales.Scales
 
         Raises

@@ -12,7 +12,7 @@ def sampled(spec):
 
     Parameters
     ----------
-    spec : case_keys.Ground or case_keys.Wave or case_keys.Bump
+    spec : case.schema.Ground or case.schema.Wave or case.schema.Bump
 
     Returns
     -------

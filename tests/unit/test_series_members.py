@@ -42,17 +42,17 @@ def test_the_longest_runs_come_first(tmp_path):
     assert fine[1].weight()[0] == pytest.approx(4 * fine[0].weight()[0], rel=0.01)
 
 
-def test_a_whole_file_of_the_same_case_stands(tmp_path, monkeypatch):
+def test_a_whole_file_of_the_same_case_is_done(tmp_path, monkeypatch):
     member = series(tmp_path)[0]
-    assert member.stands() == "waiting" and member.totals().values == {}
+    assert member.state_of_files() == "waiting" and member.totals().values == {}
     make_result(member.output)
-    assert member.stands() == "waiting" and member.is_foreign()  # of another case
+    assert member.state_of_files() == "waiting" and member.is_foreign()  # of another case
     with read_result(member.output) as result:
         member.case._text = str(result.attrs["case"])
     assert not member.is_foreign()
-    assert member.stands() == "done"
+    assert member.state_of_files() == "done"
     make_result(member.output, status="stopped")
-    assert member.stands() == "waiting"  # and no restart file to go on with
+    assert member.state_of_files() == "waiting"  # and no restart file to go on with
 
 
 def test_sums_and_extremes_of_the_whole():

@@ -30,7 +30,7 @@ class Member:
         self.output = output.with_name(f"{output.stem}_{word}_{plain}.h5")
         self.restart = self.output.with_suffix(".restart.h5")
 
-    def stands(self):
+    def state_of_files(self):
         """What its files hold of the same case: "done", "begun" (a restart file) or "waiting"."""
         try:
             with read_result(self.output) as result:

@@ -50,7 +50,7 @@ class Series:
     Parameters
     ----------
     world : mpi4py communicator
-    case : case.Case
+    case : case.loading.Case
         With a series.
     options : petsc4py.PETSc.Options
     stop : stop.StopRequest
@@ -59,7 +59,7 @@ class Series:
 
     Raises
     ------
-    options.UsageError, output.OutputError
+    UsageError, OutputError
     """
 
     def __init__(self, world, case, options, stop, output):
@@ -83,7 +83,7 @@ class Series:
             )
         self._lock = Lock(self.index)
         on_root(world, self._lock.take)
-        self.states = world.bcast([m.stands() for m in self.members] if world.rank == 0 else None)
+        self.states = world.bcast([m.state_of_files() for m in self.members] if world.rank == 0 else None)
         self.states = ["waiting" if state == "begun" else state for state in self.states]
         missing = [n for n, state in enumerate(self.states) if state != "done"]
         missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
@@ -91,7 +91,7 @@ class Series:
         self.failures = {}
         self._announce(ranks, len(missing))
 
-    def go(self):
+    def run(self):
         """Run what is missing. Returns the exit status."""
         begun = clock.monotonic()
         self._write_index()
@@ -106,14 +106,14 @@ class Series:
         finally:
             self._lock.give_back()
 
-    def _run(self, member):
+    def _run_member(self, member):
         """Run one member on this group; its exit status and why it failed."""
         group = self.dealer.group
         out, err = Named(member.name, sys.stdout), Named(member.name, sys.stderr)
-        begun = group.bcast(group.rank == 0 and member.stands() == "begun")
+        begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
-            run = Run(Simulation(member.case, group), member.output, self._stop, out, err)
-            outcome = run.go(member.restart if begun else None, overwrite=True)  # looked at before: ours
+            one = Run(Simulation(member.case, group), member.output, self._stop, out, err)
+            outcome = one.run(member.restart if begun else None, overwrite=True)  # looked at before: ours
             return outcome.status, str(outcome.failure or "")
         except (OutputError, UsageError) as error:
             if group.rank == 0:
@@ -192,7 +192,7 @@ def ranks_per_member(options, size):
 
     Raises
     ------
-    options.UsageError
+    UsageError
         Not a whole number from 1 to the number of ranks.
     """
     text = text_of(options, "ehl_ranks_per_member") or "1"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from ehlpetsc.case import reference
+from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import UsageError
 
@@ -15,11 +15,11 @@ ROOT = Path(__file__).parents[2]
 
 
 def test_the_page_is_what_the_schema_says():
-    assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == reference.page()
+    assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == key_page.page()
 
 
 def test_every_key_of_the_cases_here_is_listed():
-    listed = reference.keys()
+    listed = key_page.keys()
     for path in (ROOT / "cases").glob("*.toml"):
         text = path.read_text(encoding="utf-8").partition("[petsc]")[0]
         for key in re.findall(r"^(\w+) *=", text, re.MULTILINE):
@@ -27,22 +27,22 @@ def test_every_key_of_the_cases_here_is_listed():
 
 
 def test_a_table_alone_has_units_bounds_and_defaults():
-    told = reference.keys("motion").splitlines()
+    told = key_page.keys("motion").splitlines()
     assert told[0] == "[motion]" and len(told) == 3
     assert told[1].startswith("  entrainment_speed: a number >= 1e-09 and <= 1000 [m/s] (mean of both")
     assert told[2].endswith("default: 0.0")
-    assert "[surface.fast.synthetic (ridge)]" in reference.keys("surface.fast")
-    assert "[surface.slow]" in reference.keys("surface")
+    assert "[surface.fast.synthetic (ridge)]" in key_page.keys("surface.fast")
+    assert "[surface.slow]" in key_page.keys("surface")
     with pytest.raises(UsageError, match="--keys fluids: no such table; allowed: contact, fluid"):
-        reference.keys("fluids")
+        key_page.keys("fluids")
 
 
 def test_the_template_is_a_case_and_its_comments_are_keys(tmp_path):
     path = tmp_path / "mine.toml"
-    path.write_text(reference.template())
+    path.write_text(key_page.template())
     case = load(path)
     assert case.fluid.viscosity == 0.005 and case.time.travel == 6.0
-    commented = re.findall(r"^# (\w+) = ", reference.template(), re.MULTILINE)
+    commented = re.findall(r"^# (\w+) = ", key_page.template(), re.MULTILINE)
     assert {"minimum_film", "inlet_film", "file", "short_cutoff", "courant", "every"} <= set(commented)
 
 
@@ -51,8 +51,8 @@ def test_the_command_prints_them(tmp_path):
         command = [sys.executable, "-m", "ehlpetsc", *words]
         return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
 
-    assert run("--keys").stdout == reference.keys() + "\n"
-    assert run("--keys", "mesh").stdout == reference.keys("mesh") + "\n"
-    assert run("--template").stdout == reference.template()
+    assert run("--keys").stdout == key_page.keys() + "\n"
+    assert run("--keys", "mesh").stdout == key_page.keys("mesh") + "\n"
+    assert run("--template").stdout == key_page.template()
     wrong = run("--keys", "mush")
     assert (wrong.returncode, wrong.stdout) == (2, "") and "no such table" in wrong.stderr

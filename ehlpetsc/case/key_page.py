@@ -36,7 +36,7 @@ PAGE = """# Every key of a case file
 `python3 -m ehlpetsc --keys` prints them too, `--keys fluid` those of one table, `--template` a commented case
 to begin from. SI units; an unknown key, a value out of its bounds, nan and inf are refused. A key whose
 default is "none" must be there where its table is. Made from the schema by
-`python3 -m ehlpetsc.case.reference > cases/keys.md`.
+`python3 -m ehlpetsc.case.key_page > cases/keys.md`.
 """
 
 
