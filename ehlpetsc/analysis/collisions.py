@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.series_index import WITH_FILM, command, from_thick_to_thin
 
 BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
@@ -56,13 +57,9 @@ def points_in_contact(result):
     OutputError
         The result holds neither contacts nor films.
     """
-    name = next((n for n in ("in_contact", "film_thickness") if n in result), None)
-    if name is None:
-        raise OutputError(f"{result.path}: stores neither in_contact nor film_thickness")
     frames, nodes = [], []
     for begin in range(0, len(result.time), BLOCK):
-        block = result[name][begin : min(begin + BLOCK, len(result.time))]
-        frame, node = np.nonzero(block if name == "in_contact" else block <= 0.0)
+        frame, node = np.nonzero(in_contact(result, slice(begin, min(begin + BLOCK, len(result.time)))))
         frames.append(frame + begin)
         nodes.append(node)
     return np.concatenate(frames), np.concatenate(nodes)
@@ -135,8 +132,7 @@ class _Reader:
         frame = self.result.nearest_frame(time=time)
         node = int(np.argmin(np.abs(self.result.x - x)))
         film, pressure = (float(self.result[name][frame, node]) for name in ("film_thickness", "pressure"))
-        touching = "in_contact" in self.result and self.result["in_contact"][frame, node]
-        return 0.0 if touching else film, pressure
+        return 0.0 if in_contact(self.result, frame, node) else film, pressure
 
 
 def _collision(parts, at):

@@ -3,8 +3,9 @@
 import numpy as np
 
 from ehlpetsc.analysis import entrapment
-from ehlpetsc.plot.frames import ACROSS, FILM, PRESSURE, in_contact, pressure_and_film
+from ehlpetsc.plot.frames import ACROSS, FILM, PRESSURE, pressure_and_film
 from ehlpetsc.plot.labels import CONTACT_COLOUR, SINGLE_COLOUR, UNITS, legend_beside
+from ehlpetsc.results.contacts import in_contact
 
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#17becf", "#7f7f7f")
 

@@ -7,6 +7,7 @@ from matplotlib.patches import Patch
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
 from ehlpetsc.plot.labels import CONTACT_COLOUR, SOLIDS_COLOUR, legend_beside, one_hertz
+from ehlpetsc.results.contacts import in_contact
 
 ACROSS = "x/a"
 PRESSURE = "pressure [GPa]"
@@ -60,13 +61,6 @@ def frame_with_most_contacts(result):
     contacts, highest = result.steps("contacts"), result.steps("p_max")
     rows = np.searchsorted(result.steps("step"), result.step)
     return int(np.argmax(contacts[rows] if contacts[rows].any() else highest[rows]))
-
-
-def in_contact(result, index):
-    """Nodes in contact in a stored frame, of bool, shape (nx,)."""
-    if "in_contact" in result:
-        return result["in_contact"][index].astype(bool)
-    return result.frame("film_thickness", index) <= 0.0
 
 
 def default_window(results):

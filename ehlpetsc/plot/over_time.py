@@ -6,6 +6,7 @@ from matplotlib.colors import ListedColormap
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.frames import ACROSS
 from ehlpetsc.plot.labels import CONTACT_COLOUR
+from ehlpetsc.results.contacts import in_contact
 
 MAP_ROWS = 1000  # rows of pixels worth drawing in a space-time map
 FEW_CONTACTS = 3000  # nodes in contact in a map that would be lost as single pixels
@@ -67,12 +68,9 @@ def _over_time(result, window):
 
 def _contacts(result, columns, stride):
     """1 where a node is in contact in any of `stride` frames, a row each `stride` frames."""
-    name = "in_contact" if "in_contact" in result else "film_thickness"
-    rows = []
-    for begin in range(0, len(result.time), stride):
-        block = result[name][begin : min(begin + stride, len(result.time)), columns]
-        rows.append(np.any(block if name == "in_contact" else block <= 0.0, axis=0))
-    return np.array(rows, dtype=int)
+    last = len(result.time)
+    blocks = (slice(begin, min(begin + stride, last)) for begin in range(0, last, stride))
+    return np.array([in_contact(result, block, columns).any(axis=0) for block in blocks], dtype=int)
 
 
 def contact_rates(axes, results, colours):

@@ -6,8 +6,9 @@ import tomllib
 import h5py
 import numpy as np
 
-from ehlpetsc.plot.frames import default_window, frame_with_most_contacts, in_contact
+from ehlpetsc.plot.frames import default_window, frame_with_most_contacts
 from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.contacts import in_contact
 
 FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
 STEADY = 1e-9  # relative change over a run that is none
@@ -77,7 +78,7 @@ def frames(result):
         name: _packed([binned(factor * result.frame(name, k)[columns], width, take) for k in chosen])
         for name, (factor, take) in stored.items()
     }
-    touching = [binned(in_contact(result, k)[columns], width, np.max) for k in chosen]
+    touching = [binned(in_contact(result, k, columns), width, np.max) for k in chosen]
     return {
         "x": _packed(binned(x[columns], width, np.mean)),
         "time": _packed(1e6 * result.time[chosen]),

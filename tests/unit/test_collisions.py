@@ -5,20 +5,36 @@ import json
 import numpy as np
 import pytest
 from made_results import A
+from matplotlib.figure import Figure
 
 from ehlpetsc.analysis import collisions, entrapment
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.plot.over_time import space_time_map
 from ehlpetsc.results import series_index as swept
+from ehlpetsc.results.contacts import film_at_contact, in_contact
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import ResultWriter
 
 X = np.linspace(-1.5, 1.5, 301)
 SPEED = 5.0
 CASE = "[fluid]\nviscosity = {}\n"
+FIELDS = ("pressure", "film_thickness", "in_contact")
 
 
-def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=(), bound=0.0):
+def make(
+    path,
+    viscosity,
+    dips,
+    *,
+    step=0.5e-6,
+    steps=80,
+    case=CASE,
+    bumps=(),
+    bound=0.0,
+    fields=FIELDS,
+    precision="float64",
+):
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
     writer = ResultWriter(
         path,
@@ -26,8 +42,8 @@ def make(path, viscosity, dips, *, step=0.5e-6, steps=80, case=CASE, bumps=(), b
         title="dips",
         x=X * A,
         every=1,
-        precision="float64",
-        fields=["pressure", "film_thickness", "in_contact"],
+        precision=precision,
+        fields=fields,
         profiles={},
         scalars_attrs={"a": A, "p0": 1e9, "u1": SPEED, "u2": SPEED},
     )
@@ -76,6 +92,31 @@ def test_collisions_are_found_where_they_are(series):
 def test_contact_at_a_bound_above_zero_counts_as_no_film(tmp_path):
     result = make(tmp_path / "b.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)], bound=1e-4)
     assert all(c.film == (0.0,) for c in collisions.find([result]))
+
+
+@pytest.mark.parametrize("bound", [0.0, 1e-2])
+@pytest.mark.parametrize("precision", ["float64", "float32"])
+def test_contacts_are_the_same_whether_stored_or_told_by_the_bound(tmp_path, bound, precision):
+    """Also in maps, and also at a bound [um] above zero, which is no number of single precision."""
+    dips = [(-0.2, 20e-6, 6e-6, 0.35)]
+    whole = make(tmp_path / "whole.h5", 0.01, dips, bound=bound)
+    films = make(tmp_path / "film.h5", 0.01, dips, bound=bound, precision=precision, fields=FIELDS[:2])
+    assert whole.in_contact.any() and not whole.in_contact.all()
+    np.testing.assert_array_equal(in_contact(films, slice(0, len(films.time))), whole.in_contact)
+    np.testing.assert_array_equal(in_contact(films, 40, slice(100, 200)), whole.in_contact[40, 100:200])
+    np.testing.assert_array_equal(collisions.points_in_contact(films), np.nonzero(whole.in_contact))
+    assert film_at_contact(films) == pytest.approx(1e-6 * bound, rel=1e-12)
+    figure = Figure()
+    space_time_map(figure.subplots(), films, (-1.4, 1.4), 3.0)
+    marks = figure.axes[0].collections[1].get_array()
+    shown = (films.x >= -1.4 * A) & (films.x <= 1.4 * A)
+    np.testing.assert_array_equal(marks.filled(0).ravel(), whole.in_contact[:, shown].ravel())
+
+
+def test_no_film_is_a_bound_where_nothing_touches(tmp_path):
+    result = make(tmp_path / "open.h5", 0.01, [], fields=FIELDS[:2])
+    assert film_at_contact(result) == -np.inf
+    assert not in_contact(result, slice(0, len(result.time))).any()
 
 
 def test_points_are_spread_over_the_members():

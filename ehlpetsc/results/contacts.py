@@ -1,0 +1,48 @@
+"""Where a result's surfaces touch, whatever it stores and whatever bound its film has."""
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+
+ROUNDING = 1e-6  # of the bound: films may be stored in single precision
+
+
+def film_at_contact(result):
+    """Film [m] between surfaces that touch; -inf if none ever do.
+
+    The least film of the steps with contacts: in direct contact ``contact.minimum_film``, in mixed contact
+    ``contact.boundary_film``, given in the case or not.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+    """
+    touching = result.steps("contacts") > 0
+    return float(result.steps("h_min")[touching].min()) if touching.any() else -np.inf
+
+
+def in_contact(result, frames, nodes=slice(None)):
+    """Whether surfaces touch, as stored, or else by the film being at its bound.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+    frames : int or slice
+        Stored frames.
+    nodes : int or slice, optional
+
+    Returns
+    -------
+    ndarray of bool
+        Of the shape of the part asked for.
+
+    Raises
+    ------
+    OutputError
+        The result holds neither contacts nor films.
+    """
+    if "in_contact" in result:
+        return np.asarray(result["in_contact"][frames, nodes], dtype=bool)
+    if "film_thickness" not in result:
+        raise OutputError(f"{result.path}: stores neither in_contact nor film_thickness")
+    return result["film_thickness"][frames, nodes] <= film_at_contact(result) * (1.0 + ROUNDING)
