@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, plt, window
+from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160
@@ -93,8 +93,6 @@ def main(arguments=None):
     except (OutputError, ValueError, OSError) as error:
         print(f"ehlpetsc.plot: {error}", file=sys.stderr)
         return 2
-    finally:
-        plt.close("all")
     print(output)
     return 0
 

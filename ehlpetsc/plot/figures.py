@@ -1,10 +1,6 @@
 """Whole figures of one or several results, one function a kind; `FIGURES` lists them."""
 
-import matplotlib as mpl
 import numpy as np
-
-mpl.use("Agg")
-from matplotlib import pyplot as plt
 
 from ehlpetsc.analysis import collisions, entrapment
 from ehlpetsc.errors import OutputError
@@ -20,7 +16,7 @@ POINTS = 8  # most contact points in one picture
 
 def two_panels():
     """Figure and axes of pressure above film."""
-    return plt.subplots(2, 1, figsize=SIZE, sharex=True, layout="constrained")
+    return labels.new_figure(2, 1, SIZE, sharex=True)
 
 
 def window(results, options):
@@ -60,7 +56,7 @@ def draw_frame(results, options):
 def draw_map(results, options):
     """Figure of pressure over place and time, a panel each result, all in the same colours."""
     size = (SIZE[0] * max(1.0, 0.6 * len(results)), SIZE[1])
-    figure, axes = plt.subplots(1, len(results), figsize=size, squeeze=False, layout="constrained")
+    figure, axes = labels.new_figure(1, len(results), size, squeeze=False)
     views = [window([result], options) for result in results]
     highest = max(over_time.colour_limit([r], view) for r, view in zip(results, views, strict=True))
     _, names, key = labels.series_colours(results)
@@ -93,8 +89,7 @@ def draw_collision(results, options):
     chosen = [found[number] for number in numbers]
     colours, names, key = labels.series_colours(results)
     size = (SIZE[0] * max(1.0, 0.6 * len(chosen)), SIZE[1])
-    panels = dict(figsize=size, squeeze=False, sharex="col", layout="constrained")
-    figure, axes = plt.subplots(2, len(chosen), **panels)
+    figure, axes = labels.new_figure(2, len(chosen), size, squeeze=False, sharex="col")
     width = options.width or COLLISION_WIDTH
     collision_pictures.collisions(axes, results, chosen, colours, width)
     labels.series_legend(axes[0, -1], colours, names, key)
@@ -117,7 +112,7 @@ def draw_points(results, _options):
 def draw_entrapment(results, options):
     """Figure of four instants of the strongest entrapment of a result."""
     size = (1.6 * SIZE[0], SIZE[1])
-    figure, axes = plt.subplots(2, 4, figsize=size, sharex="col", sharey="row", layout="constrained")
+    figure, axes = labels.new_figure(2, 4, size, sharex="col", sharey="row")
     found = entrapment.find(results[0])[0]
     collision_pictures.entrapped(axes, results[0], found, options.width or COLLISION_WIDTH)
     figure.suptitle(results[0].attrs["title"], fontsize="medium")

@@ -2,6 +2,7 @@
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ehlpetsc.results.series_index import series_values
@@ -16,6 +17,21 @@ UNITS = {
     "motion.slide_roll_ratio": "slide/roll ratio",
     "mesh.points_per_half_width": "nodes a half width",
 }
+
+
+def new_figure(rows, columns, size, **shared):
+    """Figure and axes that are drawn into files alone: pyplot, and with it a notebook, knows nothing of them.
+
+    Parameters
+    ----------
+    rows, columns : int
+    size : (float, float)
+        Inches.
+    **shared
+        `sharex`, `sharey` and `squeeze` of :meth:`matplotlib.figure.Figure.subplots`.
+    """
+    figure = Figure(figsize=size, layout="constrained")
+    return figure, figure.subplots(rows, columns, **shared)
 
 
 def series_colours(results):

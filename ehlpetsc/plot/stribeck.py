@@ -7,12 +7,11 @@ import tomllib
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside
+from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
 from ehlpetsc.results.series_index import series_values
 
 SPEED = "motion.entrainment_speed"
@@ -144,7 +143,7 @@ def stribeck_points(results):
 def draw_stribeck(results, _options):
     """Figure of friction, share on the solids and lambda ratio against the speed."""
     points, short = stribeck_points(results)
-    figure, axes = plt.subplots(3, 1, figsize=SIZE, sharex=True, layout="constrained")
+    figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
     for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
         found = [point.figures[name] for point in points]

@@ -19,22 +19,13 @@ def draw(rows, path, title):
         PNG file.
     title : str
     """
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    from matplotlib.figure import Figure
 
     measures = [
         m for m in ("h_min", "h_c", "p_max", "film", "contact", "damage") if any(r[m] > 0.0 for r in rows[1:])
     ]
-    figure, axes = plt.subplots(
-        2,
-        len(measures),
-        figsize=(3.4 * len(measures), 6.6),
-        sharey="col",
-        squeeze=False,
-        layout="constrained",
-    )
+    figure = Figure(figsize=(3.4 * len(measures), 6.6), layout="constrained")
+    axes = figure.subplots(2, len(measures), sharey="col", squeeze=False)
     figure.suptitle(title)
     for column, measure in enumerate(measures):
         for axis, cost in zip(axes[:, column], ("wall_s", "newton"), strict=True):
@@ -48,7 +39,6 @@ def draw(rows, path, title):
     figure.get_layout_engine().set(rect=(0.0, 0.1, 1.0, 0.9))
     figure.legend(handles, labels, loc="lower center", ncols=(len(labels) + 1) // 2, frameon=False)
     figure.savefig(path, dpi=110)
-    plt.close(figure)
 
 
 def _panel(axis, rows, measure, cost):

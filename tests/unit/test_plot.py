@@ -1,5 +1,8 @@
 """Pictures: each kind is drawn, the right instant is chosen, and faults are told."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from made_results import P0, A, make_result, with_solids
@@ -52,6 +55,22 @@ def test_picture_is_drawn_beside_the_result(tmp_path, result, options, name, cap
     with image.open(tmp_path / name) as picture:
         assert min(picture.size) > 600
     assert colours_in(tmp_path / name) > 30
+
+
+def test_drawing_leaves_matplotlib_as_it_was(tmp_path, result):
+    """A notebook that draws with these modules keeps its backend, its settings and its open figures."""
+    code = (
+        "import matplotlib, sys\n"
+        "matplotlib.use('svg'); matplotlib.rcParams['font.size'] = 7; before = dict(matplotlib.rcParams)\n"
+        "from matplotlib import pyplot; pyplot.figure()\n"
+        "import ehlpetsc.post.pictures.gallery, ehlpetsc.study.picture, ehlpetsc.plot.movies\n"
+        "from ehlpetsc.plot.__main__ import main\n"
+        "assert main(sys.argv[1:]) == 0 and pyplot.get_fignums() == [1]\n"
+        "assert dict(matplotlib.rcParams) == before, 'settings'\n"
+    )
+    command = [sys.executable, "-c", code, str(result), "-o", str(tmp_path / "out.png")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
 
 
 def test_svg_holds_text_and_lines(tmp_path, result):
@@ -126,14 +145,13 @@ def test_series_is_sorted_and_labelled_by_its_swept_value(series):
 
 
 def test_polynomial_and_mean_follow_the_counts(tmp_path, result):
-    figure, axes = figures.plt.subplots(2)
+    _, axes = figures.two_panels()
     with read_result(result) as r:
         (mean,) = over_time.contact_rates(axes, [r], ["k"])
         inside = np.abs(r.x) <= A
         assert mean == pytest.approx(r.contact_rate()[inside].mean())
         fit = axes[1].lines[0].get_ydata()
         assert np.mean(fit) == pytest.approx(mean, rel=0.02)
-    figures.plt.close(figure)
 
 
 def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
@@ -176,7 +194,7 @@ def test_what_the_solids_carry_is_drawn_under_the_total(tmp_path):
     path = with_solids(make_result(tmp_path / "mixed.h5", viscosity=0.002))
     assert draw(path, "--step", 12) == 0
     with read_result(path) as r:
-        figure, axes = figures.two_panels()
+        _, axes = figures.two_panels()
         drawing.pressure_and_film(axes, [r], [12], ["k"], (-1.2, 1.2))
         drawing.frame_legend(axes, r, 12, "k")
         (solids,) = axes[0].collections
@@ -187,7 +205,6 @@ def test_what_the_solids_carry_is_drawn_under_the_total(tmp_path):
             "on the solids",
             "Hertz",
         ]
-        figures.plt.close(figure)
 
 
 def test_legends_stand_beside_the_axes(tmp_path, series, result):
@@ -199,7 +216,6 @@ def test_legends_stand_beside_the_axes(tmp_path, series, result):
         for axes in figure.axes:
             if axes.get_legend():
                 assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
-        figures.plt.close(figure)
 
 
 def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
@@ -213,7 +229,6 @@ def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
     assert [line.get_ydata().max() for line in dashed] == pytest.approx([1.0, 2.0], rel=1e-3)
     told = [text.get_text() for text in upper.get_legend().texts]
     assert told[0].startswith("case 1\n") and told[1].endswith("p0 = 2 GPa")
-    figures.plt.close(figure)
     assert draw(*paths) == 0
 
 
@@ -222,7 +237,6 @@ def test_panels_of_a_map_share_their_colours(tmp_path, series):
     figure = figures.draw_map(results, plot._parser().parse_args(["x", "--map"]))
     limits = {axes.collections[0].get_clim() for axes in figure.axes[:3]}
     assert len(limits) == 1 and len(figure.axes) == 4  # three panels, one colour bar
-    figures.plt.close(figure)
 
 
 @pytest.mark.parametrize("ending", ["mp4", "webm"])

@@ -18,7 +18,7 @@ from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 
-matplotlib.rcParams.update({"svg.hashsalt": "ehlpetsc", "font.size": 9})
+STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # without the salt, no two SVG files would be the same
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
 TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
@@ -36,6 +36,7 @@ def _save(figure, stem):
     return names
 
 
+@matplotlib.rc_context(STYLE)
 def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
     """Draw everything there is to draw; returns the names of the files.
 
