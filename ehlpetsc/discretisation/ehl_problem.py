@@ -19,7 +19,7 @@ import numpy as np
 from ehlpetsc.discretisation.contact_model import contact_model
 from ehlpetsc.discretisation.deflection import Deflection
 from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, flow_product
-from ehlpetsc.discretisation.interleaving import both_of, firsts, seconds
+from ehlpetsc.discretisation.interleaving import both_of, count, firsts, seconds
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 
 
@@ -126,7 +126,7 @@ class EHLProblem:
         Evaluation
         """
         relations = self.model.relations(q, w)
-        residual = np.empty(2 * self.local + self.load_is_local)
+        residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
         separation = relations.film - 0.5 * self.x**2 - inputs.phi
         deflection = self.deflection.rows(separation, relations.pressure, h00)
@@ -156,7 +156,7 @@ class EHLProblem:
             Interleaved, shape of the local part of the vector.
         """
         dp, dh = relations.p_q * v_q + relations.p_w * v_w, relations.h_w * v_w
-        rows = np.empty(2 * self.local + self.load_is_local)
+        rows = np.empty(count(self.local) + self.load_is_local)
         firsts(rows, self.local)[:] = self.deflection.rows(dh, dp, v_h00)
         flow_product(flow, v_q, dh, self.first, seconds(rows, self.local))
         if self.load_is_local:
@@ -165,11 +165,11 @@ class EHLProblem:
 
     def _dry_columns(self):
         own = both_of(np.arange(self.first, self.last, dtype=np.int32))
-        columns = np.full((self.local, 2 * STENCIL), -1, dtype=np.int32)
+        columns = np.full((self.local, count(STENCIL)), -1, dtype=np.int32)
         columns[:, OWN : OWN + 2] = own
         return columns
 
     def _dry_flow(self):
-        flow = np.zeros((self.local, 2 * STENCIL))
+        flow = np.zeros((self.local, count(STENCIL)))
         flow[:, OWN] = 1.0
         return flow

@@ -1,4 +1,7 @@
-"""Where the unknowns of a node stand in a vector: (q_0, w_0, q_1, w_1, ..., h00), rows likewise."""
+"""Where the unknowns of a node stand in a vector: (q_0, w_0, q_1, w_1, ..., h00), rows likewise.
+
+Rows of coefficients over some nodes hold them in the same order, without h00.
+"""
 
 import numpy as np
 
@@ -11,6 +14,16 @@ def first_of(nodes):
 def second_of(nodes):
     """Places of w, or of Reynolds' rows."""
     return 2 * nodes + 1
+
+
+def count(nodes):
+    """Unknowns of so many nodes, h00 left out: where that stands."""
+    return 2 * nodes
+
+
+def nodes_of_seconds(places):
+    """Nodes whose w, or Reynolds row, stands in one of the places."""
+    return places[places % 2 == 1] // 2
 
 
 def firsts(vector, nodes):
@@ -26,6 +39,16 @@ def seconds(vector, nodes):
 def pairs(vector, nodes):
     """View of both, shape (nodes, 2)."""
     return vector[: 2 * nodes].reshape(nodes, 2)
+
+
+def firsts_of_rows(rows):
+    """View of what each row has under q, shape (rows, nodes)."""
+    return rows[:, ::2]
+
+
+def seconds_of_rows(rows):
+    """View of what each row has under w, or under the film, shape (rows, nodes)."""
+    return rows[:, 1::2]
 
 
 def both_of(nodes):

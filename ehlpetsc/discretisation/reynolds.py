@@ -16,7 +16,7 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact_model import full_of_oil
 from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, M, balance, extrapolated, nodal
-from ehlpetsc.discretisation.interleaving import both_of
+from ehlpetsc.discretisation.interleaving import both_of, count
 from ehlpetsc.physics import rheology
 
 
@@ -75,7 +75,7 @@ class Reynolds:
         node = rows[:, None] + np.arange(-2, 2)
         both = both_of(node)
         both[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
-        return both.reshape(len(rows), 2 * STENCIL).astype(np.int32)
+        return both.reshape(len(rows), count(STENCIL)).astype(np.int32)
 
     def content(self, q, h, fluid):
         r"""Film content :math:`\rho h(1-\theta)` and its derivatives with respect to q and h."""
@@ -128,7 +128,7 @@ class Reynolds:
         if history is not None:
             then = history.m[rows], history.carried[rows], history.k, self.dx / history.dt
         imbalance = np.empty(self.local.stop - self.local.start)
-        derivatives = np.zeros((len(imbalance), 2 * STENCIL))
+        derivatives = np.zeros((len(imbalance), count(STENCIL)))
         inner = slice(int(self.has_inlet), None)
         balance(at, first, law, *then, imbalance[inner], derivatives[inner])
         if self.has_outlet:

@@ -8,7 +8,16 @@ default preconditioner takes what it needs from that operator, by ``pc.getOperat
 import numpy as np
 
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
-from ehlpetsc.discretisation.interleaving import first_of, firsts, second_of, seconds
+from ehlpetsc.discretisation.finite_volumes import STENCIL
+from ehlpetsc.discretisation.interleaving import (
+    count,
+    first_of,
+    firsts,
+    nodes_of_seconds,
+    second_of,
+    seconds,
+    seconds_of_rows,
+)
 from ehlpetsc.nonlinear import events
 
 LEAK = 1e-3  # of dp/dq at cavitated nodes, in preconditioners alone: a pivot that is never zero
@@ -40,7 +49,7 @@ class JacobianOperator:
 
     def __init__(self, problem, gather, factors):
         self.problem, self.gather, self.factors = problem, gather, factors
-        self.kept = np.arange(2 * problem.local)
+        self.kept = np.arange(count(problem.local))
         self.dropped = np.arange(0)
 
     def linearise(self, evaluation):
@@ -84,7 +93,7 @@ class RestrictedOperator:
         self.places = rows.indices - mat.getOwnershipRange()[0]
         self.kept = self.places[: len(self.places) - self.problem.load_is_local]
         seconds_kept = np.zeros(local, dtype=bool)
-        seconds_kept[self.kept[self.kept % 2 == 1] // 2] = True
+        seconds_kept[nodes_of_seconds(self.kept)] = True
         self.dropped = np.flatnonzero(~seconds_kept)
         self.full, self.product = mat.createVecs()
 
@@ -133,7 +142,7 @@ class NearFieldMatrix:
         by_w = np.where(self.there, second_of(self.nodes), -1)
         approach = np.full((p.local, 1), -1)
         for end in p.deflection.ends:
-            approach[end - p.first] = 2 * n
+            approach[end - p.first] = count(n)
         self.columns = np.hstack([by_q, by_w, approach]).astype(np.int32)
 
     def _pattern(self):
@@ -141,7 +150,7 @@ class NearFieldMatrix:
         for deflection, flow in zip(self.columns, p.flow_columns, strict=True):
             rows += [deflection[deflection >= 0], flow[flow >= 0]]
         if p.load_is_local:
-            rows.append(np.arange(2 * p.n + 1))
+            rows.append(np.arange(count(p.n) + 1))
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
     def fill(self, relations, flow):
@@ -162,16 +171,17 @@ class NearFieldMatrix:
         set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
         set_rows(self.matrix, second_of(nodes), p.flow_columns, self._by_unknowns(relations, flow))
         if p.load_is_local:
-            load = np.zeros(2 * p.n)
+            load = np.zeros(count(p.n))
             firsts(load, p.n)[:], seconds(load, p.n)[:] = p.dx * relations.p_q, p.dx * relations.p_w
-            self.matrix.setValues([2 * p.n], np.arange(2 * p.n, dtype=np.int32), load)
+            self.matrix.setValues([count(p.n)], np.arange(count(p.n), dtype=np.int32), load)
         self.matrix.assemble()
 
     def _by_unknowns(self, relations, flow):
         """Reynolds' rows by q and w."""
-        values = flow.copy()
-        node = np.clip(self.problem.flow_columns[:, 1::2] // 2, 0, self.problem.n - 1)
-        values[:, 1::2] *= relations.h_w[node]
+        p, values = self.problem, flow.copy()
+        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
+        by_film = seconds_of_rows(values)
+        by_film *= relations.h_w[np.clip(nodes, 0, p.n - 1)]
         return values
 
 

@@ -15,7 +15,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import flow_rounding
-from ehlpetsc.discretisation.interleaving import firsts, pairs, seconds
+from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
 from ehlpetsc.nonlinear.jacobian_operator import JacobianOperator, NearFieldMatrix
@@ -54,7 +54,8 @@ class NewtonSolver:
         self.n, self.local, self.first, self.comm = n, last - first, first, comm
         self.problem = EHLProblem(case, scales, film_scale, first, last)
         self.model = self.problem.model
-        self.x = PETSc.Vec().createMPI((2 * self.local + self.problem.load_is_local, 2 * n + 1), comm=comm)
+        sizes = (count(self.local) + self.problem.load_is_local, count(n) + 1)
+        self.x = PETSc.Vec().createMPI(sizes, comm=comm)
         self.f = self.x.duplicate()
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self.near_field = case.mesh.near_field
@@ -123,7 +124,7 @@ class NewtonSolver:
         return self._parts(self.all.array_r)
 
     def _parts(self, whole):
-        return firsts(whole, self.n).copy(), seconds(whole, self.n).copy(), whole[2 * self.n]
+        return firsts(whole, self.n).copy(), seconds(whole, self.n).copy(), whole[count(self.n)]
 
     def scatter(self, q, w, h00):
         """Fill the local part of the unknowns from whole arrays."""

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+
 
 class BandEntries(NamedTuple):
     """Derivatives of a state in the band's unknowns.
@@ -42,9 +44,9 @@ def band_entries(model, relations, flow, stencil):
     touching = relations.touching
     if touching.any():
         flow, solid = flow.copy(), touching[stencil]
-        by_q = flow[:, ::2]
-        flow[:, 1::2] = np.where(solid, by_q, flow[:, 1::2])
-        flow[:, ::2] = np.where(solid, 0.0, by_q)
+        by_first, by_second = firsts_of_rows(flow), seconds_of_rows(flow)
+        by_second[:] = np.where(solid, by_first, by_second)
+        by_first[:] = np.where(solid, 0.0, by_first)
     return BandEntries(np.where(touching, 1.0, relations.p_q), relations.h_w, flow)
 
 
