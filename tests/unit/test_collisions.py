@@ -192,9 +192,8 @@ def test_a_peak_that_is_not_between_is_no_entrapment(series):
 def drawn(monkeypatch):
     """Figures that a command would have written to files."""
     figures = []
-    monkeypatch.setattr(plot.plt.Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
-    yield figures
-    plot.plt.close("all")
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    return figures
 
 
 def markers(axis, shape):
