@@ -1,10 +1,12 @@
 """The lines of the table of extremes: what a user may ask for at the edge of the ranges."""
 
 import math
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
 from ehlpetsc.physics.film_formulas import moes_central_film
+from ehlpetsc.physics.scales import hertz_line, moes_groups, reduced_modulus
 
 PROFILES = Path(__file__).parents[2] / "cases" / "profiles"
 FLOODED = 20.0  # central films in the undeformed gap at the inlet: further out the film does not feel it
@@ -37,8 +39,11 @@ points_per_half_width = 100
 BARUS = TABLE_1.replace('law = "seed"', 'law = "barus"')
 ROELANDS = TABLE_1.replace('law = "seed"', 'law = "roelands"\nroelands_z = 0.68\nroelands_pressure = 0.196e9')
 MOES = BARUS.replace("eyring_stress = 10e6", "").replace('"dowson-higginson"', '"incompressible"')
-MODULUS, RADIUS, SPEED = 227.4725e9, 0.0191, 5.0  # E' [Pa], R [m], u [m/s] of TABLE_1
-LOAD = 527e3
+
+_TABLE = tomllib.loads(TABLE_1)
+RADIUS, LOAD = (_TABLE["contact"][key] for key in ("radius", "load"))  # R [m], w' [N/m]
+SPEED, POISSON = _TABLE["motion"]["entrainment_speed"], _TABLE["contact"]["poisson_ratio"]
+MODULUS = reduced_modulus(_TABLE["contact"]["youngs_modulus"], POISSON)
 
 
 @dataclass(frozen=True)
@@ -74,8 +79,7 @@ def load_of(pressure):
 
 def inlet_of(load, viscosity, speed, alpha=11.1e-9, modulus=MODULUS):
     """Inlet [half widths] that floods the contact: `FLOODED` central films of undeformed gap."""
-    two_u = 2.0 * viscosity * speed / (modulus * RADIUS)
-    m, ell = load / (modulus * RADIUS * math.sqrt(two_u)), alpha * modulus * two_u**0.25
+    m, ell = moes_groups(viscosity, speed, alpha, load, RADIUS, modulus)
     film = math.pi / (8.0 * m) * moes_central_film(m, ell)  # in a^2/R
     return -max(2.5, math.ceil(10.0 * math.sqrt(1.0 + 2.0 * FLOODED * film)) / 10.0)
 
@@ -130,7 +134,7 @@ def _moes():
             )
             if m >= 500.0:  # the inlet sweep is the narrower the heavier the load
                 overrides += ("mesh.points_per_half_width=400",)
-            p0 = math.sqrt(load * MODULUS / (2.0 * math.pi * RADIUS)) * 1e-9
+            p0 = 1e-9 * hertz_line(load, RADIUS, MODULUS)[1]
             lines.append(
                 Line(
                     "Moes",
@@ -161,7 +165,10 @@ def _materials():
         first = "[3e9, 207e9]" if modulus == 3 else f"[{modulus}e9, {modulus}e9]"
         overrides = [f"contact.youngs_modulus={first}"]
         if modulus == 3:  # a polymer carries a tenth of the load
-            overrides += ["contact.load=20e3", f"mesh.inlet={inlet_of(20e3, 0.005, SPEED, modulus=6.5e9)}"]
+            overrides += [
+                "contact.load=20e3",
+                f"mesh.inlet={inlet_of(20e3, 0.005, SPEED, modulus=reduced_modulus((3e9, 207e9), POISSON))}",
+            ]
         lines.append(
             Line(
                 "materials",

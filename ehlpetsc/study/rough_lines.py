@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
-from ehlpetsc.study.lines import PROFILES, TABLE_1, Line
+from ehlpetsc.physics.scales import hertz_line
+from ehlpetsc.study.lines import LOAD, MODULUS, PROFILES, RADIUS, TABLE_1, Line
 
 CORRELATION = 25e-6  # m
 SHORT_DOMAIN = ("mesh.inlet=-1.5", "mesh.outlet=1.3", "output.every=1000000", 'output.fields=["pressure"]')
-A = 0.335682e-3  # half width of TABLE_1 [m]
+A = hertz_line(LOAD, RADIUS, MODULUS)[0]  # half width of TABLE_1 [m]
 
 
 def ground(ra, seed=1, correlation=CORRELATION):
@@ -165,14 +166,14 @@ def _starts():
     thick = rough("start", "restart of eta0 0.002 at 0.01", "fluid.viscosity=0.01", **both)
     # the same nodes [m] under 1.5625 times the load: a is 1.25 times what it was
     heavier = (
-        f"contact.load={1.5625 * 527e3}",
+        f"contact.load={1.5625 * LOAD}",
         "mesh.inlet=-1.2",
         "mesh.outlet=1.04",
         "mesh.points_per_half_width=125",
         "time.travel=2.0",
     )
     lighter = (
-        f"contact.load={527e3 / 1.5625}",
+        f"contact.load={LOAD / 1.5625}",
         "mesh.inlet=-1.875",
         "mesh.outlet=1.625",
         "mesh.points_per_half_width=80",
