@@ -109,7 +109,7 @@ def test_oil_is_trapped_between_two_contacts(tmp_path):
     with read_result(tmp_path / "fig5.h5") as result:
         best = entrapment.find(result)[0]
         assert best.excess > 2.0  # over the higher of both contacts
-        assert result.x[best.peak] / result.attrs["a"] == pytest.approx(-0.9625, abs=0.003)
+        assert result.x[best.peak] / result.attrs["a"] == pytest.approx(-0.9825, abs=0.003)
         film = result.frame("film_thickness", best.frame)[best.left : best.right + 1]
         assert film[0] == film[-1] == 0.0 and film[1:-1].min() > 0.0
         assert len(entrapment.instants(result, best)) == 4
