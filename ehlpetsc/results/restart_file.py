@@ -1,6 +1,5 @@
 """Restart files: the state of a run, written so that a half-written one never replaces a whole one."""
 
-import contextlib
 import io
 import os
 from pathlib import Path
@@ -9,6 +8,7 @@ import h5py
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import FORMAT_VERSION, open_for_reading
+from ehlpetsc.results.whole_file import write_whole
 
 
 def plain_reason(error):
@@ -34,7 +34,6 @@ def save_restart(path, arrays, attrs):
         It could not be written; an older file of the name is as it was.
     """
     path = Path(path)
-    beside = path.with_name(path.name + ".tmp")
     image = io.BytesIO()  # HDF5 does not end cleanly on a full disk, a plain write does
     with h5py.File(image, "w") as file:
         file.attrs["restart_version"] = FORMAT_VERSION
@@ -43,14 +42,8 @@ def save_restart(path, arrays, attrs):
         for name, array in arrays.items():
             file[name] = array
     try:
-        with open(beside, "wb") as raw:
-            raw.write(image.getbuffer())
-            raw.flush()
-            os.fsync(raw.fileno())
-        os.replace(beside, path)
+        write_whole(path, image.getbuffer())
     except OSError as error:
-        with contextlib.suppress(OSError):
-            beside.unlink()
         raise OutputError(f"{path}: restart file not written, {plain_reason(error)}") from error
 
 

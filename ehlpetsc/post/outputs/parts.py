@@ -4,37 +4,14 @@ import contextlib
 import fcntl
 import io
 import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.errors import PostError
+from ehlpetsc.results.whole_file import write_whole
 
 MARK = "mark"
-
-
-def write_whole(path, content):
-    """Write bytes beside `path`, force them to the disk and rename; OSError leaves nothing behind."""
-    path = Path(path)
-    descriptor, beside = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
-    try:
-        with open(descriptor, "wb") as file:
-            os.fchmod(file.fileno(), 0o666 & ~_umask())
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(beside, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(beside)
-        raise
-
-
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 class Parts:

@@ -10,7 +10,7 @@ import h5py
 
 from ehlpetsc import __version__
 from ehlpetsc.errors import PostError
-from ehlpetsc.post.outputs.parts import write_whole
+from ehlpetsc.results.whole_file import write_whole
 
 FORMAT_VERSION = 1
 DESCRIPTIONS = {

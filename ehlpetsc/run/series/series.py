@@ -6,7 +6,6 @@ already is not computed again: a whole file of the same case text is kept, a res
 """
 
 import json
-import os
 import sys
 import time as clock
 from pathlib import Path
@@ -17,6 +16,7 @@ from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.totals import Totals
+from ehlpetsc.results.whole_file import write_whole
 from ehlpetsc.run.describe import warnings
 from ehlpetsc.run.progress import summary_line
 from ehlpetsc.run.recorder import on_root
@@ -100,7 +100,7 @@ class Series:
             number = self.dealer.next(report, self.stop(self.dealer.group))
             if number is None:
                 break
-            report = (number, *self._run(self.members[number]))
+            report = (number, *self._run_member(self.members[number]))
         try:
             return self.dealer.finish(lambda: self._conclude(clock.monotonic() - begun))
         finally:
@@ -162,10 +162,8 @@ class Series:
             "members": entries,
             "case": self.case.text,
         }
-        beside = self.index.with_name(self.index.name + ".tmp")
         try:
-            beside.write_text(json.dumps(index, indent=1, default=str) + "\n")
-            os.replace(beside, self.index)
+            write_whole(self.index, (json.dumps(index, indent=1, default=str) + "\n").encode())
         except OSError as error:
             raise OutputError(f"{self.index}: index file not written, {error.strerror}") from error
 
