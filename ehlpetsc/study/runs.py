@@ -89,7 +89,8 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
     Outcome
     """
     output = Path(folder) / f"{name}.h5"
-    output.unlink(missing_ok=True)
+    for left in (output, output.with_suffix(".restart.h5")):  # of an earlier run of that name
+        left.unlink(missing_ok=True)
     begun = clock.monotonic()
     with open(output.with_suffix(".txt"), "w+") as words:
         status = _wait(command(case, overrides, options, ranks, output), words, limit)
