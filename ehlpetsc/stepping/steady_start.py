@@ -58,7 +58,11 @@ def hertz_start(problem, film, phi, thick=1.3):
     p *= 0.5 * np.pi / (problem.dx * p.sum())
     h = problem.film(p, 0.0, phi)
     if problem.dry:
-        return p, np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0)), -h[np.argmax(p)]
+        gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
+        begin = (
+            (np.zeros_like(p), problem.model.second_unknown(gap, p)) if problem.model.is_mixed else (p, gap)
+        )
+        return *begin, -h[np.argmax(p)]
     h00 = thick * film - h.min()
     h += h00
     behind = (x > 1.0) & (p < AMBIENT)
@@ -109,7 +113,7 @@ def steady(solver, film, inputs):
     problem, oil = solver.problem, inputs.inlet_film
     if oil is None:
         # the set of dry nodes may have all of them to go
-        max_it = problem.n if problem.dry else None
+        max_it = problem.n if problem.dry and solver.bounded else None
         return Continuation(solver, inputs, max_it).solve(hertz_start(problem, film, inputs.phi))
     flooded = replace(inputs, inlet_film=None)
     q, w, h00, iterations = Continuation(solver, flooded).solve(hertz_start(problem, film, inputs.phi))
@@ -151,7 +155,7 @@ class Continuation:
         return self._grown(state, 0.0, lambda share: (1.0, share)) if rough else state
 
     def _easier(self, begin):
-        share = 0.5
+        share = 0.5 if self.inputs.fluid else 0.0  # without oil there is nothing to make easier
         while share >= LEAST_SHARE:
             state = self._try(begin, share, 0.0)
             if state is not None:
