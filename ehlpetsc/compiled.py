@@ -1,22 +1,32 @@
-"""numba's compiler as the solver uses it: loops over nodes, kept on disk between runs.
+"""numba's compiler as the package uses it: loops over nodes and samples, kept on disk between runs.
 
-(ehlpetsc.post has its own: it stands alone, and does without numba.)
+The solver needs numba. Post-processing does without it: the same functions then run as plain Python, slowly,
+to the same bit.
 """
 
 import os
 
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output
-from numba import njit
+try:
+    import numba
+
+    COMPILED = True
+except ImportError:
+    COMPILED = False
 
 
 def compiled(function=None, **options):
     """Compile `function` at its first call, once for all runs where the outcome can be kept.
 
-    Division by zero gives infinity as in numpy. Other options are numba's.
+    Division by zero gives infinity as in numpy; ``error_model="python"`` makes it an error as in Python.
+    Other options are numba's.
     """
     if function is None:
         return lambda function: compiled(function, **options)
+    if not COMPILED:
+        return function
+    options = {"cache": True, "error_model": "numpy"} | options
     try:
-        return njit(cache=True, error_model="numpy", **options)(function)
+        return numba.njit(**options)(function)
     except RuntimeError:  # neither the package's directory nor the user's can be written to
-        return njit(error_model="numpy", **options)(function)
+        return numba.njit(**(options | {"cache": False}))(function)

@@ -8,6 +8,7 @@ import time
 from functools import partial
 from pathlib import Path
 
+from ehlpetsc.compiled import COMPILED
 from ehlpetsc.errors import ExitStatus, PostError
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
@@ -15,7 +16,6 @@ from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS
 from ehlpetsc.post.inputs.loads import SURFACES
-from ehlpetsc.post.jit import COMPILED
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.outputs.result_file import check_output
 from ehlpetsc.post.run import WITHIN, Job, run

@@ -36,7 +36,7 @@ LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run"},
     "matplotlib": {"plot", "post", "study", "api"},
-    "numba": {"compiled", "post"},
+    "numba": {"compiled"},
 }
 
 

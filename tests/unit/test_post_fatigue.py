@@ -196,7 +196,7 @@ import sys
 {block}
 import numpy as np
 from ehlpetsc.post import Material, damage, rainflow
-from ehlpetsc.post.jit import COMPILED
+from ehlpetsc.compiled import COMPILED
 assert COMPILED is {compiled}
 parts = np.cumsum(np.random.default_rng(5).normal(scale=2e8, size=(3, 20, 300)), axis=-1)
 neuber = dict(ranges="window", mean_stress="morrow", strain="neuber")

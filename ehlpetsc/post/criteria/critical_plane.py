@@ -12,6 +12,7 @@ from math import exp, log, pi
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.criteria.planes import (
     STEP,
     normal_weights,
@@ -23,7 +24,6 @@ from ehlpetsc.post.criteria.turning import turning_samples
 from ehlpetsc.post.fatigue.cycles import find_cycles
 from ehlpetsc.post.fatigue.life_table import interpolate
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of
-from ehlpetsc.post.jit import njit
 
 SHEAR, FATEMI_SOCIE, SWT = 0, 1, 2
 STARTS = 2  # planes of the coarse set that are improved
@@ -31,7 +31,7 @@ FINEST = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress r
 NEGLIGIBLE = 0.2  # of the widest range: cycles left out in the search, below 1e-7 of its damage each
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _sum(weights, scale, offset, stress, size, out):
     for k in range(size):
         out[k] = offset + scale * (
@@ -41,7 +41,7 @@ def _sum(weights, scale, offset, stress, size, out):
         )
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
     """Fill the counted series (as an equivalent stress) and, where the criterion needs it, normal stress."""
     theta, phi, psi = angles
@@ -54,7 +54,7 @@ def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
         _sum(normal_weights(theta, phi, nu), 1.0, offset, stress, size, normal)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
     """1/N of a cycle of a given range and largest normal stress."""
     if kind == SWT and normal <= 0 or width <= 0:
@@ -67,7 +67,7 @@ def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
     return exp(min(interpolate(parameter, lives), 700.0))
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def plane_damage(kind, angles, stress, size, law, share, work):
     """Damage on one plane; cycles below `share` of the widest range are left out."""
     nu, residual, closed, sensitivity, curve, lives = law
@@ -91,7 +91,7 @@ def plane_damage(kind, angles, stress, size, law, share, work):
     return total
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _coarse(kind, grid, stress, size, law, work, bounds):
     """The STARTS best planes of the grid: angles (STARTS, 3) and damage, in falling order."""
     nu, residual, _, sensitivity, curve, lives = law
@@ -116,7 +116,7 @@ def _coarse(kind, grid, stress, size, law, work, bounds):
     return angles, best
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _improve(kind, angles, damage, stress, size, law, work):
     """Pattern search over the angles, from half the coarse step down to FINEST."""
     step = STEP * pi / 180 / 2
@@ -137,7 +137,7 @@ def _improve(kind, angles, damage, stress, size, law, work):
     return damage
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out):
     """out (3,) = damage on the worst plane of stress (3, :size), and theta and phi of its normal in radians.
 
@@ -154,7 +154,7 @@ def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out)
             out[0], out[1], out[2] = found, starts[k, 0], starts[k, 1]
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def reduced(stress, size, nu, points, places, few):
     """Fill `points` of loops.equivalent_points and `few` (3, :returned) with the samples that turn."""
     equivalent_points(stress[:, :size], nu, points)

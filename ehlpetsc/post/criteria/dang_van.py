@@ -19,13 +19,13 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 
 ROUNDS = 200
 INSIDE = 1e-9  # a point outside by this share of the radius is inside
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _centre(points, corners, count):
     """Centre of the smallest sphere through 1 to 4 points; False where they span fewer axes."""
     centre = points[:, corners[0]].copy()
@@ -59,7 +59,7 @@ def _centre(points, corners, count):
     return True, centre
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _reach(points, corners, count, centre):
     reach = 0.0
     for k in range(count):
@@ -67,7 +67,7 @@ def _reach(points, corners, count, centre):
     return sqrt(reach)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _smallest_of_few(points, few, count):
     """Smallest ball about up to 5 points: that of a part of them which holds the others; and this part."""
     best, best_centre = np.inf, points[:, few[0]].copy()
@@ -91,7 +91,7 @@ def _smallest_of_few(points, few, count):
     return best, best_centre, kept, kept_count
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def smallest_ball(points):
     """Centre (3,) and radius of the smallest ball about points (3, n).
 
@@ -120,7 +120,7 @@ def smallest_ball(points):
     return centre, radius
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def utilisation(stress, points, nu, residual, slope, limit):
     """U of a history (3, samples) with its `points` of :mod:`ehlpetsc.post.fatigue.loops`; `slope` is a."""
     centre, _ = smallest_ball(points)

@@ -17,17 +17,17 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 
 STEP = 15.0  # degrees between the planes and directions tried first
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _normal(theta, phi):
     return cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def shear_weights(theta, phi, psi, nu):
     """Weights (3,) of sx, sz, txz in the shear stress on a plane along a direction in it."""
     x, y, z = _normal(theta, phi)
@@ -38,21 +38,21 @@ def shear_weights(theta, phi, psi, nu):
     return x * tx + nu * y * ty, z * tz + nu * y * ty, x * tz + z * tx
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def normal_weights(theta, phi, nu):
     """Weights (3,) of sx, sz, txz in the normal stress on a plane."""
     x, y, z = _normal(theta, phi)
     return x * x + nu * y * y, z * z + nu * y * y, 2 * x * z
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def strain_weights(theta, phi, nu):
     """Weights (3,) of sx, sz, txz in E times the normal strain: in uniaxial stress the stress itself."""
     a, b, c = normal_weights(theta, phi, nu)
     return (1 + nu) * (a - nu), (1 + nu) * (b - nu), (1 + nu) * c
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def residual_share(theta, phi):
     """Normal stress on a plane under a unit residual stress along the surface, in x and y."""
     x, y, _ = _normal(theta, phi)

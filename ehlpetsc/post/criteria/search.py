@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, reduced, worst_plane
 from ehlpetsc.post.criteria.dang_van import utilisation
@@ -11,7 +12,6 @@ from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
 from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
 from ehlpetsc.post.fatigue.cycles import RESIDUES, workspace
 from ehlpetsc.post.fatigue.loops import equivalent_points
-from ehlpetsc.post.jit import njit
 
 KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
 
@@ -28,7 +28,7 @@ class PlaneDamage(NamedTuple):
     tilt: np.ndarray
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _worst_planes(kind, grid, stress, lengths, law, work, spare, out):
     points, places, few, bounds = spare
     for p in range(stress.shape[0]):
@@ -37,7 +37,7 @@ def _worst_planes(kind, grid, stress, lengths, law, work, spare, out):
         worst_plane(kind, grid, history, size, few, count, law, work, bounds, out[p])
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _utilisations(stress, lengths, nu, residual, slope, limit, points, out):
     for p in range(stress.shape[0]):
         history = stress[p, :, : lengths[p]]

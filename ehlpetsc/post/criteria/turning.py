@@ -10,7 +10,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 
 TOLERANCE = 0.02  # of the widest of the three axes
 DIRECTIONS = np.array(
@@ -24,7 +24,7 @@ DIRECTIONS = np.array(
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _mark_reversals(points, size, direction, tolerance, kept):
     """Keep the samples from which the path turns back along a direction by more than the tolerance."""
     high = low = direction[0] * points[0, 0] + direction[1] * points[1, 0] + direction[2] * points[2, 0]
@@ -49,7 +49,7 @@ def _mark_reversals(points, size, direction, tolerance, kept):
         kept[bottom] = True
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _off_line(points, first, last):
     """Sample between two that lies farthest off the straight line from the one to the other, and how far."""
     dx, dy = points[0, last] - points[0, first], points[1, last] - points[1, first]
@@ -66,7 +66,7 @@ def _off_line(points, first, last):
     return place, sqrt(largest)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def turning_samples(points, size, places):
     """Write the samples of points (3, :size) that are kept into `places`; return how many."""
     extent = 0.0

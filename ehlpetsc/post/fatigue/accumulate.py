@@ -5,12 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
+from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, widest
 from ehlpetsc.post.fatigue.strain_life import cycle_damage
-from ehlpetsc.post.jit import njit
 
 CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,), "von_mises": (3,)}
 RANGES = ("reversals", "window")
@@ -43,13 +44,15 @@ class Counting(NamedTuple):
         return self
 
 
-@njit(cache=True, nogil=True)
+_squared = compiled(von_mises_squared, error_model="python", nogil=True)
+
+
+@compiled(error_model="python", nogil=True)
 def _squared_range(dsx, dsz, dtxz, nu):
-    dsy = nu * (dsx + dsz)
-    return 0.5 * ((dsx - dsy) ** 2 + (dsy - dsz) ** 2 + (dsz - dsx) ** 2) + 3 * dtxz * dtxz
+    return _squared(dsx, nu * (dsx + dsz), dsz, dtxz)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _sum_cycles(stress, series, nu, n, first, second, weight, options, constants, table, points):
     """Damage, number and largest squared range of n cycles of `series` in one history (3, samples)."""
     closed, window, morrow, rule, residual = options
@@ -77,13 +80,13 @@ def _sum_cycles(stress, series, nu, n, first, second, weight, options, constants
     return total, number, largest
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _fill_von_mises(stress, nu, scalar):
     for k in range(stress.shape[1]):
         scalar[k] = sqrt(_squared_range(float(stress[0, k]), float(stress[1, k]), float(stress[2, k]), nu))
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def damage_of_points(stress, lengths, nu, channels, options, constants, table, work, out):
     """Fill out (points, 3) from stress (points, 3, samples), of which the first lengths[point] count."""
     stack, first, second, weight, scalar, equivalent = work

@@ -8,12 +8,12 @@ histories). As half cycles it gives the counts of ASTM E1049, 5.4.4.
 
 import numpy as np
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 
 RESIDUES = ("closed", "half")
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _close(series, stack, bottom, top, first, second, weight, n):
     """Take off closed cycles: the inner range of the last four reversals is within both its neighbours."""
     while top - bottom >= 4:
@@ -28,7 +28,7 @@ def _close(series, stack, bottom, top, first, second, weight, n):
     return top, n
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _close_residue(series, stack, top, first, second, weight, n):
     """Count the residue stack[:top] as one period of a repeated history."""
     start = 0
@@ -57,7 +57,7 @@ def _close_residue(series, stack, top, first, second, weight, n):
     return n
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def find_cycles(series, closed, stack, first, second, weight):
     """Write each cycle's two reversals and its weight; return how many cycles.
 

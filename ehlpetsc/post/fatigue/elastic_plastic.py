@@ -18,12 +18,12 @@ under an asperity is; ranges are on the doubled curve (Masing).
 
 from math import exp, log
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 
 STRAINS = ("direct", "neuber", "glinka")
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _sum_of_powers(first, first_slope, second, second_slope, wanted):
     """y at which exp(first + first_slope y) + exp(second + second_slope y) = exp(wanted), and d wanted/dy.
 
@@ -45,7 +45,7 @@ def _sum_of_powers(first, first_slope, second, second_slope, wanted):
     return y, slope
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def log_local_range(log_elastic, modulus, hardening, exponent, rule):
     """ln of the elastic-plastic stress range from ln of the elastic one, and its slope d ln/d ln.
 

@@ -8,9 +8,9 @@ from math import exp, log
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.fatigue.elastic_plastic import log_local_range
 from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude, rule_of
-from ehlpetsc.post.jit import njit
 
 ENTRIES = 4096
 LOWEST, HIGHEST = 1e-6, 1e2  # of the fatigue strength
@@ -47,7 +47,7 @@ def life_table(material, strain="direct"):
     return curve_table(2 * log(LOWEST * strength), 2 * log(HIGHEST * strength), log_damage)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def interpolate(logarithm, table):
     """Value of a :func:`curve_table` at a logarithm; straight on beyond its ends."""
     last = table.shape[0] - 2
@@ -64,7 +64,7 @@ def interpolate(logarithm, table):
     return low + t * (rise + (1 - t) * (left * (1 - t) + right * t))
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def look_up(squared, table):
     """1/N at the square of a stress range > 0."""
     return exp(min(interpolate(log(squared), table), 700.0))

@@ -17,12 +17,12 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 
 BLOCK = 16  # points of a path that are bounded together
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def loop_of(series, size, i, j, closed):
     """First sample and number of samples of the loop of the cycle between samples i and j of series[:size].
 
@@ -55,7 +55,7 @@ def loop_of(series, size, i, j, closed):
     return first, count
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def equivalent_points(stress, nu, points):
     """Fill points (3, samples) whose distances are the von Mises ones, from stress (3, samples)."""
     root = sqrt(3.0)
@@ -66,12 +66,12 @@ def equivalent_points(stress, nu, points):
         points[2, k] = root * float(stress[2, k])
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _squared_distance(points, i, x, y, z):
     return (points[0, i] - x) ** 2 + (points[1, i] - y) ** 2 + (points[2, i] - z) ** 2
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _farthest(points, size, first, count, i):
     best, place = -1.0, i
     for k in range(first, first + count):
@@ -81,7 +81,7 @@ def _farthest(points, size, first, count, i):
     return best, place
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _balls(points, places):
     """Middle (x, y, z) and radius of each BLOCK of points[:, places], which follow each other on the path."""
     balls = np.empty((-(-places.size // BLOCK), 4))
@@ -97,7 +97,7 @@ def _balls(points, places):
     return balls
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def widest(points, size, first, count):
     """Largest squared distance between two of points[:, first:first + count], counted round at `size`.
 

@@ -17,8 +17,9 @@ from math import exp, inf, log
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
+from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS, log_local_range
-from ehlpetsc.post.jit import njit
 
 LARGEST_EXPONENT = 700.0  # exp of more overflows
 
@@ -73,7 +74,7 @@ class Material:
 
 def equivalent_range(dsx, dsy, dsz, dtxz):
     """Equivalent stress range from component ranges with their signs, Pa (Holmes et al. 2005, eq. (12))."""
-    return np.sqrt(0.5 * ((dsx - dsy) ** 2 + (dsy - dsz) ** 2 + (dsz - dsx) ** 2) + 3 * np.square(dtxz))
+    return np.sqrt(von_mises_squared(dsx, dsy, dsz, dtxz))
 
 
 def rule_of(strain):
@@ -104,7 +105,7 @@ def local_range(dsv, material, strain):
     return np.exp(logs).reshape(dsv.shape)[()]
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def log_strain_amplitude(log_dsv, modulus, hardening, exponent):
     """ln of half the strain range of eq. (13) from ln of the stress range: no overflow."""
     elastic = log_dsv - log(2 * modulus)
@@ -113,7 +114,7 @@ def log_strain_amplitude(log_dsv, modulus, hardening, exponent):
     return high + log(exp(elastic - high) + exp(plastic - high))
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
     """ln(2N) from ln of the strain amplitude, eq. (14).
 
@@ -138,7 +139,7 @@ def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
     return y
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c):
     """1/N of one cycle, straight from the equations."""
     if dsv <= 0:
@@ -149,7 +150,7 @@ def cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductil
     return 2 * exp(min(-y, LARGEST_EXPONENT))
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _lives(dsv, mean, rule, constants, out):
     modulus, hardening, exponent, strength, ductility, b, c = constants
     for i in range(dsv.size):

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 from scipy import fft
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
@@ -66,7 +66,7 @@ def parity_weights(offset):
     return np.concatenate([left + right, left - right], axis=1)
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@compiled(error_model="python", nogil=True, fastmath={"contract"})
 def _kernel(rows, w, f):
     return (
         w[0] * rows[0, f] + w[1] * rows[1, f] + w[2] * rows[2, f],
@@ -74,7 +74,7 @@ def _kernel(rows, w, f):
     )
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@compiled(error_model="python", nogil=True, fastmath={"contract"})
 def _stress_spectra(tables, w, loads, frame, start, stop, out):
     """Real and imaginary parts of the stress spectra of one frame, frequencies start .. stop-1: out (6, f).
 
@@ -112,7 +112,7 @@ def _stress_spectra(tables, w, loads, frame, start, stop, out):
         out[5, g] = br * pi + bi * pr + cr * qi + ci * qr + dbr * xi + dbi * xr + dcr * yi + dci * yr
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _paired_spectra(tables, weights, loads, out):
     """out (pairs, 3, n): spectra of a frame's stresses plus i times those of the next frame.
 
@@ -140,7 +140,7 @@ def _paired_spectra(tables, weights, loads, out):
                         row[n - f] = complex(xr + yi, yr - xi)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _separate(paired, half, out):
     """Spectra (2, frames, f) of two real functions from that of one plus i times the other, times half."""
     n = paired.shape[1]

@@ -10,13 +10,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.body_stress import BATCH, BodyStress, in_cache, parity_weights
 
 LARGEST_KEPT = 31 << 20  # bytes of a block that malloc keeps: new pages for every batch cost a third more
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _gather(stress, begin, end, first, last, shift, enter, leave, quantum, ring):
     """Move the stresses (pairs, 3, n, 2) of frames begin .. end-1 into histories of points first .. last-1.
 

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from scipy import fft
 
+from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.stresses.kernels import half_hat, hat
 
 UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
@@ -177,4 +178,4 @@ def out_of_plane(sx, sz, poisson_ratio):
 def von_mises(sx, sz, txz, poisson_ratio):
     """Von Mises stress under plane strain, Pa."""
     sy = out_of_plane(sx, sz, poisson_ratio)
-    return np.sqrt(0.5 * ((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) + 3 * txz**2)
+    return np.sqrt(von_mises_squared(sx, sy, sz, txz))

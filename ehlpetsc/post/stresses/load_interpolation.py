@@ -10,7 +10,7 @@ for: ripples of ten nodes are kept to 5e-4 of their amplitude, and a steep flank
 import numpy as np
 from scipy import fft
 
-from ehlpetsc.post.jit import njit
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.kernels import hat, point_kernels
 
@@ -19,7 +19,7 @@ PARTS = 64  # hats an element that stand for the cubics near by: 2e-4 of a one-n
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def _smaller(a, b):
     """The one nearer to zero, or zero if their signs differ."""
     if a * b <= 0.0:
@@ -27,7 +27,7 @@ def _smaller(a, b):
     return a if abs(a) < abs(b) else b
 
 
-@njit(cache=True, nogil=True)
+@compiled(error_model="python", nogil=True)
 def limited_slopes(loads, out):
     """Slopes an element of loads (rows, nodes) into out; zero at the three nodes of each end."""
     nodes = loads.shape[1]
