@@ -82,7 +82,7 @@ done
 began=$SECONDS
 
 first='./run_mpi.sh cases/table1_rough.toml'
-figures='steps=2400 newton=[0-9]+ h_min=0 p_max=6\.88[0-9]*e\+09 contacts=[0-9]+'
+figures='steps=2400 newton=[0-9]+ h_min=0 p_max=6\.65[0-9]*e\+09 contacts=[0-9]+'
 if [ $# != 0 ]; then
     first+=' -ehl_set time.travel=0.5'
     figures='steps=200 newton=[0-9]+ h_min=7\.6[0-9]*e-08 p_max=99[0-9]* contacts=0'
