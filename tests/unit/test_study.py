@@ -142,9 +142,12 @@ def test_labels_of_an_axis_are_few_and_round(low, high, expected):
 
 
 def test_labels_of_an_axis_do_not_overlap(tmp_path, monkeypatch):
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
 
-    monkeypatch.setattr(plt, "close", lambda figure: None)
+    drawn, save = [], Figure.savefig
+    monkeypatch.setattr(
+        Figure, "savefig", lambda figure, *a, **k: drawn.append(figure) or save(figure, *a, **k)
+    )
     names = ("h_min", "h_c", "p_max", "film", "contact", "damage")
     for low, high in ((10.0, 25.0), (10.0, 95.0), (3.0, 2500.0), (31.0, 37.0)):
         rows = [("reference", "", 9 * high), ("", "as it is", low)]
@@ -152,10 +155,10 @@ def test_labels_of_an_axis_do_not_overlap(tmp_path, monkeypatch):
         errors = dict.fromkeys(names, 1e-3) | {"converged": "yes"}
         table = [dict(varied=v, value=k, wall_s=c, newton=100 * c, **errors) for v, k, c in rows]
         picture.draw(table, tmp_path / "p.png", "title")
-        for axes in plt.gcf().axes:
+        assert drawn[-1].axes
+        for axes in drawn[-1].axes:
             left, right = axes.get_xlim()
             shown = [label for label in axes.get_xticklabels() if left <= label.get_position()[0] <= right]
             boxes = [label.get_window_extent() for label in shown]
             assert len(boxes) >= 2
             assert all(one.x1 < other.x0 for one, other in zip(boxes, boxes[1:], strict=False))
-    plt.close("all")
