@@ -3,7 +3,7 @@
 import difflib
 import json
 
-from ehlpetsc.case.schema import item_type
+from ehlpetsc.case.table import item_type
 from ehlpetsc.case.validation import ValidationError
 
 

@@ -9,8 +9,11 @@ from pathlib import Path
 import tomlkit
 
 from ehlpetsc.case.faults import describe, show
+from ehlpetsc.case.post_table import Post
 from ehlpetsc.case.profiles import profile_faults
-from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Post, Series, Surface, Table, Time
+from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
+from ehlpetsc.case.surface_tables import Surface
+from ehlpetsc.case.table import Table
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.errors import CaseError

@@ -51,7 +51,7 @@ def samples(folder, spec):
     ----------
     folder : pathlib.Path
         Of the case file: profile files lie beside it.
-    spec : ehlpetsc.case.schema.SurfaceProfile
+    spec : ehlpetsc.case.surface_tables.SurfaceProfile
 
     Raises
     ------

@@ -12,7 +12,7 @@ def sampled(spec):
 
     Parameters
     ----------
-    spec : case.schema.Ground or case.schema.Wave or case.schema.Bump
+    spec : case.surface_tables.Ground, .Wave or .Bump
 
     Returns
     -------

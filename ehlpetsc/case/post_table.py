@@ -1,0 +1,40 @@
+"""`[post]` of a case file: what the fatigue of both surfaces is worked out with."""
+
+from ehlpetsc.case.table import Table, is_of
+from ehlpetsc.case.validation import Field, confloat, validator
+
+Depth = confloat(ge=0, le=100)
+Residual = confloat(ge=-1e10, le=1e10)
+
+
+class Post(Table):
+    """`[post]`: read by `ehlpetsc.post` alone; checked here so that a slip shows before the run."""
+
+    depths: list[Depth] | None = Field(None, min_items=1, unit="half widths", description="z/a")
+    b: float | None = Field(None, gt=-2, lt=0, description="fatigue strength exponent")
+    c: float | None = Field(None, gt=-5, lt=0, description="fatigue ductility exponent")
+    cyclic_hardening: float | None = Field(None, gt=0, lt=1, description="n'")
+    fatigue_strength: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="sigma_f'")
+    fatigue_ductility: float | None = Field(None, ge=1e-6, le=100, description="eps_f'")
+    cyclic_strength: float | None = Field(
+        None, ge=1e6, le=1e12, unit="Pa", description="K'; left out: sigma_f'/eps_f'^n'"
+    )
+    residual_stress: list[tuple[Depth, Residual]] | None = Field(
+        None, min_items=1, description="[[z/a, Pa], ...] along the surface, depths rising"
+    )
+    normal_sensitivity: float | None = Field(None, ge=0, le=10, description="k of Fatemi and Socie")
+    yield_strength: float | None = Field(
+        None, ge=1e6, le=1e12, unit="Pa", description="of Fatemi and Socie; left out: cyclic, 0.2 %"
+    )
+    torsion_limit: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="of Dang Van")
+    bending_limit: float | None = Field(None, ge=1e6, le=1e12, unit="Pa", description="of Dang Van")
+
+    @validator("residual_stress", pre=True)
+    def _rows_of_numbers(cls, value):
+        rows = [row for row in value if isinstance(row, list)] if isinstance(value, list) else []
+        if not all(is_of(float, item) for row in rows for item in row):
+            raise TypeError("numbers expected")
+        depths = [row[0] for row in rows if row]
+        if sorted(set(depths)) != depths:
+            raise ValueError("depths must rise")
+        return value

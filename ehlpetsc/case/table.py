@@ -1,0 +1,40 @@
+"""What the tables of a case file have in common: frozen, no unknown keys, the types of TOML as they are."""
+
+from ehlpetsc.case.validation import BaseModel, Extra, validator
+
+
+def is_of(kind, value):
+    """TOML's own types: an integer is a number, true and false are not."""
+    if isinstance(value, bool):
+        return kind is bool
+    return isinstance(value, (int, float) if kind is float else kind)
+
+
+class Table(BaseModel):
+    """A table of the case file: frozen, no unknown keys, no silent conversions."""
+
+    class Config:
+        extra = Extra.forbid
+        allow_mutation = False
+        allow_population_by_field_name = False
+
+    @validator("*", pre=True)
+    def _no_conversion(cls, value, field):
+        kind = next((k for k in (bool, int, float, str, dict) if _subclass(item_type(field), k)), None)
+        if value is None or kind is None:  # None: left out
+            return value
+        for item in value if isinstance(value, list) and kind is not dict else [value]:
+            if not is_of(kind, item):
+                raise TypeError(f"{kind.__name__} expected")
+            if kind is float and not -1e308 < item < 1e308:  # nan compares false
+                raise ValueError("not finite")
+        return value
+
+
+def _subclass(type_, kind):
+    return isinstance(type_, type) and issubclass(type_, (BaseModel, dict) if kind is dict else kind)
+
+
+def item_type(field):
+    """Type of a key, of its items where it takes several."""
+    return field.sub_fields[0].type_ if field.sub_fields and field.shape != 1 else field.type_
