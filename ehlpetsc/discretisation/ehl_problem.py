@@ -18,7 +18,7 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact_model import contact_model
 from ehlpetsc.discretisation.deflection import Deflection
-from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, flow_product
+from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, reynolds_product
 from ehlpetsc.discretisation.interleaving import both_of, count, firsts, seconds
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 
@@ -54,13 +54,13 @@ class Evaluation:
     relations : contact_model.Relations
     residual : ndarray
         Local rows, interleaved; shape of the local part of the vector.
-    flow : ndarray, shape (local nodes, 8)
+    reynolds_derivatives : ndarray, shape (local nodes, 8)
         Derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1.
     """
 
     relations: tuple
     residual: np.ndarray
-    flow: np.ndarray
+    reynolds_derivatives: np.ndarray
 
 
 class EHLProblem:
@@ -90,7 +90,7 @@ class EHLProblem:
         self.inlet_film = None
         if not self.dry and case.fluid.inlet_film is not None:
             self.inlet_film = case.fluid.inlet_film / scales.h
-        self.flow_columns = self._dry_columns() if self.dry else self.reynolds.columns
+        self.reynolds_columns = self._dry_columns() if self.dry else self.reynolds.columns
 
     @property
     def load_is_local(self):
@@ -132,20 +132,20 @@ class EHLProblem:
         deflection = self.deflection.rows(separation, relations.pressure, h00)
         firsts(residual, self.local)[:] = deflection
         if self.dry:
-            imbalance, flow = q[self.first : self.last], self._dry_flow()
+            imbalance, derivatives = q[self.first : self.last], self._dry_derivatives()
         else:
-            imbalance, flow = self.reynolds.evaluate(q, relations.film, inputs)
+            imbalance, derivatives = self.reynolds.evaluate(q, relations.film, inputs)
         seconds(residual, self.local)[:] = imbalance
         if self.load_is_local:
             residual[-1] = self.dx * relations.pressure.sum() - 0.5 * np.pi
-        return Evaluation(relations, residual, flow)
+        return Evaluation(relations, residual, derivatives)
 
-    def product(self, relations, flow, v_q, v_w, v_h00):
+    def product(self, relations, derivatives, v_q, v_w, v_h00):
         """The whole Jacobian times a vector, in the local rows.
 
         Parameters
         ----------
-        relations, flow
+        relations, derivatives
             Of the state, as in :class:`Evaluation`.
         v_q, v_w : ndarray, shape (nx,)
         v_h00 : float
@@ -158,7 +158,7 @@ class EHLProblem:
         dp, dh = relations.p_q * v_q + relations.p_w * v_w, relations.h_w * v_w
         rows = np.empty(count(self.local) + self.load_is_local)
         firsts(rows, self.local)[:] = self.deflection.rows(dh, dp, v_h00)
-        flow_product(flow, v_q, dh, self.first, seconds(rows, self.local))
+        reynolds_product(derivatives, v_q, dh, self.first, seconds(rows, self.local))
         if self.load_is_local:
             rows[-1] = self.dx * dp.sum()
         return rows
@@ -169,7 +169,7 @@ class EHLProblem:
         columns[:, OWN : OWN + 2] = own
         return columns
 
-    def _dry_flow(self):
-        flow = np.zeros((self.local, count(STENCIL)))
-        flow[:, OWN] = 1.0
-        return flow
+    def _dry_derivatives(self):
+        derivatives = np.zeros((self.local, count(STENCIL)))
+        derivatives[:, OWN] = 1.0
+        return derivatives

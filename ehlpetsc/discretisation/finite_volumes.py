@@ -82,13 +82,14 @@ def flux_through(at, left, per_length, per_film, eyring, slip):
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
-    flow_l, flow_r = mobilities(film, gradient, at[FLUIDITY, left], at[FLUIDITY, right], eyring, slip)
+    mobility_l, mobility_r = mobilities(film, gradient, at[FLUIDITY, left], at[FLUIDITY, right], eyring, slip)
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
-    mean = 0.5 * (rho_l * flow_l[0] + rho_r * flow_r[0])
-    by_film = half * 0.5 * per_film * (rho_l * flow_l[1] + rho_r * flow_r[1])
-    by_difference = (mean + half * (rho_l * flow_l[2] + rho_r * flow_r[2])) * per_length
-    by_p_l = half * (at[RHO_P, left] * flow_l[0] + at[LN_ETA_P, left] * rho_l * flow_l[3]) - by_difference
-    by_p_r = half * (at[RHO_P, right] * flow_r[0] + at[LN_ETA_P, right] * rho_r * flow_r[3]) + by_difference
+    mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
+    by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
+    by_difference = (mean + half * (rho_l * mobility_l[2] + rho_r * mobility_r[2])) * per_length
+    by_state_l = at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
+    by_state_r = at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
+    by_p_l, by_p_r = half * by_state_l - by_difference, half * by_state_r + by_difference
     return (
         couette - mean * gradient,
         by_behind * at[M_Q, behind],
@@ -135,12 +136,12 @@ def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
 
 
 @compiled
-def flow_product(flow, v_q, v_h, first, out):
+def reynolds_product(derivatives, v_q, v_h, first, out):
     """Derivatives of Reynolds' rows times a vector.
 
     Parameters
     ----------
-    flow : ndarray, shape (rows, 8)
+    derivatives : ndarray, shape (rows, 8)
         By q and h of the nodes i-2 .. i+1; zero where there is no such node.
     v_q, v_h : ndarray, shape (nx,)
     first : int
@@ -148,25 +149,25 @@ def flow_product(flow, v_q, v_h, first, out):
     out : ndarray, shape (rows,)
     """
     last = len(v_q) - 1
-    for row in range(len(flow)):
+    for row in range(len(derivatives)):
         total = 0.0
         for k in range(4):
             node = min(max(first + row + k - 2, 0), last)
-            total += flow[row, 2 * k] * v_q[node] + flow[row, 2 * k + 1] * v_h[node]
+            total += derivatives[row, 2 * k] * v_q[node] + derivatives[row, 2 * k + 1] * v_h[node]
         out[row] = total
 
 
 @compiled
-def flow_rounding(flow, q, h, first):
+def reynolds_rounding(derivatives, q, h, first):
     """Sum of squares of what a rounding of all q and h may change in Reynolds' rows.
 
-    Parameters as of :func:`flow_product`.
+    Parameters as of :func:`reynolds_product`.
     """
     last, total = len(q) - 1, 0.0
-    for row in range(len(flow)):
+    for row in range(len(derivatives)):
         change = 0.0
         for k in range(4):
             node = min(max(first + row + k - 2, 0), last)
-            change += abs(flow[row, 2 * k] * q[node]) + abs(flow[row, 2 * k + 1] * h[node])
+            change += abs(derivatives[row, 2 * k] * q[node]) + abs(derivatives[row, 2 * k + 1] * h[node])
         total += (1.1e-16 * change) ** 2
     return total

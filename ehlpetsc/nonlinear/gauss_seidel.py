@@ -50,7 +50,7 @@ STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both 
 
 
 @compiled(fastmath=True)
-def sweep(q, h, p, q_then, h_then, imbalance, flow, bend, kernel, stretch, bound, relaxation):
+def sweep(q, h, p, q_then, h_then, imbalance, derivatives, bend, kernel, stretch, bound, relaxation):
     r"""Update every pair once, in the direction of flow, in place.
 
     Parameters
@@ -59,7 +59,7 @@ def sweep(q, h, p, q_then, h_then, imbalance, flow, bend, kernel, stretch, bound
         Newest values; the first and the last h, and the first q, are left alone.
     q_then, h_then : ndarray, shape (n,)
         State at the last evaluation.
-    imbalance, flow : ndarray, shape (n,), (n, 8)
+    imbalance, derivatives : ndarray, shape (n,), (n, 8)
         Reynolds rows there and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
     bend : ndarray, shape (n,)
         What gap and distant pressures contribute to E.
@@ -74,12 +74,13 @@ def sweep(q, h, p, q_then, h_then, imbalance, flow, bend, kernel, stretch, bound
     n, near = len(q), len(kernel) // 2
     c, d = kernel[near], 2.0 * stretch
     for i in range(1, n):
-        a, b = flow[i, 4], flow[i, 5]
+        a, b = derivatives[i, 4], derivatives[i, 5]
         r = a * q_then[i] + b * h_then[i] - imbalance[i]
         for k in range(4):
             j = i + k - 2
             if k != 2 and 0 <= j < n:
-                r -= flow[i, 2 * k] * (q[j] - q_then[j]) + flow[i, 2 * k + 1] * (h[j] - h_then[j])
+                by_q, by_h = derivatives[i, 2 * k], derivatives[i, 2 * k + 1]
+                r -= by_q * (q[j] - q_then[j]) + by_h * (h[j] - h_then[j])
         if i == n - 1:
             q[i] = limited((r - b * h[i]) / a, q_then[i])
             p[i] = max(q[i], 0.0)
@@ -143,7 +144,7 @@ class GaussSeidelSolver:
         self.distant = elasticity.SymmetricToeplitz(distant)
         self.sweeps = 0
 
-    def flow_rows(self):
+    def mass_imbalance(self):
         """F of the last solution at every node, shape (nx,)."""
         return self.imbalance
 
@@ -188,7 +189,7 @@ class GaussSeidelSolver:
         """Residual and coefficients at a state; the norm of what is not complementary."""
         with np.errstate(over="ignore", invalid="ignore"):
             evaluation = self.problem.evaluate(q, h, h00, inputs)
-            rows, self.flow = evaluation.residual, evaluation.flow
+            rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
             imbalance = seconds(rows, self.problem.n)
             self.imbalance = imbalance.copy()
             imbalance[(h <= self.bound) & (self.imbalance > 0.0)] = 0.0
@@ -203,9 +204,9 @@ class GaussSeidelSolver:
         relaxation = np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM)
         relaxation[q <= 0.0] = 1.0
         then = q.copy(), h.copy()
-        q[0] -= self.imbalance[0] / self.flow[0, 4]
+        q[0] -= self.imbalance[0] / self.derivatives[0, 4]
         p[0] = max(q[0], 0.0)
-        coefficients = self.imbalance, self.flow, -bend, self.kernel, stretch, self.bound, relaxation
+        coefficients = self.imbalance, self.derivatives, -bend, self.kernel, stretch, self.bound, relaxation
         for _ in range(sweeps):
             sweep(q, h, p, *then, *coefficients)
         self.sweeps += sweeps

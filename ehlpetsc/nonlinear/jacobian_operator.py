@@ -41,7 +41,7 @@ class JacobianOperator:
 
     Attributes
     ----------
-    relations, flow
+    relations, reynolds_derivatives
         Of the state linearised at, as in `ehl_problem.Evaluation`.
     held : ndarray of bool, shape (nx,)
         Nodes of direct contact at their bound.
@@ -58,12 +58,12 @@ class JacobianOperator:
         if not self.problem.model.is_mixed:
             # a node in contact and cavitated at once would leave its deflection row blind
             relations = relations._replace(p_q=np.where(relations.touching, 1.0, relations.p_q))
-        self.relations, self.flow = relations, evaluation.flow
+        self.relations, self.reynolds_derivatives = relations, evaluation.reynolds_derivatives
 
     def mult(self, mat, v, out):
         """PETSc's product."""
         with events.PRODUCT:
-            out.array[:] = self.problem.product(self.relations, self.flow, *self.gather(v))
+            out.array[:] = self.problem.product(self.relations, self.reynolds_derivatives, *self.gather(v))
 
     def createSubMatrix(self, mat, rows, columns, out=None):
         """What SNESVI keeps of the system: the same operator, other unknowns zero."""
@@ -102,8 +102,8 @@ class RestrictedOperator:
         return self.whole.relations
 
     @property
-    def flow(self):
-        return self.whole.flow
+    def reynolds_derivatives(self):
+        return self.whole.reynolds_derivatives
 
     def mult(self, mat, v, out):
         """PETSc's product."""
@@ -147,13 +147,13 @@ class NearFieldMatrix:
 
     def _pattern(self):
         p, rows = self.problem, []
-        for deflection, flow in zip(self.columns, p.flow_columns, strict=True):
-            rows += [deflection[deflection >= 0], flow[flow >= 0]]
+        for deflection, reynolds in zip(self.columns, p.reynolds_columns, strict=True):
+            rows += [deflection[deflection >= 0], reynolds[reynolds >= 0]]
         if p.load_is_local:
             rows.append(np.arange(count(p.n) + 1))
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
-    def fill(self, relations, flow):
+    def fill(self, relations, derivatives):
         """Values of a state, assembled."""
         p, d, near = self.problem, self.problem.deflection, self.near
         kernel = np.tile(-d.curvature[np.abs(np.arange(-near, near + 1))], (p.local, 1))
@@ -169,16 +169,16 @@ class NearFieldMatrix:
         approach = np.full((p.local, 1), -d.end_scale)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
-        set_rows(self.matrix, second_of(nodes), p.flow_columns, self._by_unknowns(relations, flow))
+        set_rows(self.matrix, second_of(nodes), p.reynolds_columns, self._by_unknowns(relations, derivatives))
         if p.load_is_local:
             load = np.zeros(count(p.n))
             firsts(load, p.n)[:], seconds(load, p.n)[:] = p.dx * relations.p_q, p.dx * relations.p_w
             self.matrix.setValues([count(p.n)], np.arange(count(p.n), dtype=np.int32), load)
         self.matrix.assemble()
 
-    def _by_unknowns(self, relations, flow):
+    def _by_unknowns(self, relations, derivatives):
         """Reynolds' rows by q and w."""
-        p, values = self.problem, flow.copy()
+        p, values = self.problem, derivatives.copy()
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
         by_film = seconds_of_rows(values)
         by_film *= relations.h_w[np.clip(nodes, 0, p.n - 1)]

@@ -14,7 +14,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.finite_volumes import flow_rounding
+from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
@@ -149,7 +149,7 @@ class NewtonSolver:
         self.jacobian.linearise(self._evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                self.assembled.fill(self.jacobian.relations, self.jacobian.flow)
+                self.assembled.fill(self.jacobian.relations, self.jacobian.reynolds_derivatives)
         operator.assemble()
 
     def _limit_step(self, x, y):
@@ -176,7 +176,7 @@ class NewtonSolver:
         """Iterations that a steady start may take: what is exponential falls by one exponent in each."""
         return LONGER_START * self.snes.max_it
 
-    def flow_rows(self):
+    def mass_imbalance(self):
         """F of the last solution at every node, shape (nx,)."""
         self.snes.computeFunction(self.x, self.f)
         return self.gather(self.f)[1]
@@ -223,7 +223,7 @@ class NewtonSolver:
         """
         evaluation = self._evaluation(self.x)
         q, _, _ = self._parts(self.place)
-        mine = flow_rounding(evaluation.flow, q, evaluation.relations.film, self.first)
+        mine = reynolds_rounding(evaluation.reynolds_derivatives, q, evaluation.relations.film, self.first)
         return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
     def _solution(self):

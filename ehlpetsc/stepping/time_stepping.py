@@ -89,7 +89,7 @@ class TimeStepping:
             return np.zeros(self.problem.n)
         with events.ROUGHNESS:
             places, cell = self.scales.x * self.scales.a, self.scales.dx
-            return self.roughness.gap(places, time, cell) / self.scales.h
+            return self.roughness.phi(places, time, cell) / self.scales.h
 
     def start(self):
         """Steady solution at time 0."""
@@ -104,7 +104,7 @@ class TimeStepping:
     def _state(self, q, w, h00, **more):
         relations, m = self.problem.model.relations(q, w), self.problem.content(q, w)
         p, h = relations.pressure, relations.film
-        return State(q, w, h00, p=p, h=h, m=m, imbalance=self.solver.flow_rows(), **more)
+        return State(q, w, h00, p=p, h=h, m=m, imbalance=self.solver.mass_imbalance(), **more)
 
     def guess(self, state, dt):
         """Start of Newton's iteration for a step of dt [s]."""

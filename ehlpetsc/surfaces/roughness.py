@@ -36,7 +36,7 @@ class Roughness:
             sides[side] = spec and _profile(case, scales, spec, speed)
         return cls(**sides) if any(sides.values()) else None
 
-    def gap(self, x, t, cell=None):
+    def phi(self, x, t, cell=None):
         """What both roughnesses add to the gap [m], minus both heights, at time t [s].
 
         Parameters

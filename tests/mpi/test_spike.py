@@ -48,13 +48,13 @@ def dense(problem, at, dropped):
     for end in (0, n - 1):
         by_pressure[end], by_film[end] = d.end_row(end), 0.0
         by_film[end, end] = d.end_scale
-    relations, _, flow = vars(problem.evaluate(*at, problem.inputs())).values()
+    relations, _, derivatives = vars(problem.evaluate(*at, problem.inputs())).values()
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
     leak = np.where((relations.p_q > 0.0) | (relations.p_w != 0.0), 0.0, LEAK)
     matrix[: 2 * n : 2, : 2 * n : 2] = by_pressure * relations.p_q + np.diag(leak)
     matrix[: 2 * n : 2, 1 : 2 * n : 2] = by_pressure * relations.p_w + by_film * relations.h_w
     matrix[[0, 2 * n - 2], -1] = -d.end_scale
-    for i, row in enumerate(flow):
+    for i, row in enumerate(derivatives):
         for k, j in enumerate(range(i - 2, i + 2)):
             if 0 <= j < n:
                 matrix[2 * i + 1, [2 * j, 2 * j + 1]] = row[2 * k], row[2 * k + 1] * relations.h_w[j]
@@ -83,8 +83,10 @@ def test_it_solves_its_matrix(model):
     mine = dropped[(dropped >= first) & (dropped < last)] - first
     kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
     evaluation = part.evaluate(*at, part.inputs())
-    entries = band_entries(part.model, evaluation.relations, evaluation.flow, lu.band.stencil)
-    other = entries._replace(p_first=np.zeros(n), h_second=np.zeros(n), flow=3.0 * entries.flow)
+    entries = band_entries(part.model, evaluation.relations, evaluation.reynolds_derivatives, lu.band.stencil)
+    other = entries._replace(
+        p_first=np.zeros(n), h_second=np.zeros(n), reynolds_derivatives=3.0 * entries.reynolds_derivatives
+    )
     lu.factor(other, dropped[:0])  # what it leaves must not matter
     lu.factor(entries, mine)
     found, approach = lu.solve(right[2 * first : 2 * last][kept], kept, right[-1] if last == n else 0.0)

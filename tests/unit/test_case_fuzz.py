@@ -120,7 +120,7 @@ def _used(loaded):
     if loaded.mesh.nodes < 5000:
         rough = Roughness.of(loaded, scales)
         if rough:
-            rough.gap(scales.x * scales.a, 0.3 * (scales.duration or 0.0))
+            rough.phi(scales.x * scales.a, 0.3 * (scales.duration or 0.0))
         assert explain.explain(loaded)
     tomllib.loads(loaded.text)
 

@@ -117,7 +117,7 @@ def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
     solver, size = linearised(at), len(at.state)
     problem, jacobian = solver.problem, solver.jacobian
     matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)
-    NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.relations, jacobian.flow)
+    NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.relations, jacobian.reynolds_derivatives)
     assembled, whole = columns_of(matrix, size), columns_of(solver.operator, size)
     leaks = np.diag(assembled - whole)
     np.testing.assert_allclose(assembled - np.diag(leaks), whole, rtol=1e-9, atol=1e-12 * np.abs(whole).max())

@@ -109,7 +109,7 @@ def test_corrupted_profiles_end_in_words_or_in_finite_heights(tmp_path):
             scales = Scales.of(loaded)
             rough = Roughness.of(loaded, scales)
             for cell in (None, scales.dx):
-                assert np.isfinite(rough.gap(scales.x * scales.a, 0.5 * scales.duration, cell)).all()
+                assert np.isfinite(rough.phi(scales.x * scales.a, 0.5 * scales.duration, cell)).all()
             assert explain(loaded)
         except CaseError as error:
             refused += 1

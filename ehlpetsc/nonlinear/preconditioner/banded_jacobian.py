@@ -61,7 +61,7 @@ class BandedJacobian:
         self._recurrences()
         self._under_films()
         self._under_pressures()
-        self._under_flow()
+        self._under_reynolds()
         self.under_pressure = self._dense_rows()
         self.values = np.empty_like(self.base)  # kept: new pages cost as much as filling them
         self.entries = None
@@ -164,7 +164,7 @@ class BandedJacobian:
         """Nodes of an end node's own group."""
         return self.nodes[self._group(self.nodes) == self._group(end)]
 
-    def _under_flow(self):
+    def _under_reynolds(self):
         """Places of Reynolds' stencil, q and h of the nodes i-2 .. i+1 in each row."""
         p = self.problem
         node = self.nodes[:, None] + np.arange(-2, 2)
@@ -172,7 +172,7 @@ class BandedJacobian:
         there = np.repeat((node >= 0) & (node < p.n), 2, axis=1)
         self.stencil = np.clip(node, 0, p.n - 1)
         place = self._at(self._film(self.nodes)[:, None], both)
-        self.flow_place = np.where(there, place, self.base.size - 1)
+        self.reynolds_place = np.where(there, place, self.base.size - 1)
 
     def fill(self, entries, dropped):
         """Values for one state.
@@ -191,17 +191,17 @@ class BandedJacobian:
             What the first and last group take from their neighbours on other ranks.
         """
         self._fill_deflection(entries)
-        flow = entries.flow
+        derivatives = entries.reynolds_derivatives
         if len(dropped):
-            flow = flow.copy()
-            flow[dropped] = 0.0
-            flow[dropped, OWN + 1] = 1.0
+            derivatives = derivatives.copy()
+            derivatives[dropped] = 0.0
+            derivatives[dropped, OWN + 1] = 1.0
         values, cut, block = self.values, self.height * self.order, self.size**2
         columns = (self.order, self.height)
         # LAPACK clears what is above the band itself
         values[:cut].reshape(columns)[:, self.half :] = self.base[:cut].reshape(columns)[:, self.half :]
         values[cut:] = self.base[cut:]
-        values[self.flow_place] = flow
+        values[self.reynolds_place] = derivatives
         blocks = values[cut : cut + 2 * block].reshape(2, self.size, self.size)
         left, right = (block[:, some] for block, some in zip(blocks, self.beside, strict=True))
         return values[:cut].reshape(columns).T, left, right

@@ -33,7 +33,7 @@ class Factors:
     def factor(self, operator):
         """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian_operator`."""
         model, stencil = operator.problem.model, self.lu.band.stencil
-        entries = band_entries(model, operator.relations, operator.flow, stencil)
+        entries = band_entries(model, operator.relations, operator.reynolds_derivatives, stencil)
         self.lu.factor(entries, operator.dropped, anew=not self.fresh)
         self.fresh = True
 

@@ -19,35 +19,35 @@ class BandEntries(NamedTuple):
     ----------
     p_first, h_second : ndarray, shape (nx,)
         Of the pressure by the first, of the film by the second unknown of each node.
-    flow : ndarray, shape (local nodes, 8)
+    reynolds_derivatives : ndarray, shape (local nodes, 8)
         Of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1.
     """
 
     p_first: np.ndarray
     h_second: np.ndarray
-    flow: np.ndarray
+    reynolds_derivatives: np.ndarray
 
 
-def band_entries(model, relations, flow, stencil):
+def band_entries(model, relations, derivatives, stencil):
     """Entries in the band's unknowns.
 
     Parameters
     ----------
     model : contact_model.DirectContact or MixedContact
-    relations, flow
-        As in `ehl_problem.Evaluation`.
+    relations, derivatives
+        Of the state, as in `ehl_problem.Evaluation`.
     stencil : ndarray of int, shape (local nodes, 4)
         Nodes of each Reynolds row, within the mesh.
     """
     if not model.is_mixed:
-        return BandEntries(relations.p_q, relations.h_w, flow)
+        return BandEntries(relations.p_q, relations.h_w, derivatives)
     touching = relations.touching
     if touching.any():
-        flow, solid = flow.copy(), touching[stencil]
-        by_first, by_second = firsts_of_rows(flow), seconds_of_rows(flow)
+        derivatives, solid = derivatives.copy(), touching[stencil]
+        by_first, by_second = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
         by_second[:] = np.where(solid, by_first, by_second)
         by_first[:] = np.where(solid, 0.0, by_first)
-    return BandEntries(np.where(touching, 1.0, relations.p_q), relations.h_w, flow)
+    return BandEntries(np.where(touching, 1.0, relations.p_q), relations.h_w, derivatives)
 
 
 def in_unknowns(model, relations, local, solution):

@@ -55,7 +55,8 @@ class SpikeLU:
         """
         if not anew and self.ranks.allreduce(self._still_good(entries, dropped), min):
             return
-        self.factored = dropped, entries.flow, CLOSE * np.abs(entries.flow).max(axis=1, keepdims=True)
+        derivatives = entries.reynolds_derivatives
+        self.factored = dropped, derivatives, CLOSE * np.abs(derivatives).max(axis=1, keepdims=True)
         e = self.band
         matrix, left, right = e.fill(entries, dropped)
         self.lu, self.pivots, singular = dgbtrf(matrix, e.half, e.half, overwrite_ab=True)
@@ -83,7 +84,7 @@ class SpikeLU:
             np.array_equal(dropped, held)
             and np.array_equal(entries.p_first, filled.p_first)
             and np.array_equal(entries.h_second, filled.h_second)
-            and bool((np.abs(entries.flow - rows) <= change).all())
+            and bool((np.abs(entries.reynolds_derivatives - rows) <= change).all())
         )
 
     def _own_solve(self, b, first, last):
