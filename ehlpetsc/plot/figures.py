@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.analysis import collisions, entrapment
+from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import collision_pictures, frames, labels, over_time
 from ehlpetsc.plot.stribeck import draw_stribeck
@@ -83,7 +83,7 @@ def draw_contacts(results, _options):
 def draw_collision(results, options):
     """Figure of collisions in all members of a series, a column each; by default of the two best to see."""
     found = collisions.find(from_thick_to_thin(results)[0])
-    numbers = options.collision or collisions.ranked(found)[:2]
+    numbers = options.collision or film_breakdown.ranked(found)[:2]
     if not numbers or not 0 <= min(numbers) <= max(numbers) < len(found):
         raise OutputError(f"{len(found)} collisions; allowed: --collision 0 to {len(found) - 1}")
     chosen = [found[number] for number in numbers]
@@ -100,7 +100,7 @@ def draw_collision(results, options):
 def draw_points(results, _options):
     """Figure of film and pressure at the points of contact against the swept value."""
     results, values, key = from_thick_to_thin(results)
-    points = collisions.spread(collisions.contact_points(collisions.find(results)), POINTS)
+    points = film_breakdown.spread(film_breakdown.contact_points(collisions.find(results)), POINTS)
     if not points:
         raise OutputError("no contact point with two full films before it and two members in contact")
     figure, axes = two_panels()

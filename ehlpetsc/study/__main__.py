@@ -116,8 +116,9 @@ def contact(chosen):
 
 def accuracy(chosen):
     """Error against run time."""
-    from ehlpetsc.study.accuracy import Study, plan
-    from ehlpetsc.study.picture import draw
+    from ehlpetsc.study.accuracy.picture import draw
+    from ehlpetsc.study.accuracy.plan import plan
+    from ehlpetsc.study.accuracy.table import Study
 
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from running import ROOT, run, settings
 
-from ehlpetsc.analysis import collisions, entrapment
+from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.analysis import contact_statistics as counts
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import from_thick_to_thin, in_order, open_all
@@ -44,13 +44,13 @@ def test_films_reach_zero_where_extrapolation_says(figure_4):
     """Figure 4 (i): six contact points or more, film falling to zero without steepening."""
     with ExitStack() as stack:
         results, values, found = thin_ones_and_collisions(stack, figure_4)
-        points = collisions.contact_points(found)
+        points = film_breakdown.contact_points(found)
         assert len(points) >= 6
-        last = [collisions.slope_jumps(values, c.film)[-1] for c in points]
+        last = [film_breakdown.slope_jumps(values, c.film)[-1] for c in points]
         assert np.mean(np.array(last) <= 0.0) >= 0.8
         # but for what smooth films do against viscosity, the slopes before hardly grow either
-        smooth = collisions.smooth_films(results)
-        before = np.concatenate([collisions.slope_jumps(smooth, c.film)[:-1] for c in points])
+        smooth = film_breakdown.smooth_films(results)
+        before = np.concatenate([film_breakdown.slope_jumps(smooth, c.film)[:-1] for c in points])
         assert np.median(before) < 0.03 and before.max() < 0.2
 
 
@@ -58,7 +58,9 @@ def test_pressure_grows_once_the_film_is_gone(figure_4):
     """Figure 4 (ii)."""
     with ExitStack() as stack:
         _, _, found = thin_ones_and_collisions(stack, figure_4)
-        changes = [collisions.pressure_steps(c.film, c.pressure) for c in collisions.contact_points(found)]
+        changes = [
+            film_breakdown.pressure_steps(c.film, c.pressure) for c in film_breakdown.contact_points(found)
+        ]
         assert np.mean([np.prod(1 + change) > 1 for change in changes]) >= 0.9
         assert np.mean(np.concatenate(changes) > 0) >= 0.75
 

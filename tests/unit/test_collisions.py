@@ -7,7 +7,7 @@ import pytest
 from made_results import A
 from matplotlib.figure import Figure
 
-from ehlpetsc.analysis import collisions, entrapment
+from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot.over_time import space_time_map
@@ -85,8 +85,8 @@ def test_collisions_are_found_where_they_are(series):
     np.testing.assert_allclose(late.film, [0.1e-6, 0.05e-6, 0, 0], atol=1e-12)
     np.testing.assert_allclose(late.pressure, [1e9, 1e9, 1e9 * (1 + 2 / 0.6), 6e9])
     assert early.begin < 10e-6 < early.end < 13e-6
-    assert collisions.contact_points([early, late]) == [late]
-    assert collisions.ranked([early, late]) == [1, 0]
+    assert film_breakdown.contact_points([early, late]) == [late]
+    assert film_breakdown.ranked([early, late]) == [1, 0]
 
 
 def test_contact_at_a_bound_above_zero_counts_as_no_film(tmp_path):
@@ -121,8 +121,8 @@ def test_no_film_is_a_bound_where_nothing_touches(tmp_path):
 
 def test_points_are_spread_over_the_members():
     one, two, three = (collisions.Collision(0, 0, 0, 0, (), film, ()) for film in ((1, 0), (1, 0), (2, 1, 0)))
-    assert collisions.spread([one, two, three], 2) == [one, three]
-    assert collisions.spread([one, two, three], 9) == [one, three, two]
+    assert film_breakdown.spread([one, two, three], 2) == [one, three]
+    assert film_breakdown.spread([one, two, three], 9) == [one, three, two]
 
 
 def test_report_of_a_series(tmp_path, series, capsys):
@@ -147,19 +147,19 @@ def test_report_of_a_series(tmp_path, series, capsys):
 )
 def test_jumps_of_slope(film, jumps):
     values = np.arange(len(film), 0, -1.0)
-    np.testing.assert_allclose(collisions.slope_jumps(values, film), jumps, atol=1e-12)
-    np.testing.assert_allclose(collisions.slope_jumps(3 * values, film), jumps, atol=1e-12)
+    np.testing.assert_allclose(film_breakdown.slope_jumps(values, film), jumps, atol=1e-12)
+    np.testing.assert_allclose(film_breakdown.slope_jumps(3 * values, film), jumps, atol=1e-12)
 
 
 def test_jumps_of_slope_need_films_and_contact():
     for film in ([3, 2, 1], [1, 0, 0], [0, 0, 0]):
         with pytest.raises(ValueError, match="two films before contact"):
-            collisions.slope_jumps([3, 2, 1], film)
+            film_breakdown.slope_jumps([3, 2, 1], film)
 
 
 def test_pressure_changes_are_those_after_contact():
-    np.testing.assert_allclose(collisions.pressure_steps([2, 1, 0, 0, 0], [9, 5, 1, 2, 1]), [1.0, -0.5])
-    assert len(collisions.pressure_steps([2, 1, 1], [1, 2, 3])) == 0
+    np.testing.assert_allclose(film_breakdown.pressure_steps([2, 1, 0, 0, 0], [9, 5, 1, 2, 1]), [1.0, -0.5])
+    assert len(film_breakdown.pressure_steps([2, 1, 1], [1, 2, 3])) == 0
 
 
 def test_members_are_sorted_from_thick_to_thin(series):
@@ -231,7 +231,7 @@ def test_picture_of_contact_points_shows_film_and_pressure_against_viscosity(ser
     assert plot.main([*(str(result.path) for result in series), "--points"]) == 0
     (figure,) = drawn
     upper, lower = figure.axes
-    (point,) = collisions.contact_points(collisions.find(series))
+    (point,) = film_breakdown.contact_points(collisions.find(series))
     values = [0.010, 0.008, 0.006, 0.004]
     np.testing.assert_allclose(
         upper.lines[0].get_xydata(), np.column_stack([values, 1e6 * np.array(point.film)])

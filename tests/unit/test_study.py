@@ -8,8 +8,10 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.study import accuracy, picture
-from ehlpetsc.study.accuracy import MESH, STEP, Figures, errors, plan, uncertainty
+from ehlpetsc.study.accuracy import picture
+from ehlpetsc.study.accuracy.errors import MEASURES, Figures, errors, uncertainty
+from ehlpetsc.study.accuracy.plan import MESH, STEP, plan
+from ehlpetsc.study.accuracy.table import NAMES
 from ehlpetsc.study.draws import draw
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
 from ehlpetsc.study.reasons import why as reason_of
@@ -60,7 +62,7 @@ def test_plan_varies_one_setting_at_a_time_and_ends_in_a_finer_reference(table_1
 def test_a_steady_case_has_no_time_steps_to_vary(table_1):
     _, runs = plan(load(table_1), (50, 100), (0.5,), (2,))
     assert not any(r.varied == STEP for r in runs)
-    assert accuracy.NAMES[STEP] == "time step"
+    assert NAMES[STEP] == "time step"
 
 
 def test_inlet_floods_and_is_further_out_for_thicker_films():
@@ -111,7 +113,7 @@ def test_picture_of_a_table_shows_errors_against_both_costs(tmp_path, monkeypatc
         {"varied": "mesh", "value": 50, "converged": "yes", "wall_s": 0.3, "newton": 7, "h_min": 1e-2},
         {"varied": "mesh", "value": 200, "converged": "exit 3", "wall_s": 0.0, "newton": 0, "h_min": np.nan},
     ]
-    rows = [{**dict.fromkeys(accuracy.MEASURES, np.nan), **row} for row in rows]
+    rows = [{**dict.fromkeys(MEASURES, np.nan), **row} for row in rows]
     picture.draw(rows, tmp_path / "study.png", "title")
     assert (tmp_path / "study.png").read_bytes().startswith(b"\x89PNG")
     (figure,) = figures

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ehlpetsc.study.accuracy.errors import MEASURES
+
 MARKERS = "osD^vP"
 TICKS = 5  # labels of an axis that stand apart
 MANTISSAS = ((1, 1.5, 2, 3, 4, 6, 8), (1, 2, 3, 5), (1, 2, 5), (1, 3), (1,))
@@ -14,16 +16,14 @@ def draw(rows, path, title):
     Parameters
     ----------
     rows : list of dict
-        Of :meth:`ehlpetsc.study.accuracy.Study.table`, the reference first.
+        Of :meth:`ehlpetsc.study.accuracy.table.Study.table`, the reference first.
     path : path-like
         PNG file.
     title : str
     """
     from matplotlib.figure import Figure
 
-    measures = [
-        m for m in ("h_min", "h_c", "p_max", "film", "contact", "damage") if any(r[m] > 0.0 for r in rows[1:])
-    ]
+    measures = [m for m in MEASURES if any(row[m] > 0.0 for row in rows[1:])]
     figure = Figure(figsize=(3.4 * len(measures), 6.6), layout="constrained")
     axes = figure.subplots(2, len(measures), sharey="col", squeeze=False)
     figure.suptitle(title)

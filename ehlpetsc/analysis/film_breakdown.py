@@ -1,0 +1,119 @@
+"""Film breakdown at the collisions of a series: which show it, how film and pressure go there."""
+
+import numpy as np
+
+
+def spread(points, count):
+    """At most `count` of the contact points, in turns from those that break down at each member."""
+    groups = {}
+    for point in points:
+        groups.setdefault(int(np.argmax(np.asarray(point.film) <= 0.0)), []).append(point)
+    turns = [(turn, first, point) for first, group in groups.items() for turn, point in enumerate(group)]
+    return [point for *_, point in sorted(turns, key=lambda t: t[:2])[:count]]
+
+
+def ranked(collisions):
+    """Numbers of the collisions, those most worth a picture first.
+
+    `contact_points` in their order, then those in which most members touch, of these the highest pressure.
+    """
+    first = [id(c) for c in contact_points(collisions)]
+
+    def rank(number):
+        c = collisions[number]
+        shown = first.index(id(c)) if id(c) in first else len(first)
+        return shown, -sum(c.touching), -max(c.pressure)
+
+    return sorted(range(len(collisions)), key=rank)
+
+
+def slope_jumps(values, film):
+    r"""Relative growth of the slope of a film against a value, from interval to interval, on its way to zero.
+
+    Slopes :math:`s_k=(h_k-h_{k+1})/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last one, cut
+    off at h = 0, is a lower bound. A last jump of 0 or less says that the straight line through the last two
+    films reaches zero before the first member in contact: contact comes where extrapolation puts it.
+
+    Parameters
+    ----------
+    values, film : sequence of float
+        From the thickest film on. Against the viscosity even smooth films steepen, being as eta0^0.7; against
+        the smooth film of each member they do not.
+
+    Returns
+    -------
+    ndarray, shape (number of films before contact - 1,)
+        :math:`s_{k+1}/s_k-1`.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two films before contact, or no contact.
+    """
+    film = np.asarray(film)
+    end = int(np.argmax(film <= 0.0)) + 1
+    if film.min() > 0.0 or end < 3:
+        raise ValueError("two films before contact are needed")
+    slopes = -np.diff(film[:end]) / np.abs(np.diff(values[:end]))
+    return slopes[1:] / slopes[:-1] - 1.0
+
+
+def pressure_steps(film, pressure):
+    """Relative changes of the pressure from member to member once the film is gone, shape (n,)."""
+    film, pressure = np.asarray(film), np.asarray(pressure)
+    if film.min() > 0.0:
+        return np.empty(0)
+    after = pressure[int(np.argmax(film <= 0.0)) :]
+    return np.diff(after) / after[:-1]
+
+
+def contact_points(collisions, films=2):
+    """The collisions that show film breakdown: `films` members or more in full film, the others in contact.
+
+    The first ones are those that break down in the middle of the series, of these those of highest pressure.
+    """
+
+    def shown(c):
+        film = np.asarray(c.film)
+        full = int(np.argmax(film <= 0.0)) if film.min() <= 0.0 else 0
+        return full if full >= films and (film[full:] <= 0.0).all() and full < len(film) - 1 else 0
+
+    good = [c for c in collisions if shown(c)]
+    return sorted(good, key=lambda c: (-abs(shown(c) - len(c.film) // 2), c.pressure[-1]), reverse=True)
+
+
+def smooth_films(results):
+    """Least film [m] of each member before roughness comes in."""
+    return [float(result.steps("h_min")[0]) for result in results]
+
+
+def breakdown(found, values, smooth):
+    """How the films of the collisions reach zero and the pressures go on, as lines of text."""
+    points = contact_points(found)
+    if not points:
+        return ["no point with two full films before contact and two members in contact after them"]
+    steps = [pressure_steps(c.film, c.pressure) for c in points]
+    jumps = [slope_jumps(values, c.film) for c in points]
+    lines = [
+        f"{len(points)} contact points with two full films or more before, and contact ever after",
+        f"contact where the last two films extrapolate to: {share([j[-1] <= 0.0 for j in jumps])}",
+        "growth of the film's slope from interval to interval before, median and largest:",
+    ]
+    for what, abscissa in (("swept value", values), ("smooth film", smooth)):
+        before = np.concatenate([slope_jumps(abscissa, c.film)[:-1] for c in points])
+        if len(before):
+            lines.append(f"  against the {what} {100 * np.median(before):.1f} %, {100 * before.max():.1f} %")
+    every = np.concatenate(steps)
+    return [
+        *lines,
+        "pressure grows once the film is gone:",
+        f"  from each member to the next: {share([(s > 0.0).all() for s in steps])}",
+        f"  from the first in contact to the last: {share([np.prod(1.0 + s) > 1.0 for s in steps])}",
+        f"  in single changes: {share(every > 0.0)}",
+    ]
+
+
+def share(flags):
+    """``5 of 6 (83 %)``."""
+    flags = np.asarray(flags, bool)
+    return f"{flags.sum()} of {len(flags)} ({100 * flags.mean():.0f} %)"

@@ -1,0 +1,123 @@
+r"""Error against run time: one setting of a case varied at a time, held against a reference finer than all.
+
+The reference has twice the finest mesh, half the least Courant number and the tightest tolerances of those
+tried. Its own error is estimated by Richardson extrapolation from two runs with 2 and 4 times its mesh and
+time step: :math:`e=|f_1-f_2|/(2^p-1)`, p the order that the three show, held within 0.5 and 2.
+"""
+
+import csv
+from pathlib import Path
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import ExitStatus
+from ehlpetsc.study.accuracy.errors import MEASURES, NOTHING, errors, figures, uncertainty
+from ehlpetsc.study.accuracy.plan import ATOL, MESH, NEAR, RTOL, STEP
+from ehlpetsc.study.runs import run
+
+NAMES = {
+    MESH: "mesh",
+    STEP: "time step",
+    NEAR: "near field",
+    ATOL: "Newton tolerance",
+    RTOL: "Krylov tolerance",
+    "ranks": "ranks",
+}
+HEAD = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
+
+
+class Study:
+    """Runs of one case and their table.
+
+    Parameters
+    ----------
+    path : path-like
+        The case file.
+    overrides : sequence of str
+        Changes of the case that all runs share.
+    folder : path-like
+        Where the result files go.
+    limit : float
+        Wall clock time of one run [s].
+    damage : bool
+    """
+
+    def __init__(self, path, overrides, folder, limit, damage=False):
+        self.path, self.overrides, self.folder = path, list(overrides), Path(folder)
+        self.limit, self.damage = limit, damage
+        self.case = load(path, overrides)
+        self._known = {}
+
+    def run(self, setting, number):
+        """Outcome and figures of one run; None where it did not converge. The same run is not run twice."""
+        known = tuple(setting.values.items())
+        if known in self._known:
+            return self._known[known]
+        fields = '["pressure", "film_thickness"]'
+        if self.damage:
+            fields = '["pressure", "film_thickness", "shear_stress_fast", "shear_stress_slow"]'
+        overrides = [
+            *self.overrides,
+            *setting.overrides(),
+            f"output.fields={fields}",
+            f"output.every={1 if self.damage else self._steps(setting)}",
+        ]
+        outcome = run(
+            self.path,
+            overrides,
+            options=setting.options(),
+            ranks=setting.ranks,
+            folder=self.folder,
+            name=f"run{number}",
+            limit=self.limit,
+        )
+        found = figures(outcome.result, self.damage) if outcome.status == ExitStatus.DONE else None
+        self._known[known] = outcome, found
+        return outcome, found
+
+    def _steps(self, setting):
+        """Of the whole run, so that its last state is a frame."""
+        if not self.case.time:
+            return 1
+        return max(round(self.case.time.travel * setting.values[MESH] / setting.values[STEP]), 1)
+
+    def table(self, references, runs, csv_path, say=print):
+        """Run all; rows by the names of `HEAD`, the reference with its estimated error first."""
+        finest = [self.run(setting, -number) for number, setting in enumerate(references, 1)]
+        if finest[0][1] is None:
+            raise RuntimeError(f"the reference did not converge: {finest[0][0].words}")
+        true = finest[0][1]
+        rows = [row(references[0], finest[0][0], uncertainty(*(f for _, f in finest)))]
+        say(text(dict(zip(HEAD, HEAD, strict=True))))
+        say(text(rows[0]))
+        for number, setting in enumerate(runs):
+            outcome, found = self.run(setting, number)
+            rows.append(row(setting, outcome, errors(found, true) if found else NOTHING))
+            say(text(rows[-1]))
+        with open(csv_path, "w", newline="") as file:
+            writer = csv.DictWriter(file, HEAD)
+            writer.writeheader()
+            writer.writerows(rows)
+        return rows
+
+
+def row(setting, outcome, measured):
+    """One row of the table."""
+    return {
+        "varied": NAMES.get(setting.varied, setting.varied),
+        "value": setting.value,
+        "converged": "yes" if outcome.status == ExitStatus.DONE else f"exit {outcome.status}",
+        "wall_s": outcome.wall,
+        "newton": outcome.newton,
+        "steps": outcome.steps,
+        **measured,
+    }
+
+
+def text(row):
+    """A row for the eye."""
+
+    def shown(value):
+        return f"{value:.2e}" if isinstance(value, float) else str(value)
+
+    widths = (17, 9, 9, 9, 7, 6, *[9] * len(MEASURES))
+    return " ".join(f"{shown(row[name]):>{width}}" for name, width in zip(HEAD, widths, strict=True))
