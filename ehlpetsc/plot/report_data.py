@@ -96,15 +96,16 @@ def step_figures(result):
     time = result.steps("time")
     if len(time) < 2:
         return {"time": _packed([]), "figures": []}
-    width, figures, stored = -(-len(time) // ROWS), [], result["steps"]
-    for name in sorted(set(stored) - UNSHOWN, key=lambda name: (name not in STEP_SCALARS, name)):
+    width, figures = -(-len(time) // ROWS), []
+    for name in sorted(set(result.figures) - UNSHOWN, key=lambda name: (name not in STEP_SCALARS, name)):
         values = result.steps(name).astype(float)[1:]
         known = values[np.isfinite(values)]
         if not known.size or np.ptp(known) <= STEADY * max(np.abs(known).max(), name in ERRORS):
             continue
-        units = stored[name].attrs.get("units", "1")
+        about = result[f"steps/{name}"].attrs
+        units = about.get("units", "1")
         unit, factor = SHOWN_IN.get(units, (units, 1.0))
-        words = stored[name].attrs.get("long_name", name.replace("_", " "))
+        words = about.get("long_name", name.replace("_", " "))
         take = np.fmin.reduce if name in LEAST else np.fmax.reduce
         label = f"{words} [{unit}]" if unit else words
         figures.append({"name": label, "y": _packed(binned(factor * values, width, take))})

@@ -1,14 +1,20 @@
 """Reading result files: whole ones, ones being written, and ones a killed run left behind."""
 
+import os
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.hdf5.attributes import Attributes, plain
+from ehlpetsc.results.hdf5.stored import Stored, reading
 
 FORMAT_VERSION = 1
 """Version of the layout; a reader refuses files of a later one."""
+
+ATTRIBUTES = {"title": str, "case": str, "status": str, "a": float, "p0": float, "u1": float, "u2": float}
+BEYOND = 2000  # times the size of a file: more numbers than its packed bytes can stand for
 
 
 def open_for_reading(path, **options):
@@ -62,16 +68,62 @@ def read_result(path):
 def open_result(path):
     """The HDF5 file of a result, checked to be one; for the errors see `read_result`."""
     file = open_for_reading(path)
-    version = file.attrs.get("format_version")
-    fault = None
-    if version is None or "x" not in file or "steps" not in file:
-        fault = "an HDF5 file, but not a result of ehlpetsc"
-    elif version > FORMAT_VERSION:
-        fault = f"format version {version}, this ehlpetsc reads up to {FORMAT_VERSION}: use a later ehlpetsc"
-    if fault:
+    try:
+        with reading(path):
+            fault = _fault(file)
+        if fault:
+            raise OutputError(f"{path}: {fault}")
+    except OutputError:
         file.close()
-        raise OutputError(f"{path}: {fault}")
+        raise
     return file
+
+
+def _fault(file):
+    """What keeps an HDF5 file from being a result; None: nothing."""
+    version = file.attrs.get("format_version")
+    if version is None or "x" not in file or "steps" not in file:
+        return "an HDF5 file, but not a result of ehlpetsc"
+    if not np.isscalar(version) or isinstance(version, str | bytes) or not version >= 1:
+        return f"damaged: its format version is {plain(version)!r}"
+    if version > FORMAT_VERSION:
+        return f"format version {version}, this ehlpetsc reads up to {FORMAT_VERSION}: use a later ehlpetsc"
+    for name, kind in ATTRIBUTES.items():
+        value = plain(file.attrs.get(name, kind()))
+        if not isinstance(value, kind if kind is str else (int, float, np.number)):
+            return f"damaged: its attribute {name} is {value!r}"
+        if kind is float and not np.isfinite(value):
+            return f"damaged: its attribute {name} is {value}"
+    for name in ("a", "p0"):
+        if name in file.attrs and not file.attrs[name] > 0.0:
+            return f"damaged: its attribute {name} is {file.attrs[name]}"
+    return _fault_of_datasets(file)
+
+
+def _fault_of_datasets(file):
+    nodes = file["x"].shape
+    if len(nodes) != 1 or nodes[0] < 2:
+        return f"damaged: x has the shape {nodes}"
+    x = file["x"][:]
+    if x.dtype.kind != "f" or not (np.isfinite(x).all() and (np.diff(x) > 0.0).all()):
+        return "damaged: x are not increasing numbers"
+    for name in ("time", "step", *(f"steps/{n}" for n in file["steps"]), *_two_dimensional(file)):
+        item = file.get(name)
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu" or item.ndim not in (1, 2):
+            return f"damaged: {name} is no row of numbers"
+        if item.ndim == 2 and item.shape[1:] != nodes:
+            return f"damaged: {name} has {item.shape[1]} nodes, x {nodes[0]}"
+        if item.ndim == 2 and "/" in name:
+            return f"damaged: {name} has the shape {item.shape}"
+        if item.nbytes > BEYOND * os.fstat(file.id.get_vfd_handle()).st_size:
+            return f"damaged: {name} has {item.shape[0]} rows, more than the file can hold"
+    if file["contact_count"].shape != nodes or file["contact_count"].dtype.kind not in "iu":
+        return "damaged: contact_count is no number for every node"
+    return None
+
+
+def _two_dimensional(file):
+    return [name for name in file if isinstance(file.get(name), h5py.Dataset) and file[name].ndim == 2]
 
 
 def _whole_rows(group):
@@ -88,11 +140,14 @@ class Steps:
     names : list of str
     """
 
-    def __init__(self, group, count):
-        self._group, self._count, self.names = group, count, list(group)
+    def __init__(self, group, count, path):
+        self._group, self._count, self._path, self.names = group, count, path, list(group)
 
     def __call__(self, name):
-        return self._group[name][: self._count]
+        if name not in self.names:
+            raise OutputError(f"{self._path}: has no figure {name} of its steps")
+        with reading(self._path, f"steps/{name}"):
+            return self._group[name][: self._count]
 
     def __getattr__(self, name):
         if name in self.__dict__.get("names", ()):
@@ -126,15 +181,18 @@ class Result:
     def __init__(self, file, path):
         self._file, self._read = file, {}
         self.path = Path(path)
-        self.attrs = dict(file.attrs)
-        self.x = file["x"][:]
-        # a killed writer may have lengthened some datasets and not yet others
-        self._frames = _whole_rows(file)
-        self.steps = Steps(file["steps"], _whole_rows(file["steps"]))
-        self.time, self.step = file["time"][: self._frames], file["step"][: self._frames]
-        self.contact_count = file["contact_count"][:]
-        self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+        self.attrs = Attributes(file, path)
+        with reading(path):
+            # a killed writer may have lengthened some datasets and not yet others
+            self._frames = _whole_rows(file)
+            self.steps = Steps(file["steps"], _whole_rows(file["steps"]), path)
+            self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
         self.figures = self.steps.names
+        self.x, self.contact_count = self["x"][:], self["contact_count"][:]
+        self.time, self.step = self["time"][: self._frames], self["step"][: self._frames]
+        for times in (self.time, self.steps("time")):
+            if not (np.isfinite(times).all() and (np.diff(times) >= 0.0).all()):
+                raise OutputError(f"{path}: damaged, its times do not increase")
 
     def __enter__(self):
         return self
@@ -148,7 +206,10 @@ class Result:
 
     def __getitem__(self, name):
         """The dataset `name`, not read yet; after a killed run it may have rows beyond `time`."""
-        return self._file[name]
+        with reading(self.path, name):
+            if not isinstance(self._file.get(name), h5py.Dataset):
+                raise OutputError(f"{self.path}: does not store {name}")
+            return Stored(self._file[name], self.path)
 
     def __contains__(self, name):
         return name in self._file
@@ -157,7 +218,7 @@ class Result:
         if name not in self.__dict__.get("fields", ()):
             raise AttributeError(f"{name}: no field of this result")
         if name not in self._read:
-            self._read[name] = self._file[name][: self._frames]
+            self._read[name] = self[name][: self._frames]
         return self._read[name]
 
     def __dir__(self):
@@ -186,7 +247,7 @@ class Result:
         import xarray
 
         def variable(dims, name, values):
-            about = {key: self._file[name].attrs[key] for key in ("units", "long_name")}
+            about = {key: self[name].attrs[key] for key in ("units", "long_name")}
             return xarray.Variable(dims, values, about)
 
         fields = {name: variable(("time", "x"), name, getattr(self, name)) for name in self.fields}
@@ -201,12 +262,12 @@ class Result:
                 "step": variable("step", "steps/step", self.steps.step),
                 "step_time": variable("step", "steps/time", self.steps.time),
             },
-            self.attrs,
+            dict(self.attrs),
         )
 
     def frame(self, name, index):
         """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""
-        return self._file[name][range(len(self.time))[index]].astype(float)
+        return self[name][range(len(self.time))[index]].astype(float)
 
     def nearest_frame(self, *, time=None, step=None):
         """Index of the stored frame nearest to a time [s] or to a step number."""
@@ -230,5 +291,9 @@ class Result:
 
     def profile(self, surface):
         """Roughness of surface "fast" or "slow" as ``(s, z, speed)``; None if it was smooth."""
-        group = self._file.get(f"surface/{surface}")
-        return None if group is None else (group["s"][:], group["z"][:], float(group.attrs["speed"]))
+        name = f"surface/{surface}"
+        with reading(self.path, name):
+            if name not in self._file:
+                return None
+            speed = float(self._file[name].attrs["speed"])
+        return self[f"{name}/s"][:], self[f"{name}/z"][:], speed

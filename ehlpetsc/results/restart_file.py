@@ -1,22 +1,13 @@
 """Restart files: the state of a run, written so that a half-written one never replaces a whole one."""
 
 import io
-import os
 from pathlib import Path
 
 import h5py
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import FORMAT_VERSION, open_for_reading
-from ehlpetsc.results.whole_file import write_whole
-
-
-def plain_reason(error):
-    """What the operating system said, without HDF5's own wording."""
-    if error.args and "errno = " in str(error):
-        code = int(str(error).split("errno = ")[1].split(",")[0])
-        return os.strerror(code)
-    return os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
+from ehlpetsc.results.whole_file import plain_reason, write_whole
 
 
 def save_restart(path, arrays, attrs):

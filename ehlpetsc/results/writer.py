@@ -14,25 +14,16 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_every_case
-from ehlpetsc.results.datasets import close, create, extend, lay_out, room
-from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
-from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
-from ehlpetsc.results.restart_file import load_restart, plain_reason, save_restart
+from ehlpetsc.quantities import STEP_SCALARS, of_every_case
+from ehlpetsc.results.hdf5 import attributes
+from ehlpetsc.results.hdf5.batch import Batch
+from ehlpetsc.results.hdf5.continuation import copy_up_to
+from ehlpetsc.results.hdf5.datasets import close, create, lay_out, room
+from ehlpetsc.results.provenance import git_commit, versions
+from ehlpetsc.results.reader import FORMAT_VERSION
+from ehlpetsc.results.whole_file import plain_reason, replacing
 
-__all__ = [
-    "FORMAT_VERSION",
-    "OutputError",
-    "Result",
-    "ResultWriter",
-    "load_restart",
-    "read_result",
-    "save_restart",
-]
-
-BATCH_STEPS = 1024  # most steps held in memory
-BATCH_BYTES = 2**20  # most of one field held in memory
-FLUSH_SECONDS = 2.0
+FLUSH_SECONDS = 2.0  # between two flushes, if steps are quicker; what a kill can lose beside the step in hand
 
 
 class ResultWriter:
@@ -97,26 +88,19 @@ class ResultWriter:
         self.last_step = resume_step
         if contact_count is not None:
             self.contact_count[:] = contact_count
-        beside = self.path and self.path.with_name(self.path.name + ".tmp")
-        try:
-            with self._plain_faults("not created"):
-                self._file = create(beside)
-                with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
-                    self._root_attributes(case_text, title, dict(scalars_attrs))
-                    lay_out(
-                        self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles
-                    )
-                if beside:
-                    if resume_step is not None and self.path.exists():
-                        self._copy_up_to(resume_step, contact_count is None)
-                    self._file.swmr_mode = True
-                    self._file.flush()
-                    os.replace(beside, self.path)
-        except OutputError:
-            with contextlib.suppress(OSError):
-                beside.unlink()
-            raise
-        self._start_batch()
+        beside = contextlib.nullcontext() if path is None else replacing(self.path)
+        with self._plain_faults("not created"), beside as place:
+            self._file = create(place)
+            with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
+                self._root_attributes(case_text, title, dict(scalars_attrs))
+                lay_out(self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles)
+            if place:
+                if resume_step is not None and self.path.exists():
+                    self.contact_count[:] = copy_up_to(self._file, self.path, resume_step, contact_count)
+                self._file.swmr_mode = True
+                self._file.flush()
+        self._written_step = resume_step
+        self._batch, self._flushed = Batch(self._file, len(x)), clock.monotonic()
 
     def append(self, step, time, fields, scalars, in_contact, frame=None):
         """Take an accepted time step.
@@ -142,34 +126,19 @@ class ResultWriter:
             The disk is full, or the file cannot be written for another reason.
         """
         self.contact_count += in_contact
-        row, self._steps_held = self._steps_held, self._steps_held + 1
-        self._times[row] = time
-        for name, column in self._columns.items():
-            column[row] = scalars.get(name, 0 if column.dtype.kind == "i" else np.nan)
-        self._columns["step"][row] = step
+        self._batch.hold_step(step, time, scalars)
         if step % self.every == 0 if frame is None else frame:
-            self._hold_frame(step, time, fields, in_contact)
+            self._batch.hold_frame(step, time, fields, in_contact)
         self.last_step = step
-        full = self._steps_held == BATCH_STEPS or self._frames_held == len(self._frame_times)
-        if full or clock.monotonic() - self._flushed > FLUSH_SECONDS:
+        if self._batch.full or clock.monotonic() - self._flushed > FLUSH_SECONDS:
             self.flush()
 
     def flush(self):
         """Hand everything taken so far to the operating system; afterwards a kill does not lose it."""
         self._check_still_there()
-        with self._plain_faults("not written on"), room(self._file, self._bytes_held()):
-            steps, frames = slice(self._steps_held), slice(self._frames_held)
-            for name, column in self._columns.items():
-                extend(self._file[f"steps/{name}"], column[steps])
-            for name, held in self._frames.items():
-                extend(self._file[name], held[frames])
-            extend(self._file["step"], self._frame_steps[frames])
-            self._file["contact_count"][:] = self.contact_count
-            self._file.flush()
-            extend(self._file["steps/time"], self._times[steps])
-            extend(self._file["time"], self._frame_times[frames])
-        self._written_step = self.last_step
-        self._start_batch()
+        with self._plain_faults("not written on"), room(self._file, self._batch.size):
+            self._batch.write(self.contact_count)
+        self._written_step, self._flushed = self.last_step, clock.monotonic()
 
     def close(self, status):
         """Write what is left, note how the run ended ("done", "stopped", "not converged") and close."""
@@ -186,8 +155,7 @@ class ResultWriter:
         with contextlib.suppress(OSError):
             if os.path.samestat(os.stat(self.path), os.fstat(self._file.id.get_vfd_handle())):
                 return
-        with contextlib.suppress(Exception):
-            close(self._file, "stopped")
+        self._close_after_a_fault()
         raise OutputError(f"{self.path}: result file removed or replaced by others during the run")
 
     def image(self):
@@ -199,12 +167,18 @@ class ResultWriter:
     def _plain_faults(self, what):
         try:
             yield
+        except OutputError:
+            self._close_after_a_fault()
+            raise
         except (OSError, RuntimeError) as error:
             whole = getattr(self, "_written_step", None)
-            with contextlib.suppress(Exception):  # the fault at hand is the one to tell
-                close(self._file, "stopped")
+            self._close_after_a_fault()
             kept = "" if whole is None else f"; the file is whole up to step {whole}"
             raise OutputError(f"{self.path}: result file {what}, {plain_reason(error)}{kept}") from error
+
+    def _close_after_a_fault(self):
+        with contextlib.suppress(Exception):  # the fault at hand is the one to tell
+            close(self._file, "stopped")
 
     def _root_attributes(self, case_text, title, more):
         attrs = {
@@ -217,71 +191,4 @@ class ResultWriter:
             "history": "[]",
             "status": "running",
         }
-        for key, value in (attrs | more).items():
-            self._file.attrs[key] = value
-
-    def _copy_up_to(self, step, count_from_file):
-        with read_result(self.path) as old:
-            self._check_fits(old, step, count_from_file)
-            frames = np.count_nonzero(old.step <= step)
-            steps = np.count_nonzero(old.steps("step") <= step)
-            for name in [*self._frame_fields(), "step", "time"]:
-                self._copy_rows(old, name, frames)
-            for name in self._file["steps"]:
-                self._copy_rows(old, f"steps/{name}", steps)
-            if count_from_file:
-                self.contact_count[:] = old.contact_count
-            self._file["contact_count"][:] = self.contact_count
-            self._file.attrs["restarts"] = int(old.attrs["restarts"]) + 1
-            self._file.attrs["history"] = earlier_runs(old.attrs, step)
-        self._written_step = step
-
-    def _copy_rows(self, old, name, rows):
-        for begin in range(0, rows, BATCH_STEPS):
-            block = old[name][begin : min(begin + BATCH_STEPS, rows)]
-            with room(self._file, block.nbytes):
-                extend(self._file[name], block)
-
-    def _check_fits(self, old, step, count_from_file):
-        """Refuse to go on with a file that is not an earlier part of the same run."""
-        last = max(old.steps("step"), default=None)
-        fault = None
-        if not np.array_equal(old.x, self._file["x"][:]):
-            fault = "it was computed on another mesh"
-        elif set(old.fields) != set(self._frame_fields()):
-            fault = f"it stores other fields ({', '.join(old.fields)})"
-        elif set(old.figures) != set(self._file["steps"]):
-            fault = f"it stores other figures of its steps ({', '.join(old.figures)})"
-        elif last is not None and last < step:  # None: stopped before its first step
-            fault = f"it ends at step {last}, before step {step} of the restart file"
-        elif count_from_file and last is not None and last > step:
-            fault = f"it goes on to step {last} and the contacts up to step {step} are not known"
-        if fault:
-            self._file.close()
-            raise OutputError(f"{self.path}: cannot be continued, {fault}; give another -ehl_output")
-
-    def _frame_fields(self):
-        return [name for name in FIELDS if name in self._file]
-
-    def _bytes_held(self):
-        frames = sum(held.itemsize * held.shape[1] for held in self._frames.values())
-        return frames * self._frames_held + 8 * (len(self._columns) + 3) * self._steps_held
-
-    def _start_batch(self):
-        """Empty the memory that holds steps and frames between flushes."""
-        if not hasattr(self, "_columns"):
-            self._times = np.empty(BATCH_STEPS)
-            figures = {n: d for n, d in self._file["steps"].items() if n != "time"}
-            self._columns = {n: np.empty(BATCH_STEPS, dtype=d.dtype) for n, d in figures.items()}
-            datasets = {n: self._file[n] for n in self._frame_fields()}
-            frames = max(1, BATCH_BYTES // (8 * len(self.contact_count)))
-            self._frames = {n: np.empty((frames, d.shape[1]), d.dtype) for n, d in datasets.items()}
-            self._frame_times, self._frame_steps = np.empty(frames), np.empty(frames, dtype="i8")
-        self._steps_held = self._frames_held = 0
-        self._flushed = clock.monotonic()
-
-    def _hold_frame(self, step, time, fields, in_contact):
-        row, self._frames_held = self._frames_held, self._frames_held + 1
-        self._frame_times[row], self._frame_steps[row] = time, step
-        for name, held in self._frames.items():
-            held[row] = in_contact if name == "in_contact" else fields[name]
+        attributes.put(self._file, attrs | more)

@@ -5,7 +5,7 @@ import tomllib
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.writer import load_restart, save_restart
+from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.time_stepping import Level, State
 
 TOTAL = "total "  # before the names of totals among the attributes

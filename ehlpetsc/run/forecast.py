@@ -4,7 +4,7 @@ import math
 
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.results.datasets import CHUNK_BYTES, CHUNK_STEPS
+from ehlpetsc.results.hdf5.datasets import CHUNK_BYTES, CHUNK_STEPS
 
 # measured on one rank: seconds a time step takes in full film, as such and for each node
 STEP_TIME, NODE_TIME = 2.0e-3, 2.0e-6

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS
+from ehlpetsc.results.hdf5 import attributes
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
@@ -41,7 +42,7 @@ def lay_out(file, x, fields, figures, precision, profiles):
         rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
         # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
         packed = {"compression": "gzip", "compression_opts": 1} if flag else {}
-        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
+        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, fletcher32=True, **packed)
     _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
     _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
     for name in sorted(figures, key="time".__ne__):  # the scale of the others comes first
@@ -98,11 +99,11 @@ def room(file, data_bytes):
 def close(file, status):
     """Note how the run ended, close the file and give its reserve back; one in memory stays open."""
     if in_memory(file):
-        file.attrs["status"] = status
+        attributes.change(file, "status", status)
         return
     descriptor = os.dup(file.id.get_vfd_handle())
     try:
-        file.attrs["status"] = status
+        attributes.change(file, "status", status)
         file.close()
         (end,) = struct.unpack_from("<Q", os.pread(descriptor, 48, 0), 28)  # as superblocks 2 and 3 have it
         os.ftruncate(descriptor, end)
@@ -126,8 +127,7 @@ def extend(dataset, rows):
 def _surface(file, name, s, z, speed, statistics=None):
     _fixed(file, f"{name}/s", OTHERS["surface/s"], s)
     _fixed(file, f"{name}/z", OTHERS["surface/z"], z)
-    for key, value in ({"speed": speed} | (statistics or {})).items():
-        file[name].attrs[key] = value
+    attributes.put(file[name], {"speed": speed} | (statistics or {}))
 
 
 def comment(item, text):
@@ -147,8 +147,7 @@ def _growing(file, name, field, rows, *width, dtype=None, **packed):
 
 
 def _describe(dataset, field):
-    dataset.attrs["units"] = field.units
-    dataset.attrs["long_name"] = field.long_name
+    attributes.put(dataset, {"units": field.units, "long_name": field.long_name})
     comment(dataset, f"{field.long_name} [{field.units}] ({', '.join(field.dims)})")
     own_name = dataset.name.rsplit("/", 1)[1]
     if field.dims == (own_name,):
@@ -156,4 +155,3 @@ def _describe(dataset, field):
         return
     for axis, dim in enumerate(field.dims):
         dataset.dims[axis].attach_scale(dataset.parent[dim])
-        dataset.dims[axis].label = dim

@@ -1,0 +1,1 @@
+"""What is HDF5's: attributes, datasets, rows held before they are written, results that are continued."""

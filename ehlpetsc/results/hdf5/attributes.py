@@ -1,0 +1,79 @@
+"""Attributes of HDF5 files, their texts of fixed length.
+
+A text of variable length lies in a heap without a checksum, where one wrong byte makes HDF5 crash; one of
+fixed length lies in the header of its group or dataset, which has one.
+"""
+
+import h5py
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+
+ROOM = 16  # least bytes of a text, so that "running" may become "not converged" in place
+
+
+def put(item, values):
+    """Set attributes of a file, group or dataset.
+
+    Parameters
+    ----------
+    item : h5py.File, h5py.Group or h5py.Dataset
+    values : dict of str to str or number
+    """
+    for name, value in values.items():
+        if isinstance(value, str):
+            _put_text(item, name, value.encode())
+        else:
+            item.attrs[name] = value
+
+
+def _put_text(item, name, raw):
+    kind = h5py.h5t.C_S1.copy()
+    kind.set_size(max(len(raw) + 1, ROOM))
+    kind.set_cset(h5py.h5t.CSET_UTF8)
+    if name in item.attrs:
+        del item.attrs[name]
+    place = h5py.h5s.create(h5py.h5s.SCALAR)
+    attribute = h5py.h5a.create(item.id, name.encode(), kind, place)
+    attribute.write(_padded(raw, attribute), mtype=kind)
+
+
+def change(item, name, text):
+    """Put another text of at most its length into an attribute, in place: a file being read allows that."""
+    attribute = item.attrs.get_id(name)
+    attribute.write(_padded(text.encode(), attribute), mtype=attribute.get_type())
+
+
+def _padded(raw, attribute):
+    return np.array(raw, dtype=f"S{attribute.get_type().get_size()}")
+
+
+class Attributes(dict):
+    """Attributes read, texts as str; one that is missing is an OutputError.
+
+    Parameters
+    ----------
+    item : h5py.File, h5py.Group or h5py.Dataset
+    path : path-like
+        The file, for the error.
+    """
+
+    def __init__(self, item, path):
+        try:
+            super().__init__({name: plain(value) for name, value in item.attrs.items()})
+        except (OSError, RuntimeError, ValueError, TypeError, KeyError) as fault:
+            raise OutputError(f"{path}: damaged, its attributes cannot be read ({one_line(fault)})") from None
+        self._path = path
+
+    def __missing__(self, name):
+        raise OutputError(f"{self._path}: damaged, or of another program: it has no attribute {name}")
+
+
+def plain(value):
+    """An attribute's value, a text as str."""
+    return value.decode(errors="replace") if isinstance(value, bytes) else value
+
+
+def one_line(fault):
+    """The first line of what an exception says, its kind where it says nothing."""
+    return next(iter(str(fault).strip().splitlines()), type(fault).__name__)[:200]

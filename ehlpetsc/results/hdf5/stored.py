@@ -1,0 +1,49 @@
+"""Datasets of a result, read on demand; what HDF5 finds damaged is an OutputError that names the file."""
+
+import contextlib
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.hdf5.attributes import Attributes, one_line
+
+
+@contextlib.contextmanager
+def reading(path, name=""):
+    """Around calls of HDF5: the many kinds of exception that damage raises become an OutputError."""
+    try:
+        yield
+    except (OSError, RuntimeError, KeyError, AttributeError, ValueError, TypeError, MemoryError) as fault:
+        what = f"{path}: {name}" if name else f"{path}"
+        raise OutputError(f"{what}: cannot be read, the file is damaged ({one_line(fault)})") from None
+
+
+class Stored:
+    """A dataset as in the file; slices of it are arrays.
+
+    Attributes
+    ----------
+    name : str
+    shape, dtype, ndim, chunks
+        As of `h5py.Dataset`.
+    """
+
+    def __init__(self, dataset, path):
+        self._dataset, self._path = dataset, path
+        self.name, self.shape, self.dtype = dataset.name, dataset.shape, dataset.dtype
+        self.ndim, self.chunks = dataset.ndim, dataset.chunks
+
+    def __getitem__(self, part):
+        with reading(self._path, self.name):
+            return self._dataset[part]
+
+    def __len__(self):
+        return self.shape[0]
+
+    def __array__(self, dtype=None, copy=None):
+        return np.asarray(self[()], dtype=dtype)
+
+    @property
+    def attrs(self):
+        """Attributes, texts as str."""
+        return Attributes(self._dataset, self._path)
