@@ -9,8 +9,8 @@ usage() {
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
-export PATH="/path/to/ehlpetsc/bin:$PATH"           then, in any folder: ehlpetsc CASE.toml, on one rank, and
-                                                    ehlpetsc-post, -plot, -compare, -study (each: --help)
+./run_mpi.sh --commands FOLDER                      put the commands ehlpetsc (on one rank), ehlpetsc-post, -plot,
+                                                    -compare and -study into a folder of your PATH, as ~/.local/bin
 
 A python3 on the PATH that has everything is used. Else it is Debian's, and what is missing is installed from
 Debian's packages: by itself as root, else the command is shown.
@@ -26,6 +26,7 @@ run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
 drawing="matplotlib"
 testing="$drawing pytest xdist hypothesis xarray h5netcdf pip setuptools"
 
+commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"
 called=$(basename "$0")
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 check="$here/ehlpetsc/environment.py"
@@ -253,12 +254,33 @@ run_tests() {
     for ranks in 1 2 3; do run_mpi_tests $ranks; done
 }
 
-case $called in # by a link of bin/: the command of that name, on one rank
-    ehlpetsc | ehlpetsc-*)
-        prepare "$run_modules" "$drawing"
-        exec "$python" -m "${called/-/.}" "$@"
-        ;;
-esac
+# Links to this script, which then knows by its name what to do
+write_commands() {
+    local folder=$1 name path
+    [ -n "$folder" ] || { say "--commands: name a folder of your PATH, as ~/.local/bin"; exit 2; }
+    { mkdir -p -- "$folder" 2>/dev/null && folder=$(CDPATH='' cd -- "$folder" && pwd) && [ -w "$folder" ]; } ||
+        { say "$1 is no folder that can be written to"; exit 2; }
+    for name in $commands; do
+        path=$folder/$name
+        if [ -e "$path" ] || [ -L "$path" ]; then
+            [ "$(basename -- "$(readlink -- "$path")")" = run_mpi.sh ] ||
+                { say "$path is there and is none of these commands: nothing was written"; exit 2; }
+        fi
+    done
+    for name in $commands; do
+        ln -sfn -- "$here/run_mpi.sh" "$folder/$name" || exit 2
+    done
+    say "in $folder: $commands"
+    case :$PATH: in
+        *:"$folder":*) ;;
+        *) say "not on your PATH yet; type: export PATH=\"$folder:\$PATH\"" ;;
+    esac
+}
+
+if [[ " $commands " = *" $called "* ]]; then # by a link of write_commands
+    prepare "$run_modules" "$drawing"
+    exec "$python" -m ehlpetsc.commands "$called" "$@"
+fi
 
 ranks=2
 if [ "${1-}" = -n ]; then
@@ -274,6 +296,7 @@ case ${1-} in
         "$python" -m ehlpetsc "$@"
         ;;
     --install) prepare "$run_modules $drawing" ;;
+    --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
     test)
         prepare "$run_modules $testing"

@@ -1,4 +1,7 @@
-"""The commands that pip installs: ``ehlpetsc``, ``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study``."""
+"""The commands that pip installs: ``ehlpetsc``, ``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study``.
+
+``python3 -m ehlpetsc.commands NAME ...`` is the one of that name: so ``run_mpi.sh`` starts them.
+"""
 
 import importlib
 import shlex
@@ -43,3 +46,16 @@ def _command(module, needed=()):
         )
         sys.exit(2)
     return importlib.import_module(module)
+
+
+BY_NAME = {
+    "ehlpetsc": solver,
+    "ehlpetsc-post": post,
+    "ehlpetsc-plot": plot,
+    "ehlpetsc-compare": compare,
+    "ehlpetsc-study": study,
+}
+
+if __name__ == "__main__":
+    sys.argv.pop(0)
+    sys.exit(BY_NAME[sys.argv[0]]())

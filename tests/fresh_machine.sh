@@ -93,7 +93,8 @@ expect 2 guest "$first" "$install"
 expect 0 root "$first" '^run_mpi.sh: installed$' '^result: table1_rough.h5$' "$finished"
 say "$release: $((SECONDS - began)) s from the clone to the first result"
 expect 0 guest "$first" ' 2 ranks;' "$finished"
-picture='cd /tmp && PATH=$HOME/ehlpetsc/bin:$PATH && ehlpetsc-plot ~/ehlpetsc/table1_rough.h5'
+expect 0 guest './run_mpi.sh --commands ~/.local/bin' 'in /home/guest/.local/bin: ehlpetsc ehlpetsc-post '
+picture='cd /tmp && PATH=$HOME/.local/bin:$PATH && ehlpetsc-plot ~/ehlpetsc/table1_rough.h5'
 expect 0 guest "$picture" '^/home/guest/ehlpetsc/table1_rough.png$'
 began=$SECONDS
 expect 0 root "./run_mpi.sh test $*" '[0-9]+ passed' 'tests on 3 rank'

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import read_result
@@ -219,7 +220,7 @@ def _tolerance(text):
 
 def main(arguments=None):
     """Run the command; returns its exit status."""
-    parser = argparse.ArgumentParser(prog="python3 -m ehlpetsc.compare", description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(prog=program("ehlpetsc.compare"), description=__doc__.split("\n")[0])
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")

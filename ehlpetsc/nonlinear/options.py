@@ -3,6 +3,7 @@
 import difflib
 from dataclasses import dataclass
 
+from ehlpetsc.environment import program
 from ehlpetsc.errors import UsageError
 
 
@@ -30,7 +31,10 @@ OWN = {
     "ehl_time_limit": Option("MINUTES", "none", "stop after this wall clock time, restart file written"),
 }
 
-USAGE = "python3 -m ehlpetsc CASE.toml [options]"
+
+def usage():
+    """What to type, as it was typed."""
+    return f"{program('ehlpetsc')} CASE.toml [options]"
 
 
 def faults(names):
@@ -56,7 +60,7 @@ def help_text():
     """Own options with values, units and defaults, in the manner of PETSc's -help."""
     lines = [
         "----------------------------------------",
-        f"ehlpetsc: {USAGE}, under mpirun on any number of ranks",
+        f"ehlpetsc: {usage()}, under mpirun on any number of ranks",
         "Options come from: program defaults < [petsc] of the case < PETSC_OPTIONS < command line.",
         "Own options:",
     ]

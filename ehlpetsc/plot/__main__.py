@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.series_index import in_order, open_all
@@ -42,7 +43,7 @@ def _check(results, kind, options):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(prog="python3 -m ehlpetsc.plot", description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(prog=program("ehlpetsc.plot"), description=__doc__.split("\n")[0])
     parser.add_argument("results", nargs="+", metavar="RESULT.h5")
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.compiled import COMPILED
+from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, PostError
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
@@ -34,7 +35,7 @@ def _jobs(text):
 def arguments(argv=None):
     """Parse the command line."""
     parser = argparse.ArgumentParser(
-        prog="python3 -m ehlpetsc.post",
+        prog=program("ehlpetsc.post"),
         description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
         "from result files. Material and depths come from the case text in the file, section [post].",
     )

@@ -6,8 +6,9 @@ import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ehlpetsc.environment import program
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.options import USAGE
+from ehlpetsc.nonlinear.options import usage
 
 
 @dataclass
@@ -56,12 +57,12 @@ def parse_command_line(arguments):
     rest = [word for word in rest if word != "--explain"]
     names = [word for word in rest if word.endswith(".toml")] or [word for word in rest[:1] if word[0] != "-"]
     if len(names) > 1:
-        raise UsageError(f"one case file at a time, not {' and '.join(names)}: {USAGE}")
+        raise UsageError(f"one case file at a time, not {' and '.join(names)}: {usage()}")
     if names:
         command.case = names[0]
         rest.remove(names[0])
     elif not {"-help", "--help", "-h"} & set(rest):
-        raise UsageError(f"which case? {USAGE}; what there is: python3 -m ehlpetsc -help")
+        raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
     for word, name in itertools.pairwise(rest):
         if word == "-options_file" and not Path(name).is_file():
             raise UsageError(f"-options_file {name}: no such file")

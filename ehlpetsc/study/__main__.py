@@ -17,7 +17,7 @@ from ehlpetsc.errors import CaseError
 def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(
-        prog="python3 -m ehlpetsc.study",
+        prog=environment.program("ehlpetsc.study"),
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

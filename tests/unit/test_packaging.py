@@ -4,10 +4,13 @@ import email
 import re
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
+
+from ehlpetsc import commands
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
@@ -32,7 +35,7 @@ def pip(*words, **options):
 def source(tmp_path_factory):
     """A copy of what git has, in which a build leaves its traces; with a folder that is no part of it."""
     folder = tmp_path_factory.mktemp("source")
-    names = ["ehlpetsc", "pyproject.toml", "README.md", "LICENSE", "run_mpi.sh", "bin", "cases", "tests"]
+    names = ["ehlpetsc", "pyproject.toml", "README.md", "LICENSE", "run_mpi.sh", "cases", "tests"]
     subprocess.run(["cp", "-r", *names, folder], cwd=ROOT, check=True)
     return folder
 
@@ -82,7 +85,6 @@ def test_petsc_and_mpi_are_asked_for_by_the_solver_alone(wheel):
 def test_an_installation_brings_the_commands_and_replaces_nothing(environment):
     there = sorted(path.name for path in (environment / "bin").glob("ehlpetsc*"))
     assert there == COMMANDS
-    assert COMMANDS == sorted(path.name for path in (ROOT / "bin").iterdir())
     (packages,) = environment.glob("lib/python3*/site-packages")
     assert {path.name.split("-")[0] for path in packages.iterdir()} == {"ehlpetsc"}
 
@@ -113,9 +115,33 @@ def test_the_commands_work_from_any_folder(environment, tmp_path):
     assert "ridge.post.h5" in call("ehlpetsc-post", "ridge.h5", "--depths", "0.1")
     assert call("ehlpetsc-plot", "ridge.h5") == "ridge.png\n"
     assert "same" in call("ehlpetsc-compare", "ridge.h5", "ridge.h5")
-    assert "--meshes" in call("ehlpetsc-study", "--help")
     for result in ("ridge.h5", "ridge.post.h5", "ridge.png"):
         assert (tmp_path / result).stat().st_size > 1000
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("by_name", [True, False])
+def test_help_names_the_command_as_it_was_called(monkeypatch, capsys, name, by_name):
+    words = [f"/anywhere/bin/{name}" if by_name else "/anywhere/__main__.py"]
+    monkeypatch.setattr(sys, "argv", words if name == "ehlpetsc" else [*words, "--help"])
+    called = name if by_name else f"python3 -m {name.replace('-', '.')}"
+    try:
+        commands.BY_NAME[name]()
+    except SystemExit as end:
+        assert end.code == 0
+        assert capsys.readouterr().out.startswith(f"usage: {called} [-h]")
+    else:  # without a case
+        told = capsys.readouterr().err
+        assert told == f"ehlpetsc: which case? {called} CASE.toml [options]; what there is: {called} -help\n"
+
+
+def test_the_names_of_the_commands_are_those_that_pip_makes():
+    with open(ROOT / "pyproject.toml", "rb") as file:
+        scripts = tomllib.load(file)["project"]["scripts"]
+    calls = {name: f"ehlpetsc.commands:{call.__name__}" for name, call in commands.BY_NAME.items()}
+    assert scripts == calls
+    (line,) = re.findall(r'^commands="(.*)"$', (ROOT / "run_mpi.sh").read_text(), re.MULTILINE)
+    assert sorted(line.split()) == COMMANDS
 
 
 @pytest.mark.parametrize(

@@ -247,20 +247,52 @@ def test_mpi_is_kept_on_the_machine_only_where_it_is_the_only_one(script, nodes,
     assert ("'OMPI_MCA_btl'" in done.stdout, "'PMIX_MCA_psec'" in done.stdout) == (alone, alone)
 
 
-def test_the_commands_are_called_by_name_from_any_folder(script, tmp_path):
-    (tmp_path / "bin").mkdir()
-    for link in (ROOT / "bin").iterdir():
-        shutil.copy(link, tmp_path / "bin", follow_symlinks=False)
-    (tmp_path / "ehlpetsc" / "post.py").write_text("import os, sys; print('POST', sys.argv[1:], os.getcwd())")
-    called = {}
-    for name in ("ehlpetsc", "ehlpetsc-post"):
-        called[name] = subprocess.run(
+COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
+
+
+def test_the_commands_are_put_into_a_folder_and_called_by_name_from_any(script, tmp_path):
+    folder = tmp_path / "some where" / "bin"
+    for _ in range(2):  # the second time they are there
+        done = script("--commands", str(folder))
+        assert done.returncode == 0
+        assert f"in {folder}: " in done.stderr and f'export PATH="{folder}:$PATH"' in done.stderr
+        assert sorted(path.name for path in folder.iterdir()) == COMMANDS
+    assert "export PATH" not in script("--commands", str(folder), PATH=f"{folder}:/usr/bin:/bin").stderr
+    (tmp_path / "ehlpetsc" / "commands.py").write_text("import os, sys; print(sys.argv[1:], os.getcwd())")
+    for name in COMMANDS:
+        called = subprocess.run(
             [name, "-n", "a b"],
             cwd=tmp_path / "elsewhere",
-            env={"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin"},
+            env={"PATH": f"{folder}:/usr/bin:/bin"},
             capture_output=True,
             text=True,
             timeout=60,
         )
-    assert called["ehlpetsc"].stdout.startswith("ARGS ['-n', 'a b'] SIZE 1")
-    assert called["ehlpetsc-post"].stdout == f"POST ['-n', 'a b'] {tmp_path}/elsewhere\n"
+        assert called.stdout == f"{[name, '-n', 'a b']} {tmp_path}/elsewhere\n", called.stderr
+
+
+def test_the_commands_replace_nothing_else_of_their_names(script, tmp_path):
+    (tmp_path / "ehlpetsc-post").write_text("another program")
+    (tmp_path / "ehlpetsc-plot").symlink_to("nowhere/run_mpi.sh")  # of a clone that was moved
+    done = script("--commands", str(tmp_path))
+    assert done.returncode == 2
+    assert (
+        f"{tmp_path}/ehlpetsc is there and is none of these commands" in done.stderr
+    )  # the package's folder
+    assert not (tmp_path / "ehlpetsc-study").exists()
+    (tmp_path / "bin").mkdir()
+    for name in ("ehlpetsc-post", "ehlpetsc-plot"):
+        (tmp_path / name).rename(tmp_path / "bin" / name)
+    assert script("--commands", str(tmp_path / "bin")).returncode == 2
+    (tmp_path / "bin" / "ehlpetsc-post").unlink()
+    assert script("--commands", str(tmp_path / "bin")).returncode == 0
+    assert (tmp_path / "bin" / "ehlpetsc-plot").resolve() == tmp_path / "run_mpi.sh"
+
+
+@pytest.mark.parametrize("folder", [[], [""], ["/proc/nonesuch"], ["/etc/hostname"]])
+def test_a_folder_that_cannot_be_written_to_is_refused(script, folder):
+    done = script("--commands", *folder)
+    assert done.returncode == 2
+    assert done.stderr.startswith(
+        "run_mpi.sh: --commands: " if folder in ([], [""]) else f"run_mpi.sh: {folder[0]} "
+    )
