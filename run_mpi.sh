@@ -24,7 +24,7 @@ declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3
     [xdist]=python3-pytest-xdist)
 run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
 drawing="matplotlib"
-testing="$drawing pytest xdist hypothesis xarray h5netcdf pip setuptools"
+testing="$drawing pytest xdist hypothesis xarray h5netcdf pip hatchling"
 
 commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"
 called=$(basename "$0")

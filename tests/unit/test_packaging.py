@@ -37,6 +37,9 @@ def source(tmp_path_factory):
     folder = tmp_path_factory.mktemp("source")
     names = ["ehlpetsc", "pyproject.toml", "README.md", "LICENSE", "run_mpi.sh", "cases", "tests"]
     subprocess.run(["cp", "-r", *names, folder], cwd=ROOT, check=True)
+    stale = folder / "build" / "lib" / "ehlpetsc" / "gone.py"  # of an earlier build
+    stale.parent.mkdir(parents=True)
+    stale.touch()
     return folder
 
 
