@@ -102,7 +102,8 @@ def load(case, overrides=None):
             settings.append(_setting(override))
             _set(data, *settings[-1])
         except ValueError:
-            faults.append(f"{path}: {override}: allowed: table.key=value, as in fluid.viscosity=0.003")
+            typed = " ".join(str(override).split())  # a fault is one line
+            faults.append(f"{path}: {typed}: allowed: table.key=value, as in fluid.viscosity=0.003")
     faults += _faults(path, data)
     if not faults:
         faults += _series_faults(path, data)

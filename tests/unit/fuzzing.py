@@ -1,0 +1,57 @@
+"""What the fuzz tests of cases and profiles share: number of draws, what a run does first, how it ends."""
+
+import os
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.errors import CaseError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.describe import explain
+from ehlpetsc.surfaces.roughness import Roughness
+
+CASES = Path(__file__).parents[2] / "cases"
+SEED = int(os.environ.get("EHL_FUZZ_SEED", "1"))
+LARGE = 5000  # nodes of a mesh beyond which nothing is worked out on it
+
+
+def draws(usual):
+    """EHL_FUZZ of the environment, or the usual number."""
+    return int(os.environ.get("EHL_FUZZ", usual))
+
+
+def faults_of(load, about):
+    """Faults that a case is refused for, in words; none where a run can use it. Any other end fails the test.
+
+    Parameters
+    ----------
+    load : callable
+        Loads the case.
+    about : callable
+        What was drawn, as text for the failure.
+
+    Returns
+    -------
+    list of str
+    """
+    try:
+        _used(load())
+    except CaseError as error:
+        assert error.faults and not any("\n" in line for line in error.faults)
+        return error.faults
+    except Exception as error:
+        pytest.fail(f"{type(error).__name__}: {error}\n{about()}")
+    return []
+
+
+def _used(case):
+    """What a run does with a case that loads: it must not fail over a value that was let through."""
+    scales = Scales.of(case)
+    if case.mesh.nodes < LARGE:
+        rough = Roughness.of(case, scales)
+        for cell in (None, scales.dx) if rough else ():
+            assert np.isfinite(rough.phi(scales.x * scales.a, 0.5 * (scales.duration or 0.0), cell)).all()
+        assert explain(case)
+    tomllib.loads(case.text)
