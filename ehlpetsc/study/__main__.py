@@ -44,7 +44,7 @@ def arguments():
         help="time steps (default: 0.5 1 2 4)",
     )
     parser.add_argument("--ranks", type=int, nargs="+", default=[2], help="ranks besides one (default: 2)")
-    parser.add_argument("--damage", action="store_true", help="the error in damage too")
+    parser.add_argument("--damage", action="store_true", help="damage too, by ehlpetsc.post")
     parser.add_argument("--contact", action="store_true", help="how much contact, against mesh and model")
     parser.add_argument(
         "--models",
@@ -109,7 +109,7 @@ def contact(chosen):
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
     with tempfile.TemporaryDirectory() as folder:
-        table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say)
+        table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say, chosen.damage)
     say(f"{stem}.csv")
     return 0
 

@@ -2,22 +2,28 @@
 
 ``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination asked for, a line each in
 table and CSV; means over the time both rough surfaces fill the contact. Where a sequence of meshes halves its
-spacing, the observed order and the extrapolated value of each figure follow.
+spacing, the observed order and the extrapolated value of each figure follow. ``--damage`` stores every step
+and has `ehlpetsc.post` count the damage of the fast surface at z = 0 and 0.01 a.
 """
 
 import csv
 import itertools
-from dataclasses import asdict, dataclass
+import json
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.analysis.contact_statistics import both_fill
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.study.runs import run
+from ehlpetsc.study.runs import greatest_damage, run
 
+DEPTHS = (0.0, 0.01)  # half widths, of the damage
 THIN = (2.0, 5.0)  # boundary films below which a film counts as thin
 FIGURES = ("length", "share", "thin_length", "thin_share", "share_below_5", "p_max", "p_mean")
+FIELDS = ("pressure", "film_thickness", "contact_pressure", "in_contact")
+SHEAR = ("shear_stress_fast", "shear_stress_slow")
 
 
 @dataclass(frozen=True)
@@ -29,14 +35,16 @@ class Setting:
     courant: float
     boundary_film: float
 
-    def overrides(self):
-        """``table.key=value`` of the case; fields are stored at one place in time whatever the step."""
+    def overrides(self, damage=False):
+        """``table.key=value`` of the case; for damage every step is stored, else like times."""
+        apart = round(2.0 * self.mesh / 100 * 0.5 / self.courant)
+        fields = (*FIELDS, *SHEAR) if damage else FIELDS
         chosen = [
             f"contact.model={self.model}",
             f"mesh.points_per_half_width={self.mesh}",
             f"time.courant={self.courant}",
-            f"output.every={max(1, round(2.0 * self.mesh / 100 * 0.5 / self.courant))}",
-            'output.fields=["pressure", "film_thickness", "contact_pressure", "in_contact"]',
+            f"output.every={1 if damage else max(1, apart)}",
+            f"output.fields={json.dumps(fields)}",
         ]
         return chosen + ([f"contact.boundary_film={self.boundary_film}"] if self.model == "mixed" else [])
 
@@ -54,7 +62,9 @@ class Measured:
     p_max, p_mean
         Largest pressure, and the mean over the stored frames of the largest of each.
     iterations, halved, mass_error, seconds
-        Newton's a step, steps that had to be halved, largest oil imbalance, processor time of the steps.
+        Newton's a step, steps that had to be halved, largest oil imbalance, processor time of the run.
+    damage_at_surface, damage_below
+        Largest fatigue damage of the fast surface in a passage, at the depths of `DEPTHS`; nan: not asked.
     """
 
     length: float
@@ -68,9 +78,11 @@ class Measured:
     halved: int
     mass_error: float
     seconds: float
+    damage_at_surface: float = np.nan
+    damage_below: float = np.nan
 
 
-def measured(path, boundary_film):
+def measured(path, boundary_film, seconds):
     """Figures of a result file.
 
     Parameters
@@ -78,6 +90,8 @@ def measured(path, boundary_film):
     path : path-like
     boundary_film : float
         [m], also of a direct contact, to which it means nothing by itself.
+    seconds : float
+        Processor time of the run.
     """
     with read_result(path) as result:
         a, dx = result.attrs["a"], np.diff(result.x).mean()
@@ -98,7 +112,7 @@ def measured(path, boundary_film):
             result.steps("newton")[1:].mean(),
             int(np.count_nonzero(result.steps("retries"))),
             result.steps("mass_error").max(),
-            result.steps("wall").sum(),
+            seconds,
         )
 
 
@@ -109,6 +123,12 @@ def _of_frame(result, frame, boundary_film):
     solids = result.frame(name, frame)[result["in_contact"][frame].astype(bool)].sum()
     thin, thicker = (h < factor * boundary_film for factor in THIN)
     return solids, thin.sum(), p[thin].sum(), p[thicker].sum(), p.max()
+
+
+def _damages(path):
+    """Largest damage at the two depths, by the names in `Measured`."""
+    at_surface, below = greatest_damage(path, "fast", DEPTHS)
+    return {"damage_at_surface": at_surface, "damage_below": below}
 
 
 def order(coarse, middle, fine):
@@ -127,7 +147,7 @@ def settings(models, meshes, courants, boundary_films):
             yield Setting(model, mesh, courant, film)
 
 
-def table(case, overrides, chosen, path, folder, limit, say=print):
+def table(case, overrides, chosen, path, folder, limit, say=print, damage=False):
     """Run the settings; rows to a CSV file and lines to `say`.
 
     Returns
@@ -142,8 +162,11 @@ def table(case, overrides, chosen, path, folder, limit, say=print):
         writer.writerow(head)
         say(" ".join(f"{name:>13}" for name in head))
         for setting in chosen:
-            outcome = run(case, [*overrides, *setting.overrides()], folder=folder, limit=limit)
-            found = measured(outcome.result, setting.boundary_film) if outcome.status == 0 else None
+            outcome = run(case, [*overrides, *setting.overrides(damage)], folder=folder, limit=limit)
+            found = None
+            if outcome.status == ExitStatus.DONE:
+                found = measured(outcome.result, setting.boundary_film, outcome.processor)
+                found = replace(found, **_damages(outcome.result)) if damage else found
             rows.append((setting, found))
             values = [*asdict(setting).values(), *(asdict(found).values() if found else ())]
             writer.writerow(values)

@@ -1,6 +1,7 @@
 """One run of a case as its own process, with a time limit: figures, exit status, last words."""
 
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import time as clock
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 from ehlpetsc.case.loading import load
@@ -37,6 +39,8 @@ class Outcome:
         Greatest of all steps, relative.
     seconds, wall : float
         Wall clock time of the process, and of its steps alone [s].
+    processor : float
+        Processor time of the process [s].
     result : Path or None
         The result file, where a step was stored.
     """
@@ -53,6 +57,7 @@ class Outcome:
     mass_error: float = np.nan
     seconds: float = 0.0
     wall: float = 0.0
+    processor: float = 0.0
     result: Path | None = field(default=None, repr=False)
 
 
@@ -91,15 +96,40 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
     output = Path(folder) / f"{name}.h5"
     for left in (output, output.with_suffix(".restart.h5")):  # of an earlier run of that name
         left.unlink(missing_ok=True)
-    begun = clock.monotonic()
+    begun, used = clock.monotonic(), _processor_time()
     with open(output.with_suffix(".txt"), "w+") as words:
         status = _wait(command(case, overrides, options, ranks, output), words, limit)
         seconds = clock.monotonic() - begun
         words.seek(0)
-        outcome = Outcome(status, last_words(words.read()), seconds=seconds)
+        outcome = Outcome(
+            status, last_words(words.read()), seconds=seconds, processor=_processor_time() - used
+        )
     if output.exists():
         _read_figures(output, load(case, overrides), outcome)
     return outcome
+
+
+def greatest_damage(path, surface, depths=()):
+    """Largest fatigue damage on a surface at each depth [half widths]; without depths those of the case.
+
+    Returns
+    -------
+    ndarray, shape (ndepths,)
+    """
+    output = Path(path).with_suffix(".post.h5")
+    words = [sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", surface]
+    words += ["--depths", *map(str, depths)] if depths else []
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
+    with h5py.File(output) as file:
+        greatest = np.nanmax(file[f"damage/{surface}"][()], axis=1)
+    output.unlink()
+    return greatest
+
+
+def _processor_time():
+    """Of all processes that were waited for [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _wait(words, stream, limit):

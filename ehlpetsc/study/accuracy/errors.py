@@ -1,13 +1,11 @@
 """What is compared of a run, its errors against a reference, and the reference's own."""
 
-import subprocess
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.study.runs import greatest_damage
 
 MEASURES = ("h_min", "h_c", "p_max", "film", "contact", "damage")
 NOTHING = dict.fromkeys(MEASURES, np.nan)
@@ -44,21 +42,8 @@ def figures(path, damage=False):
             float(h[np.argmin(np.abs(x))]),
             float(result.steps("p_max").max()),
             float(contact * (x[1] - x[0])),
-            _damage(path) if damage else None,
+            float(np.log10(greatest_damage(path, "slow").max())) if damage else None,
         )
-
-
-def _damage(path):
-    import h5py
-
-    output = Path(path).with_suffix(".post.h5")
-    subprocess.run(
-        [sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", "slow"],
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
-    with h5py.File(output) as file:
-        return float(np.log10(np.nanmax(file["damage/slow"])))
 
 
 def errors(ours, reference):
