@@ -144,7 +144,12 @@ STEP_SCALARS = {
     ),
     "load": Figure("N/m", "integral of the pressure", compared=True),
     "load_error": Figure("1", "relative error of the load", over_run="max", summary=".2e"),
-    "mass_error": Figure("1", "relative defect of the mass balance", over_run="max", summary=".2e"),
+    "mass_error": Figure(
+        "1",
+        "oil lost or made at all nodes over the oil that the contact carries through",
+        over_run="max",
+        summary=".2e",
+    ),
     "approach": Figure("m", "undeformed separation h00", compared=True),
     "friction": Figure("N/m", "friction force on the slow solid", compared=True),
     "friction_coefficient": Figure("1", "friction force over load", over_run="last", summary=".4g"),
@@ -152,6 +157,12 @@ STEP_SCALARS = {
         "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"
     ),
     "lambda_ratio": Figure("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
+    "oil_pressure": Figure(
+        "Pa", "greatest pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
+    ),
+    "molecular_films": Figure(
+        "1", "nodes out of contact under less than 1 nm of oil", dtype="i4", over_run="sum", only="fluid"
+    ),
     "contact_share": Figure(
         "1", "share of the load on the solids", over_run="max", summary=".4g", compared=True, only="mixed"
     ),

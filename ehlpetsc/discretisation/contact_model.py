@@ -50,13 +50,20 @@ class Relations(NamedTuple):
 
 
 class DirectContact:
-    """The film is the second unknown, bounded below by `bound` (a^2/R); `dry`: q is the pressure as it is."""
+    """The film is the second unknown, bounded below by `bound` (a^2/R); `dry`: q is the pressure as it is.
+
+    Attributes
+    ----------
+    near : float
+        Films above the bound that the solver does not tell from it, in a^2/R; it sets its own.
+    """
 
     is_mixed = False
 
     def __init__(self, bound, dry):
         self.bound, self.dry = bound, dry
         self.thinnest = bound
+        self.near = 0.0
 
     def relations(self, q, w):
         """See :class:`Relations`."""
@@ -65,6 +72,10 @@ class DirectContact:
         else:
             pressure, p_q = np.maximum(q, 0.0), full_of_oil(q) * 1.0
         return Relations(pressure, w, p_q, np.zeros_like(w), np.ones_like(w), w <= self.bound)
+
+    def in_contact(self, w, imbalance):
+        """Nodes that a solution leaves out of Reynolds' equation: at the bound, or near it with F > 0."""
+        return (w <= self.bound) | ((w <= self.bound + self.near) & (imbalance > 0.0))
 
     def contact_pressure(self, w):
         """Not known apart from the oil's: zero."""
@@ -103,6 +114,10 @@ class MixedContact:
         p_w = np.where(touching, -self.stiffness, 0.0)
         film = self.boundary_film + np.maximum(w, 0.0)
         return Relations(pressure, film, full_of_oil(q) * 1.0, p_w, np.where(touching, 0.0, 1.0), touching)
+
+    def in_contact(self, w, imbalance):
+        """Nodes whose solids carry, of a solution."""
+        return w < 0.0
 
     def contact_pressure(self, w):
         """Pressure of the solids in p0."""

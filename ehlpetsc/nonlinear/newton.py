@@ -27,6 +27,7 @@ LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is
 LONGER_START = 7  # times the iterations of a time step
 ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
 LOOSEST = 10.0  # times Newton's absolute tolerance: what rounding may make of it
+ZERO_TOLERANCE = 1e-8  # of PETSc: how near to its bound an unknown is taken to be on it
 OPENED = 1e-3  # of the expected film: what solids that part get in that iteration
 
 
@@ -103,6 +104,8 @@ class NewtonSolver:
                 "allowed: vinewtonrsls, and types without bounds where nothing touches"
             )
         self.bounded = kind == "vinewtonrsls"
+        if self.bounded:
+            self.model.near = PETSc.Options().getReal("snes_vi_zero_tolerance", ZERO_TOLERANCE)
 
     def _create_matrices(self):
         """The operator, and what preconditioners get: where that is enough, the operator itself."""

@@ -23,6 +23,7 @@ from ehlpetsc.results.provenance import git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION
 from ehlpetsc.results.whole_file import plain_reason, replacing
 
+LIMITS_ROOM = 2000  # characters kept free for what close() may have to say
 FLUSH_SECONDS = 2.0  # between two flushes, if steps are quicker; what a kill can lose beside the step in hand
 
 
@@ -140,13 +141,21 @@ class ResultWriter:
             self._batch.write(self.contact_count)
         self._written_step, self._flushed = self.last_step, clock.monotonic()
 
-    def close(self, status):
-        """Write what is left, note how the run ended ("done", "stopped", "not converged") and close."""
+    def close(self, status, limits=()):
+        """Write what is left, note how the run ended and close.
+
+        Parameters
+        ----------
+        status : str
+            "done", "stopped", "not converged".
+        limits : sequence of str
+            Limits of the physics that it went beyond, a sentence each.
+        """
         if not self._file:
             return
         self.flush()
         with self._plain_faults("not closed"):
-            close(self._file, status)
+            close(self._file, status, "\n".join(limits))
 
     def _check_still_there(self):
         """The file of that name must be the one that is written."""
@@ -190,5 +199,7 @@ class ResultWriter:
             "restarts": 0,
             "history": "[]",
             "status": "running",
+            "limits": LIMITS_ROOM * " ",
         }
         attributes.put(self._file, attrs | more)
+        attributes.change(self._file, "limits", "")

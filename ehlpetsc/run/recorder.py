@@ -16,6 +16,7 @@ from ehlpetsc.results.output_guard import Lock, check_place, check_replaceable, 
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run import checkpoint
+from ehlpetsc.run.limits import limits
 from ehlpetsc.stepping.step_control import on_level
 
 MESSAGE_BYTES = 2**30  # MPI counts to twice as many
@@ -49,13 +50,15 @@ class Recorder:
     totals : results.totals.Totals
     restart : Path
         Restart file.
+    limits : list of str
+        Limits of the physics that the run went beyond, known on rank 0 once it is closed.
     """
 
     def __init__(self, simulation, output):
         self.simulation, self.comm = simulation, simulation.comm
         self.output = None if output is None else Path(output)
         self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
-        self.totals = Totals()
+        self.totals, self.limits = Totals(), []
         self._writer, self._opened, self._lock = None, False, None
         self._saved = clock.monotonic()
 
@@ -145,7 +148,7 @@ class Recorder:
         status : errors.ExitStatus
         """
         if self._opened:
-            on_root(self.comm, lambda: self._writer.close(status.words))
+            on_root(self.comm, self._close, status)
 
     def image(self):
         """The bytes of a result in memory, on every rank."""
@@ -181,6 +184,11 @@ class Recorder:
             simulation.scales,
             simulation.march.problem.model,
         )
+
+    def _close(self, status):
+        simulation = self.simulation
+        self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
+        self._writer.close(status.words, self.limits)
 
     def _create(self, step, count):
         case, scales = self.simulation.case, self.simulation.scales

@@ -131,6 +131,8 @@ class Run:
             self._say("ehlpetsc: stopped during the steady start; nothing to go on with")
         elif outcome.status is ExitStatus.STOPPED:
             self._say(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
+        for line in recorder.limits:
+            print(f"limit: {line}", file=self.err, flush=True)
         ignored = sorted({*self.simulation.options.unread, *unread()})
         if ignored:
             self._say(f"note: options that nobody read: -{', -'.join(ignored)}")

@@ -6,6 +6,9 @@ import numpy as np
 
 from ehlpetsc.physics.traction import shear_stresses
 
+MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
+ATOM = 1e-10  # m: least film that oil balances are held against
+
 
 def observe(case, scales, rq, problem, state, started):
     """Per-step figures and fields in SI units.
@@ -27,25 +30,26 @@ def observe(case, scales, rq, problem, state, started):
     in_contact : ndarray of bool, shape (nx,)
     """
     s, p, model = scales, problem, problem.model
-    relations = model.relations(state.q, state.w)
-    pressure, touching = relations.pressure * s.p0, relations.touching
+    pressure = model.relations(state.q, state.w).pressure * s.p0
+    touching = model.in_contact(state.w, state.imbalance)
+    thickness = s.h * (state.h if model.is_mixed else np.where(touching, model.bound, state.h))
     solids = model.contact_pressure(state.w) * s.p0
     # direct contact does not tell the solids' pressure from the oil's: there they carry what there is
     oil, carried = (pressure - solids, solids) if model.is_mixed else (pressure, pressure)
     void = np.zeros_like(pressure) if p.dry else np.maximum(-state.q, 0.0)
-    fast, slow = shear_stresses(case, s, oil, carried, state.h * s.h, void, touching)
+    fast, slow = shear_stresses(case, s, oil, carried, thickness, void, touching)
     load, friction = s.dx * pressure.sum(), s.dx * slow.sum()
     film = mean_film(s, state.h)
     figures = {
         "dt": state.dt or 0.0,
         "newton": state.newton,
         "retries": state.retries,
-        "h_min": state.h.min() * s.h,
+        "h_min": thickness.min(),
         "p_max": pressure.max(),
         "contacts": int(touching.sum()),
         "load": load,
         "load_error": abs(load / s.load - 1.0),
-        "mass_error": mass_error(p, state, touching),
+        "mass_error": mass_error(p, state),
         "approach": state.h00 * s.h,
         "friction": friction,
         "friction_coefficient": friction / load,
@@ -56,12 +60,17 @@ def observe(case, scales, rq, problem, state, started):
     fields = {
         "pressure": pressure,
         "contact_pressure": solids,
-        "film_thickness": state.h * s.h,
+        "film_thickness": thickness,
         "void_fraction": void,
         "shear_stress_fast": fast,
         "shear_stress_slow": slow,
         "in_contact": touching,
     }
+    if not p.dry:
+        figures |= {
+            "oil_pressure": (oil if model.is_mixed else np.where(touching, 0.0, pressure)).max(),
+            "molecular_films": int((~touching & (thickness < MOLECULES)).sum()),
+        }
     if model.is_mixed:
         thin = state.h < case.output.thin_film * model.boundary_film
         figures |= {
@@ -79,14 +88,17 @@ def mean_film(scales, h):
     return float(h[middle].mean() * scales.h)
 
 
-def mass_error(problem, state, touching):
-    """Oil that the solution loses or makes in a step, over what is drawn in at the inlet.
+def mass_error(problem, state):
+    r"""Oil that the solution loses or makes in a step, over what the contact carries through.
 
-    F sums to the mass imbalance. In direct contact it is not zero where solids touch: that is the flow that
-    leaving out Reynolds' equation makes up. In mixed contact it is zero to Newton's tolerance everywhere.
+    :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
+    is a balance that holds at every node. Where direct contact leaves the Reynolds equation out, F is the oil that
+    this makes; elsewhere, and everywhere in mixed contact, it is what Newton's tolerance leaves. (What is drawn
+    in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet node has
+    no balance, its pressure or its oil is given.
     """
     if problem.dry:
         return 0.0
-    counted = np.ones_like(touching) if problem.model.is_mixed else touching
-    drawn_in = max(state.m[0], problem.film_scale)
-    return float(np.abs(state.imbalance[counted]).sum() * problem.film_scale / drawn_in)
+    made = problem.film_scale * np.abs(state.imbalance[1:]).sum()
+    carried = state.m[np.abs(problem.x) <= 1.0].mean()
+    return float(made / max(carried, ATOM / problem.scales.h))

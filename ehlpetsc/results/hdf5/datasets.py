@@ -96,19 +96,24 @@ def room(file, data_bytes):
     os.ftruncate(descriptor, file.id.get_filesize() + RESERVE_BYTES)
 
 
-def close(file, status):
+def close(file, status, limits=""):
     """Note how the run ended, close the file and give its reserve back; one in memory stays open."""
     if in_memory(file):
-        attributes.change(file, "status", status)
+        _note_end(file, status, limits)
         return
     descriptor = os.dup(file.id.get_vfd_handle())
     try:
-        attributes.change(file, "status", status)
+        _note_end(file, status, limits)
         file.close()
         (end,) = struct.unpack_from("<Q", os.pread(descriptor, 48, 0), 28)  # as superblocks 2 and 3 have it
         os.ftruncate(descriptor, end)
     finally:
         os.close(descriptor)
+
+
+def _note_end(file, status, limits):
+    attributes.change(file, "status", status)
+    attributes.change(file, "limits", limits)
 
 
 def in_memory(file):

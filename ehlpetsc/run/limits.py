@@ -1,0 +1,93 @@
+"""What of a run is beyond the physics it computes with: a sentence each with the figure, told at its end.
+
+Fed by the figures that are kept of all steps anyway; the sentences go into the result file as well.
+"""
+
+import numpy as np
+
+from ehlpetsc.physics.rheology import viscosity
+from ehlpetsc.stepping.observables import MOLECULES
+from ehlpetsc.surfaces.mesh_fit import SHARE
+from ehlpetsc.surfaces.profile import SHORT
+
+YIELD = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
+MEASURED = 1e7  # Pa s: highest viscosities that have been measured of oils
+BALANCE = 0.05  # of the oil that the contact carries
+MOST_DECADES = 300  # of a viscosity that is printed
+
+
+def limits(case, scales, rough, totals):
+    """Limits that a run went beyond, one sentence each.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    rough : surfaces.roughness.Roughness or None
+    totals : dict of str to number
+        Figures of the run, see `ehlpetsc.results.totals.Totals`.
+
+    Returns
+    -------
+    list of str
+    """
+    if "p_max" not in totals:  # no step was taken
+        return []
+    told = [_yield(case, totals), _mesh(rough, scales)]
+    if case.fluid:
+        told += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
+    return [line for line in told if line]
+
+
+def _yield(case, totals):
+    if getattr(case.contact, "yield_pressure", None) is not None or totals["p_max"] <= YIELD:
+        return None
+    return (
+        f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
+        f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic"
+    )
+
+
+def _viscosity(fluid, totals):
+    pressure = totals["oil_pressure"]
+    decades = (float(viscosity(np.array([pressure]), fluid)[0][0]) + np.log(fluid.viscosity)) / np.log(10.0)
+    if decades <= np.log10(MEASURED):
+        return None
+    value = f"{10.0**decades:.1e}" if decades < MOST_DECADES else f"1e{decades:.0f}"
+    return (
+        f"viscosity: {value} Pa s by the law at the oil's greatest pressure, {1e-9 * pressure:.2f} GPa; "
+        "oils are measured up to about 1e7 Pa s"
+    )
+
+
+def _balance(case, totals):
+    error = totals["mass_error"]
+    if error <= BALANCE:
+        return None
+    figure = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
+    cure = "a finer mesh or smaller snes_atol loses less"
+    if case.contact.model == "direct":
+        cure = 'nodes in direct contact make oil, contact.model = "mixed" keeps it'
+    return f"oil balance: in one step {figure} the oil that the contact carries is lost or made; {cure}"
+
+
+def _molecules(totals):
+    count = totals["molecular_films"]
+    if not count:
+        return None
+    return (
+        f"film: {count} time{'s' * (count > 1)} a node out of contact had less than {1e9 * MOLECULES:g} nm "
+        "of oil, the size of a molecule or two, where oil is no continuum"
+    )
+
+
+def _mesh(rough, scales):
+    sides = [side for side in ("fast", "slow") if rough and getattr(rough, side)]
+    shares = {side: getattr(rough, side).short_share(scales.dx) for side in sides}
+    coarse = [f"{100 * share:.1f} % of surface.{side}" for side, share in shares.items() if share > SHARE]
+    if not coarse:
+        return None
+    return (
+        f"mesh: of the height variance, {' and '.join(coarse)} lie in waves of fewer than {SHORT} nodes; "
+        "asperities of so few nodes are the mesh's as much as the surface's"
+    )

@@ -1,0 +1,85 @@
+"""What is said at the end of a run that went beyond the physics it computes with."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.limits import limits
+from ehlpetsc.surfaces.roughness import Roughness
+
+CASES = Path(__file__).parents[2] / "cases"
+WITHIN = {
+    "p_max": 1.2e9,
+    "oil_pressure": 1.2e9,
+    "mass_error": 1e-7,
+    "molecular_films": 0,
+}
+
+
+@dataclass
+class Solids:
+    """Stands in for [contact] of a case whose solids yield."""
+
+    yield_pressure: float
+    model: str = "mixed"
+
+
+@dataclass
+class Yielding:
+    contact: Solids
+    fluid: object
+
+
+def told(name="table1_smooth", overrides=(), **changed):
+    case = load(CASES / f"{name}.toml", overrides)
+    scales = Scales.of(case)
+    return limits(case, scales, Roughness.of(case, scales), WITHIN | changed)
+
+
+def test_nothing_is_said_within_the_limits():
+    assert told() == [] and told("table1_rough") == [] and told("dry_hertz") == []
+
+
+def test_nothing_is_said_where_no_step_was_taken():
+    case = load(CASES / "table1_smooth.toml")
+    assert limits(case, Scales.of(case), None, {}) == []
+
+
+@pytest.mark.parametrize(
+    "changed, words",
+    [
+        ({"p_max": 6.65e9}, "pressure: up to 6.65 GPa"),
+        ({"oil_pressure": 9e9}, "viscosity: 5.0e+08"),
+        ({"mass_error": 0.44}, "oil balance: in one step 44 % of the oil"),
+        ({"mass_error": 101.3}, "oil balance: in one step 101 times the oil"),
+        ({"molecular_films": 7}, "film: 7 times a node"),
+        ({"molecular_films": 1}, "film: 1 time a node"),
+    ],
+)
+def test_each_limit_is_told_with_its_figure(changed, words):
+    (line,) = told(**changed)
+    assert line.startswith(words)
+
+
+def test_a_viscosity_that_has_been_measured_is_none():
+    assert told(oil_pressure=5e9) == []  # 5e5 Pa s
+
+
+def test_a_viscosity_beyond_all_numbers_is_told_by_its_decades():
+    barus = ("fluid.law=barus", "fluid.pressure_viscosity=1e-6")
+    (line,) = told(overrides=barus, oil_pressure=4e9)
+    assert line.startswith("viscosity: 1e1735 Pa s")
+
+
+def test_solids_that_yield_bear_what_they_are_given():
+    case = load(CASES / "table1_smooth.toml")
+    yielding = Yielding(Solids(5e9), case.fluid)
+    assert limits(yielding, Scales.of(case), None, WITHIN | {"p_max": 8e9}) == []
+
+
+def test_asperities_of_few_nodes_are_told_with_the_share_of_heights():
+    (line,) = told("table1_rough", ["mesh.points_per_half_width=50"])
+    assert line.startswith("mesh: of the height variance, 51.1 % of surface.fast and 51.1 % of surface.slow")
