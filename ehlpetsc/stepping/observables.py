@@ -92,9 +92,9 @@ def mass_error(problem, state):
     r"""Oil that the solution loses or makes in a step, over what the contact carries through.
 
     :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
-    is a balance that holds at every node. Where direct contact leaves the Reynolds equation out, F is the oil that
-    this makes; elsewhere, and everywhere in mixed contact, it is what Newton's tolerance leaves. (What is drawn
-    in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet node has
+    is a balance that holds at every node. Where direct contact leaves the Reynolds equation out, F is the oil
+    that this makes; elsewhere, and everywhere in mixed contact, it is what Newton's tolerance leaves. (What
+    is drawn in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet node has
     no balance, its pressure or its oil is given.
     """
     if problem.dry:

@@ -198,13 +198,11 @@ def test_shares_and_lengths_of_mixed_contact(run):
     np.testing.assert_allclose(steps.contact_length, dx * (solids > 0.0).sum(axis=1), rtol=1e-9)
     thin = result.film_thickness < 2.0 * 10e-9
     np.testing.assert_allclose(steps.thin_length, dx * thin.sum(axis=1), rtol=1e-9)
-    np.testing.assert_allclose(
-        steps.thin_share, dx * (result.pressure * thin).sum(axis=1) / load, rtol=1e-9
-    )
+    np.testing.assert_allclose(steps.thin_share, dx * (result.pressure * thin).sum(axis=1) / load, rtol=1e-9)
 
 
 def test_approach_is_that_of_the_film_at_the_inlet(run):
-    """h = h00 + x^2/2R + phi - (4/pi E') int p ln|x-s| ds, where the roughness is nothing as yet: at step 0."""
+    """h = h00 + x^2/2R + phi - (4/pi E') int p ln|x-s| ds, smooth at step 0."""
     case, result, of = run
     deflection = -4.0 / (np.pi * of.E) * (result.pressure @ logarithms(result.x))
     gap = result.film_thickness[:, 0] - result.x[0] ** 2 / (2.0 * of.R) - deflection
