@@ -2,10 +2,12 @@
 
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from made_results import P0, A, make_result, with_solids
+from matplotlib.figure import Figure
 from PIL import Image as image
 
 from ehlpetsc.errors import OutputError
@@ -38,23 +40,58 @@ def colours_in(path):
         return len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0))
 
 
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that the command would have written to files."""
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    return figures
+
+
+FRAME = ["pressure [GPa]", "film thickness [µm]"]
+MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
+
+
 @pytest.mark.parametrize(
-    "options, name",
+    "options, name, title, window, panels",
     [
-        ([], "one.png"),
-        (["--step", 12], "one.png"),
-        (["--time", 1e-5, "--around", 0.3], "one.png"),
-        (["--map"], "one.map.png"),
-        (["--map", "--around", 0, "--width", 1], "one.map.png"),
-        (["--contacts"], "one.contacts.png"),
+        ([], "one.png", "made up: step 0, 0.000 µs", (-1.6, 1.4), FRAME),
+        (["--step", 12], "one.png", "made up: step 12, 12.000 µs", (-1.6, 1.4), FRAME),
+        (["--time", 1e-5, "--around", 0.3], "one.png", "made up: step 10, 10.000 µs", (0.05, 0.55), FRAME),
+        (["--map"], "one.map.png", "made up", (-1.6, 1.375), MAP),
+        (["--map", "--around", 0, "--width", 1], "one.map.png", "made up", (-0.5, 0.5), MAP),
+        (
+            ["--contacts"],
+            "one.contacts.png",
+            "made up",
+            (-1.5, 1.5),
+            ["contacts per ms", "the same, polynomial\nof order 8"],
+        ),
     ],
 )
-def test_picture_is_drawn_beside_the_result(tmp_path, result, options, name, capsys):
+def test_what_a_picture_of_one_result_shows(
+    tmp_path, result, drawn, capsys, options, name, title, window, panels
+):
     assert draw(result, *options) == 0
     assert capsys.readouterr().out == f"{tmp_path / name}\n"
-    with image.open(tmp_path / name) as picture:
-        assert min(picture.size) > 600
-    assert colours_in(tmp_path / name) > 30
+    (figure,) = drawn
+    upper = figure.axes[0]
+    assert upper.get_title() == title
+    assert upper.get_xlim() == pytest.approx(window)
+    assert [axes.get_ylabel() for axes in figure.axes] == panels
+
+
+def test_a_picture_is_written_in_the_format_of_its_name(tmp_path, result, monkeypatch):
+    monkeypatch.setattr(plot, "DPI", 80)
+    assert draw(result, "-o", tmp_path / "out.png") == 0
+    assert colours_in(tmp_path / "out.png") > 30
+    with image.open(tmp_path / "out.png") as picture:
+        assert picture.size == pytest.approx([80 * inches for inches in figures.SIZE], abs=1)
+    assert draw(result, "-o", tmp_path / "out.svg") == 0
+    root = ElementTree.parse(tmp_path / "out.svg").getroot()
+    lines = [path.get("d", "") for path in root.iter("{http://www.w3.org/2000/svg}path")]
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    assert sum(line.count("L") > 50 for line in lines) >= 3  # curves over the nodes in view
 
 
 def test_drawing_leaves_matplotlib_as_it_was(tmp_path, result):
@@ -73,15 +110,23 @@ def test_drawing_leaves_matplotlib_as_it_was(tmp_path, result):
     assert done.returncode == 0, done.stderr
 
 
-def test_svg_holds_text_and_lines(tmp_path, result):
-    assert draw(result, "-o", tmp_path / "out.svg") == 0
-    assert "<svg" in (tmp_path / "out.svg").read_text()
+@pytest.mark.parametrize("kind, panels, curves", [([], FRAME, [4, 3]), (["--contacts"], None, [3, 3])])
+def test_series_is_overlaid(series, drawn, kind, panels, curves):
+    assert draw(*series, *kind) == 0
+    (figure,) = drawn
+    assert panels in (None, [axes.get_ylabel() for axes in figure.axes])
+    assert [len(axes.lines) for axes in figure.axes] == curves  # one a member, and Hertz' pressure
+    legend = next(axes.get_legend() for axes in figure.axes if axes.get_legend())
+    assert [text.get_text().split(":")[0] for text in legend.texts] == ["0.002", "0.005", "0.01"]
+    film = figure.axes[1]
+    assert len({line.get_color() for line in film.lines}) == 3
 
 
-@pytest.mark.parametrize("kind", [[], ["--contacts"], ["--map"]])
-def test_series_is_overlaid(tmp_path, series, kind):
-    assert draw(*series, *kind, "-o", tmp_path / "out.png") == 0
-    assert colours_in(tmp_path / "out.png") > 100
+def test_maps_of_a_series_stand_side_by_side(series, drawn):
+    assert draw(*series, "--map") == 0
+    (figure,) = drawn
+    titles = [axes.get_title() for axes in figure.axes]
+    assert titles == [*(f"fluid.viscosity = {v}" for v in ("0.002", "0.005", "0.01")), ""]  # last the colours
 
 
 def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
@@ -92,9 +137,15 @@ def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
         assert movie.n_frames == 4
 
 
-def test_steady_and_dry_results_are_drawn(tmp_path):
+def test_a_steady_result_without_contacts_is_drawn(tmp_path, drawn):
     fields = ["pressure", "film_thickness"]
-    assert draw(make_result(tmp_path / "one.h5", steps=1, fields=fields)) == 0
+    path = make_result(tmp_path / "one.h5", steps=1, fields=fields)
+    assert draw(path) == 0
+    (figure,) = drawn
+    with read_result(path) as steady:
+        for axes, name, unit in zip(figure.axes, fields, (1e9, 1e-6), strict=True):
+            (line,) = [line for line in axes.lines if len(line.get_xdata()) == len(steady.x)]  # not Hertz's
+            np.testing.assert_allclose(line.get_ydata(), steady[name][0] / unit)
 
 
 def test_instant_is_the_one_with_most_contacts(result):
@@ -229,7 +280,6 @@ def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
     assert [line.get_ydata().max() for line in dashed] == pytest.approx([1.0, 2.0], rel=1e-3)
     told = [text.get_text() for text in upper.get_legend().texts]
     assert told[0].startswith("case 1\n") and told[1].endswith("p0 = 2 GPa")
-    assert draw(*paths) == 0
 
 
 def test_panels_of_a_map_share_their_colours(tmp_path, series):
