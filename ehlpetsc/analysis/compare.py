@@ -220,7 +220,9 @@ def _tolerance(text):
 
 def main(arguments=None):
     """Run the command; returns its exit status."""
-    parser = argparse.ArgumentParser(prog=program("ehlpetsc.compare"), description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog=program("ehlpetsc.compare"), description=__doc__.partition(":")[0] + "."
+    )
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")

@@ -43,7 +43,9 @@ def _check(results, kind, options):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(prog=program("ehlpetsc.plot"), description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog=program("ehlpetsc.plot"), description="Draw results, or a series by its index."
+    )
     parser.add_argument("results", nargs="+", metavar="RESULT.h5")
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()

@@ -1,4 +1,4 @@
-"""``python3 -m ehlpetsc.study``: how accurate, how fast, how robust.
+"""How accurate, how fast, how robust: ``python3 -m ehlpetsc.study``.
 
 ``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
 at the edge of the ranges. ``--contact CASE.toml``: how much solids carry, against mesh, time step, boundary
@@ -13,55 +13,42 @@ from pathlib import Path
 from ehlpetsc import environment
 from ehlpetsc.errors import CaseError
 
+SWEPT = {  # lists of values: type, default, what they are
+    "--meshes": (int, [50, 100, 200, 400], "points per half width"),
+    "--courant": (float, [0.5, 1.0, 2.0, 4.0], "time steps"),
+    "--ranks": (int, [2], "ranks besides one"),
+    "--boundary-films": (float, [10e-9], "boundary films of --contact [m]"),
+}
+SWITCHES = {
+    "--damage": "the error in damage too",
+    "--contact": "how much contact, against mesh and model",
+    "--extremes": "run the table of extremes",
+    "--short": "its short form: coarser, fewer steps",
+}
+
 
 def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(
         prog=environment.program("ehlpetsc.study"),
-        description=__doc__,
+        description=__doc__.partition(":")[0] + "." + __doc__.partition("\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("case", nargs="?", help="case file")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="TABLE.KEY=VALUE",
-        help="change of the case that all runs share; may be repeated",
-    )
-    parser.add_argument(
-        "--meshes",
-        type=int,
-        nargs="+",
-        default=[50, 100, 200, 400],
-        help="points per half width (default: 50 100 200 400)",
-    )
-    parser.add_argument(
-        "--courant",
-        type=float,
-        nargs="+",
-        default=[0.5, 1.0, 2.0, 4.0],
-        help="time steps (default: 0.5 1 2 4)",
-    )
-    parser.add_argument("--ranks", type=int, nargs="+", default=[2], help="ranks besides one (default: 2)")
-    parser.add_argument("--damage", action="store_true", help="damage too, by ehlpetsc.post")
-    parser.add_argument("--contact", action="store_true", help="how much contact, against mesh and model")
-    parser.add_argument(
-        "--models",
-        nargs="+",
-        choices=["direct", "mixed"],
-        default=["direct", "mixed"],
-        help="contact models (default: both)",
-    )
-    parser.add_argument(
-        "--boundary-films", type=float, nargs="+", default=[10e-9], metavar="M", help="[m] (default: 10e-9)"
-    )
-    parser.add_argument("--extremes", action="store_true", help="run the table of extremes")
-    parser.add_argument("--short", action="store_true", help="its short form: coarser, fewer steps")
-    parser.add_argument("--random", type=int, metavar="N", help="run N random cases of 50 steps")
-    parser.add_argument("--seed", type=int, default=1, help="of the random cases (default: 1)")
-    parser.add_argument("-o", "--output", help="stem of CSV file and picture (default: by what is run)")
-    parser.add_argument("--limit", type=float, default=600.0, help="seconds for one run (default: 600)")
+    add = parser.add_argument
+    add("case", nargs="?", help="case file")
+    shared = "change of the case that all runs share; may be repeated"
+    add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=shared)
+    for name, (kind, default, what) in SWEPT.items():
+        shown = " ".join(f"{value:g}" for value in default)
+        add(name, type=kind, nargs="+", default=default, metavar="N", help=f"{what} (default: {shown})")
+    for name, what in SWITCHES.items():
+        add(name, action="store_true", help=what)
+    models = ["direct", "mixed"]
+    add("--models", nargs="+", choices=models, default=models, help="contact models (default: both)")
+    add("--random", type=int, metavar="N", help="run N random cases of 50 steps")
+    add("--seed", type=int, default=1, help="of the random cases (default: 1)")
+    add("-o", "--output", help="stem of CSV file and picture (default: by what is run)")
+    add("--limit", type=float, default=600.0, help="seconds for one run (default: 600)")
     return parser
 
 

@@ -133,12 +133,15 @@ def test_the_commands_work_from_any_folder(environment, tmp_path):
 def test_help_names_the_command_as_it_was_called(monkeypatch, capsys, name, by_name):
     words = [f"/anywhere/bin/{name}" if by_name else "/anywhere/__main__.py"]
     monkeypatch.setattr(sys, "argv", words if name == "ehlpetsc" else [*words, "--help"])
-    called = name if by_name else f"python3 -m {name.replace('-', '.')}"
+    module = name.replace("-", ".")
+    called = name if by_name else f"python3 -m {module}"
     try:
         commands.BY_NAME[name]()
     except SystemExit as end:
         assert end.code == 0
-        assert capsys.readouterr().out.startswith(f"usage: {called} [-h]")
+        told = capsys.readouterr().out
+        assert told.startswith(f"usage: {called} [-h]")
+        assert f"{called} " not in told.partition("[-h]")[2] and (not by_name or f"-m {module} " not in told)
     else:  # without a case
         told = capsys.readouterr().err
         assert told == f"ehlpetsc: which case? {called} CASE.toml [options]; what there is: {called} -help\n"
