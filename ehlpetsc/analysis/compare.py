@@ -220,9 +220,8 @@ def _tolerance(text):
 
 def main(arguments=None):
     """Run the command; returns its exit status."""
-    parser = argparse.ArgumentParser(
-        prog=program("ehlpetsc.compare"), description=__doc__.partition(":")[0] + "."
-    )
+    about = "Compare two result files field by field."
+    parser = argparse.ArgumentParser(prog=program("ehlpetsc.compare"), description=about)
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")

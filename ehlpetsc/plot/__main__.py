@@ -43,9 +43,8 @@ def _check(results, kind, options):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(
-        prog=program("ehlpetsc.plot"), description="Draw results, or a series by its index."
-    )
+    about = "Draw results, or a series by its index."
+    parser = argparse.ArgumentParser(prog=program("ehlpetsc.plot"), description=about)
     parser.add_argument("results", nargs="+", metavar="RESULT.h5")
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()

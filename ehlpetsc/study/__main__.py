@@ -31,7 +31,7 @@ def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(
         prog=environment.program("ehlpetsc.study"),
-        description=__doc__.partition(":")[0] + "." + __doc__.partition("\n")[2],
+        description=__doc__.partition(":")[0] + ".\n" + __doc__.partition("\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
