@@ -97,6 +97,15 @@ class Scales:
         """Speed of the faster surface [m/s], whichever way it moves."""
         return max(abs(self.u1), abs(self.u2))
 
+    @property
+    def travel(self):
+        """Way of the faster surface over the whole run [m]; None in a steady case."""
+        return None if self.duration is None else self.duration * self.u_max
+
+    def travelled(self, time):
+        """Ways of the fast and the slow surface [m] in a time [s], signed."""
+        return self.u1 * time, self.u2 * time
+
     @classmethod
     def of(cls, case):
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""

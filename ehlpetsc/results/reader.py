@@ -14,6 +14,7 @@ FORMAT_VERSION = 1
 """Version of the layout; a reader refuses files of a later one."""
 
 ATTRIBUTES = {"title": str, "case": str, "status": str, "a": float, "p0": float, "u1": float, "u2": float}
+CHECKED = 1024  # frames at a time
 BEYOND = 2000  # times the size of a file: more numbers than its packed bytes can stand for
 
 
@@ -264,6 +265,14 @@ class Result:
             },
             dict(self.attrs),
         )
+
+    def check(self):
+        """Read everything once; OutputError where something is damaged."""
+        for name in ["step", *self.fields]:
+            for begin in range(0, self._frames, CHECKED):
+                self[name][begin : min(begin + CHECKED, self._frames)]
+        for name in self.figures:
+            self.steps(name)
 
     def frame(self, name, index):
         """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""

@@ -1,13 +1,22 @@
-"""Restart files: the state of a run, written so that a half-written one never replaces a whole one."""
+"""Restart files: arrays and numbers in HDF5, behind a head that holds a checksum over all of it.
 
+The head is the file's user block, 512 bytes that HDF5 leaves alone. It is looked at before HDF5 is: a file
+that is not byte for byte what was written is refused, and HDF5 never meets one that could make it crash.
+"""
+
+import hashlib
 import io
 from pathlib import Path
 
 import h5py
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.reader import FORMAT_VERSION, open_for_reading
+from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.whole_file import plain_reason, write_whole
+
+VERSION = 2
+HEAD = 512  # bytes
+MARK = b"ehlpetsc restart file"
 
 
 def save_restart(path, arrays, attrs):
@@ -17,23 +26,21 @@ def save_restart(path, arrays, attrs):
     ----------
     path : str or path-like
     arrays : dict of str to ndarray
-    attrs : dict of str to scalar or str
+    attrs : dict of str to number or str
 
     Raises
     ------
     OutputError
         It could not be written; an older file of the name is as it was.
     """
-    path = Path(path)
-    image = io.BytesIO()  # HDF5 does not end cleanly on a full disk, a plain write does
-    with h5py.File(image, "w") as file:
-        file.attrs["restart_version"] = FORMAT_VERSION
-        for key, value in attrs.items():
-            file.attrs[key] = value
+    path, image = Path(path), io.BytesIO()
+    with h5py.File(image, "w", libver="latest", userblock_size=HEAD) as file:
+        attributes.put(file, attrs)
         for name, array in arrays.items():
             file[name] = array
+    body = image.getbuffer()[HEAD:]
     try:
-        write_whole(path, image.getbuffer())
+        write_whole(path, _head(body) + bytes(body))
     except OSError as error:
         raise OutputError(f"{path}: restart file not written, {plain_reason(error)}") from error
 
@@ -49,17 +56,35 @@ def load_restart(path):
     Raises
     ------
     OutputError
-        Missing, damaged, no restart file, or of a later version.
+        Missing, damaged, no restart file, or of another version.
     """
-    with open_for_reading(path) as file:
-        version = file.attrs.get("restart_version")
-        if version is None:
-            hint = ", but a result file" if "format_version" in file.attrs else ""
-            raise OutputError(f"{path}: not a restart file of ehlpetsc{hint}")
-        if version > FORMAT_VERSION:
-            raise OutputError(f"{path}: version {version}, this ehlpetsc reads up to {FORMAT_VERSION}")
-        try:
-            attrs = {key: value for key, value in file.attrs.items() if key != "restart_version"}
-            return {name: file[name][()] for name in file}, attrs
-        except (OSError, RuntimeError) as error:
-            raise OutputError(f"{path}: damaged restart file ({error})") from error
+    path = Path(path)
+    if not path.is_file():
+        raise OutputError(f"{path}: no such file")
+    try:
+        whole = path.read_bytes()
+    except OSError as error:
+        raise OutputError(f"{path}: not read, {error.strerror}") from error
+    _check(path, whole)
+    with h5py.File(io.BytesIO(whole), "r") as file:
+        return {name: file[name][()] for name in file}, dict(attributes.Attributes(file, path))
+
+
+def _head(body):
+    text = b"%s %d\nsha256 %s\n" % (MARK, VERSION, hashlib.sha256(body).hexdigest().encode())
+    return text.ljust(HEAD, b"\0")
+
+
+def _check(path, whole):
+    kind, _, version = whole[:HEAD].partition(b"\n")[0].rpartition(b" ")
+    if kind != MARK:
+        known = b"format_version" in whole or b"restart_version" in whole
+        other = (
+            "a result file, or a restart file of an earlier ehlpetsc" if known else "damaged, or another file"
+        )
+        raise OutputError(f"{path}: not a restart file of this ehlpetsc, but {other}")
+    if version != b"%d" % VERSION:
+        shown = version[:20].decode(errors="replace")
+        raise OutputError(f"{path}: a restart file of version {shown}, this ehlpetsc reads {VERSION}")
+    if whole[:HEAD] != _head(memoryview(whole)[HEAD:]):
+        raise OutputError(f"{path}: damaged restart file: its content does not agree with its checksum")

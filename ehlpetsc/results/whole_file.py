@@ -1,6 +1,7 @@
 """Files written whole: a reader finds the old one or the new one, never a part."""
 
 import contextlib
+import glob
 import os
 import tempfile
 from pathlib import Path
@@ -35,6 +36,13 @@ def write_whole(path, content):
         file.write(content)
         file.flush()
         os.fsync(file.fileno())
+
+
+def remove_left(path):
+    """Remove what killed runs have left beside `path`; for who has the lock on it."""
+    for beside in Path(path).parent.glob(f".{glob.escape(Path(path).name)}.*.tmp"):
+        with contextlib.suppress(OSError):
+            beside.unlink()
 
 
 def plain_reason(error):

@@ -14,11 +14,13 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.output_guard import Lock, check_place, check_replaceable, inputs_of
 from ehlpetsc.results.totals import Totals
+from ehlpetsc.results.whole_file import remove_left
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run import checkpoint
 from ehlpetsc.run.limits import limits
+from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.stepping.step_control import on_level
 
+SAME_PLACE = 1e-6  # mesh spacings: ways nearer than this differ by rounding
 MESSAGE_BYTES = 2**30  # MPI counts to twice as many
 
 
@@ -97,6 +99,8 @@ class Recorder:
         check_place(self.restart, read)
         self._lock = Lock(self.output)
         self._lock.take()
+        for path in (self.output, self.restart):
+            remove_left(path)
         if not (restart or overwrite):
             check_replaceable(self.output, self.restart, case.text)
 
@@ -109,10 +113,10 @@ class Recorder:
             What to know about it, one line each.
         """
         simulation, model = self.simulation, self.simulation.march.problem.model
-        solution, smooth, count, totals, notes = checkpoint.load(
+        solution, smooth, count, totals, bodies, notes = checkpoint.load(
             path, simulation.case, simulation.scales, model
         )
-        simulation.resume(solution, smooth)
+        simulation.resume(solution, smooth, bodies)
         self.totals = Totals(totals)
         self._open(solution.step, count)
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
@@ -183,12 +187,22 @@ class Recorder:
             simulation.case,
             simulation.scales,
             simulation.march.problem.model,
+            simulation.bodies.entrances,
         )
 
     def _close(self, status):
         simulation = self.simulation
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
         self._writer.close(status.words, self.limits)
+
+    def _offsets(self):
+        """What makes s = x - speed time hold in a result that begins after a change of speed [m]."""
+        simulation = self.simulation
+        if simulation.solution is None:
+            return 0.0, 0.0
+        now, constant = simulation.solution.travelled, simulation.scales.travelled(simulation.solution.time)
+        apart = [way - steady for way, steady in zip(now, constant, strict=True)]
+        return [offset if abs(offset) > SAME_PLACE * simulation.scales.dx else 0.0 for offset in apart]
 
     def _create(self, step, count):
         case, scales = self.simulation.case, self.simulation.scales
@@ -210,17 +224,18 @@ class Recorder:
             figures=of_case(STEP_SCALARS, case),
             every=case.output.every,
             precision=case.output.precision,
-            profiles=profiles(self.simulation.roughness),
+            profiles=profiles(self.simulation.roughness, self._offsets()),
             resume_step=step,
             contact_count=count,
         )
 
 
-def profiles(roughness):
-    """Both surfaces as the writer takes them."""
+def profiles(roughness, offsets):
+    """Both surfaces as the writer takes them, their coordinates moved by `offsets` [m]."""
     sides = {side: roughness and getattr(roughness, side) for side in ("fast", "slow")}
     return {
-        side: p and (p.s, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk}) for side, p in sides.items()
+        side: p and (p.s + offset, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk})
+        for (side, p), offset in zip(sides.items(), offsets, strict=True)
     }
 
 

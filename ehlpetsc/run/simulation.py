@@ -16,7 +16,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.observables import observe
 from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.roughness import Bodies, Roughness
 
 FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 
@@ -68,6 +68,8 @@ class Simulation:
     ----------
     scales : physics.scales.Scales
     roughness : surfaces.roughness.Roughness or None
+    bodies : surfaces.roughness.Bodies
+        Where they were as this run began.
     options : nonlinear.defaults.RunOptions
         A context: whoever takes many steps enters it once around them.
     march : stepping.time_stepping.TimeStepping
@@ -106,6 +108,7 @@ class Simulation:
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.petsc, {name: _text(v) for name, v in (options or {}).items()})
         self.scales = Scales.of(case)
+        self.bodies = Bodies.at_rest(self.scales)
         self.roughness = Roughness.of(case, self.scales)
         film = expected_film(case, self.scales)
         self.state = self.solution = self.watch = None
@@ -120,13 +123,22 @@ class Simulation:
         """Whether the last state is the end of the travel; of a steady case, whether it is solved."""
         if self.solution is None:
             return False
-        return self.case.time is None or self.solution.time >= self.scales.duration * (1.0 - 1e-9)
+        return self.case.time is None or self._way_left() <= 1e-9 * self.scales.travel
+
+    @property
+    def end(self):
+        """Time at which the travel is over [s]."""
+        return self.solution.time + max(self._way_left(), 0.0) / self.scales.u_max
+
+    def _way_left(self):
+        """Of the faster surface [m]."""
+        return self.scales.travel - max(map(abs, self.solution.travelled))
 
     def __iter__(self):
         while not self.finished:
             yield self.advance()
 
-    def resume(self, solution, smooth):
+    def resume(self, solution, smooth, bodies):
         """Go on from a time level instead of from the steady solution.
 
         Parameters
@@ -134,8 +146,13 @@ class Simulation:
         solution : stepping.time_stepping.State
         smooth : pair of ndarray, shape (nx,)
             Steady q and w, for the predictor.
+        bodies : surfaces.roughness.Bodies
+            Where both bodies are.
         """
-        self.solution, self.march.smooth = solution, smooth
+        if solution.m is None:
+            solution.m = self.march.problem.content(solution.q, solution.w)
+        self.solution, self.march.smooth, self.bodies = solution, smooth, bodies
+        self.roughness = self.march.roughness = Roughness.of(self.case, self.scales, bodies)
 
     def advance(self, dt=None):
         """Solve the steady contact, afterwards one time step.

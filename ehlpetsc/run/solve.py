@@ -55,7 +55,7 @@ def record(simulation, recorder, stop=None, stream=None):
             status = ExitStatus.STOPPED
         else:
             if stream and begun and progress is None:
-                progress = Progress(simulation.solution.time, simulation.scales.duration, stream)
+                progress = Progress(simulation.solution.time, simulation.end, stream)
             try:
                 recorder.take(simulation.advance())
             except NotConverged as error:

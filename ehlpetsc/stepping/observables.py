@@ -37,7 +37,9 @@ def observe(case, scales, rq, problem, state, started):
     # direct contact does not tell the solids' pressure from the oil's: there they carry what there is
     oil, carried = (pressure - solids, solids) if model.is_mixed else (pressure, pressure)
     void = np.zeros_like(pressure) if p.dry else np.maximum(-state.q, 0.0)
-    fast, slow = shear_stresses(case, s, oil, carried, thickness, void, touching)
+    # the shear of a film that rounding left would be anything: there the solids rub
+    rubbing = touching if model.is_mixed else state.h <= model.bound + model.near
+    fast, slow = shear_stresses(case, s, oil, carried, thickness, void, rubbing)
     load, friction = s.dx * pressure.sum(), s.dx * slow.sum()
     film = mean_film(s, state.h)
     figures = {

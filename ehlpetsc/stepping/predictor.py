@@ -16,9 +16,9 @@ AGE = 0.03  # nodes off a whole number that a level one step younger makes up fo
 
 
 class Level(NamedTuple):
-    """Unknowns of an earlier time level [s]."""
+    """Unknowns of an earlier time level, and the way that the film had gone there [m]."""
 
-    time: float
+    travelled: float
     q: np.ndarray
     w: np.ndarray
 

@@ -34,6 +34,8 @@ class State:
         [s]; `dt` is the step that led here (None at the start).
     step
         Number of steps taken.
+    travelled
+        Ways of the fast and the slow surface since time 0 [m], signed.
     earlier
         The two levels before this one, latest first.
     imbalance
@@ -50,6 +52,7 @@ class State:
     time: float = 0.0
     dt: float | None = None
     step: int = 0
+    travelled: tuple = (0.0, 0.0)
     earlier: tuple = ()
     newton: int = 0
     retries: int = 0
@@ -58,7 +61,7 @@ class State:
     @property
     def level(self):
         """What predictors of later steps need of this one."""
-        return Level(self.time, self.q, self.w)
+        return Level(0.5 * sum(self.travelled), self.q, self.w)
 
 
 class TimeStepping:
@@ -83,17 +86,23 @@ class TimeStepping:
         self.roughness = roughness
         self.smooth = None
 
-    def phi(self, time):
-        """What the roughness adds to the gap at `time` [s], in a^2/R: means over the cells of the mesh."""
+    def phi(self, travelled):
+        """What the roughness adds to the gap, in a^2/R: means over the cells of the mesh.
+
+        Parameters
+        ----------
+        travelled : (float, float)
+            Ways of the fast and the slow surface [m].
+        """
         if self.roughness is None:
             return np.zeros(self.problem.n)
         with events.ROUGHNESS:
             places, cell = self.scales.x * self.scales.a, self.scales.dx
-            return self.roughness.phi(places, time, cell) / self.scales.h
+            return self.roughness.phi_after(places, travelled, cell) / self.scales.h
 
     def start(self):
         """Steady solution at time 0."""
-        inputs = self.problem.inputs(self.phi(0.0))
+        inputs = self.problem.inputs(self.phi((0.0, 0.0)))
         try:
             q, w, h00, newton = steady(self.solver, self.film, inputs)
         except NoSteadyStart as error:
@@ -111,8 +120,13 @@ class TimeStepping:
         if self.roughness is None or self.problem.dry:
             return state.q, state.w
         levels = (state.level, *state.earlier)
-        nodes = [self.scales.u * (state.time + dt - level.time) / self.scales.dx for level in levels]
+        then = 0.5 * sum(self._travelled(state, dt))
+        nodes = [(then - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, Level(0.0, *self.smooth), levels, nodes)
+
+    def _travelled(self, state, dt):
+        """Ways of both surfaces [m] after a step of dt [s]."""
+        return tuple(map(sum, zip(state.travelled, self.scales.travelled(dt), strict=True)))
 
     def _inputs(self, state, dt):
         history = None
@@ -120,7 +134,7 @@ class TimeStepping:
             unit = self.scales.u / self.scales.a
             older = None if state.dt is None else state.dt * unit
             history = FilmHistory(state.m, state.m_older, dt * unit, older)
-        return self.problem.inputs(self.phi(state.time + dt), history)
+        return self.problem.inputs(self.phi(self._travelled(state, dt)), history)
 
     def advance(self, state, dt=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
@@ -146,6 +160,7 @@ class TimeStepping:
             h00,
             m_older=state.m,
             time=state.time + dt,
+            travelled=self._travelled(state, dt),
             dt=dt,
             step=state.step + 1,
             newton=newton + iterations,

@@ -27,8 +27,8 @@ class Profile:
         U [m/s].
     moving : bool
         False in a steady case.
-    inlet, outlet, ramp, duration : float
-        Ends of the domain and length of the ramp [m], time the run takes [s].
+    inlet, outlet, ramp, drawn_in : float
+        Ends of the domain, length of the ramp and of the profile that enters during the run [m].
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Profile:
         Of the samples about their mean: m, m, 1.
     """
 
-    def __init__(self, given, speed, moving, inlet, outlet, ramp, duration):
+    def __init__(self, given, speed, moving, inlet, outlet, ramp, drawn_in):
         from scipy.interpolate import CubicSpline
 
         X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
@@ -50,7 +50,7 @@ class Profile:
         if not self.enters:
             self._origin = inlet
         self.ramp = ramp
-        self.travelled = abs(speed) * duration if self.enters else outlet - inlet
+        self.travelled = drawn_in if self.enters else outlet - inlet
         # level ends: mirrored end to end, the profile has no kink
         self._spline = CubicSpline(X, z, bc_type="clamped")
         deviation = z - z.mean()

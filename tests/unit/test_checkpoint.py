@@ -8,11 +8,14 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact_model import contact_model
 from ehlpetsc.errors import OutputError
+from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run import checkpoint
+from ehlpetsc.results.restart_file import load_restart, save_restart
+from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.stepping.predictor import Level
 from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.surfaces.roughness import Bodies
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
 MESH = ["mesh.points_per_half_width=20"]
@@ -26,8 +29,9 @@ class Scene:
         self.model = contact_model(self.case, self.scales, expected_film(self.case, self.scales))
 
     def save(self, path, state, smooth):
-        count = np.arange(self.scales.nx)
-        checkpoint.save(path, state, smooth, count, TOTALS, self.case, self.scales, self.model)
+        count = np.arange(self.scales.nx) % 4
+        entrances = Bodies.at_rest(self.scales).entrances
+        checkpoint.save(path, state, smooth, count, TOTALS, self.case, self.scales, self.model, entrances)
 
     def load(self, path):
         return checkpoint.load(path, self.case, self.scales, self.model)
@@ -51,7 +55,7 @@ def state_of(scene, mixed=False):
 
     earlier = tuple(Level(time, *unknowns()) for time in (2e-6, 1e-6))
     m, m_older = rng.uniform(0.0, 1e-3, (2, n))
-    more = dict(time=3e-6, dt=1e-6, step=3, retries=1, earlier=earlier)
+    more = dict(time=3e-6, dt=1e-6, step=3, retries=1, earlier=earlier, travelled=(2e-5, 1e-5))
     return State(*unknowns(), -0.4, m=m, m_older=m_older, **more), unknowns()
 
 
@@ -60,38 +64,45 @@ def test_the_same_case_gets_back_what_was_saved(tmp_path, model):
     scene = Scene(f"contact.model='{model}'")
     state, smooth = state_of(scene, model == "mixed")
     scene.save(tmp_path / "f.restart.h5", state, smooth)
-    found, found_smooth, count, totals, notes = scene.load(tmp_path / "f.restart.h5")
+    found, found_smooth, count, totals, bodies, notes = scene.load(tmp_path / "f.restart.h5")
     assert notes == [] and totals == TOTALS
-    np.testing.assert_array_equal(count, np.arange(scene.scales.nx))
+    np.testing.assert_array_equal(count, np.arange(scene.scales.nx) % 4)
     for name in ("q", "w", "m", "m_older"):
         np.testing.assert_allclose(getattr(found, name), getattr(state, name), rtol=1e-14, atol=1e-18)
-    for name in ("h00", "time", "dt", "step", "retries"):
+    assert bodies.travelled == found.travelled and bodies.entrances == Bodies.at_rest(scene.scales).entrances
+    for name in ("h00", "time", "dt", "step", "retries", "travelled"):
         assert getattr(found, name) == getattr(state, name), name
     for one, other in zip((*found.earlier, (0, *found_smooth)), (*state.earlier, (0, *smooth)), strict=True):
         assert one[0] == other[0]
         np.testing.assert_allclose(one[1:], other[1:], rtol=1e-14, atol=1e-18)
 
 
-def test_under_another_load_pressures_films_and_voids_stay_what_they_were(tmp_path):
-    """Twice the load at half the radius: the nodes stay, but p0 and the unit of films double."""
-    scene = Scene()
+@pytest.mark.parametrize(
+    "change", [("contact.load=1054e3", "contact.radius=0.00955"), ("contact.load=2108e3",)]
+)
+def test_under_another_load_the_state_is_that_of_the_new_contact(tmp_path, change):
+    """Pressures keep their share of p0; films above Hertz' gap and oil in cavities keep their metres."""
+    scene, other = Scene(), Scene(*change)
     state, smooth = state_of(scene)
     scene.save(tmp_path / "f.restart.h5", state, smooth)
-    other = Scene("contact.load=1054e3", "contact.radius=0.00955")
-    assert other.scales.a == pytest.approx(scene.scales.a, rel=1e-12)
-    assert other.scales.p0 == pytest.approx(2.0 * scene.scales.p0, rel=1e-12)
-    found, found_smooth, _, _, notes = other.load(tmp_path / "f.restart.h5")
-    pairs = [((found.q, found.w), (state.q, state.w)), (found_smooth, smooth)]
-    pairs += [(one[1:], before[1:]) for one, before in zip(found.earlier, state.earlier, strict=True)]
-    for one, before in pairs:
-        for value, expected in zip(other.physical(*one), scene.physical(*before), strict=True):
-            np.testing.assert_allclose(value, expected, rtol=1e-12)
-    unit = scene.scales.h / other.scales.h
-    np.testing.assert_allclose(found.m, unit * state.m, rtol=1e-12)
-    np.testing.assert_allclose(found.m_older, unit * state.m_older, rtol=1e-12)
-    assert found.h00 == pytest.approx(unit * state.h00, rel=1e-12)
-    assert (found.time, found.dt) == (state.time, state.dt)
-    assert notes == ["contact.radius was 0.0191, is 0.00955", "contact.load was 527000.0, is 1054000.0"]
+    found, found_smooth, _, _, bodies, notes = other.load(tmp_path / "f.restart.h5")
+    x = scene.scales.x
+    for (q, w), (q0, w0) in (((found.q, found.w), (state.q, state.w)), (found_smooth, smooth)):
+        np.testing.assert_array_equal(np.maximum(q, 0.0), np.maximum(q0, 0.0))
+        oil, oil_then = (u * s.h * f for u, s, f in ((1 + q, other.scales, w), (1 + q0, scene.scales, w0)))
+        void = q < 0.0
+        assert void.sum() > 5
+        np.testing.assert_allclose(oil[void], oil_then[void], rtol=1e-12)
+        inside = np.abs(x) <= 1.0
+        np.testing.assert_allclose(other.scales.h * w[inside], scene.scales.h * w0[inside], rtol=1e-12)
+        above, above_then = (
+            (f - hertz_gap(x, 1.0, 1.0)) * s.h for f, s in ((w, other.scales), (w0, scene.scales))
+        )
+        np.testing.assert_allclose(above[w > 0], above_then[w > 0], rtol=1e-9)
+    assert (found.m, found.m_older, found.dt, found.earlier) == (None, None, None, ())
+    assert (found.time, found.step, found.travelled) == (state.time, state.step, state.travelled)
+    assert bodies.entrances == (x[0] * scene.scales.a, x[-1] * scene.scales.a)
+    assert "contact.load was 527000.0" in " ".join(notes)
 
 
 def test_a_run_may_go_on_with_solids_that_carry_and_back(tmp_path):
@@ -121,7 +132,6 @@ def test_every_other_key_may_change_and_is_told_but_what_is_no_physics(tmp_path)
     "change, message",
     [
         (["mesh.points_per_half_width=21"], "nodes, the case"),
-        (["contact.load=400e3"], "its nodes lie from"),
         (["mesh.inlet=-2.45", "mesh.outlet=1.55"], "its nodes lie from"),
     ],
 )
@@ -130,3 +140,84 @@ def test_another_mesh_is_refused(tmp_path, change, message):
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
     with pytest.raises(OutputError, match=message):
         Scene(*change).load(tmp_path / "f.restart.h5")
+
+
+def test_a_rough_body_cannot_turn_round(tmp_path):
+    scene = Scene()
+    scene.save(tmp_path / "f.restart.h5", *state_of(scene))
+    with pytest.raises(OutputError, match="surface.slow moved at 4.375 m/s, now at -1 m/s"):
+        Scene("motion.slide_roll_ratio=2.5", "motion.entrainment_speed=4.0").load(tmp_path / "f.restart.h5")
+
+
+NAN, NODE = np.nan, 7
+
+
+def change(name, how):
+    """Change an array or number of the content."""
+
+    def to(arrays, numbers):
+        held = arrays if name in arrays else numbers
+        held[name] = how(held[name])
+
+    return to
+
+
+def at_node(value):
+    def put(values):
+        values = values.copy()
+        values[..., NODE] = value
+        return values
+
+    return put
+
+
+DAMAGE = [
+    (lambda arrays, _: arrays.pop("q"), "q .oil pressure.* is missing"),
+    (lambda _, numbers: numbers.pop("h00"), "h00 .approach.* is missing"),
+    (lambda arrays, _: arrays.update(other=np.zeros(3)), "nobody knows its other"),
+    (change("q", at_node(NAN)), "q .* is not finite"),
+    (change("q", at_node(-1.5)), "q .* lies in -1.5 to"),
+    (change("h", at_node(-1e-9)), "h .* lies in -1e-09"),
+    (change("smooth_h", lambda v: v[:-1]), "smooth_h .* has the length 80 over node, others 81"),
+    (change("m", lambda v: v.astype("f4").view("i4")), "m .* is of the type int32"),
+    (change("earlier_q", lambda v: v[0]), "earlier_q .* has 1 dimensions, not 2"),
+    (lambda arrays, _: arrays.pop("earlier_h"), "of its earlier levels some fields are missing"),
+    (change("contact_count", at_node(9)), "contact_count is 9 after 3 steps"),
+    (change("x", lambda v: v[::-1]), "its nodes do not increase"),
+    (change("time", lambda v: -v), "time .* lies in -3e-06"),
+    (change("dt", lambda v: 1.0), "its last step is longer than its time"),
+    (change("step", lambda v: 3.5), "step .* is of the type float64"),
+    (change("p0", lambda v: "high"), "p0 .* is of the type"),
+    (change("case", lambda v: "[contact"), "its case cannot be read"),
+    (change("case", lambda v: 3.0), "case .* is missing or no text"),
+    (change("total newton", lambda v: np.inf), "total newton is inf"),
+    (change("a", lambda v: 0.0), "a .half width"),
+    (change("a", lambda v: 2.0 * v), "its nodes lie from"),
+]
+
+
+@pytest.mark.parametrize("damage, message", DAMAGE)
+def test_what_cannot_be_is_told_in_one_sentence(tmp_path, damage, message):
+    """Files with a right checksum, whose content is wrong."""
+    scene, path = Scene(), tmp_path / "f.restart.h5"
+    scene.save(path, *state_of(scene))
+    arrays, numbers = load_restart(path)
+    damage(arrays, numbers)
+    save_restart(path, arrays, numbers)
+    with pytest.raises(OutputError, match=message) as told:
+        scene.load(path)
+    assert "\n" not in str(told.value) and str(told.value).startswith(str(path))
+
+
+def test_every_byte_is_looked_at(tmp_path):
+    scene, path = Scene(), tmp_path / "f.restart.h5"
+    scene.save(path, *state_of(scene))
+    whole = path.read_bytes()
+    for place in range(0, len(whole), 997):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+        with pytest.raises(OutputError, match="checksum|not a restart file|version"):
+            scene.load(path)
+    for length in (0, 100, 512, len(whole) - 1):
+        path.write_bytes(whole[:length])
+        with pytest.raises(OutputError, match="checksum|not a restart file"):
+            scene.load(path)

@@ -249,6 +249,20 @@ def test_killed_run_is_readable_up_to_its_last_flush(tmp_path, lost):
             assert result.frame("film_thickness", k)[2] == k + 0.02
 
 
+@pytest.mark.parametrize("pace", [0.1, 0.7, 5.0])
+def test_a_kill_loses_no_more_than_two_seconds_of_whole_steps(tmp_path, monkeypatch, pace):
+    """What another process reads after every step is what a kill in the step that follows would leave."""
+    now = [0.0]
+    monkeypatch.setattr("ehlpetsc.results.writer.clock.monotonic", lambda: now[0])
+    writer = make_writer(tmp_path / "r.h5")
+    for step in range(40):
+        now[0] += pace
+        put(writer, [step])
+        with read_result(tmp_path / "r.h5") as left:
+            kept = len(left.time)
+        assert pace * (step + 1 - kept) <= 2.0
+
+
 @pytest.mark.parametrize("every", [1, 3])
 def test_resumed_run_equals_an_uninterrupted_one(tmp_path, every):
     first = written(tmp_path / "first.h5", range(60), every=every)
@@ -357,7 +371,7 @@ def test_restart_gives_back_what_was_saved(tmp_path):
 
 def test_restart_faults_are_told_in_words(tmp_path):
     result = written(tmp_path / "r.h5", range(2))
-    with pytest.raises(OutputError, match="not a restart file of ehlpetsc, but a result file"):
+    with pytest.raises(OutputError, match="not a restart file of this ehlpetsc, but a result file"):
         load_restart(result)
     with pytest.raises(OutputError, match="No such file or directory"):
         save_restart(tmp_path / "no" / "r.h5", {"p": X}, {})

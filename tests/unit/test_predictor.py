@@ -45,7 +45,7 @@ def test_the_smooth_solution_is_its_own_guess():
     film, x = problem.film_scale, problem.x
     q0 = np.where(x < 1.0, 0.7 / (1.0 + x**2), -0.5)
     smooth = Level(0.0, q0, film * (1.0 + np.maximum(x**2 - 1.0, 0.0)))
-    q, w = predict(problem, smooth, [smooth._replace(time=1e-6)], [2.4])
+    q, w = predict(problem, smooth, [smooth._replace(travelled=1e-6)], [2.4])
     np.testing.assert_allclose(q, smooth.q, rtol=1e-12)
     np.testing.assert_allclose(w, smooth.w, rtol=1e-12)
 

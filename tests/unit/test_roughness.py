@@ -23,7 +23,7 @@ A = 1e-3  # half width of the domains made here, m
 
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
-    return Profile(Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP * A, duration)
+    return Profile(Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP * A, abs(speed) * duration)
 
 
 def rough(name, *overrides):

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
+from ehlpetsc.stepping.observables import observe
+from ehlpetsc.stepping.time_stepping import State
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 NEWTONIAN, EYRING = 1e12, 10e6
@@ -103,3 +106,19 @@ def test_in_mixed_contact_the_oil_drags_beside_the_solids():
         (-1.0, 1.0), shear_stresses(mixed, scales, p, solids, h, void, touching), oil_alone, strict=True
     ):
         np.testing.assert_allclose(both - oil, sign * FRICTION * solids, atol=1e-6)
+
+
+def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
+    """Whether rounding leaves 0 or 1e-17 of it must not matter: runs continued and not differed there."""
+    case, scales, p, h = scene(0.5)
+    problem = EHLProblem(case, scales, 1e-2, 0, scales.nx)
+    found = []
+    for left in (0.0, 1e-17, 1e-9):
+        w = h / scales.h
+        w[[30, 60]] = left
+        state = State(p / scales.p0, w, 0.0, h=w, m=w, imbalance=np.zeros_like(w))
+        _, fields, touching = observe(case, scales, 0.0, problem, state, 0.0)
+        assert touching.sum() == (0 if left else 2)
+        found.append((fields["shear_stress_slow"], fields["shear_stress_fast"]))
+    for one in found[1:]:
+        np.testing.assert_allclose(one, found[0], rtol=1e-12)

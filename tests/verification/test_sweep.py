@@ -55,7 +55,11 @@ def test_same_film_pressure_and_contacts_as_newton(rough, step):
         unit = march.scales.u / march.scales.a
         history = FilmHistory(m, m_older, dt * unit, dt_older * unit)
         with simulation.options:
-            found.append(march.solver.solve(q, h, h00, march.problem.inputs(march.phi(time + dt), history)))
+            found.append(
+                march.solver.solve(
+                    q, h, h00, march.problem.inputs(march.phi(march.scales.travelled(time + dt)), history)
+                )
+            )
     for _, film, _, _ in found:
         np.testing.assert_array_equal(np.flatnonzero(film <= 0.0), CONTACTS[step])
     assert_same(rough[0].march.problem, *found, rtol=1e-5)

@@ -31,11 +31,18 @@ class Member:
         self.restart = self.output.with_suffix(".restart.h5")
 
     def state_of_files(self):
-        """What its files hold of the same case: "done", "begun" (a restart file) or "waiting"."""
+        """What its files hold of the same case: "done", "begun" (a restart file) or "waiting".
+
+        What is damaged is computed again: a result anywhere, a restart file by its checksum.
+        """
         try:
-            with read_result(self.output) as result:
-                if result.attrs["case"] == self.case.text and result.attrs["status"] == "done":
-                    return "done"
+            if self.output.exists():
+                with read_result(self.output) as result:
+                    if result.attrs["case"] != self.case.text:
+                        return "waiting"
+                    result.check()
+                    if result.attrs["status"] == "done":
+                        return "done"
             if load_restart(self.restart)[1]["case"] == self.case.text:
                 return "begun"
         except (OutputError, KeyError):

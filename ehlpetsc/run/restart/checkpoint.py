@@ -1,0 +1,160 @@
+"""A run's state into a restart file and back, checked against the case that it is to go on with."""
+
+import tomllib
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.restart_file import load_restart, save_restart
+from ehlpetsc.run.restart.contents import TOTAL, fault
+from ehlpetsc.run.restart.rescaling import rescale
+from ehlpetsc.stepping.predictor import Level
+from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.surfaces.roughness import Bodies
+
+NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
+MESH = 1e-9  # of the domain: how far nodes may have moved in x/a
+
+
+def save(path, state, smooth, contact_count, totals, case, scales, model, entrances):
+    """Write the restart file of a run.
+
+    Parameters
+    ----------
+    path : path-like
+    state : time_stepping.State
+    smooth : pair of ndarray
+        Steady q and w that the predictor starts from.
+    contact_count : ndarray of int, shape (nx,)
+    totals : dict of str to number
+        Of all steps so far, for the summary.
+    case, scales, model
+        Of the run; the contact model.
+    entrances : (float, float)
+        As of `surfaces.roughness.Bodies`.
+
+    Raises
+    ------
+    OutputError
+    """
+    arrays = {"x": scales.x * scales.a, "contact_count": contact_count}
+    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *smooth)
+    arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
+    if state.earlier:
+        ways, q, w = (np.array(part) for part in zip(*state.earlier, strict=True))
+        arrays |= {"earlier_travelled": ways} | _fields(model, "earlier_", q, w)
+    numbers = {"time": state.time, "dt": state.dt or 0.0, "h00": state.h00}
+    numbers |= {"a": scales.a, "p0": scales.p0, "h_scale": scales.h, "u1": scales.u1, "u2": scales.u2}
+    numbers |= dict(zip(("travelled_fast", "travelled_slow"), state.travelled, strict=True))
+    numbers |= dict(zip(("entered_inlet", "entered_outlet"), entrances, strict=True))
+    attributes = {name: float(value) for name, value in numbers.items()}
+    attributes |= {"retries": int(state.retries), "step": int(state.step), "case": case.text}
+    save_restart(path, arrays, attributes | {TOTAL + name: value for name, value in totals.items()})
+
+
+def load(path, case, scales, model):
+    """State of a restart file, checked against the case.
+
+    Returns
+    -------
+    state : time_stepping.State
+        `m` is None where the contact has another size: that of the state is meant.
+    smooth : pair of ndarray
+    contact_count : ndarray
+    totals : dict
+    bodies : surfaces.roughness.Bodies
+    notes : list of str
+        Keys of the case that are not what they were, one line each.
+
+    Raises
+    ------
+    OutputError
+        Not a restart file, a damaged one, or one that does not fit the case.
+    """
+    if case.time is None:
+        raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to go on with")
+    arrays, attributes = load_restart(path)
+    damage = fault(arrays, attributes)
+    if damage:
+        raise OutputError(f"{path}: damaged restart file: {damage}")
+    try:
+        earlier = tomllib.loads(attributes["case"])
+    except tomllib.TOMLDecodeError as error:
+        raise OutputError(f"{path}: damaged restart file: its case cannot be read ({error})") from None
+    misfit = _misfit(arrays, attributes, earlier, case, scales)
+    if misfit:
+        raise OutputError(f"{path}: {misfit}")
+    rescale(arrays, attributes, scales)
+    bodies = Bodies(
+        (float(attributes["travelled_fast"]), float(attributes["travelled_slow"])),
+        (float(attributes["entered_inlet"]), float(attributes["entered_outlet"])),
+    )
+    state = State(
+        *_unknowns(model, arrays, ""),
+        float(attributes["h00"]),
+        m=arrays.get("m"),
+        m_older=arrays.get("m_older"),
+        time=float(attributes["time"]),
+        dt=float(attributes["dt"]) or None,
+        retries=int(attributes["retries"]),
+        step=int(attributes["step"]),
+        travelled=bodies.travelled,
+        earlier=_earlier(model, arrays),
+    )
+    totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
+    notes = changes(earlier, tomllib.loads(case.text))
+    return state, _unknowns(model, arrays, "smooth_"), arrays["contact_count"], totals, bodies, notes
+
+
+def _fields(model, name, q, w):
+    """Arrays that say what q and w stand for, so that a run may go on with another contact model."""
+    film = model.relations(q, w).film
+    return {f"{name}q": q, f"{name}h": film, f"{name}contact_pressure": model.contact_pressure(w)}
+
+
+def _unknowns(model, arrays, name):
+    q, film, solids = (arrays[name + field] for field in ("q", "h", "contact_pressure"))
+    return q, model.second_unknown(film, solids)
+
+
+def _earlier(model, arrays):
+    if "earlier_travelled" not in arrays:
+        return ()
+    return tuple(map(Level, arrays["earlier_travelled"], *_unknowns(model, arrays, "earlier_")))
+
+
+def _misfit(arrays, attributes, earlier, case, scales):
+    """Why a file does not fit the case; None: it does."""
+    x, now = arrays["x"] / attributes["a"], scales.x
+    if len(x) != len(now):
+        return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"
+    if np.abs(x - now).max() > MESH * np.ptp(now):
+        was, is_now = (f"{ends[0]:.6g} to {ends[-1]:.6g} half widths" for ends in (x, now))
+        return f"its nodes lie from {was}, those of the case from {is_now}; [mesh] must be as it was"
+    if ("fluid" in earlier) != (case.fluid is not None):
+        one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
+        return f"a run {one} [fluid] cannot go on {other} it"
+    if case.fluid is not None and attributes["dt"] and "m" not in arrays:
+        return "damaged restart file: m (film content in a^2/R) is missing"
+    for side, name, speed in (("fast", "u1", scales.u1), ("slow", "u2", scales.u2)):
+        if getattr(case.surface, side) and np.sign(attributes[name]) != np.sign(speed):
+            return (
+                f"surface.{side} moved at {attributes[name]:g} m/s, now at {speed:g} m/s: "
+                "a rough surface can neither start, stop nor turn round in mid-run"
+            )
+    return None
+
+
+def changes(earlier, now):
+    """``fluid.viscosity was 0.002, is 0.004``, a line each for every key of the physics that differs."""
+    one, other = (dict(_flat({k: v for k, v in d.items() if k not in NOT_PHYSICS})) for d in (earlier, now))
+    keys = [key for key in {**one, **other} if one.get(key) != other.get(key)]
+    return [f"{key} was {one.get(key, 'left out')}, is {other.get(key, 'left out')}" for key in keys]
+
+
+def _flat(table, where=""):
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{where}{key}.")
+        else:
+            yield where + key, value
