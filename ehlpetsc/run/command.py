@@ -60,6 +60,8 @@ def run(path, overrides):
             return Series(comm, case, options, stop, output).run()
         overwrite = options.getBool("ehl_overwrite", False)
         return run_single(comm, case, stop, output, text_of(options, "ehl_restart"), overwrite)
+    except CaseError as error:
+        return refuse(comm, error.faults)
     except (OutputError, UsageError) as error:
         return refuse(comm, [f"ehlpetsc: {error}"])
 

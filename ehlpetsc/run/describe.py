@@ -5,6 +5,7 @@ import math
 from ehlpetsc import __version__
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.domain import domain_faults, domain_warnings
 from ehlpetsc.run.forecast import FULL_FILM, dowson_higginson, file_size, lambda_ratio, run_time, steps
 from ehlpetsc.surfaces.arrival import arrival, arrival_warnings
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings
@@ -40,6 +41,7 @@ def explain(case):
         _size(case, scales, rough),
         _switched_off(case, rough),
         [f"Warning: {line}" for line in warnings(case, scales)],
+        [f"Refused: {line}" for line in domain_faults(case, scales)],
     ]
     if case.series:
         sections.insert(1, _series(case))
@@ -95,6 +97,7 @@ def warnings(case, scales):
             "the roughness is held still under the film; add [time] to let it move"
         )
     profiles = Roughness.of(case, scales)
+    notes += domain_warnings(case, scales)
     return notes + arrival_warnings(case, scales, profiles) + mesh_warnings(profiles, scales)
 
 

@@ -14,6 +14,8 @@ from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.domain import domain_faults
+from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.observables import observe
 from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import Bodies, Roughness
@@ -109,6 +111,8 @@ class Simulation:
         self.options = RunOptions(case.petsc, {name: _text(v) for name, v in (options or {}).items()})
         self.scales = Scales.of(case)
         self.bodies = Bodies.at_rest(self.scales)
+        if faults := domain_faults(case, self.scales):
+            raise CaseError(faults)
         self.roughness = Roughness.of(case, self.scales)
         film = expected_film(case, self.scales)
         self.state = self.solution = self.watch = None
@@ -174,7 +178,9 @@ class Simulation:
         started = clock.monotonic()
         with self.options:
             try:
-                self.solution = self._start() if self.solution is None else self._step(dt)
+                solution = self._start() if self.solution is None else self._step(dt)
+                self._check_ends(solution)
+                self.solution = solution
             except NotConverged as error:
                 error.state = self.state
                 raise
@@ -185,6 +191,10 @@ class Simulation:
         figures |= {"step": self.solution.step, "time": self.solution.time}
         self.state = AcceptedState(figures, fields, in_contact, self.solution)
         return self.state
+
+    def _check_ends(self, solution):
+        touching = self.march.problem.model.in_contact(solution.w, solution.imbalance)
+        check_ends(self.scales.x, solution.p, touching)
 
     def _start(self):
         self._head("steady start")

@@ -148,11 +148,16 @@ def _moes():
 
 
 def _speed():
+    finer = {0.01: 400, 0.1: 200}  # the thinner the film, the narrower the inlet sweep
     return [
         Line(
             "speed",
             f"u {u:g} m/s",
-            (f"motion.entrainment_speed={u}", f"mesh.inlet={inlet_of(LOAD, 0.005, u)}"),
+            (
+                f"motion.entrainment_speed={u}",
+                f"mesh.inlet={inlet_of(LOAD, 0.005, u)}",
+                *([f"mesh.points_per_half_width={finer[u]}"] if u in finer else []),
+            ),
             short=u in (0.01, 50.0),
         )
         for u in (0.01, 0.1, 1.0, 10.0, 50.0)

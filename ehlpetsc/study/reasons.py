@@ -6,14 +6,13 @@ import numpy as np
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.physics.film_formulas import moes_central_film
+from ehlpetsc.physics.film_formulas import inlet_opening, moes_central_film, points_for_opening
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.study.runs import TIMED_OUT
 
 SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
 PLASTIC = 6.0  # GPa: asperities of hardened steel yield
-OPENING = 0.943  # 2 sqrt(2)/3: Hertz' gap beside the contact is this times (distance/a)^1.5, in a^2/R
 COARSE = 1.0  # films by which the gap may open within one node
 
 
@@ -46,9 +45,7 @@ def _findings(outcome, case, scales):
         found.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")
     if outcome.p_max > PLASTIC * 1e9:
         found.append(f"asperity pressures reached {1e-9 * outcome.p_max:.1f} GPa, beyond what steel carries")
-    if math.isinf(outcome.mass_error):
-        found.append("solids touch at the very inlet: put mesh.inlet further out")
-    elif outcome.h_min < 1e-9 and outcome.steps:
+    if outcome.h_min < 1e-9 and outcome.steps:
         found.append(f"the film fell to {1e9 * outcome.h_min:.2g} nm before solids touched")
     return found
 
@@ -56,11 +53,11 @@ def _findings(outcome, case, scales):
 def _too_coarse(case, scales):
     """Whether the inlet sweep is lost between two nodes."""
     film = moes_central_film(scales.moes_m, scales.moes_l) * math.pi / (8.0 * scales.moes_m)
-    opening = OPENING * case.mesh.points_per_half_width**-1.5 / film
+    opening = inlet_opening(film, case.mesh.points_per_half_width)
     if opening < COARSE:
         return []
-    needed = math.ceil((OPENING / film) ** (2.0 / 3.0))
     return [
         f"the mesh is too coarse for so thin a film: beside the contact the gap opens by {opening:.1f} "
-        f"films from one node to the next; try mesh.points_per_half_width={needed}"
+        f"films from one node to the next; try mesh.points_per_half_width="
+        f"{math.ceil(points_for_opening(film, COARSE))}"
     ]

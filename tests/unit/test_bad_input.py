@@ -151,7 +151,7 @@ def test_a_mesh_too_coarse_for_the_profile_is_a_warning_with_the_figure(run):
     coarse = ("mesh.points_per_half_width=20", "mesh.inlet=-1.5", "time.travel=0.1")
     done, made = run(rough, *(word for key in coarse for word in ("-ehl_set", key)))
     assert done.returncode == 0, done.stderr
-    warned = [line for line in done.stdout.splitlines() if line.startswith("warning: ")]
+    warned = [line for line in done.stdout.splitlines() if line.startswith("warning: surface.")]
     assert len(warned) == 4
     assert all("the run ends at time.travel = 0.1, before the profile reaches" in line for line in warned[:2])
     for side, line in zip(("fast", "slow"), warned[2:], strict=True):

@@ -11,7 +11,7 @@ import time as clock
 from pathlib import Path
 
 from ehlpetsc.case.loading import members
-from ehlpetsc.errors import ExitStatus, OutputError, UsageError
+from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock
@@ -115,7 +115,7 @@ class Series:
             one = Run(Simulation(member.case, group), member.output, self._stop, out, err)
             outcome = one.run(member.restart if begun else None, overwrite=True)  # looked at before: ours
             return outcome.status, str(outcome.failure or "")
-        except (OutputError, UsageError) as error:
+        except (CaseError, OutputError, UsageError) as error:
             if group.rank == 0:
                 print(f"ehlpetsc: {error}", file=err, flush=True)
             return ExitStatus.BAD_INPUT, str(error)

@@ -1,0 +1,86 @@
+"""Whether domain and mesh hold the contact: what can be known before a run."""
+
+import math
+
+from ehlpetsc.physics.film_formulas import (
+    expected_film,
+    film_left_by_inlet,
+    inlet_opening,
+    points_for_opening,
+)
+
+LEFT = 0.95  # of the flooded film: below it the inlet is told to be too near
+ENOUGH = 0.99  # of it: what the inlet that is proposed leaves
+COARSE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
+CLOSED = 5.0  # the same: a smooth film has none left
+FURTHEST = 100.0  # half widths that mesh.inlet may be
+
+
+def domain_warnings(case, scales):
+    """An inlet too near, or nodes too far apart for the inlet sweep: with the figure and the cure.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+
+    Returns
+    -------
+    list of str
+    """
+    if case.fluid is None:
+        return []
+    notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
+    opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
+    if COARSE < opening <= CLOSED:
+        notes.append(f"{_coarse(opening)}: the film comes out too thin; {_cure(case, scales)}")
+    return notes
+
+
+def domain_faults(case, scales):
+    """What makes the answer mean nothing, one line each: refused before anything is computed.
+
+    Parameters as of `domain_warnings`.
+    """
+    if case.fluid is None:
+        return []
+    opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
+    if opening <= CLOSED:
+        return []
+    points = case.mesh.points_per_half_width
+    where = f"{case.path}: mesh.points_per_half_width = {points}"
+    return [f"{where}: {_coarse(opening)}, which leaves no film; {_cure(case, scales)}"]
+
+
+def _thinnest(case, scales):
+    """The expected film or, where it is thicker, the boundary film [a^2/R]."""
+    boundary = case.contact.boundary_film or 0.0
+    return max(expected_film(case, scales), boundary / scales.h)
+
+
+def _near_inlet(case, scales):
+    film, inlet = expected_film(case, scales), -case.mesh.inlet
+    left = film_left_by_inlet(film, inlet)
+    if left >= LEFT:
+        return []
+    further = inlet
+    while further < FURTHEST and film_left_by_inlet(film, further) < ENOUGH:
+        further += 0.1
+    return [
+        f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * left:.0f} % of "
+        f"the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * further) / 10.0:g} leaves "
+        f"{100 * ENOUGH:g} %"
+    ]
+
+
+def _coarse(opening):
+    return (
+        f"the mesh is too coarse for the inlet: beside the contact the gap opens by {opening:.2g} films "
+        "from one node to the next"
+    )
+
+
+def _cure(case, scales):
+    points = math.ceil(points_for_opening(_thinnest(case, scales), COARSE))
+    other = "" if case.contact.model == "mixed" else '; or contact.model = "mixed"'
+    return f"try mesh.points_per_half_width = {points}{other}"

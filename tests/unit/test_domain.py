@@ -1,0 +1,105 @@
+"""Domain and mesh that do not hold the contact: told or refused before a run, an error after it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ehlpetsc
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.film_formulas import (
+    expected_film,
+    film_left_by_inlet,
+    inlet_opening,
+    points_for_opening,
+)
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.domain import domain_faults, domain_warnings
+from ehlpetsc.stepping.domain_ends import check_ends
+
+CASES = Path(__file__).parents[2] / "cases"
+SMOOTH = CASES / "table1_smooth.toml"
+SLOW = {"contact.load": 2.1e6, "motion.entrainment_speed": 0.005}
+
+
+def of(overrides, case=SMOOTH, about=domain_warnings):
+    case = load(case, overrides)
+    return about(case, Scales.of(case))
+
+
+def test_the_cases_are_within_their_domains():
+    for path in CASES.glob("*.toml"):
+        case = load(path)
+        found = domain_warnings(case, Scales.of(case)) + domain_faults(case, Scales.of(case))
+        assert not found, path
+
+
+def film(**overrides):
+    changed = {"mesh.points_per_half_width": 100} | {k.replace("__", "."): v for k, v in overrides.items()}
+    return ehlpetsc.solve(load(SMOOTH, changed)).steps.film_central[0]
+
+
+@pytest.mark.parametrize("inlet", [-1.05, -1.2, -1.5])
+def test_the_film_that_a_near_inlet_leaves_is_what_the_solver_finds(inlet):
+    case = load(SMOOTH)
+    expected = film_left_by_inlet(expected_film(case, Scales.of(case)), -inlet)
+    found = film(mesh__inlet=inlet) / film(mesh__inlet=-4.0)
+    assert expected == pytest.approx(found, abs=0.08)
+
+
+def test_a_near_inlet_is_told_with_the_film_it_leaves_and_one_that_does_not():
+    (line,) = of({"mesh.inlet": -1.05})
+    assert line.startswith("mesh.inlet = -1.05 is too near: by Grubin's integral it leaves 43 % of the film")
+    further = float(line.split("mesh.inlet = ")[2].split()[0])
+    assert -2.5 < further < -1.8 and of({"mesh.inlet": further}) == []
+
+
+def test_a_starved_inlet_is_where_the_user_puts_it():
+    assert of({"mesh.inlet": -1.2, "fluid.inlet_film": 1e-7}) == []
+
+
+def test_the_film_on_a_mesh_too_coarse_for_the_inlet_is_as_thin_as_told():
+    """What the docstring says of openings of 0.25 and 1."""
+    slow = {"motion__entrainment_speed": 0.1, "mesh__inlet": -1.5}
+    case = load(SMOOTH, {"motion.entrainment_speed": 0.1})
+    expected = expected_film(case, Scales.of(case))
+    fine = film(**slow, mesh__points_per_half_width=800)
+    for opening, low, high in ((0.25, 0.02, 0.08), (1.0, 0.25, 0.5)):
+        points = round(points_for_opening(expected, opening))
+        assert inlet_opening(expected, points) == pytest.approx(opening, rel=0.05)
+        assert low < 1.0 - film(**slow, mesh__points_per_half_width=points) / fine < high
+
+
+def test_a_coarse_mesh_is_told_with_the_mesh_that_would_do():
+    (line,) = of(SLOW | {"mesh.points_per_half_width": 400})
+    assert "the gap opens by 1.9 films" in line
+    points = int(line.split("points_per_half_width = ")[1].split(";")[0])
+    assert of(SLOW | {"mesh.points_per_half_width": points}) == []
+
+
+def test_a_mesh_that_leaves_no_film_is_refused():
+    """At a/200 the film of this smooth contact is zero, at a/1600 1.06 nm."""
+    (line,) = of(SLOW, about=domain_faults)
+    assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: the mesh is too coarse")
+    with pytest.raises(ehlpetsc.CaseError, match="which leaves no film"):
+        ehlpetsc.Simulation(load(SMOOTH, SLOW))
+
+
+def test_a_boundary_film_needs_no_mesh_for_the_oil_below_it():
+    mixed = SLOW | {"contact.model": "mixed"}
+    assert of(mixed, about=domain_faults) == []
+
+
+def test_a_contact_wider_than_the_domain_is_an_error():
+    """A dent of 50 um: without oil its flanks carry at the ends of the mesh."""
+    dent = {"kind": "dent", "amplitude": 50e-6, "wavelength": 600e-6, "position": 340e-6}
+    changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"slow": {"synthetic": dent}}}
+    with pytest.raises(ehlpetsc.NotConverged, match="solids touch at the inlet, x = -1.01 a: .* further out"):
+        ehlpetsc.solve(load(CASES / "dry_hertz.toml", changed))
+
+
+def test_pressure_at_the_outlet_is_cut_off():
+    x, dry = np.linspace(-2.0, 1.2, 5), np.zeros(5, bool)
+    check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
+    with pytest.raises(ehlpetsc.NotConverged, match="0.3 p0 at the outlet, x = 1.2 a"):
+        check_ends(x, np.array([0.0, 0.5, 1.0, 1.0, 0.3]), dry)
