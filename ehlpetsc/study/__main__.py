@@ -20,7 +20,7 @@ SWEPT = {  # lists of values: type, default, what they are
     "--boundary-films": (float, [10e-9], "boundary films of --contact [m]"),
 }
 SWITCHES = {
-    "--damage": "the error in damage too",
+    "--damage": "damage too, by ehlpetsc.post",
     "--contact": "how much contact, against mesh and model",
     "--extremes": "run the table of extremes",
     "--short": "its short form: coarser, fewer steps",
