@@ -1,0 +1,69 @@
+"""How much contact there is: which runs a study makes of it, observed orders and limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ehlpetsc.study import contact
+from ehlpetsc.study.contact import Measured, Setting, order, orders, settings, table
+from ehlpetsc.study.runs import Outcome
+
+FOUND = Measured(0.05, 0.07, 0.09, 0.1, 0.2, 8.0, 6.0, 5.5, 0, 1e-8, 3.0)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+def test_order_and_limit_of_an_error_that_falls_evenly(exponent):
+    values = [7.0 + 0.3 * 2.0 ** (-exponent * level) for level in range(3)]
+    assert order(*values) == pytest.approx((exponent, 7.0))
+
+
+@pytest.mark.parametrize("values", [(1.0, 2.0, 1.5), (1.0, 1.1, 1.3), (1.0, 1.0, 1.0)])
+def test_what_does_not_settle_has_no_limit(values):
+    assert np.isnan(order(*values)).all()
+
+
+def test_direct_contact_runs_once_whatever_the_boundary_films():
+    chosen = list(settings(["direct", "mixed"], [100, 200], [0.5], [2e-9, 5e-9, 10e-9]))
+    assert sum(s.model == "direct" for s in chosen) == 2
+    assert sum(s.model == "mixed" for s in chosen) == 6
+
+
+@pytest.mark.parametrize(
+    ("mesh", "courant", "every"), [(100, 0.5, 2), (400, 0.5, 8), (200, 0.125, 16), (25, 4, 1)]
+)
+def test_frames_lie_at_the_same_times_on_every_mesh_and_at_every_step(mesh, courant, every):
+    setting = Setting("mixed", mesh, courant, 10e-9)
+    assert f"output.every={every}" in setting.overrides()
+    assert "output.every=1" in setting.overrides(damage=True)
+    assert any("shear_stress_fast" in override for override in setting.overrides(damage=True))
+
+
+def test_a_table_has_a_row_a_run_and_the_words_of_one_that_failed(tmp_path, monkeypatch):
+    def run(case, overrides, folder, limit):
+        failed = "mesh.points_per_half_width=200" in overrides
+        return Outcome(3, "step 4: no") if failed else Outcome(0, result=_touch(tmp_path / "run.h5"))
+
+    monkeypatch.setattr(contact, "run", run)
+    monkeypatch.setattr(contact, "measured", lambda path, film, seconds: FOUND)
+    monkeypatch.setattr(contact, "greatest_damage", lambda path, surface, depths: np.array([0.5, 0.01]))
+    said, csv = [], tmp_path / "table.csv"
+    chosen = settings(["mixed"], [100, 200], [0.5], [10e-9])
+    rows = table("case.toml", [], chosen, csv, tmp_path, 1.0, said.append, damage=True)
+    assert rows[0][1] == replace(FOUND, damage_at_surface=0.5, damage_below=0.01)
+    assert rows[1][1] is None and "step 4: no" in said[2]
+    assert len(csv.read_text().splitlines()) == 3
+    assert not (tmp_path / "run.h5").exists()
+
+
+def _touch(path):
+    path.touch()
+    return path
+
+
+def test_orders_are_told_for_meshes_that_double():
+    lengths = {50: 0.07, 100: 0.06, 200: 0.055}
+    rows = [(Setting("mixed", mesh, 0.5, 1e-8), replace(FOUND, length=v)) for mesh, v in lengths.items()]
+    told = list(orders(rows))
+    assert len(told) == len(contact.FIGURES)
+    assert "length order 1.00, limit 0.05" in told[0]
