@@ -4,6 +4,9 @@ import ctypes
 
 from petsc4py import PETSc
 
+from ehlpetsc.errors import UsageError
+from ehlpetsc.nonlinear.refusals import check_options, sentence
+
 DEFAULTS = {
     "snes_linesearch_type": "basic",
     "snes_linesearch_maxstep": "1e10",
@@ -41,6 +44,8 @@ class RunOptions:
     views : list of str
         ``snes_view`` and ``ksp_view``, where they are asked for without a value: held back, because PETSc
         would repeat them at every solve.
+    users : set of str
+        Names of all that are not the program's defaults.
     unread : set of str
         Those of `of_case` and `given` that nobody has read yet.
     """
@@ -48,11 +53,12 @@ class RunOptions:
     def __init__(self, of_case=(), given=()):
         self._of_case, self._given, self._depth = dict(of_case), dict(given), 0
         self.views, self.unread = [], {*self._of_case, *self._given}
+        self.users = set(self.unread)
 
     def __enter__(self):
-        self._depth += 1
-        if self._depth == 1:
+        if self._depth == 0:
             self._enter(PETSc.Options())
+        self._depth += 1
         return self
 
     def __exit__(self, *exception):
@@ -63,6 +69,8 @@ class RunOptions:
     def _enter(self, table):
         there = table.getAll()
         wanted = self._of_case | there | self._given
+        self.users = set(wanted)
+        check_options(wanted, len(DEFAULTS) + len(PRECONDITIONER))
         wanted = DEFAULTS | ({} if "pc_type" in wanted else PRECONDITIONER) | wanted
         self.views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
@@ -70,8 +78,13 @@ class RunOptions:
         self._held = {name: table.getString(name, "") for name in changed}
         for name in self.views:
             table.delValue(name)
-        for name in self._entered:
-            table[name] = wanted[name]
+        for number, name in enumerate(self._entered):
+            try:
+                table[name] = wanted[name]
+            except PETSc.Error as error:
+                for earlier in self._entered[:number]:
+                    table.delValue(earlier)
+                raise UsageError(f"PETSc refuses -{name} {wanted[name]}: {sentence(error)}") from None
 
     def _leave(self, table):
         self.unread = {name for name in self.unread if not was_read(name)} - set(self.views)

@@ -35,7 +35,7 @@ from petsc4py import PETSc
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.interleaving import seconds
+from ehlpetsc.discretisation.interleaving import firsts, seconds
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
 
@@ -130,7 +130,6 @@ class GaussSeidelSolver:
         Of all solves so far.
     """
 
-    start_iterations = EVALUATIONS
     watch = None  # as of NewtonSolver
 
     def __init__(self, case, scales, film_scale):
@@ -143,6 +142,14 @@ class GaussSeidelSolver:
         distant[: near + 1] = 0.0
         self.distant = elasticity.SymmetricToeplitz(distant)
         self.sweeps = 0
+
+    def start_iterations(self, needed=None):
+        """Evaluations that a steady start may take."""
+        return needed or EVALUATIONS
+
+    def residual(self):
+        """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
+        return self.rows
 
     def mass_imbalance(self):
         """F of the last solution at every node, shape (nx,)."""
@@ -192,6 +199,7 @@ class GaussSeidelSolver:
             rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
             imbalance = seconds(rows, self.problem.n)
             self.imbalance = imbalance.copy()
+            self.rows = firsts(rows, self.problem.n).copy(), self.imbalance, rows[-1]
             imbalance[(h <= self.bound) & (self.imbalance > 0.0)] = 0.0
             return np.linalg.norm(rows)
 

@@ -18,12 +18,15 @@ from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
+from ehlpetsc.nonlinear.defaults import DEFAULTS, PRECONDITIONER
 from ehlpetsc.nonlinear.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
+from ehlpetsc.nonlinear.refusals import refusal
 
 LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is small enough
+LINEAR_WORK = 100  # linear iterations for each of Newton's that is allowed, at most, over a whole solve
 LONGER_START = 7  # times the iterations of a time step
 ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
 LOOSEST = 10.0  # times Newton's absolute tolerance: what rounding may make of it
@@ -44,6 +47,10 @@ class NewtonSolver:
     ----------
     watch : callable or None
         Called in every iteration on every rank; what it raises ends the solve.
+    limited : bool
+        Whether ``-snes_max_it`` is the user's word, then also for steady starts.
+    tolerance : float
+        What the last solve was asked to bring the residual to.
     """
 
     def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
@@ -62,6 +69,7 @@ class NewtonSolver:
         self.near_field = case.mesh.near_field
         self._create_bounds()
         self.jacobian = self.place = self.watch = None
+        self.limited = False
         self._create_snes()
 
     @property
@@ -83,9 +91,8 @@ class NewtonSolver:
         try:
             self.snes.setFromOptions()
         except PETSc.Error as error:
-            reason = str(error).splitlines()[-1].split("] ")[-1]
-            self.snes.destroy()  # left to the end of the process, it would crash there
-            raise UsageError(f"PETSc refuses an option: {reason}") from None
+            self._refuse(error)
+        self.linear_limit = self.snes.ksp.max_it
         self.follows = not PETSc.Options().hasName("ksp_atol")
         self._check_type()
         if self.jacobian is None:
@@ -94,6 +101,14 @@ class NewtonSolver:
         if self.bounded:
             self.snes.setVariableBounds(self.lower, self.upper)
         self.snes.setLineSearchPreCheck(self._limit_step)
+
+    def _refuse(self, error):
+        """What PETSc raises over an option that the user gave is the user's to mend."""
+        self.snes.destroy()  # left to the end of the process, it would crash there
+        told = refusal(error, DEFAULTS | PRECONDITIONER)
+        if told is None:
+            raise error
+        raise UsageError(told) from None
 
     def _check_type(self):
         kind = self.snes.getType()
@@ -150,6 +165,8 @@ class NewtonSolver:
 
     def _jacobian(self, snes, x, operator, preconditioner):
         self.jacobian.linearise(self._evaluation(x))
+        left = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
+        snes.ksp.setTolerances(max_it=min(self.linear_limit, max(left, 1)))
         if self.assembled:
             with events.ASSEMBLY:
                 self.assembled.fill(self.jacobian.relations, self.jacobian.reynolds_derivatives)
@@ -174,15 +191,18 @@ class NewtonSolver:
             (step_limits.let_overlaps_touch if dry else step_limits.keep_oil)(now, step, model.bound)
         return True
 
-    @property
-    def start_iterations(self):
+    def start_iterations(self, needed=None):
         """Iterations that a steady start may take: what is exponential falls by one exponent in each."""
-        return LONGER_START * self.snes.max_it
+        return self.snes.max_it if self.limited else needed or LONGER_START * self.snes.max_it
+
+    def residual(self):
+        """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
+        self.snes.computeFunction(self.x, self.f)
+        return self.gather(self.f)
 
     def mass_imbalance(self):
         """F of the last solution at every node, shape (nx,)."""
-        self.snes.computeFunction(self.x, self.f)
-        return self.gather(self.f)[1]
+        return self.residual()[1]
 
     def solve(self, q, w, h00, inputs, max_it=None):
         """Solve from the given start, with `max_it` iterations instead of the usual number at most.
@@ -206,18 +226,27 @@ class NewtonSolver:
         """
         self.inputs, self.place = inputs, None
         self.scatter(q, w, h00)
-        usual = self.snes.max_it
-        self.snes.max_it = max_it or usual
+        usual = self.snes.max_it, self.snes.atol
+        try:
+            self._set_tolerances(usual[0] if max_it is None else max_it)
+            self.snes.solve(None, self.x)
+            self.snes.setTolerances(max_it=usual[0], atol=usual[1])
+        except PETSc.Error as error:
+            self._refuse(error)
+        return self._solution()
+
+    def _set_tolerances(self, max_it):
+        snes = self.snes
         if self.follows:
-            self.snes.ksp.setTolerances(atol=LINEAR_ATOL * self.snes.atol)
+            snes.ksp.setTolerances(atol=LINEAR_ATOL * snes.atol)
         if self.factors:
             self.factors.of_a_new_solve()
-        atol = self.snes.atol
-        self.snes.setTolerances(atol=min(max(atol, self._rounding()), LOOSEST * atol))
-        self.snes.solve(None, self.x)
-        self.snes.max_it = usual
-        self.snes.setTolerances(atol=atol)
-        return self._solution()
+        self.tolerance = min(max(snes.atol, self._rounding()), LOOSEST * snes.atol)
+        snes.setTolerances(max_it=max_it, atol=self.tolerance)
+        if snes.rtol > 0.0 or snes.stol > 0.0:  # the user's: obeyed; a solution is no worse than its guess
+            snes.computeFunction(self.x, self.f)
+            share = 1.0 if snes.stol > 0.0 else snes.rtol
+            self.tolerance = max(self.tolerance, share * self.f.norm())
 
     def _rounding(self):
         """What rounding of the unknowns leaves of the residual at the first guess: nothing less can be asked.

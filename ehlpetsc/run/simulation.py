@@ -119,6 +119,7 @@ class Simulation:
         with self.options:
             table = PETSc.Options()
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
+            solver.limited = "snes_max_it" in self.options.users
             self._followed = any(map(table.hasName, FOLLOWED))
         self.march = TimeStepping(solver, self.scales, self.roughness, film)
 

@@ -7,6 +7,7 @@ from functools import partial
 
 from ehlpetsc.errors import ExitStatus, NotConverged, Stopped
 from ehlpetsc.nonlinear.defaults import unread
+from ehlpetsc.nonlinear.refusals import looser
 from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.run.recorder import Recorder
 
@@ -114,6 +115,7 @@ class Run:
             self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._say(*(f"restart: {note}" for note in notes))
+            self._looser = looser()
             status, failure = record(
                 self.simulation, self.recorder, self.stop, self.out if self.root else None
             )
@@ -133,6 +135,8 @@ class Run:
             self._say(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
         for line in recorder.limits:
             print(f"limit: {line}", file=self.err, flush=True)
+        for line in self._looser:
+            self._say(f"note: {line}")
         ignored = sorted({*self.simulation.options.unread, *unread()})
         if ignored:
             self._say(f"note: options that nobody read: -{', -'.join(ignored)}")

@@ -23,6 +23,7 @@ from dataclasses import replace
 import numpy as np
 
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
+from ehlpetsc.stepping.certificate import certified
 
 SMOOTHED = 0.2
 AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
@@ -138,7 +139,7 @@ class Continuation:
 
     def __init__(self, solver, inputs, max_it=None):
         self.solver, self.inputs = solver, inputs
-        self.max_it = max_it or solver.start_iterations
+        self.max_it = solver.start_iterations(max_it)
         self.spent, self.failure = 0, None
 
     def solve(self, begin):
@@ -178,7 +179,7 @@ class Continuation:
     def _try(self, begin, share, roughness):
         inputs = easier(self.inputs, share, roughness)
         try:
-            *state, iterations = self.solver.solve(*begin, inputs, max_it=self.max_it)
+            *state, iterations = certified(self.solver, *begin, inputs, max_it=self.max_it)
         except SolveFailed as error:
             self.spent, self.failure = self.spent + error.iterations, error
             return None

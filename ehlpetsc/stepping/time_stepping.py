@@ -11,6 +11,7 @@ import numpy as np
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
+from ehlpetsc.stepping.certificate import certified
 from ehlpetsc.stepping.predictor import Level, predict
 from ehlpetsc.stepping.steady_start import steady
 from ehlpetsc.stepping.step_control import next_step
@@ -144,7 +145,7 @@ class TimeStepping:
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
-                q, w, h00, iterations = self.solver.solve(*guess, state.h00, self._inputs(state, dt))
+                q, w, h00, iterations = certified(self.solver, *guess, state.h00, self._inputs(state, dt))
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1

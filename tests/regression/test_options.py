@@ -1,5 +1,6 @@
 """The command line: where options come from, what is refused, what -help and -options_left say."""
 
+import re
 import subprocess
 
 import pytest
@@ -121,8 +122,15 @@ def test_the_case_must_be_named_once(arguments, message):
         (["-ehl_restart", "none.h5"], "the case is steady"),
         (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls needs"),
         (["-options_file", "nofile"], "-options_file nofile: no such file"),
-        (["-pc_type", "nosuch"], "PETSc refuses an option: Unable to find requested PC type nosuch"),
-        (["-ksp_rtol", "abc"], "PETSc refuses an option: Input string abc has no numeric value"),
+        (["-pc_type", "nosuch"], "PETSc refuses -pc_type nosuch: Unable to find requested PC type nosuch"),
+        (["-ksp_rtol", "abc"], "PETSc refuses -ksp_rtol abc: Input string abc has no numeric value"),
+        (["-ksp_pc_side", "left"], "PETSc refuses -ksp_pc_side left: KSP fgmres does not support"),
+        (["-ksp_type", "minres"], "PETSc refuses -ksp_type minres: KSP minres does not support"),
+        (["-snes_max_it", "-1"], "PETSc refuses -snes_max_it -1: Maximum number of iterations"),
+        (["-pc_type", "galerkin"], "PETSc refuses -pc_type galerkin: Must set operator"),
+        (["-snes_mf"], "-snes_mf: PETSc's differences would"),
+        (["-snes_atol", "nan"], "-snes_atol nan: allowed: a number"),
+        (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: allowed: a number"),
         (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
     ],
 )
@@ -131,6 +139,42 @@ def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_more_options_than_petscs_table_holds_are_refused(case, tmp_path):
+    with_petsc_table(case, "\n".join(f"option_{n} = 1" for n in range(520)))
+    done = run(case, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("ehlpetsc: 520 options for PETSc, whose table holds 512")
+
+
+def test_the_users_iterations_are_those_of_the_start_too(case, tmp_path):
+    done = run(case, "-snes_max_it", 3, cwd=tmp_path)
+    assert done.returncode == 3
+    assert "steady start: SNES DIVERGED_MAX_IT after 3 iterations" in done.stderr
+
+
+def test_a_looser_tolerance_is_obeyed_and_told(case, tmp_path):
+    exact, loose = run(case, cwd=tmp_path), run(case, "-snes_rtol", 0.5, "-ehl_output", "l.h5", cwd=tmp_path)
+    assert "is looser than" not in exact.stdout and loose.returncode == 0
+    assert "note: -snes_rtol 0.5 is looser than the program's 0: results are less certain" in loose.stdout
+    films = [float(summary(done.stdout)["h_min"]) for done in (exact, loose)]
+    assert int(summary(loose.stdout)["newton"]) < int(summary(exact.stdout)["newton"])
+    assert abs(films[1] / films[0] - 1.0) > 0.01
+
+
+def test_linear_iterations_of_a_step_are_bounded(case, tmp_path):
+    """-ksp_max_it says how many one linear solve may take; all of a step share 100 for each of Newton's."""
+    words = ["-ksp_max_it", 100000, "-pc_type", "none", "-ksp_rtol", "1e-30", "-snes_max_it", 4]
+    done = run(case, *words, "-ksp_converged_reason", cwd=tmp_path)
+    taken = [
+        int(n)
+        for n in re.findall(
+            r"Linear solve did not converge due to DIVERGED_ITS iterations (\d+)", done.stdout
+        )
+    ]
+    assert done.returncode == 3 and max(taken) == 400
+    assert sum(taken[:4]) <= 403
 
 
 def test_a_solver_without_bounds_does_for_full_films_and_no_others(case, tmp_path):

@@ -1,0 +1,79 @@
+"""Options that cannot be, told with PETSc's own sentence, and tolerances looser than the program's."""
+
+from petsc4py import PETSc
+
+from ehlpetsc.errors import UsageError
+
+MOST = 512  # options that PETSc's table holds
+LOOSER = {"snes_atol": 1e-7, "snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
+REFUSED = {
+    "snes_mf": "PETSc's differences would stand in for the Jacobian, a product here; leave it out",
+}
+NUMERIC, NO_NUMBERS = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
+# in names of options that only tell
+NO_CAUSE = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
+
+
+def refusal(error, defaults):
+    """What PETSc says when it refuses an option, after the options that it can mean; None if there are none.
+
+    Parameters
+    ----------
+    error : petsc4py.PETSc.Error
+    defaults : dict of str to str
+        The program's own options.
+    """
+    reason = sentence(error)
+    given = {n: v for n, v in PETSc.Options().getAll().items() if defaults.get(n) != v}
+    can = {n: v for n, v in given.items() if not (n.startswith("ehl_") or any(map(n.__contains__, NO_CAUSE)))}
+    named = {n: v for n, v in can.items() if n in reason or v and v in reason}
+    told = [f"-{name} {value or ''}".strip() for name, value in (named if len(named) == 1 else can).items()]
+    if not told:
+        return None
+    return f"PETSc refuses {'one of ' if len(told) > 1 else ''}{', '.join(told)}: {reason}"
+
+
+def sentence(error):
+    """PETSc's own last line."""
+    return str(error).splitlines()[-1].split("] ")[-1]
+
+
+def check_options(options, own):
+    """Refuse what PETSc would take and then do wrong, or end the process over.
+
+    Parameters
+    ----------
+    options : dict of str to str
+    own : int
+        Number of the program's own.
+
+    Raises
+    ------
+    UsageError
+    """
+    if len(options) + own > MOST:
+        raise UsageError(
+            f"{len(options)} options for PETSc, whose table holds {MOST} with the program's own; give fewer"
+        )
+    for name, value in options.items():
+        if name in REFUSED and str(value).lower() not in ("false", "no", "0"):
+            raise UsageError(f"-{name}: {REFUSED[name]}")
+        if name.startswith(NUMERIC) and str(value).lower().strip().lstrip("+-") in NO_NUMBERS:
+            raise UsageError(f"-{name} {value}: allowed: a number")
+
+
+def looser():
+    """One line for every tolerance in PETSc's table that is looser than the program's own."""
+    table, lines = PETSc.Options().getAll(), []
+    for name, own in LOOSER.items():
+        value = _number(table.get(name, own))
+        if value is not None and value > own:
+            lines.append(f"-{name} {value:g} is looser than the program's {own:g}: results are less certain")
+    return lines
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None

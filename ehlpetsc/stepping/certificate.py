@@ -1,0 +1,73 @@
+r"""The program's own word on a solution, whatever SNES says of it: a step counts only if this holds.
+
+Of the rows of :mod:`ehlpetsc.discretisation.ehl_problem` at the solution
+
+* the deflection's and, where there is oil, Reynolds': :math:`\|F\|_2` at most the tolerance of the solve,
+  ``-snes_atol`` (or what rounding leaves, up to ten times that; or ``-snes_rtol`` of the first residual);
+* where direct contact leaves Reynolds out, complementarity: :math:`F\ge0` and :math:`h\ge h_b`, F to the same
+  tolerance, h to the thickness below which a film counts as closed; in mixed contact it holds by what the
+  unknowns mean;
+* the load's: :math:`|\sum p\,\Delta x-\pi/2|` to the same tolerance;
+* everything finite, and no node with less than no oil, :math:`q\ge-1`.
+"""
+
+import numpy as np
+
+from ehlpetsc.errors import SolveFailed
+
+SLACK = 1.0 + 1e-6  # of a tolerance: sums taken in another order
+LEAST_OIL = 1e-9  # void fractions beyond 1 by no more than this are rounding
+
+
+def certified(solver, q, w, h00, inputs, max_it=None):
+    """Solve, and look at the solution.
+
+    Parameters and returned values are those of `nonlinear.newton.NewtonSolver.solve`.
+
+    Raises
+    ------
+    SolveFailed
+        The solver gave up, or what it takes for a solution is none.
+    """
+    *solution, iterations = solver.solve(q, w, h00, inputs, max_it=max_it)
+    fault = find_fault(solver.problem, *solution, solver.residual(), solver.tolerance)
+    if fault:
+        raise SolveFailed(f"ended, but {fault}", iterations)
+    return *solution, iterations
+
+
+def find_fault(problem, q, w, h00, rows, tolerance):
+    """What is wrong with a solution, in words; None: nothing.
+
+    Parameters
+    ----------
+    problem : discretisation.ehl_problem.EHLProblem
+    q, w : ndarray, shape (nx,)
+    h00 : float
+    rows : (ndarray, ndarray, float)
+        Deflection and Reynolds at every node, and the load's.
+    tolerance : float
+    """
+    deflection, imbalance, load = rows
+    if not np.isfinite([q.sum(), w.sum(), h00, deflection.sum(), imbalance.sum(), load]).all():
+        return "it is not finite"
+    if not problem.dry and q.min() < -1.0 - LEAST_OIL:
+        return f"a node has {q.min() + 1.0:.2g} of its gap full of oil"
+    model, bound = problem.model, SLACK * tolerance
+    oil = imbalance
+    if not model.is_mixed:
+        if w.min() < model.bound - model.near:
+            return f"a film is {w.min() - model.bound:.2g} a^2/R below its bound"
+        touching = model.in_contact(w, imbalance)
+        worst = -imbalance[touching].min(initial=0.0)
+        if not worst <= bound:
+            return f"where solids touch a residual is -{worst:.2e}, allowed: {tolerance:.1e}"
+        oil = np.where(touching, 0.0, imbalance)
+    for what, size in (
+        ("load", abs(load)),
+        ("deflection", np.linalg.norm(deflection)),
+        ("oil balance" if not problem.dry else "open gap", np.linalg.norm(oil)),
+    ):
+        if not size <= bound:
+            return f"the residual of the {what} is {size:.2e}, allowed: {tolerance:.1e}"
+    return None

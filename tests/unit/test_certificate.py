@@ -1,0 +1,102 @@
+"""A step counts by the program's own certificate, whatever SNES says of it; both contact models."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ehlpetsc
+from ehlpetsc.errors import NotConverged
+from ehlpetsc.stepping.certificate import find_fault
+
+CASES = Path(__file__).parents[2] / "cases"
+MESH = {"mesh.points_per_half_width": 30, "mesh.inlet": -1.5, "mesh.outlet": 1.3}
+CLOSED = 20  # a node that is put into contact
+
+
+@pytest.fixture(scope="module", params=["direct", "mixed"])
+def solved(request):
+    case = ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": request.param})
+    simulation = ehlpetsc.Simulation(case)
+    simulation.advance()
+    return simulation
+
+
+def fault(simulation, change=lambda q, w, rows: None, h00=None, tolerance=None):
+    """Fault of the solution once its copy is changed."""
+    state, solver = simulation.solution, simulation.march.solver
+    rows = [np.copy(part) for part in solver.residual()]
+    q, w = state.q.copy(), state.w.copy()
+    change(q, w, rows)
+    tolerance = solver.tolerance if tolerance is None else tolerance
+    return find_fault(solver.problem, q, w, state.h00 if h00 is None else h00, rows, tolerance)
+
+
+def test_a_solution_is_one(solved):
+    assert solved.march.solver.tolerance == pytest.approx(1e-7)
+    assert fault(solved) is None
+
+
+def put(which, node, value):
+    def change(*parts):
+        parts[which][node] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (put(0, 3, np.nan), "not finite"),
+        (put(1, 3, np.inf), "not finite"),
+        (lambda q, w, rows: rows[0].fill(np.nan), "not finite"),
+        (put(0, 3, -1.1), "of its gap full of oil"),
+        (lambda q, w, rows: rows[0].__setitem__(9, 2e-7), "deflection is 2.00e-07, allowed: 1.0e-07"),
+        (lambda q, w, rows: rows[1].__setitem__(9, -2e-7), "oil balance is 2.00e-07"),
+        (lambda q, w, rows: rows.__setitem__(2, 2e-7), "load is 2.00e-07"),
+    ],
+)
+def test_every_part_is_held_against_its_bound(solved, change, words):
+    assert words in fault(solved, change)
+
+
+def test_solids_must_carry_where_they_touch():
+    case = ehlpetsc.load(CASES / "table1_smooth.toml", MESH)
+    simulation = ehlpetsc.Simulation(case)
+    simulation.advance()
+
+    def touching(imbalance):
+        def change(q, w, rows):
+            w[CLOSED], rows[1][CLOSED] = 0.0, imbalance
+
+        return change
+
+    assert fault(simulation, touching(0.3)) is None  # Reynolds is left out there
+    assert "where solids touch a residual is -2.00e-07" in fault(simulation, touching(-2e-7))
+    assert "below its bound" in fault(simulation, put(1, CLOSED, -1e-6))
+
+
+def test_tolerances_that_are_no_numbers_pass_nothing(solved):
+    assert fault(solved, tolerance=np.nan) is not None
+
+
+def test_a_solver_that_takes_its_guess_for_the_solution_gets_nowhere(solved, monkeypatch):
+    def solve(q, w, h00, inputs, max_it=None):
+        solver = simulation.march.solver
+        solver.inputs, solver.place, solver.tolerance = inputs, None, 1e-7
+        solver.scatter(q, w, h00)
+        return q, w, h00, 0
+
+    simulation = ehlpetsc.Simulation(solved.case)
+    monkeypatch.setattr(simulation.march.solver, "solve", solve)
+    with pytest.raises(NotConverged, match="steady start: SNES ended, but .* after 0 iterations"):
+        simulation.advance()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"snes_convergence_test": "default"}, {"snes_convergence_test": "skip"}, {"snes_stol": "1e-3"}],
+)
+def test_what_a_users_test_lets_pass_is_the_solution(solved, options):
+    simulation = ehlpetsc.Simulation(solved.case, options=options)
+    assert simulation.advance().h_min == pytest.approx(solved.state.h_min, rel=1e-6)
