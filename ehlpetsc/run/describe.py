@@ -38,6 +38,7 @@ def explain(case):
         _film(case, scales, rough),
         _motion(case, scales),
         _surfaces(case, scales, rough),
+        _heights(rough, scales),
         _size(case, scales, rough),
         _switched_off(case, rough),
         [f"Warning: {line}" for line in warnings(case, scales)],
@@ -175,6 +176,20 @@ def _profile(case, s, profile):
         then = "and fills it" if profile.repeats else "and stands with its middle at x = 0"
         lines.append(f"reaches the contact at travel {reaches:.2f} a {then} at {fills:.2f} a")
     return lines
+
+
+def _heights(rough, s):
+    """Valleys and peaks of the profiles beside those that the mesh is given."""
+    for side in ("fast", "slow"):
+        profile = rough and getattr(rough, side)
+        if profile:
+            given = profile.heights.min(), profile.heights.max()
+            given, seen = (
+                " to ".join(f"{1e6 * round(z, 12):.3g}" for z in pair)
+                for pair in (given, profile.extremes_of_cells(s.dx))
+            )
+            about = "means over cells, as the mesh has them"
+            yield f"Surface {side}: heights from {given} um; {about}, {seen} um"
 
 
 def _size(case, s, rough):

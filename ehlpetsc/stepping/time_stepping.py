@@ -4,7 +4,7 @@ The first guess of a step is :mod:`.predictor`'s. A step that does not converge 
 :mod:`.step_control` leads back to the nominal one.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.stepping.certificate import certified
 from ehlpetsc.stepping.predictor import Level, predict
 from ehlpetsc.stepping.steady_start import steady
-from ehlpetsc.stepping.step_control import next_step
+from ehlpetsc.stepping.step_control import LEVEL, next_step
 
+GROWTH = 1.0  # half widths at the mean speed, over which roughness at rest grows where it has to
 SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
 
 
@@ -80,12 +81,14 @@ class TimeStepping:
     ----------
     smooth : pair of ndarray
         Steady q and w that the predictor starts from.
+    before : float
+        For how long before time 0 roughness at rest has grown [s]; 0 where a steady solution was found.
     """
 
     def __init__(self, solver, scales, roughness, film):
         self.solver, self.problem, self.scales, self.film = solver, solver.problem, scales, film
         self.roughness = roughness
-        self.smooth = None
+        self.smooth, self.before = None, 0.0
 
     def phi(self, travelled):
         """What the roughness adds to the gap, in a^2/R: means over the cells of the mesh.
@@ -102,14 +105,45 @@ class TimeStepping:
             return self.roughness.phi_after(places, travelled, cell) / self.scales.h
 
     def start(self):
-        """Steady solution at time 0."""
-        inputs = self.problem.inputs(self.phi((0.0, 0.0)))
+        """Steady solution at time 0 or, under roughness at rest that has none in reach, one marched to."""
+        phi = self.phi((0.0, 0.0))
         try:
-            q, w, h00, newton = steady(self.solver, self.film, inputs)
+            state = self._steady(phi)
+        except NoSteadyStart as error:
+            if self.scales.dt is None or self.problem.dry or not phi.any():
+                raise NotConverged(f"steady start: {error}") from error
+            state = self._marched()
+        self.smooth = (state.q, state.w)
+        return state
+
+    def _steady(self, phi):
+        q, w, h00, newton = steady(self.solver, self.film, self.problem.inputs(phi))
+        return self._state(q, w, h00, newton=newton)
+
+    def _marched(self):
+        """The state at time 0 of a film into which roughness at rest has grown by time steps before.
+
+        It lies under the film from the start, where Newton's method may find no way to it; that of a moving
+        body comes in through the inlet. The growth takes the way `GROWTH` of the mean speed.
+        """
+        try:
+            state = self._steady(np.zeros(self.problem.n))
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
-        self.smooth = (q, w)
-        return self._state(q, w, h00, newton=newton)
+        steps, newton = np.ceil(GROWTH * self.scales.a / self.scales.u / self.scales.dt), state.newton
+        self.before = steps * self.scales.dt
+        state = replace(state, time=-self.before, travelled=self.scales.travelled(-self.before))
+        self.smooth = (state.q, state.w)
+        while state.time < -LEVEL * self.scales.dt:
+            state = self.advance(state)
+            newton += state.newton
+        begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
+        return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
+
+    def _grown(self, time):
+        """Share of the roughness that has grown at a time before 0 [s]; all from there on."""
+        r = 1.0 + time / self.before if time < 0.0 else 1.0
+        return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
     def _state(self, q, w, h00, **more):
         relations, m = self.problem.model.relations(q, w), self.problem.content(q, w)
@@ -135,7 +169,8 @@ class TimeStepping:
             unit = self.scales.u / self.scales.a
             older = None if state.dt is None else state.dt * unit
             history = FilmHistory(state.m, state.m_older, dt * unit, older)
-        return self.problem.inputs(self.phi(self._travelled(state, dt)), history)
+        phi = self._grown(state.time + dt) * self.phi(self._travelled(state, dt))
+        return self.problem.inputs(phi, history)
 
     def advance(self, state, dt=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""

@@ -82,6 +82,19 @@ class Profile:
         mean = self._level + np.diff(self._integral(X)) / np.diff(X)
         return self._come_in(0.5 * (X[1:] + X[:-1])) * mean if self.enters else mean
 
+    def extremes_of_cells(self, cell):
+        """Lowest and highest mean height [m] over cells of a mesh, wherever they lie on the profile.
+
+        Parameters
+        ----------
+        cell : float
+            Width [m].
+        """
+        first, last = self.X[0], self.X[-1]
+        start = np.arange(first, max(last - cell, first) + 0.125 * cell, 0.25 * cell)
+        mean = self._level + (self._integral(start + cell) - self._integral(start)) / cell
+        return float(mean.min()), float(mean.max())
+
     def _come_in(self, X):
         """Factor on the heights, 0 where X < 0, 1 beyond the ramp."""
         r = np.clip(X / self.ramp, 0.0, 1.0)

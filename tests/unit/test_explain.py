@@ -113,12 +113,28 @@ def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
     assert warnings(c, Scales.of(c)) == []
 
 
+def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp_path):
+    """A point of 3 um on a flat: the spline through it, spread over a cell of 3.4 um, is 0.9 um high."""
+    x = 0.5e-6 * np.arange(2000)
+    z = np.where(np.arange(2000) == 1000, 3e-6, 0.0)
+    spike = {"surface": {"slow": {"x": x, "z": z}}, "time": {"travel": 4.0}}
+    text = explain(case.load(CASES / "table1_smooth.toml", spike | {"mesh.points_per_half_width": 100}))
+    (line,) = [line for line in text.splitlines() if "heights from" in line]
+    given, seen = (float(part.split(" to ")[1].split()[0]) for part in line.split(";"))
+    area = 0.5e-6 * 3e-6 * 1.0  # of the spline, its undershoots beside the point included
+    assert given == pytest.approx(3.0, rel=0.01)
+    assert seen == pytest.approx(1e6 * area / 3.357e-6, rel=0.3) and seen < 0.3 * given
+
+
 def test_each_surface_is_told_with_its_figures():
     told = starting(lines("fig7.toml"), "Surface slow")
     assert told[0].endswith("lambda ratio 0.81")
     assert told[1] == "Surface slow: 1.712 mm long, 3425 points 0.5 um apart"
     assert told[2] == "Surface slow: continues mirrored: 18.28 mm of it are drawn in"
     assert told[3] == "Surface slow: reaches the contact at travel 1.93 a and fills it at 4.63 a"
+    assert told[4].endswith(
+        "heights from -0.275 to 0.325 um; means over cells, as the mesh has them, -0.265 to 0.314 um"
+    )
     assert not [line for line in lines("fig1.toml") if "mirrored" in line]
     ridge = starting(lines("ridge.toml"), "Surface")
     assert ridge[0] == "Surface fast: smooth"

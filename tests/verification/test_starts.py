@@ -1,0 +1,87 @@
+"""Starts: of rough bodies at rest, of the same contact seen in a mirror, of next to no load."""
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import NoSteadyStart
+from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.stepping import time_stepping
+from ehlpetsc.stepping.steady_start import DIRECT, smoothed
+
+CASES = Path(__file__).parents[2] / "cases"
+GROUND = {"kind": "ground", "ra": 0.1e-6, "correlation": 25e-6, "skewness": -1.0, "seed": 1}
+MESH = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
+
+
+def rough(side, xi, travel, **more):
+    """Table 1 with one rough surface."""
+    changed = {f"surface.{side}": {"synthetic": GROUND}, "motion.slide_roll_ratio": xi, "time.travel": travel}
+    return load(CASES / "table1_smooth.toml", MESH | {"time": {"travel": travel}} | changed | more)
+
+
+@pytest.mark.parametrize("xi", [2.0, -2.0, 8.0, -8.0])
+def test_names_of_the_surfaces_do_not_matter(xi):
+    """The rough fast surface at xi is the rough slow one at -xi, to the last digit of Newton's method."""
+    one, other = (list(Simulation(rough(side, ratio, 1.0))) for side, ratio in (("fast", xi), ("slow", -xi)))
+    assert len(one) == len(other) > 40
+    assert [s.newton for s in one] == [s.newton for s in other]
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_allclose(a.pressure, b.pressure, rtol=0, atol=1e-9 * a.p_max)
+        np.testing.assert_allclose(a.film_thickness, b.film_thickness, rtol=1e-9)
+
+
+def test_roughness_at_rest_is_marched_to_where_no_steady_solution_is_found(monkeypatch):
+    """After the oil has passed the domain it is the steady film that continuation finds."""
+    known = next(iter(Simulation(rough("fast", -2.0, 1.0))))
+    found = time_stepping.steady
+
+    def only_smooth(solver, film, inputs):
+        if inputs.phi.any():
+            raise NoSteadyStart("none", None, 0)
+        return found(solver, film, inputs)
+
+    monkeypatch.setattr(time_stepping, "steady", only_smooth)
+    first, *_, last = Simulation(rough("fast", -2.0, 8.0))
+    assert first.time == 0.0 and first.step == 0 and first.newton > 50
+    scale = known.film_thickness[np.abs(known.film_thickness) < 1e-6].max()
+    for state, tolerance in ((first, 0.05), (last, 1e-3)):
+        difference = np.abs(state.film_thickness - known.film_thickness).max()
+        assert difference < tolerance * scale, tolerance
+
+
+def test_a_wide_kernel_smooths_as_a_narrow_one_does():
+    x = np.linspace(-1.5, 1.5, 12_001)
+    p = np.sqrt(np.maximum(1.0 - x**2, 0.0))
+    wide = 1.2 * DIRECT / 4.0
+    reach = int(4.0 * wide + 0.5)
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / wide) ** 2)
+    direct = np.convolve(p, weights / weights.sum())[reach : reach + len(p)]
+    np.testing.assert_allclose(smoothed(p, wide), direct, rtol=0, atol=1e-13)
+    assert smoothed(p, 1e9).shape == p.shape
+
+
+def test_next_to_no_load_takes_no_more_memory_than_any_other():
+    code = (
+        "import ehlpetsc\n"
+        f"case = ehlpetsc.load({str(CASES / 'table1_smooth.toml')!r}, {{'contact.load': 0.3}})\n"
+        "try: ehlpetsc.solve(case)\n"
+        "except ehlpetsc.NotConverged as error: print(error)\n"
+    )
+    most = 2 * 2**30
+
+    def bounded():
+        resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+
+    done = subprocess.run(
+        [sys.executable, "-c", code], preexec_fn=bounded, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
