@@ -17,21 +17,31 @@ LARGEST_KEPT = 31 << 20  # bytes of a block that malloc keeps: new pages for eve
 
 
 @compiled(error_model="python", nogil=True)
+def _places(shape, shift, first, out):
+    """out (3, frames): place of the stresses of body point 0 in an array (pairs, 3, n, 2) with one axis."""
+    for part in range(3):
+        for k in range(out.shape[1]):
+            out[part, k] = (((k >> 1) * 3 + part) * shape[2] + shift[first + k]) * 2 + (k & 1)
+
+
+@compiled(error_model="python", nogil=True)
 def _gather(stress, begin, end, first, last, shift, enter, leave, quantum, ring):
     """Move the stresses (pairs, 3, n, 2) of frames begin .. end-1 into histories of points first .. last-1.
 
     Point by point, rounded to a multiple of the quantum.
     """
     inverse = 1.0 / quantum
+    flat, places = stress.reshape(-1), np.empty((3, end - begin), np.int64)
+    _places(stress.shape, shift, begin, places)
     for j in range(first, last):
         history = ring[j % ring.shape[0]]
         start, stop = max(begin, enter[j]), min(end, leave[j] + 1)
         for part in range(3):
             if start == enter[j]:
                 history[part, 0] = 0.0
-            for k in range(start, stop):
-                value = stress[(k - begin) // 2, part, j + shift[k], (k - begin) % 2]
-                history[part, k - enter[j] + 1] = np.rint(value * inverse) * quantum
+            row, place = history[part, start - enter[j] + 1 :], places[part, start - begin :]
+            for k in range(stop - start):
+                row[k] = np.rint(flat[2 * j + place[k]] * inverse) * quantum
             if stop == leave[j] + 1:
                 history[part, stop - enter[j] + 1] = 0.0
 
@@ -142,7 +152,7 @@ class Sweep:
         begin, end = points[0], points[-1] + 1
         for depth, ring in enumerate(rings):
             for part in in_cache(last - first):
-                fields = self.stress.paired(depth, spectra[:, part], self.weights[first:last][part])
+                fields = self.stress.paired(depth, spectra[part], self.weights[first:last][part])
                 frames = first + part.start, first + part.stop
                 _gather(fields, *frames, begin, end, m.shift, m.enter, m.leave, self.quantum, ring)
 

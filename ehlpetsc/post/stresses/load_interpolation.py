@@ -22,9 +22,25 @@ GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 @compiled(error_model="python", nogil=True)
 def _smaller(a, b):
     """The one nearer to zero, or zero if their signs differ."""
-    if a * b <= 0.0:
-        return 0.0
-    return a if abs(a) < abs(b) else b
+    nearer = a if abs(a) < abs(b) else b
+    return nearer if a * b > 0.0 else 0.0
+
+
+@compiled(error_model="python", nogil=True)
+def _slopes_between(y, slopes):
+    """Slopes of one row of values at all nodes but three at each end; without a branch, several at once."""
+    y1, y2, y3, y4, y5, y6 = y[1:], y[2:], y[3:], y[4:], y[5:], y[6:]
+    for i in range(y.size - 6):
+        left, right = y3[i] - y2[i], y4[i] - y3[i]
+        bend = right - left
+        left_bend = _smaller(y1[i] - 2 * y2[i] + y3[i], bend)
+        right_bend = _smaller(y3[i] - 2 * y4[i] + y5[i], bend)
+        straight = 3 * _smaller(left, right)  # keeps monotone values monotone
+        curved = 3 * _smaller(left + left_bend / 2, right - right_bend / 2)
+        smooth = abs(_smaller(left_bend, right_bend))  # lets the top of a ripple lie between nodes
+        high = 0.75 * (right + left) - 0.15 * (y5[i] - y1[i]) + (y6[i] - y[i]) / 60
+        high = max(high, min(0.0, straight, curved, -smooth))
+        slopes[i] = min(high, max(0.0, straight, curved, smooth))
 
 
 @compiled(error_model="python", nogil=True)
@@ -32,19 +48,8 @@ def limited_slopes(loads, out):
     """Slopes an element of loads (rows, nodes) into out; zero at the three nodes of each end."""
     nodes = loads.shape[1]
     for row in range(loads.shape[0]):
-        y, slope = loads[row], out[row]
-        slope[:3], slope[nodes - 3 :] = 0.0, 0.0
-        for i in range(3, nodes - 3):
-            left, right = y[i] - y[i - 1], y[i + 1] - y[i]
-            bend = right - left
-            left_bend = _smaller(y[i - 2] - 2 * y[i - 1] + y[i], bend)
-            right_bend = _smaller(y[i] - 2 * y[i + 1] + y[i + 2], bend)
-            straight = 3 * _smaller(left, right)  # keeps monotone values monotone
-            curved = 3 * _smaller(left + left_bend / 2, right - right_bend / 2)
-            smooth = abs(_smaller(left_bend, right_bend))  # lets the top of a ripple lie between nodes
-            high = 0.75 * (right + left) - 0.15 * (y[i + 2] - y[i - 2]) + (y[i + 3] - y[i - 3]) / 60
-            high = max(high, min(0.0, straight, curved, -smooth))
-            slope[i] = min(high, max(0.0, straight, curved, smooth))
+        out[row, :3], out[row, nodes - 3 :] = 0.0, 0.0
+        _slopes_between(loads[row], out[row, 3:])
 
 
 def _shapes(t):
