@@ -1,6 +1,7 @@
 """``mpirun -n N python3 -m ehlpetsc CASE.toml [options]``: run a case; ``-help`` lists the options."""
 
 import sys
+import warnings
 
 from ehlpetsc.errors import ExitStatus
 
@@ -73,6 +74,8 @@ def refuse(text):
 
 def guarded(argv):
     """Run `main`; an unexpected error on one rank ends all of them, with its traceback."""
+    if not sys.warnoptions:  # those of numpy are for developers: python3 -W default shows them
+        warnings.simplefilter("ignore")
     try:
         return main(argv)
     except SystemExit:

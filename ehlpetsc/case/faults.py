@@ -47,7 +47,14 @@ def show(value):
         text = json.dumps(value, ensure_ascii=False, default=str)
     except ValueError:  # Python will not print an integer of thousands of digits
         text = "a number of thousands of digits"
+    except RecursionError:
+        text = "tables in tables without end"
     text = "nan" if text == "NaN" else text
+    return shortened(text)
+
+
+def shortened(text):
+    """At most 60 characters of a text."""
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -73,7 +80,7 @@ def describe(error, model, data, where=""):
     for wrapper in _flat(error.raw_errors):
         name, cause = wrapper.loc_tuple()[0], wrapper.exc
         field = next((f for f in model.__fields__.values() if name in (f.alias, f.name)), None)
-        key = where + str(name)
+        key = where + shortened(str(name))
         value = data.get(name)
         if name == "__root__":
             faults.append(f"{where.rstrip('.') or 'case'}: {cause}")
@@ -82,7 +89,7 @@ def describe(error, model, data, where=""):
         elif name not in data:
             faults.append(f"{key} is missing; allowed: {allowed(field)}")
         elif field is None or name != field.alias:
-            faults.append(f"{key} = {show(value)}: unknown key; {nearest(str(name), model)}")
+            faults.append(f"{key} = {show(value)}: unknown key; {nearest(shortened(str(name)), model)}")
         else:
             faults.append(f"{key} = {show(value)}: allowed: {allowed(field)}")
     return list(dict.fromkeys(faults))

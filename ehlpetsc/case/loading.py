@@ -1,24 +1,26 @@
 """The case file: read, overridden, checked, all faults told at once."""
 
 import contextlib
-import copy
 import difflib
+import re
 import tomllib
 from pathlib import Path
 
-import tomlkit
-
-from ehlpetsc.case.faults import describe, show
+from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.post_table import Post
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
+from ehlpetsc.case.settings import PARTS, parsed, put, text_with
 from ehlpetsc.case.surface_tables import Surface
-from ehlpetsc.case.table import Table
+from ehlpetsc.case.sweep import member_tables, series_faults, settings_of
+from ehlpetsc.case.table import Table, is_plain
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.errors import CaseError
 
 DICT = "case"  # what faults call a case that is no file
+MOST_BYTES = 2**26  # of a case file: far more than any profile written out in it
+LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{PARTS}}}""")
 __all__ = ["Case", "CaseError", "load", "members"]
 
 
@@ -33,7 +35,9 @@ class Case(Table):
         Where it was read; profile files are sought beside it.
     """
 
-    title: str = Field(..., min_length=1, description="one line for the result file and its pictures")
+    title: str = Field(
+        ..., min_length=1, max_length=1000, description="one line for the result file and its pictures"
+    )
     contact: Contact = Field(..., description="solids and load")
     fluid: Fluid | None = Field(None, description="left out: dry contact")
     motion: Motion | None = Field(None, description="speeds; needed with [fluid] and with [time]")
@@ -52,7 +56,8 @@ class Case(Table):
         """PETSc takes text; TOML's true, false and numbers are written out for it."""
         for name, value in options.items():
             number = isinstance(value, int | float) and abs(value) < 1e300
-            if not name or name.startswith("-") or not (number or isinstance(value, str)):
+            text = isinstance(value, str) and is_plain(value)
+            if not name or name.startswith("-") or not is_plain(name) or not (number or text):
                 raise ValueError(name)
         return {name: show(v) if not isinstance(v, str) else v for name, v in options.items()}
 
@@ -99,21 +104,21 @@ def load(case, overrides=None):
     from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
     for override in list(overrides.items()) if isinstance(overrides, dict) else overrides or ():
         try:
-            settings.append(_setting(override))
-            _set(data, *settings[-1])
+            settings.append(parsed(override))
+            put(data, *settings[-1])
         except ValueError:
-            typed = " ".join(str(override).split())  # a fault is one line
+            typed = shortened(" ".join(str(override).split()))  # a fault is one line
             faults.append(f"{path}: {typed}: allowed: table.key=value, as in fluid.viscosity=0.003")
     faults += _faults(path, data)
     if not faults:
-        faults += _series_faults(path, data)
+        faults += series_faults(path, data, lambda member: _faults(path, member))
     if faults:
         raise CaseError(faults)
-    return _made(path, data, toml_text(data) if from_python else _with_settings(text, settings))
+    return _made(path, data, toml_text(data) if from_python else text_with(text, settings, data))
 
 
 def members(case):
-    """Members of a series: the same case without `[series]`, its key set to one value each.
+    """Members of a series: the same case without `[series]`, its key, or keys, set to one value each.
 
     Parameters
     ----------
@@ -123,18 +128,22 @@ def members(case):
     Returns
     -------
     list of (value, Case)
+        Of several keys the value is the tuple of theirs.
     """
-    keys, data = case.series.key.split("."), tomllib.loads(case.text)
-    result = []
-    for value in data["series"]["values"]:
-        text = _with_settings(case.text, [(keys, value)], without="series")
-        result.append((value, _made(case.path, _member(data, keys, value), text)))
+    data, result = tomllib.loads(case.text), []
+    for settings in settings_of(data["series"]):
+        tables = member_tables(data, settings)
+        text = text_with(case.text, settings, tables, without="series")
+        values = tuple(value for _, value in settings)
+        result.append((values[0] if case.series.key else values, _made(case.path, tables, text)))
     return result
 
 
 def _read(path):
     try:
-        return Path(path).read_bytes().decode()
+        if Path(path).stat().st_size > MOST_BYTES:
+            raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
+        return Path(path).read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
@@ -153,61 +162,20 @@ def _meant(path):
 
 
 def _parse(path, text):
+    found = LONG_KEY.search(text)
+    if found:  # tomllib takes the square of their number in time
+        line = text.count("\n", 0, found.start()) + 1
+        raise CaseError([f"{path}: line {line}: a key of more than {PARTS} parts; allowed: table.key"])
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through
         raise CaseError([f"{path}: not valid TOML: {error}"]) from None
 
 
-def _setting(override):
-    """("a.b=value") or ("a.b", value) -> (["a", "b"], value)."""
-    if isinstance(override, tuple):
-        return override[0].split("."), plain(override[1])
-    name, equals, raw = override.partition("=")
-    keys = name.strip().split(".")
-    if not equals or not all(keys):
-        raise ValueError(override)
-    try:
-        parsed = tomllib.loads(f"value = {raw}")
-    except (ValueError, RecursionError):
-        parsed = {}
-    return keys, parsed["value"] if list(parsed) == ["value"] else raw
-
-
-def _set(data, keys, value):
-    for key in keys[:-1]:
-        data = data.setdefault(key, {})
-        if not isinstance(data, dict):
-            raise ValueError(key)
-    if value is None:
-        data.pop(keys[-1], None)
-    else:
-        data[keys[-1]] = value
-
-
-def _with_settings(text, settings, without=None):
-    """The text with keys set and a table left out, comments kept."""
-    if not settings and without is None:
-        return text
-    document = tomlkit.parse(text)
-    for keys, value in settings:
-        _set(document, keys, value)
-    if without:
-        document.remove(without)
-    return tomlkit.dumps(document)
-
-
 def _made(path, data, text):
     case = Case(**data)
     case._text, case._path = text, Path(path)
     return case
-
-
-def _member(data, keys, value):
-    member = copy.deepcopy(data)
-    del member["series"]
-    _set(member, keys, value)
-    return member
 
 
 def _faults(path, data):
@@ -222,18 +190,3 @@ def _faults(path, data):
         faults += describe(error, Case, data)
     faults += profile_faults(Path(path).parent, data.get("surface"), case if not faults else None)
     return [f"{path}: {fault}" for fault in faults]
-
-
-def _series_faults(path, data):
-    """Faults that only a member of the series has."""
-    if "series" not in data:
-        return []
-    key, values = data["series"]["key"], data["series"]["values"]
-    faults = []
-    for value in values:
-        try:
-            member = _member(data, key.split("."), value)
-        except ValueError:
-            return [f"{path}: series.key = {show(key)}: allowed: a key of this case"]
-        faults += [f"{fault} (series.values: {show(value)})" for fault in _faults(path, member)]
-    return faults

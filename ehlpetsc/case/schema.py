@@ -4,13 +4,16 @@ One model a table of the file; attribute names are the keys (`lambda` is `lambda
 for any machine element in SI units and narrow enough that a value in GPa, mm or um is found out.
 """
 
+import math
 from typing import Any, Literal
 
 from ehlpetsc.case.table import Table
-from ehlpetsc.case.validation import Field, confloat, validator
+from ehlpetsc.case.validation import Field, confloat, constr, root_validator, validator
 from ehlpetsc.quantities import FIELDS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
+DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_]+)+$"  # a key below a table
+MAX_MEMBERS = 10_000  # of a series
 MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
 
 Modulus = confloat(ge=1e6, le=1e18)
@@ -142,7 +145,37 @@ class Output(Table):
 
 
 class Series(Table):
-    """`[series]`: one key swept over values, one member a value."""
+    """`[series]`: a key swept over values, or several, one member a value or a combination of values."""
 
-    key: str = Field(..., regex=r"^[A-Za-z_]+(\.[A-Za-z_]+)+$", description='as in "fluid.viscosity"')
-    values: list[Any] = Field(..., min_items=1, description="a list of values of that key")
+    key: str | None = Field(None, regex=DOTTED, description='as in "fluid.viscosity"; or keys')
+    keys: list[constr(regex=DOTTED)] | None = Field(None, min_items=2, description="several keys at once")
+    values: list[Any] = Field(
+        ..., min_items=1, description="a list of values of the key; of keys, such a list for each"
+    )
+    combine: Literal["grid", "step"] | None = Field(
+        None,
+        description="of keys: every value with every other [grid], or the first ones, the second ones ...",
+    )
+
+    @root_validator(skip_on_failure=True)
+    def _one_or_several(cls, values):
+        keys, lists = values["keys"], values["values"]
+        if (values["key"] is None) == (keys is None):
+            raise ValueError("needs either key or keys: one of them")
+        if keys is None:
+            if values["combine"]:
+                raise ValueError("combine is for several keys")
+            return values
+        if len(set(keys)) < len(keys):
+            raise ValueError("keys: the same one twice")
+        if len(lists) != len(keys) or not all(isinstance(one, list) and one for one in lists):
+            raise ValueError(f"values: allowed: {len(keys)} lists of values, one for each of the keys")
+        if values["combine"] == "step" and len({len(one) for one in lists}) > 1:
+            counts = ", ".join(str(len(one)) for one in lists)
+            raise ValueError(
+                f'values: lists of {counts}; allowed with combine = "step": as long as each other'
+            )
+        members = math.prod(map(len, lists)) if values["combine"] != "step" else len(lists[0])
+        if members > MAX_MEMBERS:
+            raise ValueError(f"{members} members; allowed: at most {MAX_MEMBERS}")
+        return values

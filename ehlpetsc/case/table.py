@@ -10,6 +10,11 @@ def is_of(kind, value):
     return isinstance(value, (int, float) if kind is float else kind)
 
 
+def is_plain(text):
+    """Whether a text is one line without control characters: HDF5 and PETSc end theirs at a nul."""
+    return text.isprintable() or not any(ord(character) < 32 or ord(character) == 127 for character in text)
+
+
 class Table(BaseModel):
     """A table of the case file: frozen, no unknown keys, no silent conversions."""
 
@@ -26,6 +31,8 @@ class Table(BaseModel):
         for item in value if isinstance(value, list) and kind is not dict else [value]:
             if not is_of(kind, item):
                 raise TypeError(f"{kind.__name__} expected")
+            if kind is str and not is_plain(item):
+                raise ValueError("control characters")
             if kind is float and not -1e308 < item < 1e308:  # nan compares false
                 raise ValueError("not finite")
         return value

@@ -9,6 +9,7 @@ try:
         ValidationError,
         confloat,
         conint,
+        constr,
         root_validator,
         validator,
     )
@@ -21,6 +22,7 @@ except ImportError:  # before 1.10.17 there is no such name
         ValidationError,
         confloat,
         conint,
+        constr,
         root_validator,
         validator,
     )
@@ -33,6 +35,7 @@ __all__ = [
     "ValidationError",
     "confloat",
     "conint",
+    "constr",
     "root_validator",
     "validator",
 ]

@@ -1,9 +1,11 @@
 """The scene of a case in words, and what to know before it runs."""
 
 import math
+import tomllib
 
 from ehlpetsc import __version__
 from ehlpetsc.case.loading import members
+from ehlpetsc.case.sweep import combinations, keys_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.domain import domain_faults, domain_warnings
 from ehlpetsc.run.forecast import FULL_FILM, dowson_higginson, file_size, lambda_ratio, run_time, steps
@@ -203,14 +205,18 @@ def _size(case, s, rough):
 
 def _series(case):
     """The members of a series and what they take together."""
-    shown = ", ".join(str(value) for value in case.series.values)
+    series = tomllib.loads(case.text)["series"]
+    shown = "; ".join(
+        f"{key} = {', '.join(map(str, values))}"
+        for key, values in zip(keys_of(series), zip(*combinations(series), strict=True), strict=True)
+    )
     seconds = size = 0.0
     for _, member in members(case):
         scales = Scales.of(member)
         seconds += run_time(member, scales, Roughness.of(member, scales))
         size += file_size(member, scales)
     return [
-        f"A series: {case.series.key} = {shown}; below, the base case.",
+        f"A series: {shown}; below, the base case.",
         f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
     ]
 

@@ -172,7 +172,7 @@ class Recorder:
     def _append(self, state):
         every, scales = self.simulation.case.output.every, self.simulation.scales
         steady = self.simulation.case.time is None
-        frame = every == 1 or steady or on_level(state.time, every * scales.dt)
+        frame = every == 1 or steady or on_level(state.time, scales.dt, every)
         self._writer.append(state.step, state.time, state.fields, state.figures, state.in_contact, frame)
 
     def _save(self):

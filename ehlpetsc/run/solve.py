@@ -5,7 +5,7 @@ import time as clock
 from dataclasses import dataclass
 from functools import partial
 
-from ehlpetsc.errors import ExitStatus, NotConverged, Stopped
+from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.nonlinear.defaults import unread
 from ehlpetsc.nonlinear.refusals import looser
 from ehlpetsc.run.progress import Progress, summary_line
@@ -19,7 +19,7 @@ class Outcome:
     Attributes
     ----------
     status : errors.ExitStatus
-    failure : errors.NotConverged or None
+    failure : errors.NotConverged, errors.OutputError or None
     wall : float
         Wall clock time [s].
     """
@@ -111,18 +111,28 @@ class Run:
         Outcome
         """
         begun = clock.monotonic()
+        try:
+            status, failure = self._record(restart, overwrite)
+        except OutputError as error:
+            if self.simulation.state is None:  # nothing was computed yet
+                raise
+            outcome = Outcome(ExitStatus.BAD_INPUT, error, clock.monotonic() - begun)
+            if self.root:
+                print(f"ehlpetsc: {error}", file=self.err, flush=True)
+            self._say(summary_line(outcome.status, self.recorder.totals, outcome.wall))
+            return outcome
+        outcome = Outcome(status, failure, clock.monotonic() - begun)
+        if self.root:
+            self._report(outcome)
+        return outcome
+
+    def _record(self, restart, overwrite):
         with self.simulation.options, self.recorder:
             self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._say(*(f"restart: {note}" for note in notes))
             self._looser = looser()
-            status, failure = record(
-                self.simulation, self.recorder, self.stop, self.out if self.root else None
-            )
-        outcome = Outcome(status, failure, clock.monotonic() - begun)
-        if self.root:
-            self._report(outcome)
-        return outcome
+            return record(self.simulation, self.recorder, self.stop, self.out if self.root else None)
 
     def _report(self, outcome):
         recorder, state = self.recorder, self.simulation.solution

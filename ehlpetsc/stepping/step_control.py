@@ -7,9 +7,10 @@ GROWTH = 2.0  # from one step to the next; BDF2 bears 2.4
 NEARLY_NOMINAL = 1.5  # a step within this factor of the nominal one is followed by the nominal one
 
 
-def on_level(time, spacing):
-    """Whether a time is a multiple of the spacing, but for rounding."""
-    return abs(time / spacing - round(time / spacing)) < LEVEL
+def on_level(time, step, every=1):
+    """Whether a time is a multiple of `every` nominal steps, but for rounding."""
+    steps = time / step
+    return abs(steps - every * round(steps / every)) < LEVEL
 
 
 def next_step(time, dt, retries, nominal):

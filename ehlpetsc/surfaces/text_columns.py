@@ -71,8 +71,9 @@ def _decoded(path):
         return raw.decode("utf-16", "replace")
     if b"\0" in raw:
         raise ProfileError("not text; allowed: columns of numbers, x and z")
+    raw = raw.removeprefix(codecs.BOM_UTF8)  # also before what is not UTF-8 then
     try:
-        return raw.decode("utf-8-sig")
+        return raw.decode().replace("\ufeff", "")  # files put together have more of them
     except UnicodeDecodeError:  # instruments write µ and degrees in the code page of their country
         return raw.decode("latin-1")
 

@@ -1,22 +1,30 @@
 """Members of a series: names, order, sums; time levels that members share."""
 
+import tomllib
+
 import numpy as np
 import pytest
 from made_results import make_result
 
 from ehlpetsc.case.loading import load, members
+from ehlpetsc.case.sweep import settings_of
+from ehlpetsc.errors import CaseError
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.series.member import Member
+from ehlpetsc.run.series.member import Member, named
 from ehlpetsc.run.series.series import Named
 from ehlpetsc.stepping.step_control import next_step, on_level
 
 
 def series(tmp_path, *overrides):
-    case = load("cases/fig4.toml", overrides)
+    return made(load("cases/fig4.toml", overrides), tmp_path)
+
+
+def made(case, tmp_path):
+    names = named(settings_of(tomllib.loads(case.text)["series"]))
     return [
-        Member(n, case.series.key, value, member, tmp_path / "out.h5")
-        for n, (value, member) in enumerate(members(case))
+        Member(name, value, member, tmp_path / "out.h5")
+        for name, (value, member) in zip(names, members(case), strict=True)
     ]
 
 
@@ -27,12 +35,66 @@ def test_files_are_named_after_output_and_value(tmp_path):
     assert last.restart == tmp_path / "out_viscosity_0.001.restart.h5"
 
 
-def test_values_that_make_no_name_are_numbered(tmp_path):
+def test_tables_are_named_by_what_differs_in_them(tmp_path):
     key = "series.key='surface.slow.synthetic'"
     one, two = (f"{{kind='sine',amplitude={z},wavelength=1e-4}}" for z in ("1e-7", "2e-7"))
     values = f"series.values=[{one},{two}]"
     names = [m.output.name for m in series(tmp_path, f"surface.slow={{synthetic={one}}}", key, values)]
-    assert names == ["out_synthetic_1.h5", "out_synthetic_2.h5"]
+    assert names == ["out_amplitude_1e-07.h5", "out_amplitude_2e-07.h5"]
+
+
+def test_values_that_make_no_name_are_numbered(tmp_path):
+    key, values = "series.key='contact.youngs_modulus'", "series.values=[[2e11,2e11],[2e11,3e11]]"
+    names = [m.output.name for m in series(tmp_path, key, values)]
+    assert names == ["out_youngs_modulus_1.h5", "out_youngs_modulus_2.h5"]
+
+
+SEVERAL = {"series.key": None, "series.keys": ["fluid.viscosity", "motion.entrainment_speed"]}
+
+
+def several(tmp_path, values, combine=None):
+    return made(
+        load("cases/fig4.toml", SEVERAL | {"series.values": values, "series.combine": combine}), tmp_path
+    )
+
+
+def test_several_keys_make_a_grid(tmp_path):
+    found = several(tmp_path, [[0.01, 0.002], [5.0, 1.0, 0.2]])
+    assert [m.value for m in found] == [(e, u) for e in (0.01, 0.002) for u in (5.0, 1.0, 0.2)]
+    for member in found:
+        assert (member.case.fluid.viscosity, member.case.motion.entrainment_speed) == member.value
+        assert member.case.series is None and "series" not in tomllib.loads(member.case.text)
+    assert found[1].name == "viscosity=0.01,entrainment_speed=1.0"
+    assert found[1].output.name == "out_viscosity_0.01_entrainment_speed_1.0.h5"
+    assert len({m.output for m in found}) == 6
+
+
+def test_several_keys_go_in_step(tmp_path):
+    found = several(tmp_path, [[0.01, 0.002, 0.002], [5.0, 5.0, 5.0]], "step")
+    assert [m.value for m in found] == [(0.01, 5.0), (0.002, 5.0), (0.002, 5.0)]
+    # only viscosity differs, and that makes one name twice
+    assert [m.name for m in found] == ["member=1", "member=2", "member=3"]
+    found = several(tmp_path, [[0.01, 0.002], [5.0, 5.0]], "step")
+    assert [m.name for m in found] == ["viscosity=0.01", "viscosity=0.002"]
+
+
+@pytest.mark.parametrize(
+    "changed, words",
+    [
+        ({"series.keys": ["fluid.viscosity", "fluid.viscosity"]}, "the same one twice"),
+        ({"series.values": [[0.01]]}, "2 lists of values"),
+        ({"series.values": [0.01, 5.0]}, "2 lists of values"),
+        ({"series.values": [[0.01, 0.02], [5.0]], "series.combine": "step"}, "lists of 2, 1"),
+        ({"series.key": "fluid.viscosity"}, "either key or keys"),
+        ({"series.values": [[0.01] * 200, [5.0] * 200]}, "40000 members"),
+        ({"series.values": [[0.01, -1.0], [5.0]]}, "fluid.viscosity = -1.0"),
+        ({"series.combine": "all"}, '"grid", "step"'),
+    ],
+)
+def test_faulty_series_of_several_keys_are_refused(changed, words):
+    good = SEVERAL | {"series.values": [[0.01, 0.002], [5.0, 1.0]]}
+    with pytest.raises(CaseError, match=words):
+        load("cases/fig4.toml", good | changed)
 
 
 def test_the_longest_runs_come_first(tmp_path):
@@ -79,6 +141,13 @@ def test_totals_of_steps_are_those_of_their_file(tmp_path):
         stored = Totals.of_result(result)
     assert str(totals) == str(stored)
     assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
+
+
+@pytest.mark.parametrize("every", [1, 7, 10**9])
+def test_frames_are_those_of_every_so_many_steps(every):
+    nominal = 0.37e-6
+    stored = [k for k in range(50) if on_level(k * nominal, nominal, every)]
+    assert stored == list(range(0, 50, every)) and not on_level(7.5 * nominal, nominal, every)
 
 
 def test_lines_are_named(capsys):

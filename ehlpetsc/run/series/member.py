@@ -9,6 +9,48 @@ from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.forecast import dowson_higginson, steps
 
+LONGEST = 60  # characters of a name
+
+
+def named(settings):
+    """Names of the members of a series: of its keys, the values in which members differ.
+
+    Values that are tables are told by what differs in them; where that makes no name, or one too long, or one
+    twice, by the member's number.
+
+    Parameters
+    ----------
+    settings : list of list of (list of str, value)
+        Of each member, see `ehlpetsc.case.sweep.settings_of`.
+
+    Returns
+    -------
+    list of str
+        As ``viscosity=0.002`` or ``viscosity=0.002,entrainment_speed=5.0``.
+    """
+    flat = [dict(part for keys, value in one for part in _parts(keys, value)) for one in settings]
+    every = dict.fromkeys(key for one in flat for key in one)
+    differing = [key for key in every if any(one.get(key) != flat[0].get(key) for one in flat)] or list(every)
+    last = settings[0][0][0][-1] if len(settings[0]) == 1 else "member"
+    names = []
+    for number, one in enumerate(flat, 1):
+        told = {key[-1]: one[key] for key in differing if key in one}
+        text = ",".join(f"{word}={value}" for word, value in told.items())
+        usable = told and len(text) <= LONGEST and not any(isinstance(v, list) for v in told.values())
+        names.append(text if usable else f"{last}={number}")
+    if len(set(names)) < len(names):
+        names = [f"{last}={number}" for number in range(1, len(names) + 1)]
+    return names
+
+
+def _parts(keys, value):
+    """Entries of a value: one, or those of a table."""
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from _parts([*keys, name], inner)
+    else:
+        yield tuple(keys), value
+
 
 class Member:
     """One member: its value, case and files.
@@ -20,14 +62,10 @@ class Member:
     output, restart : Path
     """
 
-    def __init__(self, number, key, value, case, output):
-        word = key.rpartition(".")[2]
-        shown = str(value)
-        if isinstance(value, dict | list) or len(shown) > 40:
-            shown = str(number + 1)
-        self.value, self.case, self.name = value, case, f"{word}={shown}"
-        plain = re.sub(r"[^A-Za-z0-9.+-]", "_", shown)
-        self.output = output.with_name(f"{output.stem}_{word}_{plain}.h5")
+    def __init__(self, name, value, case, output):
+        self.value, self.case, self.name = value, case, name
+        plain = re.sub(r"[^A-Za-z0-9.+-]", "_", name)
+        self.output = output.with_name(f"{output.stem}_{plain}.h5")
         self.restart = self.output.with_suffix(".restart.h5")
 
     def state_of_files(self):

@@ -1,16 +1,19 @@
 """A case with [series]: its members dealt to groups of ranks, one result file a member, one index file.
 
-The index ``OUTPUT.series.json`` names the swept key and, for each member, its value, result file (beside the
-index) and state: "done", "not converged", "stopped", "bad input" or "waiting". What a member's file holds
-already is not computed again: a whole file of the same case text is kept, a restart file of it gone on with.
+The index ``OUTPUT.series.json`` names the swept key, or keys, and for each member its value, result file
+(beside the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". What a member's
+file holds already is not computed again: a whole file of the same case text is kept, a restart file of it
+gone on with.
 """
 
 import json
 import sys
 import time as clock
+import tomllib
 from pathlib import Path
 
 from ehlpetsc.case.loading import members
+from ehlpetsc.case.sweep import settings_of
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
@@ -20,7 +23,7 @@ from ehlpetsc.results.whole_file import write_whole
 from ehlpetsc.run.describe import warnings
 from ehlpetsc.run.progress import summary_line
 from ehlpetsc.run.recorder import on_root
-from ehlpetsc.run.series.member import Member
+from ehlpetsc.run.series.member import Member, named
 from ehlpetsc.run.series.work_queue import Dealer
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
@@ -68,9 +71,10 @@ class Series:
         self.world, self.case, self.stop = world, case, stop
         output = Path(output)
         self.index = output.parent / f"{output.stem}.series.json"
+        self.swept = tomllib.loads(case.text)["series"]
         self.members = [
-            Member(number, case.series.key, value, member, output)
-            for number, (value, member) in enumerate(members(case))
+            Member(name, value, member, output)
+            for name, (value, member) in zip(named(settings_of(self.swept)), members(case), strict=True)
         ]
         if len({member.output for member in self.members}) < len(self.members):
             raise UsageError("series.values: two values have the same name; allowed: values that differ")
@@ -158,7 +162,7 @@ class Series:
         ]
         index = {
             "title": self.case.title,
-            "key": self.case.series.key,
+            **({"key": self.swept["key"]} if "key" in self.swept else {"keys": self.swept["keys"]}),
             "members": entries,
             "case": self.case.text,
         }

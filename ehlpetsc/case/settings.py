@@ -1,0 +1,76 @@
+"""Keys of a case set from outside: -ehl_set and the values of a series, in its tables and in its text."""
+
+import tomllib
+
+import tomlkit
+
+from ehlpetsc.case.toml_text import plain, toml_text
+
+PARTS = 50  # of a dotted key: more than any case has
+
+
+def parsed(override):
+    """("a.b=value") or ("a.b", value) -> (["a", "b"], value).
+
+    Raises
+    ------
+    ValueError
+        It is no setting of a key.
+    """
+    if isinstance(override, tuple):
+        return override[0].split("."), plain(override[1])
+    name, equals, raw = override.partition("=")
+    keys = name.strip().split(".")
+    if not equals or not all(keys) or len(keys) > PARTS:
+        raise ValueError(override)
+    try:
+        found = tomllib.loads(f"value = {raw}")
+    except (ValueError, RecursionError):
+        found = {}
+    return keys, found["value"] if list(found) == ["value"] else raw
+
+
+def put(tables, keys, value):
+    """Set a key in nested tables; None takes it out.
+
+    Raises
+    ------
+    ValueError
+        What stands above the key is no table.
+    """
+    for key in keys[:-1]:
+        tables = tables.setdefault(key, {})
+        if not isinstance(tables, dict):
+            raise ValueError(key)
+    if value is None:
+        tables.pop(keys[-1], None)
+    else:
+        tables[keys[-1]] = value
+
+
+def text_with(text, settings, data, without=None):
+    """The TOML text with keys set and a table left out, comments kept where that can be.
+
+    Parameters
+    ----------
+    text : str
+    settings : list of (list of str, value)
+    data : dict
+        The tables as they are to be: what the text must say in the end.
+    without : str, optional
+        Table to be left out.
+    """
+    if not settings and without is None:
+        return text
+    try:
+        document = tomlkit.parse(text)
+        for keys, value in settings:
+            put(document, keys, value)
+        if without:
+            document.remove(without)
+        edited = tomlkit.dumps(document)
+        if tomllib.loads(edited) == data:
+            return edited
+    except Exception:  # dotted tables, tables out of order: tomlkit edits some of them wrong, each in its way
+        pass
+    return toml_text(data)
