@@ -93,7 +93,7 @@ def test_an_input_is_never_an_output(tmp_path, words):
 
 def running(folder):
     """A long run, once its result is there."""
-    pipes = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     words = command(*LONG, "-ehl_output", "r.h5")
     process = subprocess.Popen(words, cwd=folder, env=BARE | SCRIPT, **pipes)
     wait_for(folder / "r.h5", process)
@@ -119,8 +119,9 @@ def test_a_result_removed_in_mid_run_is_seen(tmp_path):
     process = running(tmp_path)
     try:
         (tmp_path / "r.h5").unlink()
-        _, errors = process.communicate(timeout=60)
+        told, errors = process.communicate(timeout=60)
     finally:
         process.kill()
     assert process.returncode == 2
+    assert told.splitlines()[-1].startswith("ehlpetsc: bad input steps=")
     assert "r.h5: result file removed or replaced by others during the run" in errors
