@@ -7,6 +7,7 @@ import socket
 from pathlib import Path
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.reader import open_result
 
 
@@ -54,7 +55,7 @@ def check_replaceable(path, restart, case_text):
         return
     try:
         with open_result(path) as file:
-            status, case = file.attrs.get("status"), file.attrs.get("case")
+            status, case = plain(file.attrs.get("status")), plain(file.attrs.get("case"))
     except OutputError:
         raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {ways}") from None
     if status != "done":
