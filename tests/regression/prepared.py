@@ -1,0 +1,89 @@
+"""The program with its imports done, which forks for every run: importing costs more than most runs here.
+
+A run has a process, arguments, a folder and streams of its own as otherwise; the modules of MPI and PETSc,
+whose import starts them, are imported in it alone. Orders come in as lines of JSON, exit statuses go out.
+"""
+
+import gc
+import json
+import os
+import runpy
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve()
+LIMIT = 300  # s, after which a run is ended
+HEAVY = (
+    "scipy.fft",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "ehlpetsc.__main__",
+    "ehlpetsc.case.loading",
+    "ehlpetsc.discretisation.ehl_problem",
+    "ehlpetsc.physics.traction",
+    "ehlpetsc.results.reader",
+    "ehlpetsc.results.writer",
+    "ehlpetsc.run.describe",
+    "ehlpetsc.surfaces.roughness",
+)
+
+
+class Prepared:
+    """The prepared process, started when first asked; it ends with this one."""
+
+    def __init__(self, python, environment):
+        self.command, self.environment, self.process = [python, str(HERE)], environment, None
+
+    def run(self, words, folder, environment, out, err):
+        """Run a script, the first of `words`, in a folder, streams into files; returns the exit status."""
+        if self.process is None:
+            pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+            self.process = subprocess.Popen(self.command, env=self.environment, text=True, bufsize=1, **pipes)
+        order = {"words": words, "folder": folder, "environment": environment, "out": out, "err": err}
+        self.process.stdin.write(json.dumps(order, default=str) + "\n")
+        return int(self.process.stdout.readline())
+
+
+def load_compiled():
+    """Have numba ready: its first function takes as long to load as all else that a short run does."""
+    from ehlpetsc.discretisation.finite_volumes import reynolds_product
+
+    reynolds_product(np.zeros((1, 8)), np.zeros(2), np.zeros(2), 0, np.empty(1))
+
+
+def serve():
+    """Fork for every order; the child returns, ready to run, this process does not."""
+    for line in sys.stdin:
+        child = os.fork()
+        if child == 0:
+            return make_ready(**json.loads(line))
+        _, ended = os.waitpid(child, 0)
+        print(os.waitstatus_to_exitcode(ended), flush=True)
+    os._exit(0)
+
+
+def make_ready(words, folder, environment, out, err):
+    """Folder, environment, streams and arguments as ordered."""
+    os.chdir(folder)
+    os.environ.update(environment)
+    for stream, path in ((0, os.devnull), (1, out), (2, err)):
+        opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC)
+        os.dup2(opened, stream)
+        os.close(opened)
+    signal.alarm(LIMIT)
+    sys.argv = list(map(str, words))
+
+
+if __name__ == "__main__":
+    sys.path[0] = ""  # as for python -m: the folder of the run
+    for name in HEAVY:
+        __import__(name)
+    load_compiled()
+    assert not {"mpi4py.MPI", "petsc4py.PETSc"} & sys.modules.keys(), "started before the fork"
+    gc.freeze()  # or a run's first collection would copy all that it shares with this process
+    serve()
+    runpy.run_path(sys.argv[0], run_name="__main__")
