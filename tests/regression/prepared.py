@@ -71,7 +71,7 @@ def make_ready(words, folder, environment, out, err):
     os.chdir(folder)
     os.environ.update(environment)
     for stream, path in ((0, os.devnull), (1, out), (2, err)):
-        opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC)
+        opened = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND)
         os.dup2(opened, stream)
         os.close(opened)
     signal.alarm(LIMIT)

@@ -4,18 +4,25 @@ import math
 import os
 
 import pytest
-from running import SCRIPT
+from running import MAIN, PREPARED
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
+from ehlpetsc.study import runs
 from ehlpetsc.study.draws import run_all
 from ehlpetsc.study.extremes import lines, table
 
 
 @pytest.fixture(autouse=True)
-def environment(monkeypatch):
-    for name, value in SCRIPT.items():
-        monkeypatch.setenv(name, value)
+def quick_start(monkeypatch):
+    """Runs begin in a process that has imported already."""
+
+    def run_command(words, stream, limit):
+        (_, _, module), rest = words[:3], words[3:]
+        assert module == "ehlpetsc"
+        return PREPARED.run([MAIN, *rest], os.getcwd(), {}, stream.name, stream.name)
+
+    monkeypatch.setattr(runs, "_wait", run_command)
 
 
 @pytest.mark.slow

@@ -20,11 +20,11 @@ pytestmark = pytest.mark.slow
 SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
 
 
-def series(folder, name, points, travel, values):
-    """Run a short form on two ranks; its index."""
+def series(folder, name, points, travel, values, *more):
+    """Run a short form; its index."""
     mesh = [] if points is None else [f"mesh.points_per_half_width={points}"]
-    sets = settings(*SHORT, *mesh, f"time.travel={travel}", f"series.values={json.dumps(values)}")
-    done = run(ROOT / "cases" / f"{name}.toml", *sets, cwd=folder, ranks=2)
+    sets = settings(*SHORT, *more, *mesh, f"time.travel={travel}", f"series.values={json.dumps(values)}")
+    done = run(ROOT / "cases" / f"{name}.toml", *sets, cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / f"{name}.series.json"
 
@@ -37,7 +37,7 @@ def thin_ones_and_collisions(stack, index):
 @pytest.fixture(scope="module")
 def figure_4(tmp_path_factory):
     values = [0.010, 0.0085, 0.007, 0.0055, 0.004, 0.0025, 0.001]
-    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values)
+    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values, "time.courant=1.0")
 
 
 def test_films_reach_zero_where_extrapolation_says(figure_4):
@@ -78,7 +78,7 @@ def test_thinner_oil_touches_wherever_thicker_does(figure_4):
 
 def test_little_contact_at_high_speed(figure_4, tmp_path):
     """Figure 3: at 25 m/s contact comes at lower viscosities than at 5 m/s."""
-    index = series(tmp_path, "fig3", 80, 1.7, [0.007, 0.004, 0.001])
+    index = series(tmp_path, "fig3", 80, 1.7, [0.007, 0.004, 0.001], "time.courant=1.0")
     with ExitStack() as stack:
         fast, values, found = thin_ones_and_collisions(stack, index)
         slow, slow_values, _ = thin_ones_and_collisions(stack, figure_4)
