@@ -1,9 +1,15 @@
 """``mpirun -n N python3 -m ehlpetsc CASE.toml [options]``: run a case; ``-help`` lists the options."""
 
+import errno
+import signal
 import sys
 import warnings
 
+from ehlpetsc import streams
 from ehlpetsc.errors import ExitStatus
+
+QUIET = ("-no_signal_handler",)  # PETSc would end the process with a report of its own
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # until the run itself takes them
 
 
 def main(argv):
@@ -24,9 +30,15 @@ def main(argv):
         return refuse(f"ehlpetsc: {error}")
     if command.explain:
         return explain(command)
+    nowhere = environment.no_place()
+    if nowhere:
+        return refuse(f"ehlpetsc: {nowhere}")
     import petsc4py
 
-    petsc4py.init([argv[0], *command.petsc])
+    petsc4py.init([argv[0], *QUIET, *command.petsc])
+    from petsc4py import PETSc
+
+    PETSc.Options().delValue(QUIET[0])  # it is no option of the run
     from ehlpetsc.run.command import run
 
     return run(command.case, command.overrides)
@@ -44,7 +56,7 @@ def tell_keys(words):
         return refuse(f"ehlpetsc: {error}")
     if first_rank():
         print(text, end="")
-    return ExitStatus.DONE
+    return told()
 
 
 def explain(command):
@@ -60,7 +72,14 @@ def explain(command):
         return refuse("\n".join(error.faults))
     if first_rank():
         print(text)
-    return ExitStatus.DONE
+    return told()
+
+
+def told():
+    """Status of a command whose output is all there is of it: bad input where that has no room."""
+    sys.stdout.flush()
+    lost = getattr(sys.stdout, "lost", None)
+    return ExitStatus.DONE if lost is None or lost.errno == errno.EPIPE else ExitStatus.BAD_INPUT
 
 
 def refuse(text):
@@ -76,21 +95,52 @@ def guarded(argv):
     """Run `main`; an unexpected error on one rank ends all of them, with its traceback."""
     if not sys.warnoptions:  # those of numpy are for developers: python3 -W default shows them
         warnings.simplefilter("ignore")
+    streams.protect()
+    asked = stops_raise()
     try:
-        return main(argv)
+        status = main(argv)
     except SystemExit:
         raise
-    except BaseException:  # any other way out would leave the other ranks waiting for ever
-        import traceback
-
-        traceback.print_exc()
-        sys.stdout.flush()
-        sys.stderr.flush()
+    except BaseException as error:  # any other way out would leave the other ranks waiting for ever
+        status = ended(error, asked)
         if "mpi4py.MPI" in sys.modules:
             mpi = sys.modules["mpi4py.MPI"]
             if mpi.COMM_WORLD.size > 1:
-                mpi.COMM_WORLD.Abort(ExitStatus.BUG)
-        return ExitStatus.BUG
+                mpi.COMM_WORLD.Abort(status)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    return status
+
+
+class Interrupted(BaseException):
+    """A signal to stop; after a KeyboardInterrupt inside an import Python would end by the signal itself."""
+
+
+def stops_raise():
+    """From now on a signal to stop is an `Interrupted`; returns whether one has come."""
+    asked = []
+
+    def stop(*_):
+        asked.append(True)
+        raise Interrupted
+
+    for name in STOPS:
+        if signal.getsignal(name) is not signal.SIG_IGN:  # nohup
+            signal.signal(name, stop)
+    return lambda: bool(asked)
+
+
+def ended(error, asked):
+    """Say what has ended a command from inside; returns its status."""
+    if asked():  # an import may have made another error of it
+        print("ehlpetsc: stopped before the run had begun; nothing to go on with", file=sys.stderr)
+        return ExitStatus.STOPPED
+    import traceback
+
+    traceback.print_exception(error)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    return ExitStatus.BUG
 
 
 if __name__ == "__main__":

@@ -130,6 +130,21 @@ def advice(lacks, arguments):
     )
 
 
+def no_place():
+    """What a run lacks to be started in, in words; None: nothing."""
+    try:
+        os.getcwd()
+    except OSError:
+        return "the working folder has been removed; change to one that is there"
+    if any(name in os.environ for name in RANK):
+        return None  # mpirun has found its own
+    names = ("OMPI_MCA_orte_tmpdir_base", "TMPDIR", "TEMP", "TMP")
+    folder = next((os.environ[name] for name in names if os.environ.get(name)), "/tmp")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        return f"{folder}: cannot be written, and MPI needs it; set TMPDIR to a folder that can"
+    return None
+
+
 def first_rank():
     """Whether this process is rank 0 of mpirun, or alone; known before MPI is."""
     return next((os.environ[name] for name in RANK if name in os.environ), "0") == "0"

@@ -81,7 +81,7 @@ class Simulation:
         Its unknowns, or those of a restart file.
 
     watch : callable or None
-        Called in every iteration of the steady start; what it raises ends it.
+        Called in every iteration on every rank; what it raises ends it.
 
     Raises
     ------
@@ -177,6 +177,7 @@ class Simulation:
             Its `state` is the last good one.
         """
         started = clock.monotonic()
+        self.march.solver.watch = self.watch
         with self.options:
             try:
                 solution = self._start() if self.solution is None else self._step(dt)
@@ -199,10 +200,8 @@ class Simulation:
 
     def _start(self):
         self._head("steady start")
-        self.march.solver.watch = self.watch
         with events.START:
             solution = self.march.start()
-        self.march.solver.watch = None
         if isinstance(self.march.solver, NewtonSolver):
             for name in self.options.views:
                 snes = self.march.solver.snes

@@ -36,8 +36,9 @@ def record(simulation, recorder, stop=None, stream=None):
     ----------
     simulation : run.simulation.Simulation
     recorder : run.recorder.Recorder
-    stop : callable, optional
-        Asked before every time step with the communicator: whether to end there.
+    stop : run.stop.StopRequest, optional
+        Asked before every time step with the communicator whether to end there, and in every iteration
+        whether to wait no longer for the step in hand.
     stream : file, optional
         Where to show progress, on rank 0.
 
@@ -47,9 +48,10 @@ def record(simulation, recorder, stop=None, stream=None):
     failure : errors.NotConverged or None
     """
     progress = status = failure = None
-    simulation.watch = stop and partial(_end_where_asked, stop, simulation.comm)
     while status is None:
         begun = simulation.solution is not None
+        asked = stop and (stop.overdue if begun else stop)
+        simulation.watch = stop and partial(_end_where_asked, asked, simulation.comm)
         if simulation.finished:
             status = ExitStatus.DONE
         elif begun and stop and stop(simulation.comm):
@@ -63,7 +65,7 @@ def record(simulation, recorder, stop=None, stream=None):
                 status, failure = ExitStatus.NOT_CONVERGED, error
             except Stopped:
                 status = ExitStatus.STOPPED
-            if progress and not failure:
+            if progress and status is None:
                 progress.step(simulation.state.figures)
     if progress:
         progress.close()
@@ -73,8 +75,8 @@ def record(simulation, recorder, stop=None, stream=None):
     return status, failure
 
 
-def _end_where_asked(stop, comm):
-    if stop(comm):
+def _end_where_asked(asked, comm):
+    if asked(comm):
         raise Stopped
 
 

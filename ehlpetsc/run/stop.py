@@ -6,11 +6,14 @@ import time as clock
 import numpy as np
 from mpi4py import MPI
 
-SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1)
+PATIENCE = 0.4  # s for the step in hand: mpirun kills one second after the signal that it hands on
 
 
 class StopRequest:
-    """Whether the run is to stop: SIGTERM, SIGINT or SIGUSR1 has come on any rank, or the time is over.
+    """Whether the run is to stop: a signal has come on any rank, or the time is over.
+
+    Signals that are ignored, as SIGHUP under nohup, stay so.
 
     Parameters
     ----------
@@ -19,14 +22,18 @@ class StopRequest:
     """
 
     def __init__(self, minutes=0.0):
-        self.asked = False
         self.until = clock.monotonic() + 60.0 * minutes if minutes else np.inf
         for name in SIGNALS:
-            signal.signal(name, self._ask)
+            if signal.getsignal(name) is not signal.SIG_IGN:
+                signal.signal(name, self._ask)
 
     def _ask(self, *_):
-        self.asked = True
+        self.until = min(self.until, clock.monotonic())
 
     def __call__(self, comm):
         """The same answer on every rank of the communicator."""
-        return comm.allreduce(self.asked or clock.monotonic() > self.until, MPI.LOR)
+        return comm.allreduce(clock.monotonic() >= self.until, MPI.LOR)
+
+    def overdue(self, comm):
+        """Whether the step in hand has been waited for long enough; the same on every rank."""
+        return comm.allreduce(clock.monotonic() >= self.until + PATIENCE, MPI.LOR)

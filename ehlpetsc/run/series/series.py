@@ -47,6 +47,21 @@ class Named:
         return False  # no bar: several members would draw over each other
 
 
+class Serving:
+    """A request to stop that serves the other groups whenever it is asked; as of run.stop.StopRequest."""
+
+    def __init__(self, dealer, stop):
+        self._dealer, self._stop = dealer, stop
+
+    def __call__(self, group):
+        self._dealer.serve()
+        return self._stop(group)
+
+    def overdue(self, group):
+        self._dealer.serve()
+        return self._stop.overdue(group)
+
+
 class Series:
     """All members of a case.
 
@@ -116,17 +131,15 @@ class Series:
         out, err = Named(member.name, sys.stdout), Named(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
-            one = Run(Simulation(member.case, group), member.output, self._stop, out, err)
+            one = Run(
+                Simulation(member.case, group), member.output, Serving(self.dealer, self.stop), out, err
+            )
             outcome = one.run(member.restart if begun else None, overwrite=True)  # looked at before: ours
             return outcome.status, str(outcome.failure or "")
         except (CaseError, OutputError, UsageError) as error:
             if group.rank == 0:
                 print(f"ehlpetsc: {error}", file=err, flush=True)
             return ExitStatus.BAD_INPUT, str(error)
-
-    def _stop(self, group):
-        self.dealer.serve()
-        return self.stop(group)
 
     def _take(self, report):
         """Note on the first rank how a member ended."""

@@ -1,0 +1,159 @@
+"""Whatever ends a run, or takes its output away: a status that is documented, one sentence, no dump."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, wait_for
+
+from ehlpetsc.results.reader import read_result
+
+COARSE = ["mesh.inlet=-1.5", "mesh.points_per_half_width=20"]
+STEADY = [ROOT / "cases" / "table1_smooth.toml", *settings(*COARSE)]
+LONG = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT[:3], "time.travel=500"), "-ehl_output", "r.h5"]
+
+
+def start(*words, cwd, ranks=0, **more):
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | more
+    return subprocess.Popen(command(*words, ranks=ranks), cwd=cwd, env=BARE | SCRIPT, **pipes)
+
+
+def ended(process):
+    """Status, output and error output."""
+    try:
+        return process.returncode, *process.communicate(timeout=60)
+    finally:
+        process.kill()
+
+
+def assert_stopped_whole(folder):
+    with read_result(folder / "r.h5") as result:
+        assert result.attrs["status"] == "stopped"
+        last = result.steps("step")[-1]
+    done = run(*LONG, *settings("time.travel=0.01"), "-ehl_restart", "r.restart.h5", cwd=folder)
+    assert done.returncode == 0 and f"step {last}, " in done.stdout
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path, name):
+    """Open MPI 4 then ends with a status of its own, 1, whatever its ranks end with."""
+    process = start(*LONG, cwd=tmp_path, ranks=2)
+    wait_for(tmp_path / "r.h5", process)
+    process.send_signal(getattr(signal, name))
+    _, output, errors = ended(process)
+    assert process.returncode in (1, 4)
+    assert "go on with -ehl_restart r.restart.h5" in output
+    assert "Traceback" not in errors and "PETSC ERROR" not in errors
+    assert_stopped_whole(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["SIGHUP", "SIGINT"])
+def test_signals_to_a_run_of_one_process(tmp_path, name):
+    process = start(*LONG, cwd=tmp_path)
+    wait_for(tmp_path / "r.h5", process)
+    process.send_signal(getattr(signal, name))
+    _, output, errors = ended(process)
+    assert process.returncode == 4 and "PETSC ERROR" not in errors
+    assert output.splitlines()[-1].startswith("ehlpetsc: stopped steps=")
+    assert_stopped_whole(tmp_path)
+
+
+def test_a_step_that_lasts_is_not_waited_for(tmp_path):
+    """mpirun kills a second after the signal: the state before the step in hand is saved by then."""
+    never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip"]
+    before = start(*LONG, cwd=tmp_path)
+    wait_for(tmp_path / "r.h5", before)
+    before.send_signal(signal.SIGTERM)
+    ended(before)
+    process = start(*LONG, "-ehl_restart", "r.restart.h5", *never, cwd=tmp_path)
+    time.sleep(6.0)
+    asked = time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    ended(process)
+    assert process.returncode == 4 and time.monotonic() - asked < 3.0
+
+
+def test_a_hangup_that_is_ignored_stays_so(tmp_path):
+    words = ["nohup", *command(*STEADY)]
+    process = subprocess.Popen(
+        words, cwd=tmp_path, env=BARE | SCRIPT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+    for _ in range(20):
+        time.sleep(0.1)
+        process.send_signal(signal.SIGHUP)
+    ended(process)
+    assert process.returncode == 0
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_during_imports_ends_in_one_sentence(tmp_path, name):
+    for delay in (0.5, 0.8, 1.1):
+        process = start(*STEADY, "-ehl_overwrite", cwd=tmp_path)
+        time.sleep(delay)
+        process.send_signal(getattr(signal, name))
+        _, output, errors = ended(process)
+        assert process.returncode == 4, errors
+        assert "Traceback" not in errors and "PETSC ERROR" not in errors
+        assert len(errors.splitlines()) <= 1
+
+
+@pytest.mark.parametrize("words", [[], ["-snes_monitor", "-log_view"]])
+def test_output_that_nobody_reads_does_not_end_a_run(tmp_path, words):
+    process = start(*STEADY, *words, cwd=tmp_path)
+    process.stdout.close()
+    errors = process.stderr.read()
+    process.wait(60)
+    assert process.returncode == 0
+    assert errors == "ehlpetsc: standard output is lost (Broken pipe); going on without it\n"
+    with read_result(tmp_path / "table1_smooth.h5") as result:
+        assert result.attrs["status"] == "done"
+
+
+@pytest.mark.parametrize("redirection", [">/dev/full", ">&-", ">&- 2>&-", ">/dev/full 2>&1", "<&- >&-"])
+def test_output_that_is_full_or_closed_does_not_end_a_run(tmp_path, redirection):
+    line = " ".join(map(str, command(*STEADY, "-snes_monitor"))) + f" {redirection}"
+    done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert len(done.stderr.splitlines()) <= 1 and "Traceback" not in done.stderr
+    with read_result(tmp_path / "table1_smooth.h5") as result:
+        assert result.attrs["status"] == "done"
+
+
+def test_an_answer_without_room_is_no_success(tmp_path):
+    line = " ".join(command("--keys")) + " >/dev/full"
+    done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
+    assert done.returncode == 2 and "No space left on device" in done.stderr
+
+
+def test_a_working_folder_that_is_gone(tmp_path):
+    (tmp_path / "gone").mkdir()
+    line = "rmdir ../gone && " + " ".join(map(str, command(*STEADY)))
+    done = subprocess.run(
+        ["sh", "-c", line], cwd=tmp_path / "gone", env=BARE | SCRIPT, capture_output=True, text=True
+    )
+    assert done.returncode == 2
+    assert done.stderr == "ehlpetsc: the working folder has been removed; change to one that is there\n"
+
+
+def test_a_place_for_temporary_files_that_cannot_be_written(tmp_path):
+    done = run(*STEADY, cwd=tmp_path, TMPDIR=str(tmp_path / "nowhere"))
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"ehlpetsc: {tmp_path}/nowhere: cannot be written, and MPI needs it; "
+        "set TMPDIR to a folder that can\n"
+    )
+
+
+def test_a_folder_removed_in_mid_run_is_seen(tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    process = start(*LONG, "-ehl_output", folder / "r.h5", cwd=tmp_path)
+    wait_for(folder / "r.h5", process)
+    shutil.rmtree(folder)
+    _, output, errors = ended(process)
+    assert process.returncode == 2
+    assert f"{folder}/r.h5: result file removed or replaced by others during the run" in errors
+    assert not os.path.exists(folder)
