@@ -1,7 +1,5 @@
-"""The command: its arguments, what it says, its exit status."""
+"""The command: what it does, what it says, its exit status."""
 
-import argparse
-import math
 import os
 import sys
 import time
@@ -9,118 +7,18 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.compiled import COMPILED
-from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, PostError
+from ehlpetsc.post.arguments import arguments
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES, Counting
-from ehlpetsc.post.fatigue.cycles import RESIDUES
-from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
-from ehlpetsc.post.fatigue.statistics import REGRESSIONS
+from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import SURFACES
+from ehlpetsc.post.outputs.passes_file import store_passes
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.outputs.result_file import check_output
-from ehlpetsc.post.run import WITHIN, Job, run
+from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.supervised import Supervisor
 
 SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.STOPPED)
-
-
-def _jobs(text):
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError("must be 1 or more")
-    return value
-
-
-def arguments(argv=None):
-    """Parse the command line."""
-    parser = argparse.ArgumentParser(
-        prog=program("ehlpetsc.post"),
-        description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
-        "from result files. Material and depths come from the case text in the file, section [post].",
-    )
-    add = parser.add_argument
-    add(
-        "results",
-        nargs="+",
-        metavar="RESULT.h5",
-        help="several, as of one slide/roll ratio each: also compared",
-    )
-    add(
-        "-o", "--output", metavar="FILE", help="result, of a single input (default: RESULT.post.h5 beside it)"
-    )
-    add("--surface", choices=("both", *SURFACES), default="both")
-    add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
-    add(
-        "--count",
-        choices=CHANNELS,
-        default="max3",
-        help="counted scalar; max3: largest damage among counting sx, sz and txz (default)",
-    )
-    add("--residue", choices=RESIDUES, default="closed", help="history repeated (default), or half cycles")
-    add(
-        "--ranges",
-        choices=RANGES,
-        default="reversals",
-        help="ranges of a cycle: between its reversals (default) or the widest in its closed loop",
-    )
-    add("--mean-stress", choices=MEAN_STRESSES, default="none", help="morrow: with a floor to compression")
-    add(
-        "--strain",
-        choices=STRAINS,
-        default="direct",
-        help="how the elastic range enters the cyclic stress-strain curve: as it is (default, as in the "
-        "paper), by Neuber's or by Glinka's rule",
-    )
-    add(
-        "--criterion",
-        nargs="+",
-        choices=CRITERIA,
-        default=(),
-        metavar="NAME",
-        help="also compute, beside the paper's damage: " + ", ".join(CRITERIA),
-    )
-    add(
-        "--within",
-        type=float,
-        default=WITHIN,
-        metavar="W/A",
-        help=f"half widths either side of an asperity's peak in which its largest damage is sought "
-        f"(default {WITHIN:g})",
-    )
-    add("--regression", choices=REGRESSIONS, default="x on y", help="of the median ranks")
-    add("--jobs", type=_jobs, default=1, metavar="N", help="threads (default 1)")
-    add(
-        "--pictures",
-        nargs="?",
-        const="",
-        metavar="FOLDER",
-        help="also draw PNG and SVG, in FOLDER or beside the result",
-    )
-    add(
-        "--passes",
-        choices=SURFACES,
-        help="the results are passes of this surface against other parts or alignments of the other one: "
-        "with --pictures damage a pass, its scatter and Miner's sum to failure",
-    )
-    add(
-        "--point",
-        nargs=2,
-        type=float,
-        metavar=("S/A", "Z/A"),
-        help="body point of the history picture (default: that of the largest damage)",
-    )
-    add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
-    chosen = parser.parse_args(argv)
-    if chosen.output and len(chosen.results) > 1:
-        parser.error("-o names one file: give one RESULT.h5, or leave it out")
-    if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):
-        parser.error(f"--point {chosen.point[0]:g} {chosen.point[1]:g}: the depth z/a must be 0 or more")
-    if chosen.passes and len(chosen.results) < 2:
-        parser.error("--passes: give the results of two passes or more")
-    if not 0 <= chosen.within < math.inf:
-        parser.error(f"--within {chosen.within:g}: must be 0 or more")
-    return chosen
 
 
 class Progress:
@@ -188,6 +86,30 @@ def _summary(output, wall):
     )
 
 
+def _passes_file(chosen):
+    first = Path(_output(chosen.results[0], chosen))
+    return str(first.with_name(f"passes_{chosen.passes}.post.h5"))
+
+
+def _store_passes(paths, chosen):
+    """Mean and scatter over the passes, in a file of its own and one greppable line a depth."""
+    if len(paths) < len(chosen.results):
+        raise PostError("not all of the passes could be processed")
+    results = [PostResult(_output(path, chosen)) for path in paths]
+    found = store_passes(_passes_file(chosen), results, chosen.passes)
+    for k, z in enumerate(results[0].z):
+        worst = found.mean[k].argmax()
+        print(
+            f"z/a={z:<6g} {chosen.passes}: mean D_max={found.mean[k, worst]:.3e} "
+            f"deviation={found.deviation[k, worst]:.3e} largest={found.largest[k].max():.3e} "
+            f"first failure after {found.life[k, worst]:.4g} passes"
+        )
+    print(
+        f"ehlpetsc.post: done {_passes_file(chosen)} passes={len(results)} points={found.mean.shape[1]} "
+        f"depths={found.mean.shape[0]}"
+    )
+
+
 def _draw(paths, chosen):
     from ehlpetsc.post.pictures.gallery import draw
 
@@ -241,6 +163,11 @@ def main(argv=None, call=lambda name, work: work()):
         statuses.append(status)
         if status == ExitStatus.DONE:
             done.append(path)
+    if chosen.passes:
+        work = partial(_status, partial(_store_passes, done, chosen), "--passes", _passes_file(chosen))
+        statuses.append(call("passes", work))
+        if statuses[-1] != ExitStatus.DONE:
+            return max(statuses, key=SEVERITY.index)
     if chosen.pictures is not None and done:
         where = chosen.pictures or "pictures"
         statuses.append(call("pictures", partial(_status, partial(_draw, done, chosen), "pictures", where)))

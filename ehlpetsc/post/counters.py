@@ -4,7 +4,7 @@ import numpy as np
 
 from ehlpetsc.post.fatigue.accumulate import Counter
 
-PAPER = ("damage", "cycles", "peak_range")
+PAPER = Counter.columns
 
 
 class Counters:

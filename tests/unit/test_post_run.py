@@ -14,8 +14,8 @@ from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
 from ehlpetsc.post.inputs.loads import Loads
+from ehlpetsc.post.outputs.passes_file import same_points
 from ehlpetsc.post.outputs.post_result import PostResult
-from ehlpetsc.post.pictures.passes import same_points
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 
@@ -295,6 +295,13 @@ def test_passes_of_one_surface(tmp_path, capsys):
     assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20
     place = np.argmin(np.abs(results[1].s - s[3]))
     assert damages[1][:, 3] == pytest.approx(results[1].damage["slow"][:, place], rel=1e-12)
+    with h5py.File(tmp_path / "passes_slow.post.h5") as file:
+        assert file["damage/slow_mean"][:] == pytest.approx(damages.mean(axis=0), rel=1e-12)
+        assert file["damage/slow_deviation"][:] == pytest.approx(damages.std(axis=0, ddof=1), rel=1e-9)
+        assert file["damage/slow_life"][:] == pytest.approx(1 / damages.mean(axis=0), rel=1e-12)
+        assert (file["damage/slow_count"][:] == 2).all() and file.attrs["passes"] == 2
+        assert file["damage/s"][:] == pytest.approx(s)
+    assert f"first failure after {1 / damages.mean(axis=0)[1].max():.4g} passes" in capsys.readouterr().out
     assert "profiles of the fast surface differ" in fault(capsys, *paths, "--passes", "fast", "--pictures")
     with pytest.raises(SystemExit):
         main([paths[0], "--passes", "slow"])

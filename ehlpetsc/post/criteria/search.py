@@ -11,6 +11,7 @@ from ehlpetsc.post.criteria.dang_van import utilisation
 from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
 from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
 from ehlpetsc.post.fatigue.cycles import RESIDUES, workspace
+from ehlpetsc.post.fatigue.evaluate import evaluate
 from ehlpetsc.post.fatigue.loops import equivalent_points
 
 KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
@@ -106,18 +107,6 @@ def counter_of(criterion, material, constants, residue, strain, samples):
     return PlaneCounter(criterion, material, constants, residue, strain, samples)
 
 
-def _evaluate(sx, sz, txz, make, residual_stress):
-    stress = np.stack(np.broadcast_arrays(*(np.asarray(part, float) for part in (sx, sz, txz))), axis=-2)
-    if not (np.isfinite(stress).all() and np.isfinite(residual_stress)):
-        raise ValueError("stress histories and residual stress must be finite")
-    shape, samples = stress.shape[:-2], stress.shape[-1]
-    counter = make(samples)
-    blocks = np.ascontiguousarray(stress).reshape(-1, 3, samples)
-    out = np.empty((len(blocks), len(counter.columns)))
-    counter(blocks, np.full(len(blocks), samples), out, residual_stress)
-    return [column.reshape(shape)[()] for column in out.T]
-
-
 def critical_plane(
     sx,
     sz,
@@ -160,7 +149,7 @@ def critical_plane(
     def make(samples):
         return counter_of(criterion, material, constants or Criteria(), residue, strain, samples)
 
-    return PlaneDamage(*_evaluate(sx, sz, txz, make, residual_stress))
+    return PlaneDamage(*evaluate(sx, sz, txz, make, residual_stress))
 
 
 def dang_van(sx, sz, txz, poisson_ratio, constants=None, residual_stress=0.0):
@@ -181,4 +170,4 @@ def dang_van(sx, sz, txz, poisson_ratio, constants=None, residual_stress=0.0):
     float or ndarray, shape (...)
     """
     constants = constants or Criteria()
-    return _evaluate(sx, sz, txz, lambda n: LimitCounter(poisson_ratio, constants, n), residual_stress)[0]
+    return evaluate(sx, sz, txz, lambda n: LimitCounter(poisson_ratio, constants, n), residual_stress)[0]

@@ -9,6 +9,7 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
+from ehlpetsc.post.fatigue.evaluate import evaluate
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, widest
 from ehlpetsc.post.fatigue.strain_life import cycle_damage
@@ -114,6 +115,8 @@ def damage_of_points(stress, lengths, nu, channels, options, constants, table, w
 class Counter:
     """Damage of blocks of histories under one material and one way of counting."""
 
+    columns = Damage._fields
+
     def __init__(self, material, counting, samples):
         counting.check()
         self.material = material
@@ -199,14 +202,5 @@ def damage(
     ValueError
         Unknown choice, unequal shapes, nan.
     """
-    stress = np.stack(np.broadcast_arrays(*(np.asarray(part, float) for part in (sx, sz, txz))), axis=-2)
-    if not np.isfinite(stress).all():
-        raise ValueError("stress histories must be finite")
-    shape, samples = stress.shape[:-2], stress.shape[-1]
-    if not np.isfinite(residual_stress):
-        raise ValueError("residual_stress must be a finite number")
-    counter = Counter(material, Counting(count, residue, ranges, mean_stress, strain), samples)
-    blocks = np.ascontiguousarray(stress).reshape(-1, 3, samples)
-    out = np.empty((len(blocks), 3))
-    counter(blocks, np.full(len(blocks), samples), out, residual_stress)
-    return Damage(*(out[:, k].reshape(shape)[()] for k in range(3)))
+    counting = Counting(count, residue, ranges, mean_stress, strain)
+    return Damage(*evaluate(sx, sz, txz, lambda n: Counter(material, counting, n), residual_stress))

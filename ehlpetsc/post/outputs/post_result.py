@@ -40,10 +40,11 @@ class PostResult:
         alpha and beta of the largest likelihood and their bounds, one a depth; empty in older results.
     criteria : dict
         By criterion, then surface: damage or utilisation (nz, ns).
-    a, ratio, title, attrs
+    path, a, ratio, title, attrs
     """
 
     def __init__(self, path):
+        self.path = path
         with h5py.File(path, "r") as file:
             self.attrs = dict(file.attrs)
             self.a, self.ratio = self.attrs["a"], self.attrs["slide_roll_ratio"]
