@@ -13,6 +13,7 @@ from ehlpetsc.post.inputs.survey import survey
 from ehlpetsc.post.stresses.body_points import body_points, passage
 
 MOST_POINTS = 5_000_000
+SLOWEST = 1e-3  # of the faster surface's speed: nobody waits for less
 EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
 # thinned by tests/benchmarks/post_every.py
@@ -121,7 +122,19 @@ def _warn(loads, gaps, motions, whole, report):
     _tell_gaps(loads, gaps, motions, whole, report)
     for surface, motion in motions.items():
         if not motion.complete.any():
-            report(f"warning: no point of the {surface} surface passed the whole contact: its damage is nan")
+            report(
+                f"warning: no point of the {surface} surface passed the whole contact: its damage is nan"
+                f"{_travel_needed(loads, surface)}"
+            )
+
+
+def _travel_needed(loads, surface):
+    """What lets points of a surface go from one end of the mesh to the other; empty if it stands still."""
+    speed, fastest = abs(loads.speeds[surface]), max(map(abs, loads.speeds.values()))
+    if speed < SLOWEST * fastest:
+        return ""
+    width = (loads.x[-1] - loads.x[0]) / loads.a
+    return f"; time.travel = {np.ceil(10 * width * fastest / speed + 0.5) / 10:g} or more lets some through"
 
 
 def _tell_gaps(loads, gaps, motions, whole, report):

@@ -11,7 +11,7 @@ from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.evaluate import evaluate
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
-from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, widest
+from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, repeat_points, widest
 from ehlpetsc.post.fatigue.strain_life import cycle_damage
 
 CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,), "von_mises": (3,)}
@@ -64,7 +64,7 @@ def _sum_cycles(stress, series, nu, n, first, second, weight, options, constants
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
         if window:
             start, count = loop_of(series, stress.shape[1], i, j, closed)
-            squared = widest(points, stress.shape[1], start, count)
+            squared = widest(points, start, count)
         else:
             squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
         if squared <= 0:
@@ -95,6 +95,7 @@ def damage_of_points(stress, lengths, nu, channels, options, constants, table, w
         history = stress[point, :, : lengths[point]]
         if options[1]:
             equivalent_points(history, nu, equivalent)
+            repeat_points(equivalent, lengths[point])
         worst = -1.0
         for channel in channels:
             if channel == 3:
@@ -128,7 +129,7 @@ class Counter:
             STRAINS.index(counting.strain),
         )
         self.table = life_table(material, counting.strain)
-        self.work = (*workspace(samples), np.empty(samples), np.empty((3, samples)))
+        self.work = (*workspace(samples), np.empty(samples), np.empty((3, 2 * samples)))
 
     def __call__(self, stress, lengths, out, residual=0.0):
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range.

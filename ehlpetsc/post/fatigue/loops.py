@@ -67,63 +67,85 @@ def equivalent_points(stress, nu, points):
 
 
 @compiled(error_model="python", nogil=True)
-def _squared_distance(points, i, x, y, z):
-    return (points[0, i] - x) ** 2 + (points[1, i] - y) ** 2 + (points[2, i] - z) ** 2
+def repeat_points(points, size):
+    """Write points[:, :size] once more behind themselves: a loop across the end of a history is one slice."""
+    for part in range(3):
+        for k in range(size):
+            points[part, size + k] = points[part, k]
 
 
 @compiled(error_model="python", nogil=True)
-def _farthest(points, size, first, count, i):
+def _squared_distance(x, y, z, i, j):
+    return (x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 + (z[i] - z[j]) ** 2
+
+
+@compiled(error_model="python", nogil=True)
+def _farthest(x, y, z, i):
     best, place = -1.0, i
-    for k in range(first, first + count):
-        squared = _squared_distance(points, k % size, points[0, i], points[1, i], points[2, i])
+    for k in range(x.size):
+        squared = _squared_distance(x, y, z, k, i)
         if squared > best:
-            best, place = squared, k % size
+            best, place = squared, k
     return best, place
 
 
 @compiled(error_model="python", nogil=True)
-def _balls(points, places):
-    """Middle (x, y, z) and radius of each BLOCK of points[:, places], which follow each other on the path."""
-    balls = np.empty((-(-places.size // BLOCK), 4))
-    for m in range(balls.shape[0]):
-        block = places[m * BLOCK : (m + 1) * BLOCK]
-        middle = block[block.size // 2]
-        squared = 0.0
-        for i in block:
-            squared = max(
-                squared, _squared_distance(points, i, points[0, middle], points[1, middle], points[2, middle])
-            )
-        balls[m] = points[0, middle], points[1, middle], points[2, middle], sqrt(squared)
-    return balls
+def _widest_of_few(x, y, z):
+    best = 0.0
+    for i in range(1, x.size):
+        for j in range(i):
+            best = max(best, _squared_distance(x, y, z, i, j))
+    return best
 
 
 @compiled(error_model="python", nogil=True)
-def widest(points, size, first, count):
-    """Largest squared distance between two of points[:, first:first + count], counted round at `size`.
+def _balls(x, y, z, places):
+    """Middle point and radius of each BLOCK of points at `places`, which follow each other on the path."""
+    count = -(-places.size // BLOCK)
+    middles, radii = np.empty(count, np.int64), np.empty(count)
+    for m in range(count):
+        block = places[m * BLOCK : (m + 1) * BLOCK]
+        middles[m], squared = block[block.size // 2], 0.0
+        for i in block:
+            squared = max(squared, _squared_distance(x, y, z, i, middles[m]))
+        radii[m] = sqrt(squared)
+    return middles, radii
+
+
+@compiled(error_model="python", nogil=True)
+def _far_from(x, y, z, middle, best):
+    """Places of the points that can belong to a squared distance above `best`."""
+    squared, largest = np.empty(x.size), 0.0
+    for k in range(x.size):
+        squared[k] = (x[k] - middle[0]) ** 2 + (y[k] - middle[1]) ** 2 + (z[k] - middle[2]) ** 2
+        largest = max(largest, squared[k])
+    least = max(sqrt(best) - sqrt(largest), 0.0)
+    return np.flatnonzero(squared >= least * least * (1 - 1e-12))
+
+
+@compiled(error_model="python", nogil=True)
+def widest(points, first, count):
+    """Largest squared distance between two of points[:, first:first + count].
 
     Two sweeps to the farthest point give a distance close to the largest. Only points that lie far enough
     from the middle of it can belong to a larger one; of these, blocks whose balls come close enough are tried
     pair by pair.
     """
-    _, a = _farthest(points, size, first, count, first)
-    best, b = _farthest(points, size, first, count, a)
-    x, y = (points[0, a] + points[0, b]) / 2, (points[1, a] + points[1, b]) / 2
-    z = (points[2, a] + points[2, b]) / 2
-    radius = np.empty(count)
-    for k in range(count):
-        radius[k] = sqrt(_squared_distance(points, (first + k) % size, x, y, z))
-    far = (first + np.flatnonzero(radius > sqrt(best) - radius.max())) % size
-    balls = _balls(points, far)
-    for m in range(balls.shape[0]):
+    last = first + count
+    x, y, z = points[0, first:last], points[1, first:last], points[2, first:last]
+    if count <= BLOCK:
+        return _widest_of_few(x, y, z)
+    _, a = _farthest(x, y, z, 0)
+    best, b = _farthest(x, y, z, a)
+    middle = (x[a] + x[b]) / 2, (y[a] + y[b]) / 2, (z[a] + z[b]) / 2
+    far = _far_from(x, y, z, middle, best)
+    middles, radii = _balls(x, y, z, far)
+    for m in range(radii.size):
         for n in range(m + 1):
-            apart = sqrt(
-                (balls[m, 0] - balls[n, 0]) ** 2
-                + (balls[m, 1] - balls[n, 1]) ** 2
-                + (balls[m, 2] - balls[n, 2]) ** 2
-            )
-            if apart + balls[m, 3] + balls[n, 3] <= sqrt(best):
+            apart = sqrt(_squared_distance(x, y, z, middles[m], middles[n]))
+            if apart + radii[m] + radii[n] <= sqrt(best):
                 continue
             for i in far[m * BLOCK : (m + 1) * BLOCK]:
                 for j in far[n * BLOCK : (n + 1) * BLOCK]:
-                    best = max(best, _squared_distance(points, j, points[0, i], points[1, i], points[2, i]))
+                    best = max(best, _squared_distance(x, y, z, i, j))
     return best

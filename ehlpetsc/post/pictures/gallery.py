@@ -202,7 +202,7 @@ def field_picture(path, result, frame):
 
 def _check_passed(result, surface, s):
     """Refuse a body point whose history is not whole, saying which are."""
-    passed, spacing = result.complete[surface], result.s[1] - result.s[0]
+    passed, spacing = result.complete[surface], (result.s[-1] - result.s[0]) / (result.s.size - 1)
     place = (s - result.s[0]) / spacing
     around = np.clip(np.array([np.floor(place + 1e-6), np.ceil(place - 1e-6)]), -1, passed.size).astype(int)
     if not all(0 <= j < passed.size and passed[j] for j in around):
