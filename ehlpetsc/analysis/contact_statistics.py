@@ -12,7 +12,7 @@ import sys
 import numpy as np
 
 from ehlpetsc.analysis.collisions import points_in_contact
-from ehlpetsc.results.series_index import command, in_order, series_values
+from ehlpetsc.results.series_index import command, in_order, series_values, told_apart
 
 
 def mean_rate(result, low=-1.0, high=1.0):
@@ -53,7 +53,8 @@ def load_share(result):
 def report(results):
     """A line for each result, and the proportions of their counts."""
     key, values = series_values(results)
-    names = [f"{value:g}" for value in values] if key else [result.path.stem for result in results]
+    stems = [result.path.stem for result in results]
+    names = [f"{value:g}" for value in values] if key else told_apart(results) or stems
     width = max(len(key or "result"), *map(len, names))
     lines = [
         f"{key or 'result':>{width}}    Q/ms  inlet quarter  exit half  to the first"

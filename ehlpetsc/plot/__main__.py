@@ -24,7 +24,7 @@ from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
-WITHOUT_FRAMES = ("contacts", "stribeck")  # kinds that need the figures of the steps alone
+WITHOUT_FRAMES = ("contacts", "stribeck", "ensemble")  # kinds that need the figures of the steps alone
 
 
 def _check(results, kind, options):
@@ -61,6 +61,7 @@ def _parser():
     kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")
     kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")
     kind.add_argument("--stribeck", action="store_true", help="friction against speed, of a series over it")
+    kind.add_argument("--ensemble", action="store_true", help="figures of runs that differ in their seeds")
     kind.add_argument("--report", action="store_true", help="all of one result as one HTML page")
     kind.add_argument("--movie", action="store_true", help="pressure and film over time, as a GIF, MP4, WebM")
     return parser

@@ -5,6 +5,7 @@ import numpy as np
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import collision_pictures, frames, labels, over_time
+from ehlpetsc.plot.ensemble import draw_ensemble
 from ehlpetsc.plot.stribeck import draw_stribeck
 from ehlpetsc.results.series_index import from_thick_to_thin
 
@@ -126,4 +127,5 @@ FIGURES = {
     "points": draw_points,
     "entrapment": draw_entrapment,
     "stribeck": draw_stribeck,
+    "ensemble": draw_ensemble,
 }

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ehlpetsc.results.series_index import series_values
+from ehlpetsc.results.series_index import series_values, told_apart
 
 SINGLE_COLOUR = "#1f4e79"
 CONTACT_COLOUR = "#d62728"
@@ -53,8 +53,11 @@ def series_colours(results):
 
 
 def names(results):
-    """What tells results apart: their titles, with the file where titles are the same."""
+    """What tells results apart: their titles, else the keys that differ, else the files."""
     titles = [result.attrs["title"] for result in results]
+    apart = told_apart(results)
+    if len(set(titles)) == 1 and apart:
+        return apart
     if len(set(titles)) == len(titles):
         return titles
     if len(set(titles)) == 1:

@@ -4,6 +4,7 @@ import argparse
 import math
 
 from ehlpetsc.environment import program
+from ehlpetsc.errors import OutputError
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES
 from ehlpetsc.post.fatigue.cycles import RESIDUES
@@ -11,6 +12,7 @@ from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS
 from ehlpetsc.post.inputs.loads import SURFACES
 from ehlpetsc.post.run import WITHIN
+from ehlpetsc.results.series_index import files_of
 
 
 def _jobs(text):
@@ -32,7 +34,7 @@ def arguments(argv=None):
         "results",
         nargs="+",
         metavar="RESULT.h5",
-        help="several, as of one slide/roll ratio each: also compared",
+        help="several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members",
     )
     add(
         "-o", "--output", metavar="FILE", help="result, of a single input (default: RESULT.post.h5 beside it)"
@@ -100,6 +102,10 @@ def arguments(argv=None):
     )
     add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
     chosen = parser.parse_args(argv)
+    try:
+        chosen.results = [str(file) for path in chosen.results for file in files_of(path)]
+    except OutputError as fault:
+        parser.error(str(fault))
     if chosen.output and len(chosen.results) > 1:
         parser.error("-o names one file: give one RESULT.h5, or leave it out")
     if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):

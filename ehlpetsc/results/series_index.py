@@ -12,6 +12,7 @@ import numpy as np
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 
+LONGEST = 80  # characters of a name
 WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
 
 
@@ -29,7 +30,7 @@ def open_all(paths, stack):
     OutputError
         A file cannot be read, or no member of a series has one.
     """
-    return [stack.enter_context(read_result(file)) for path in paths for file in _files(Path(path))]
+    return [stack.enter_context(read_result(file)) for path in paths for file in files_of(path)]
 
 
 def command(name, about, report, arguments):
@@ -61,7 +62,15 @@ def command(name, about, report, arguments):
     return ExitStatus.DONE
 
 
-def _files(path):
+def files_of(path):
+    """Result files that a name stands for: of a series' index those of its members that have one.
+
+    Raises
+    ------
+    OutputError
+        As of `open_all`.
+    """
+    path = Path(path)
     if path.suffix != ".json":
         return [path]
     try:
@@ -86,13 +95,50 @@ def series_values(results):
         Dotted key, None if no single key differs or it holds no numbers.
     values : list of float
     """
-    tables = [_flat(tomllib.loads(result.attrs["case"])) for result in results]
-    keys = sorted(set().union(*tables) - {"title", "series.key", "series.values"})
-    differing = [key for key in keys if any(table.get(key) != tables[0].get(key) for table in tables)]
-    numbers = (int, float)
-    if len(differing) == 1 and all(isinstance(table.get(differing[0]), numbers) for table in tables):
-        return differing[0], [float(table[differing[0]]) for table in tables]
+    differing = differences(results)
+    if len(differing) == 1:
+        ((key, values),) = differing.items()
+        if all(isinstance(value, int | float) for value in values):
+            return key, [float(value) for value in values]
     return None, []
+
+
+def differences(results):
+    """Keys in which the case files of results differ.
+
+    Returns
+    -------
+    dict of str to list
+        By dotted key the value of each result, None where it has none.
+    """
+    tables = [_flat(tomllib.loads(result.attrs["case"])) for result in results]
+    keys = sorted(key for key in set().union(*tables) - {"title"} if not key.startswith("series."))
+    values = {key: [table.get(key) for table in tables] for key in keys}
+    return {key: found for key, found in values.items() if any(value != found[0] for value in found)}
+
+
+def told_apart(results):
+    """A name for each result by the values in which their cases differ; None where that tells none apart.
+
+    Returns
+    -------
+    list of str or None
+        As ``viscosity = 0.002, entrainment_speed = 5``.
+    """
+    differing = differences(results)
+    last = [key.rpartition(".")[2] for key in differing]
+    words = [key if last.count(word) > 1 else word for key, word in zip(differing, last, strict=True)]
+    names = [
+        ", ".join(f"{word} = {_shown(value)}" for word, value in zip(words, row, strict=True))
+        for row in zip(*differing.values(), strict=True)
+    ]
+    if len(set(names)) < len(results) or max(map(len, names)) > LONGEST:
+        return None
+    return names
+
+
+def _shown(value):
+    return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 
 def _flat(table, prefix=""):

@@ -1,0 +1,216 @@
+"""Runs that differ in their seeds alone: mean and bootstrap interval of every figure of a run.
+
+``python3 -m ehlpetsc.analysis.ensemble OUTPUT.series.json [-o OUTPUT.ensemble.csv]``
+
+A figure of a run is the mean over the time in which the roughness of both surfaces fills the contact (of a
+run that ends before, over all of it) or, of least films and largest pressures, the extreme. Members whose
+cases are the same but for seeds make one ensemble; several, as of a grid over seeds and speeds, are told one
+by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
+"""
+
+import argparse
+import contextlib
+import csv
+import json
+import sys
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ehlpetsc.analysis.contact_statistics import both_fill
+from ehlpetsc.environment import program
+from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.series_index import differences, open_all
+
+RESAMPLES = 2000
+CONFIDENCE = 0.95
+QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
+EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
+NO_FIGURES = ("step", "time", "dt", "wall", "load", "approach")
+HEAD = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """Runs that differ in their seeds.
+
+    Attributes
+    ----------
+    name : str
+        What tells it from the other ensembles, "" where there is one only.
+    values : dict
+        The keys in which ensembles differ, with this one's values.
+    figures : dict of str to ndarray, shape (runs,)
+        Of every run, by name.
+    """
+
+    name: str
+    values: dict
+    figures: dict
+
+
+def bootstrap(values, resamples=RESAMPLES, seed=1, confidence=CONFIDENCE):
+    """Interval of a mean: percentiles of the means of samples drawn with replacement (Efron 1979).
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+    resamples, seed : int
+        How many, and of the random numbers.
+    confidence : float
+
+    Returns
+    -------
+    low, high : float
+        nan for less than two values.
+    """
+    values = np.asarray(values, dtype=float)
+    if values.size < 2:
+        return np.nan, np.nan
+    draws = np.random.default_rng(seed).integers(values.size, size=(resamples, values.size))
+    tail = 50.0 * (1.0 - confidence)
+    low, high = np.percentile(values[draws].mean(axis=1), (tail, 100.0 - tail))
+    return float(low), float(high)
+
+
+def run_figures(result):
+    """Figures of one run, by name.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+    """
+    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
+    kept = both_fill(result, time) & (dt > 0.0)
+    if not kept.any():
+        kept = dt > 0.0 if dt.any() else np.ones(len(time), bool)
+    weights = dt[kept] if dt.any() else np.ones(1)
+    found = {}
+    for name in result.figures:
+        values = result.steps(name)[kept].astype(float)
+        if name in NO_FIGURES or not np.isfinite(values).all():
+            continue
+        reduce = EXTREMES.get(name)
+        found[name] = float(reduce(values) if reduce else np.average(values, weights=weights))
+    return found | _damage(result.path.with_suffix(".post.h5"))
+
+
+def _damage(path):
+    """Quantiles of damage over the points of each surface, at every depth; none without a file."""
+    if not path.exists():
+        return {}
+    found = {}
+    with h5py.File(path) as file:
+        for surface in ("slow", "fast"):
+            for depth, row in zip(file["damage/z_over_a"], file.get(f"damage/{surface}", ()), strict=False):
+                known = row[np.isfinite(row)]
+                for share in QUANTILES if known.size else ():
+                    name = f"damage_{surface} z/a={depth:g} q={share:g}"
+                    found[name] = float(np.quantile(known, share))
+    return found
+
+
+def ensembles(results):
+    """Results put together that differ in nothing but keys named seed.
+
+    Parameters
+    ----------
+    results : list of ehlpetsc.results.reader.Result
+
+    Returns
+    -------
+    list of Ensemble
+        In the order in which they first come.
+    """
+    differing = {
+        key: values for key, values in differences(results).items() if key.rpartition(".")[2] != "seed"
+    }
+    groups = {}
+    for number, result in enumerate(results):
+        own = {key: values[number] for key, values in differing.items()}
+        groups.setdefault(json.dumps(own, default=str), (own, []))[1].append(run_figures(result))
+    made = []
+    for own, runs in groups.values():
+        shared = [name for name in runs[0] if all(name in run for run in runs)]
+        name = ", ".join(f"{key.rpartition('.')[2]} = {value}" for key, value in own.items())
+        made.append(Ensemble(name, own, {n: np.array([run[n] for run in runs]) for n in shared}))
+    return made
+
+
+def table(found, resamples=RESAMPLES, seed=1):
+    """Rows by the names of `HEAD`, one for each figure of each ensemble."""
+    rows = []
+    for one in found:
+        for name, values in one.figures.items():
+            units = STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
+            low, high = bootstrap(values, resamples, seed)
+            told = (one.name, name, units, values.size, values.mean(), low, high, values.min(), values.max())
+            rows.append(dict(zip(HEAD, told, strict=True)))
+    return rows
+
+
+def write(rows, path):
+    """The table as CSV, or as JSON where the name ends in .json.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be written.
+    """
+    try:
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            if Path(path).suffix == ".json":
+                plain = [{k: None if v != v else v for k, v in row.items()} for row in rows]
+                json.dump(plain, file, indent=1, default=float)
+            else:
+                writer = csv.DictWriter(file, HEAD)
+                writer.writeheader()
+                writer.writerows(rows)
+    except OSError as error:
+        raise OutputError(f"{path}: not written, {error.strerror}") from None
+
+
+def text(rows):
+    """The table for the eye, a line a row."""
+    widths = [max(len(name), *(len(str(row[name])) for row in rows)) for name in HEAD[:4]]
+    lines = [" ".join(f"{n:<{w}}" for n, w in zip(HEAD, widths, strict=False))]
+    lines[0] += "".join(f"{name:>12}" for name in HEAD[4:])
+    for row in rows:
+        line = " ".join(f"{row[n]!s:<{w}}" for n, w in zip(HEAD, widths, strict=False))
+        lines.append(line + "".join(f"{row[name]:>12.4g}" for name in HEAD[4:]))
+    return lines
+
+
+def arguments(argv):
+    """The command line."""
+    parser = argparse.ArgumentParser(prog=program("ehlpetsc.analysis.ensemble"), description=__doc__)
+    parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
+    parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
+    parser.add_argument("--resamples", type=int, default=RESAMPLES, help=f"of the bootstrap [{RESAMPLES}]")
+    parser.add_argument("--seed", type=int, default=1, help="of the bootstrap [1]")
+    return parser.parse_args(argv)
+
+
+def main(argv=None):
+    """Run the command; returns its exit status: 0 done, 2 bad input."""
+    chosen = arguments(argv)
+    stem = chosen.results[0].removesuffix(".series.json").removesuffix(".h5")
+    output = chosen.output or Path(f"{stem}.ensemble.csv")
+    try:
+        with contextlib.ExitStack() as stack:
+            rows = table(ensembles(open_all(chosen.results, stack)), chosen.resamples, chosen.seed)
+        write(rows, output)
+    except (OutputError, tomllib.TOMLDecodeError) as error:
+        print(f"ehlpetsc.analysis.ensemble: {error}", file=sys.stderr)
+        return ExitStatus.BAD_INPUT
+    print("\n".join(text(rows)))
+    print(output)
+    return ExitStatus.DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,85 @@
+"""Picture of ensembles over seeds: every run as a dot, mean and bootstrap interval beside it."""
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ehlpetsc.analysis.ensemble import CONFIDENCE, bootstrap, ensembles
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, new_figure
+
+RUNS_COLOUR = "0.6"
+PANEL = (3.1, 2.4)  # inches
+COLUMNS = 3
+SHOWN = {  # figure: label, factor from SI units
+    "friction_coefficient": ("friction coefficient", 1.0),
+    "film_central": ("mean central film [µm]", 1e6),
+    "lambda_ratio": ("lambda ratio", 1.0),
+    "h_min": ("least film [µm]", 1e6),
+    "p_max": ("largest pressure [GPa]", 1e-9),
+    "contacts": ("nodes in contact", 1.0),
+    "contact_share": ("share of the load\non the solids", 1.0),
+    "contact_length": ("length in contact [µm]", 1e6),
+    "thin_length": ("length of thin film [µm]", 1e6),
+}
+
+
+def draw_ensemble(results, _options):
+    """Figure of every per-run figure, a panel each, against what differs beside the seeds."""
+    found = ensembles(results)
+    names = [name for name in SHOWN if all(name in one.figures for one in found)]
+    if not names:
+        raise OutputError("no figure that all runs have")
+    rows = -(-len(names) // COLUMNS)
+    figure, axes = new_figure(rows, COLUMNS, (PANEL[0] * COLUMNS, PANEL[1] * rows + 0.6), squeeze=False)
+    places, label, ticks = _places(found)
+    for panel, name in zip(axes.flat, names, strict=False):
+        _fill(panel, found, places, name)
+        panel.set_xlabel(label, fontsize="small")
+        panel.set_xlim(_margins(places))
+        if ticks:
+            panel.set_xticks(places, ticks, rotation=20 if max(map(len, ticks)) > 6 else 0, fontsize="small")
+    for panel in axes.flat[len(names) :]:
+        panel.set_axis_off()
+    handles = [
+        Line2D([], [], color=RUNS_COLOUR, marker="o", ls="", ms=3, label="one run"),
+        Line2D([], [], color=SINGLE_COLOUR, marker="o", ms=5, label=_mean_and_interval()),
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize="small")
+    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+def _mean_and_interval():
+    return f"mean, {100 * CONFIDENCE:g} % interval by bootstrap over the runs"
+
+
+def _places(found):
+    """Abscissae of the ensembles, what they are, and ticks where they are no numbers."""
+    keys = list(found[0].values)
+    if len(keys) == 1:
+        values = [one.values[keys[0]] for one in found]
+        if all(isinstance(value, int | float) for value in values):
+            return [float(v) for v in values], UNITS.get(keys[0], keys[0]), None
+    if len(found) == 1:
+        return [0.0], f"{len(next(iter(found[0].figures.values())))} runs", [" "]
+    return list(map(float, range(len(found)))), "", [one.name for one in found]
+
+
+def _margins(places):
+    span = (max(places) - min(places)) or 1.0
+    return min(places) - 0.3 * span, max(places) + 0.3 * span
+
+
+def _fill(panel, found, places, name):
+    label, factor = SHOWN[name]
+    low, high = _margins(places)
+    shift = 0.02 * (high - low)
+    for place, one in zip(places, found, strict=True):
+        values = factor * one.figures[name]
+        panel.plot(np.full(values.size, place - shift), values, "o", color=RUNS_COLOUR, ms=3, mew=0)
+        mean, ends = values.mean(), bootstrap(values)
+        panel.plot(place + shift, mean, "o", color=SINGLE_COLOUR, ms=5)
+        if np.isfinite(ends).all():
+            panel.vlines(place + shift, *ends, color=SINGLE_COLOUR, lw=1.6)
+    panel.set_ylabel(label, fontsize="small")
+    panel.grid(axis="y", lw=0.3)
