@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from ehlpetsc.analysis.ensemble import CONFIDENCE, bootstrap, ensembles
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, new_figure
+from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
 
 RUNS_COLOUR = "0.6"
 PANEL = (3.1, 2.4)  # inches
@@ -30,7 +30,7 @@ def draw_ensemble(results, _options):
     if not names:
         raise OutputError("no figure that all runs have")
     rows = -(-len(names) // COLUMNS)
-    figure, axes = new_figure(rows, COLUMNS, (PANEL[0] * COLUMNS, PANEL[1] * rows + 0.6), squeeze=False)
+    figure, axes = new_figure(rows, COLUMNS, (PANEL[0] * COLUMNS + 1.2, PANEL[1] * rows), squeeze=False)
     places, label, ticks = _places(found)
     for panel, name in zip(axes.flat, names, strict=False):
         _fill(panel, found, places, name)
@@ -44,13 +44,13 @@ def draw_ensemble(results, _options):
         Line2D([], [], color=RUNS_COLOUR, marker="o", ls="", ms=3, label="one run"),
         Line2D([], [], color=SINGLE_COLOUR, marker="o", ms=5, label=_mean_and_interval()),
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, frameon=False, fontsize="small")
+    legend_beside(axes[0, -1], handles)
     figure.suptitle(results[0].attrs["title"], fontsize="medium")
     return figure
 
 
 def _mean_and_interval():
-    return f"mean, {100 * CONFIDENCE:g} % interval by bootstrap over the runs"
+    return f"mean and its\n{100 * CONFIDENCE:g} % interval\n(bootstrap)"
 
 
 def _places(found):

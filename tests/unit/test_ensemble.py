@@ -1,0 +1,132 @@
+"""Ensembles over seeds: what belongs together, means and bootstrap intervals, table and picture."""
+
+import csv
+import json
+
+import h5py
+import numpy as np
+import pytest
+from made_results import make_result, with_solids
+
+from ehlpetsc.analysis import ensemble
+from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.series_index import told_apart
+
+SEEDED = "\n[surface.slow]\nsynthetic = {{ kind = 'ground', ra = 1e-7, correlation = 1e-5, seed = {} }}\n"
+SHARES = (0.20, 0.26, 0.31, 0.22, 0.29, 0.24)
+
+
+def made(folder, speeds=(5.0,), seeds=range(1, 7)):
+    """Results of a grid over speeds and seeds; the share on the solids depends on both."""
+    paths = []
+    for speed in speeds:
+        for seed, share in zip(seeds, SHARES, strict=False):
+            path = with_solids(make_result(folder / f"u{speed:g}_s{seed}.h5", speed=speed), share / speed)
+            with h5py.File(path, "r+", libver="latest") as file:
+                text = file.attrs["case"]
+                text = text.decode() if isinstance(text, bytes) else text
+                file.attrs["case"] = text + SEEDED.format(seed)
+            paths.append(str(path))
+    return paths
+
+
+def opened(paths):
+    return [read_result(path) for path in paths]
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_members_that_differ_in_seeds_alone_are_one_ensemble(tmp_path):
+    found = ensemble.ensembles(opened(made(tmp_path, (5.0, 1.0))))
+    assert [one.values for one in found] == [
+        {"motion.entrainment_speed": 5.0},
+        {"motion.entrainment_speed": 1.0},
+    ]
+    assert found[1].name == "entrainment_speed = 1.0"
+    assert all(values.shape == (6,) for one in found for values in one.figures.values())
+
+
+def test_figures_of_a_run_are_means_over_its_time_and_extremes(tmp_path):
+    (path, *_) = made(tmp_path)
+    with read_result(path) as result:
+        figures = ensemble.run_figures(result)
+        filled = ensemble.both_fill(result, result.steps("time"))
+        share = result.steps("contact_share")[filled]
+        assert 10 < filled.sum() < 41
+        assert figures["contact_share"] == pytest.approx(share.mean())
+        assert figures["h_min"] == result.steps("h_min")[filled].min()
+        assert figures["p_max"] == result.steps("p_max")[filled].max()
+    assert "dt" not in figures and "wall" not in figures
+
+
+def test_the_interval_of_a_mean_is_that_of_theory():
+    """For 40 normal values the bootstrap's 95 % interval is 1.96 s/sqrt(n) either side, to a tenth."""
+    values = np.random.default_rng(7).normal(3.0, 0.5, 40)
+    low, high = ensemble.bootstrap(values)
+    half = 1.96 * values.std() / np.sqrt(40)
+    assert low == pytest.approx(values.mean() - half, abs=0.1 * half)
+    assert high == pytest.approx(values.mean() + half, abs=0.1 * half)
+    assert ensemble.bootstrap(values) == (low, high)
+    assert ensemble.bootstrap(values, seed=2) != (low, high)
+    assert np.isnan(ensemble.bootstrap([1.0])).all()
+
+
+def test_intervals_hold_the_mean_as_often_as_they_say():
+    random = np.random.default_rng(3)
+    held = 0
+    for seed in range(200):
+        low, high = ensemble.bootstrap(random.exponential(1.0, 30), 500, seed)
+        held += low <= 1.0 <= high
+    assert 0.85 < held / 200 < 0.99  # of skewed values the percentiles hold a little less than 95 %
+
+
+def test_the_table_of_a_series(tmp_path, capsys):
+    made(tmp_path, (5.0, 1.0))
+    files = [{"file": path.name} for path in sorted(tmp_path.glob("*.h5"))]
+    index = tmp_path / "e.series.json"
+    index.write_text(json.dumps({"members": files}))
+    assert ensemble.main([str(index)]) == 0
+    assert str(tmp_path / "e.ensemble.csv") in capsys.readouterr().out
+    rows = {(row["ensemble"], row["figure"]): row for row in rows_of(tmp_path / "e.ensemble.csv")}
+    row = rows["entrainment_speed = 1.0", "contact_share"]
+    assert int(row["runs"]) == 6
+    low, mean, high = (float(row[name]) for name in ("low", "mean", "high"))
+    assert float(row["least"]) < low < mean < high < float(row["greatest"])
+    assert mean == pytest.approx(np.mean(SHARES), rel=0.02)
+    assert ensemble.main([str(index), "-o", str(tmp_path / "e.json"), "--seed", "5"]) == 0
+    assert len(json.loads((tmp_path / "e.json").read_text())) == len(rows)
+
+
+def test_damage_gives_its_quantiles(tmp_path):
+    (path, *_) = made(tmp_path, seeds=[1])
+    with h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
+        file["damage/z_over_a"] = [0.01]
+        file["damage/slow"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
+    with read_result(path) as result:
+        figures = ensemble.run_figures(result)
+    assert [figures[f"damage_slow z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
+        [0.5, 0.9, 0.99]
+    )
+
+
+def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
+    results = opened(made(tmp_path, (5.0, 1.0), [1, 2]))
+    assert told_apart(results)[2] == "entrainment_speed = 1, seed = 1"
+    assert told_apart(results[:1] * 2) is None
+
+
+@pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])
+def test_it_is_drawn(tmp_path, speeds, seeds):
+    picture = tmp_path / "p.png"
+    assert plot([*made(tmp_path, speeds, seeds), "--ensemble", "-o", str(picture)]) == 0
+    assert picture.stat().st_size > 10_000
+
+
+def test_what_is_no_result_is_refused(tmp_path, capsys):
+    (tmp_path / "x.series.json").write_text("[]")
+    assert ensemble.main([str(tmp_path / "x.series.json")]) == 2
+    assert "not the index of a series" in capsys.readouterr().err
