@@ -20,8 +20,17 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.runs import greatest_damage, run
 
 DEPTHS = (0.0, 0.01)  # half widths, of the damage
-THIN = (2.0, 5.0)  # boundary films below which a film counts as thin
-FIGURES = ("length", "share", "thin_length", "thin_share", "share_below_5", "p_max", "p_mean")
+THIN = (2.0, 5.0, 10.0)  # boundary films below which a film counts as thin
+FIGURES = (
+    "length",
+    "share",
+    "thin_length",
+    "thin_share",
+    "share_below_5",
+    "length_below_10",
+    "p_max",
+    "p_mean",
+)
 FIELDS = ("pressure", "film_thickness", "contact_pressure", "in_contact")
 SHEAR = ("shear_stress_fast", "shear_stress_slow")
 
@@ -57,8 +66,8 @@ class Measured:
     ----------
     length, share
         Where solids touch, and what they carry; in direct contact what the nodes at the bound carry.
-    thin_length, thin_share, share_below_5
-        Where the film is below two boundary films, what is carried there, and below five.
+    thin_length, thin_share, share_below_5, length_below_10
+        Where the film is below two boundary films, what is carried there and below five; and below ten.
     p_max, p_mean
         Largest pressure, and the mean over the stored frames of the largest of each.
     iterations, halved, mass_error, seconds
@@ -72,6 +81,7 @@ class Measured:
     thin_length: float
     thin_share: float
     share_below_5: float
+    length_below_10: float
     p_max: float
     p_mean: float
     iterations: float
@@ -100,13 +110,14 @@ def measured(path, boundary_film, seconds):
         filled = both_fill(result, result.steps("time"))
         dt, load = result.steps("dt"), result.steps("load").mean()
         touching = (result.steps("contacts") * dt)[filled].sum() / dt[filled].sum()
-        share, below, thin, below_5, greatest = rows.mean(axis=0)
+        share, below, thin, below_5, below_10, greatest = rows.mean(axis=0)
         return Measured(
             touching * dx / a,
             share * dx / load,
             below * dx / a,
             thin * dx / load,
             below_5 * dx / load,
+            below_10 * dx / a,
             1e-9 * result.steps("p_max")[filled].max(),
             1e-9 * greatest,
             result.steps("newton")[1:].mean(),
@@ -117,12 +128,12 @@ def measured(path, boundary_film, seconds):
 
 
 def _of_frame(result, frame, boundary_film):
-    """Solids' load per node, thin nodes, loads where the film is thin, largest pressure."""
+    """Solids' load per node, thin nodes, loads where the film is thin, nodes below ten, largest pressure."""
     p, h = result.frame("pressure", frame), result.frame("film_thickness", frame)
     name = "contact_pressure" if "contact_pressure" in result else "pressure"
     solids = result.frame(name, frame)[result["in_contact"][frame].astype(bool)].sum()
-    thin, thicker = (h < factor * boundary_film for factor in THIN)
-    return solids, thin.sum(), p[thin].sum(), p[thicker].sum(), p.max()
+    thin, below_5, below_10 = (h < factor * boundary_film for factor in THIN)
+    return solids, thin.sum(), p[thin].sum(), p[below_5].sum(), below_10.sum(), p.max()
 
 
 def _damages(path):

@@ -9,7 +9,7 @@ from ehlpetsc.study import contact
 from ehlpetsc.study.contact import Measured, Setting, order, orders, settings, table
 from ehlpetsc.study.runs import Outcome
 
-FOUND = Measured(0.05, 0.07, 0.09, 0.1, 0.2, 8.0, 6.0, 5.5, 0, 1e-8, 3.0)
+FOUND = Measured(0.05, 0.07, 0.09, 0.1, 0.2, 0.3, 8.0, 6.0, 5.5, 0, 1e-8, 3.0)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
