@@ -42,7 +42,7 @@ def lay_out(file, x, fields, figures, precision, profiles):
         rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
         # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
         packed = {"compression": "gzip", "compression_opts": 1} if flag else {}
-        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, fletcher32=True, **packed)
+        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
     _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
     _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
     for name in sorted(figures, key="time".__ne__):  # the scale of the others comes first
@@ -141,12 +141,20 @@ def comment(item, text):
 
 
 def _fixed(file, name, field, values):
-    _describe(file.create_dataset(name, data=np.asarray(values)), field)
+    values = np.asarray(values)
+    checked = {"chunks": values.shape, "fletcher32": True} if values.size else {}
+    _describe(file.create_dataset(name, data=values, **checked), field)
 
 
 def _growing(file, name, field, rows, *width, dtype=None, **packed):
     dataset = file.create_dataset(
-        name, (0, *width), dtype or field.dtype, maxshape=(None, *width), chunks=(rows, *width), **packed
+        name,
+        (0, *width),
+        dtype or field.dtype,
+        maxshape=(None, *width),
+        chunks=(rows, *width),
+        fletcher32=True,
+        **packed,
     )
     _describe(dataset, field)
 

@@ -1,0 +1,85 @@
+"""The program met with nonsense: ``python3 tests/fuzz/all.py --seed 1 --options 500 --restarts 500 ...``.
+
+options   a small case run with one to four PETSc and own options drawn from a list of good and bad ones
+restarts  damaged restart files: bytes changed or cut off; or content changed under a right checksum, run on
+results   damaged result files: a bit changed, or datasets and attributes replaced; read, compared, drawn
+cases     case files with one to three mutations, loaded, told, used as far as a run does before it computes
+
+Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
+traceback, hang, signal, different (status 0 with another answer and no word), changed (an input is not as it
+was). Exit status 1 if any of these is not 0. ``tests/fuzz/post.py`` does the same for post-processing.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ["HDF5_USE_FILE_LOCKING"] = "FALSE"
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parent / "unit"), str(HERE.parents[1])]
+import numpy as np
+from sandbox import BAD, WORDS
+
+from ehlpetsc import environment
+
+environment.prepare()
+KINDS = (
+    "cases",
+    "results",
+    "options",
+    "restarts",
+)  # the last imports PETSc, which must not be forked running
+
+
+def fuzz(seed, show=False, keep=None, **numbers):
+    """Counts by kind and outcome.
+
+    Parameters
+    ----------
+    seed : int
+    show : bool
+        Print a line a draw, not only what must not be.
+    keep : path-like, optional
+        Folder for the files of what must not be.
+    numbers : int
+        Draws of each kind.
+    """
+    found = {}
+    for kind in KINDS:
+        if not numbers.get(kind):
+            continue
+        counts = found[kind] = Counter()
+        with tempfile.TemporaryDirectory() as folder:
+            draw = __import__(f"fuzz_{kind}").Draw(Path(folder))
+            for number in range(numbers[kind]):
+                word, what = draw(np.random.default_rng([seed, KINDS.index(kind), number]))
+                counts[word] += 1
+                if show or word in BAD:
+                    print(f"{kind} {number}: {word}: {what}", flush=True)
+                if word in BAD and keep:
+                    draw.keep(Path(keep) / f"{kind}_{seed}_{number}")
+        told = ", ".join(f"{word} {counts[word]}" for word in (*WORDS.values(), *BAD) if counts[word])
+        print(f"{kind}: {told}", flush=True)
+    return found
+
+
+def main():
+    """Print counts; returns the exit status."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--seed", type=int, default=1)
+    for kind in KINDS:
+        parser.add_argument(f"--{kind}", type=int, default=0, metavar="N")
+    parser.add_argument("--keep", metavar="FOLDER", help="keep the files of what must not be")
+    parser.add_argument("--show", action="store_true", help="a line a draw")
+    found = fuzz(**vars(parser.parse_args()))
+    return int(any(counts[word] for counts in found.values() for word in BAD))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,190 @@
+"""A small case run with options drawn from a list; each run in a process of its own."""
+
+import hashlib
+import os
+from pathlib import Path
+
+import numpy as np
+from sandbox import process, word_of
+
+import ehlpetsc.discretisation.ehl_problem
+import ehlpetsc.physics.rheology  # noqa: F401
+from ehlpetsc.__main__ import guarded
+from ehlpetsc.results.reader import read_result
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+MESH = ["mesh.inlet=-1.3", "mesh.outlet=1.3", "mesh.points_per_half_width=15", "output.checkpoint=1e-4"]
+SCENES = (
+    ["table1_smooth.toml"],
+    ["table1_smooth.toml", "contact.model='mixed'"],
+    ["table1_rough.toml", "time.travel=0.14", "fluid.viscosity=0.003"],
+    ["dry_hertz.toml"],
+)
+LIMIT, RUN_MINUTES = 90, 0.15
+SAME = 1e-5  # relative, of least film and largest pressure
+NUMBERS = (
+    "0",
+    "1",
+    "-1",
+    "2",
+    "7",
+    "100",
+    "1e-3",
+    "1e-9",
+    "0.5",
+    "1e300",
+    "nan",
+    "-inf",
+    "abc",
+    "1e-400",
+    "",
+)
+KSP = (
+    "gmres",
+    "fgmres",
+    "minres",
+    "cg",
+    "bcgs",
+    "preonly",
+    "richardson",
+    "lsqr",
+    "tfqmr",
+    "nosuch",
+    "none",
+    "",
+)
+PC = (
+    "lu",
+    "ilu",
+    "jacobi",
+    "none",
+    "galerkin",
+    "sor",
+    "asm",
+    "bjacobi",
+    "mg",
+    "gamg",
+    "python",
+    "shell",
+    "nosuch",
+)
+SNES = (
+    "newtonls",
+    "newtontr",
+    "vinewtonrsls",
+    "vinewtonssls",
+    "qn",
+    "ngmres",
+    "ksponly",
+    "nrichardson",
+    "x",
+    "",
+)
+VALUES = {
+    **dict.fromkeys(("snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_max_funcs"), NUMBERS),
+    **dict.fromkeys(("ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_gmres_restart", "ksp_divtol"), NUMBERS),
+    **dict.fromkeys(("snes_vi_zero_tolerance", "snes_divergence_tolerance", "snes_lag_jacobian"), NUMBERS),
+    **dict.fromkeys(("snes_lag_preconditioner", "snes_max_linear_solve_fail", "snes_max_fail"), NUMBERS),
+    **dict.fromkeys(("snes_force_iteration", "snes_linesearch_damping", "snes_linesearch_max_it"), NUMBERS),
+    "ksp_type": KSP,
+    "pc_type": PC,
+    "snes_type": SNES,
+    "snes_linesearch_type": ("basic", "bt", "l2", "cp", "nleqerr", "shell", "x"),
+    "snes_convergence_test": ("default", "skip", "correct_pressure", "x"),
+    "ksp_norm_type": ("none", "preconditioned", "unpreconditioned", "natural", "x"),
+    "ksp_pc_side": ("left", "right", "symmetric", "x"),
+    "pc_factor_mat_solver_type": ("mumps", "petsc", "superlu_dist", "x"),
+    "pc_factor_levels": NUMBERS,
+    "pc_python_type": ("x", "os.path", "numpy.array", ""),
+    "mat_type": ("aij", "dense", "x"),
+    "vec_type": ("mpi", "seq", "x"),
+    "options_left": ("", "no", "x"),
+    "ehl_scheme": ("newton", "sweep", "x", ""),
+    "ehl_time_limit": ("1", "-1", "0", "x", "nan"),
+    "ehl_output": ("o.h5", "/", "no/o.h5", "", "case.toml"),
+    "ehl_ranks_per_member": NUMBERS,
+    "ehl_set": ("fluid.viscosity=0.004", "mesh.inlet=0", "x=1", "", "time={}", "petsc.snes_rtol='nan'"),
+    "ehl_restart": ("none.h5", "case.toml", ""),
+    "ehl_overwrit": ("",),
+}
+FLAGS = (
+    *("snes_monitor", "ksp_monitor", "snes_view", "ksp_view", "snes_mf", "snes_mf_operator", "snes_fd"),
+    *(
+        "snes_converged_reason",
+        "log_view",
+        "ksp_view_eigenvalues",
+        "snes_check_jacobian",
+        "help",
+        "malloc_dump",
+    ),
+    *("snes_test_jacobian", "ksp_converged_use_initial_residual_norm", "ksp_error_if_not_converged", "info"),
+    *("snes_error_if_not_converged", "ksp_diagonal_scale", "ksp_initial_guess_nonzero", "ehl_overwrite"),
+    *(
+        "ksp_converged_reason",
+        "snes_monitor_solution",
+        "options_view",
+        "snes_fd_color",
+        "snes_vi_monitor",
+        "version",
+    ),
+)
+ANOTHER = ("ehl_set", "looser than", "ehl_scheme")  # what may change an answer, or says that it is another
+
+
+class Draw:
+    """One run after the other."""
+
+    def __init__(self, folder):
+        self.folder, self.answers = folder, {}
+        for number, (name, *_) in enumerate(SCENES):
+            status, said = self._run(number, [])
+            assert status == 0, (name, said)
+            self.answers[number] = self._answer()
+
+    def __call__(self, rng):
+        """Outcome and what was done."""
+        scene, words = int(rng.integers(len(SCENES))), []
+        for _ in range(1 + int(rng.integers(4))):
+            if rng.random() < 0.25:
+                words.append(f"-{rng.choice(FLAGS)}")
+                continue
+            name = str(rng.choice(list(VALUES)))
+            words += [f"-{name}", *filter(None, [str(rng.choice(VALUES[name]))])]
+        case = CASES / SCENES[scene][0]
+        before = hashlib.sha256(case.read_bytes()).digest()
+        status, said = self._run(scene, words)
+        word = word_of(status, said)
+        if hashlib.sha256(case.read_bytes()).digest() != before:
+            word = "changed"
+        elif word == "done" and not any(told in " ".join((said, *words)) for told in ANOTHER):
+            answer = self._answer()
+            if answer is not None and not np.allclose(answer, self.answers[scene], rtol=SAME, atol=0.0):
+                word = "different"
+        if word in ("done", "stopped", "not converged") and list(self.folder.glob(".*.tmp")):
+            word = "changed"
+        return word, f"{SCENES[scene][:2]} {' '.join(words)}: {status} {said[-1500:]}"
+
+    def keep(self, place):
+        """What was said is printed already."""
+
+    def _run(self, scene, words):
+        name, *settings = SCENES[scene]
+        for left in self.folder.glob("*.h5"):
+            left.unlink()
+        sets = [word for setting in (*MESH, *settings) for word in ("-ehl_set", setting)]
+        limit = [] if "-ehl_time_limit" in words else ["-ehl_time_limit", str(RUN_MINUTES)]
+        arguments = ["ehlpetsc", str(CASES / name), *sets, *limit, *words]
+
+        def work():
+            os.chdir(self.folder)
+            return int(guarded(arguments))
+
+        return process(work, self.folder / "said", LIMIT)
+
+    def _answer(self):
+        """Least film and largest pressure of the run, None without a result."""
+        files = [path for path in self.folder.glob("*.h5") if "restart" not in path.name]
+        if not files:
+            return None
+        with read_result(files[0]) as result:
+            return result.steps("h_min").min() + 1e-12, result.steps("p_max").max()

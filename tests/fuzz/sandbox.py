@@ -1,0 +1,65 @@
+"""Pieces of work in processes of their own, with a time limit, and one word for how each ended."""
+
+import os
+import signal
+import sys
+import time
+
+
+def process(work, said, limit):
+    """Exit status of work() and what it said; negative: a signal, None: a hang.
+
+    Parameters
+    ----------
+    work : callable
+        Returns an exit status.
+    said : Path
+        File for its output.
+    limit : float
+        Seconds.
+    """
+    child = os.fork()
+    if child == 0:
+        descriptor = os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(descriptor, 1)
+        os.dup2(descriptor, 2)
+        sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)
+        status = 1
+        try:
+            status = work()
+        except SystemExit as end:
+            status = end.code if isinstance(end.code, int) else 1
+        except BaseException:
+            import traceback
+
+            traceback.print_exc()
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(status)
+    until = time.monotonic() + limit
+    while time.monotonic() < until:
+        found, status = os.waitpid(child, os.WNOHANG)
+        if found:
+            return os.waitstatus_to_exitcode(status), said.read_text(errors="replace")
+        time.sleep(0.005)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return None, said.read_text(errors="replace")
+
+
+WORDS = {0: "done", 2: "refused", 3: "not converged", 4: "stopped"}
+BAD = ("traceback", "hang", "signal", "different", "changed")
+
+
+def word_of(status, said):
+    """How it ended in a word of `WORDS` or `BAD`."""
+    if status is None:
+        return "hang"
+    if status < 0:
+        return "signal"
+    if "Traceback (most" in said or status not in WORDS:
+        return "traceback"
+    if status == 2 and not any("ehlpetsc" in line for line in said.splitlines()):
+        return "traceback"  # no word of why
+    return WORDS[status]
