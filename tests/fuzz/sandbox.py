@@ -60,6 +60,6 @@ def word_of(status, said):
         return "signal"
     if "Traceback (most" in said or status not in WORDS:
         return "traceback"
-    if status == 2 and not any("ehlpetsc" in line for line in said.splitlines()):
+    if status == 2 and not any(": " in line for line in said.splitlines()):
         return "traceback"  # no word of why
     return WORDS[status]
