@@ -102,8 +102,15 @@ def _fault(file):
 
 
 def _fault_of_datasets(file):
+    lost = [name for name in str(plain(file.attrs.get("contents", ""))).split() if name not in file]
+    if lost:
+        return f"damaged: {lost[0]} is missing"
+    room = BEYOND * os.fstat(file.id.get_vfd_handle()).st_size
+    for name in ("x", "contact_count", *(f"surface/{s}/{v}" for s in ("fast", "slow") for v in "sz")):
+        if name in file and not (isinstance(file[name], h5py.Dataset) and (file[name].nbytes or 0) <= room):
+            return f"damaged: {name} is no dataset, or has more numbers than the file can hold"
     nodes = file["x"].shape
-    if len(nodes) != 1 or nodes[0] < 2:
+    if nodes is None or len(nodes) != 1 or nodes[0] < 2:
         return f"damaged: x has the shape {nodes}"
     x = file["x"][:]
     if x.dtype.kind != "f" or not (np.isfinite(x).all() and (np.diff(x) > 0.0).all()):
@@ -116,7 +123,7 @@ def _fault_of_datasets(file):
             return f"damaged: {name} has {item.shape[1]} nodes, x {nodes[0]}"
         if item.ndim == 2 and "/" in name:
             return f"damaged: {name} has the shape {item.shape}"
-        if item.nbytes > BEYOND * os.fstat(file.id.get_vfd_handle()).st_size:
+        if item.nbytes > room:
             return f"damaged: {name} has {item.shape[0]} rows, more than the file can hold"
     if file["contact_count"].shape != nodes or file["contact_count"].dtype.kind not in "iu":
         return "damaged: contact_count is no number for every node"

@@ -18,7 +18,7 @@ from ehlpetsc.quantities import STEP_SCALARS, of_every_case
 from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.hdf5.batch import Batch
 from ehlpetsc.results.hdf5.continuation import copy_up_to
-from ehlpetsc.results.hdf5.datasets import close, create, lay_out, room
+from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, lay_out, room
 from ehlpetsc.results.provenance import git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION
 from ehlpetsc.results.whole_file import plain_reason, replacing
@@ -95,6 +95,7 @@ class ResultWriter:
             with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
                 self._root_attributes(case_text, title, dict(scalars_attrs))
                 lay_out(self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles)
+                attributes.put(self._file, {"contents": " ".join(dataset_names(self._file))})
             if place:
                 if resume_step is not None and self.path.exists():
                     self.contact_count[:] = copy_up_to(self._file, self.path, resume_step, contact_count)

@@ -55,6 +55,13 @@ def lay_out(file, x, fields, figures, precision, profiles):
             comment(file[name], text)
 
 
+def dataset_names(file):
+    """Names of all datasets of a file, with those of their groups."""
+    names = []
+    file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+    return names
+
+
 def create(path):
     """Create an HDF5 file for writing, None: in memory; OSError if the disk has no room for an empty one."""
     if path is None:
