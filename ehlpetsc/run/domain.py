@@ -32,7 +32,7 @@ def domain_warnings(case, scales):
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
-    if COARSE < opening <= CLOSED:
+    if COARSE < opening:
         notes.append(f"{_coarse(opening)}: the film comes out too thin; {_cure(case, scales)}")
     return notes
 
@@ -42,7 +42,7 @@ def domain_faults(case, scales):
 
     Parameters as of `domain_warnings`.
     """
-    if case.fluid is None:
+    if case.fluid is None or case.contact.model == "mixed":  # where the boundary film stays
         return []
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
     if opening <= CLOSED:

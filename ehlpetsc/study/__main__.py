@@ -1,8 +1,9 @@
 """How accurate, how fast, how robust: ``python3 -m ehlpetsc.study``.
 
 ``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
-at the edge of the ranges. ``--contact CASE.toml``: how much solids carry, against mesh, time step, boundary
-film and contact model. ``--random N``: N random cases within the ranges, which must end in 0 or 3.
+at the edge of the ranges; with ``--far`` of forty far beyond them; with ``--models mixed`` in mixed contact.
+``--contact CASE.toml``: how much solids carry, against mesh, time step, boundary film and contact model.
+``--random N``: N random cases within the ranges, of both contact models, which must end in 0 or 3.
 """
 
 import argparse
@@ -24,6 +25,7 @@ SWITCHES = {
     "--contact": "how much contact, against mesh and model",
     "--extremes": "run the table of extremes",
     "--short": "its short form: coarser, fewer steps",
+    "--far": "of --extremes, instead: forty lines far beyond the ranges",
 }
 
 
@@ -77,7 +79,9 @@ def extremes(chosen):
     """The table of extremes."""
     from ehlpetsc.study.extremes import table
 
-    table(f"{chosen.output or 'extremes'}.csv", chosen.short, chosen.limit, say)
+    model = chosen.models[0] if len(chosen.models) == 1 else None  # both: each line as it stands
+    path = f"{chosen.output or 'extremes'}.csv"
+    table(path, chosen.short, chosen.limit, say, far=chosen.far, model=model)
     return 0
 
 

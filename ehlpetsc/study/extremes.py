@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus
+from ehlpetsc.study.far_lines import far_lines
 from ehlpetsc.study.lines import steady_lines
 from ehlpetsc.study.reasons import why
 from ehlpetsc.study.rough_lines import time_lines
@@ -30,12 +31,28 @@ COARSE = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
 
 
-def lines(short=False):
-    """Lines of the table; the short form coarser and with fewer steps."""
-    whole = [*steady_lines(), *time_lines()]
-    if not short:
-        return whole
-    return [replace(line, overrides=_shortened(line)) for line in whole if line.short]
+def lines(short=False, far=False, model=None):
+    """Lines of the table; the short form coarser and with fewer steps.
+
+    Parameters
+    ----------
+    short : bool
+    far : bool
+        Instead of those at the edge of the ranges forty far beyond it.
+    model : str, optional
+        Contact model of all lines that do not choose their own.
+    """
+    whole = far_lines() if far else [*steady_lines(), *time_lines()]
+    if short:
+        whole = [replace(line, overrides=_shortened(line)) for line in whole if line.short]
+    return [_of_model(line, model) for line in whole] if model else whole
+
+
+def _of_model(line, model):
+    chosen = (f"contact.model={model}",)
+    own = any(override.startswith("contact.model") for override in line.overrides)
+    before = line.before and (*chosen, *line.before)
+    return line if own else replace(line, overrides=(*chosen, *line.overrides), before=before)
 
 
 def _shortened(line):
@@ -45,14 +62,15 @@ def _shortened(line):
     return (*line.overrides, *COARSE, *(BRIEF if "time.travel" in keys else ()))
 
 
-def table(path, short=False, limit=300.0, say=print):
+def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):
     """Run the table.
 
     Parameters
     ----------
     path : path-like
         The CSV file.
-    short : bool
+    short, far, model
+        As of `lines`.
     limit : float
         Wall clock time of a line [s].
     say : callable
@@ -68,7 +86,7 @@ def table(path, short=False, limit=300.0, say=print):
     with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, HEAD)
         writer.writeheader()
-        for line in lines(short):
+        for line in lines(short, far, model):
             rows.append(row(line, Path(folder), limit))
             writer.writerow(rows[-1])
             file.flush()

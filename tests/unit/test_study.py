@@ -13,6 +13,7 @@ from ehlpetsc.study.accuracy.errors import MEASURES, Figures, errors, uncertaint
 from ehlpetsc.study.accuracy.plan import MESH, STEP, plan
 from ehlpetsc.study.accuracy.table import NAMES
 from ehlpetsc.study.draws import draw
+from ehlpetsc.study.extremes import lines
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
 from ehlpetsc.study.reasons import why as reason_of
 from ehlpetsc.study.runs import TIMED_OUT, Outcome, last_words
@@ -90,6 +91,24 @@ def test_reasons_are_told_in_words(table_1):
     slow = reason_of(outcome, table_1, ["motion.entrainment_speed=0.01"])
     assert "mesh is too coarse" in slow and "points_per_half_width=" in slow
     assert "time limit" in reason_of(Outcome(TIMED_OUT, steps=4), table_1, [])
+
+
+@pytest.mark.parametrize("model", [None, "direct", "mixed"])
+def test_forty_lines_lie_far_beyond_the_ranges(tmp_path, model):
+    path, found = tmp_path / "case.toml", lines(far=True, model=model)
+    assert len(found) == len({(line.axis, line.value) for line in found}) == 40
+    for line in found:
+        path.write_text(line.text)
+        case = load(path, line.overrides)
+        own = "boundary film" in line.value
+        assert case.contact.model == ("mixed" if own else model or "direct"), line
+    axes = {line.axis.removeprefix("far ") for line in found}
+    assert axes == {"load", "speed", "oil", "solids", "films", "mesh", "rough", "sliding"}
+
+
+def test_draws_are_of_both_contact_models():
+    drawn = [draw(random.Random(seed))[1][-1] for seed in range(40)]
+    assert {"contact.model=direct", "contact.model=mixed"} == set(drawn)
 
 
 def test_drawn_cases_load_and_come_again(tmp_path):
