@@ -23,8 +23,8 @@ END
 declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3-petsc4py-real [mpirun]=openmpi-bin
     [xdist]=python3-pytest-xdist)
 run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
-drawing="matplotlib"
-testing="$drawing pytest xdist hypothesis xarray h5netcdf pip hatchling"
+drawing="matplotlib xarray h5netcdf" # pictures, and the reading example of ehlpetsc/results/README.md
+testing="$drawing pytest xdist hypothesis pip hatchling"
 
 commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"
 called=$(basename "$0")

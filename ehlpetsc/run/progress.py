@@ -9,6 +9,7 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
+SURE = 1.0  # s before time to go is told: the first steps wait for the compiler, and are smooth
 
 _COLUMNS = {name: figure.progress for name, figure in STEP_SCALARS.items() if figure.progress}
 _REMAINING = "{:>9s}"
@@ -51,7 +52,7 @@ class Progress:
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
         self._bar = on_terminal(self._stream) or in_notebook()
-        self._started = clock.monotonic()
+        self._marks = [(clock.monotonic(), begin)]  # wall clock and time of the run, now and then
         self._shown = None
         self._pending = None
 
@@ -81,7 +82,7 @@ class Progress:
         figures, self._pending = self._pending, None
         done = (figures["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
         done = min(max(done, 0.0), 1.0)
-        left = duration((now - self._started) * (1.0 - done) / done) if done > 0.0 else "?"
+        left = self._left(now, figures["time"])
         if self._bar:
             self._draw_bar(done, left, figures)
         else:
@@ -90,6 +91,16 @@ class Progress:
             self._stream.write(_line(figures, left))
         self._stream.flush()
         self._shown = now
+
+    def _left(self, now, time):
+        """Time to go, by the rate since half of the wall clock time ago; "?" before there is one to tell."""
+        if now - self._marks[-1][0] > SECONDS_BETWEEN_BARS:
+            self._marks.append((now, time))
+        begun = self._marks[0][0]
+        since = next(mark for mark in reversed(self._marks) if mark[0] <= begun + 0.5 * (now - begun))
+        if now - begun < SURE and time < self._end or time <= since[1]:
+            return "0s" if time >= self._end else "?"
+        return duration((now - since[0]) * max(self._end - time, 0.0) / (time - since[1]))
 
     def _draw_bar(self, done, left, figures):
         shown = [column.bar.format(value) for column, value in _scaled(figures) if column.bar]

@@ -46,6 +46,25 @@ def test_lines_have_fixed_columns_and_are_few(clock):
     assert lines[-1].split()[::7] == ["100", "0s"]
 
 
+def test_time_to_go_is_not_told_before_it_can_be(clock):
+    """The first step has waited 3 s for the compiler; the first second tells nothing of the rate."""
+    progress = report.Progress(0.0, 1.0, stream := io.StringIO())
+    clock.append(clock[-1] + 0.02)
+    progress.step(SCALARS | {"step": 1, "time": 0.001})
+    assert stream.getvalue().split()[-1] == "?"
+
+
+def test_time_to_go_follows_the_rate_of_late(clock):
+    """Smooth steps of 10 ms, then rough ones of 100 ms: at half of the run 50 s are left, not 27 s."""
+    progress = report.Progress(0.0, 1.0, stream := io.StringIO())
+    for step in range(1, 501):
+        clock.append(clock[-1] + (0.01 if step <= 200 else 0.1))
+        progress.step(SCALARS | {"step": step, "time": step * 1e-3})
+    progress.close()
+    last = stream.getvalue().split()[-1]
+    assert last in ("49s", "50s", "51s")
+
+
 def test_a_quick_run_shows_its_first_and_last_step(clock):
     steps = [line.split()[0] for line in run(io.StringIO(), clock, seconds_a_step=1e-3).splitlines()[1:]]
     assert steps == ["1", "100"]
