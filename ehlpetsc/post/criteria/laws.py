@@ -8,10 +8,11 @@ Engng Mater. Struct. 11, whose normal stress opens the crack that shear makes:
     \frac{\Delta\gamma}{2}\Big(1+k\frac{\sigma_{n,\max}}{\sigma_y}\Big)
     = \frac{\tau_f'}{G}(2N)^b + \gamma_f'(2N)^c
 
-with :math:`\tau_f'=\sigma_f'/\sqrt3`, :math:`\gamma_f'=\sqrt3\,\varepsilon_f'` (von Mises; for hardened
-steel McClaflin & Fatemi (2004), Int. J. Fatigue 26, who take k = 1 where no test tells it). Smith, Watson &
-Topper (1970), J. Mater. 5, on the plane of the largest damage (Socie (1987), J. Eng. Mater. Technol. 109),
-for cracks that tension makes:
+with :math:`\tau_f'=\sigma_f'/\sqrt3`, :math:`\gamma_f'=\sqrt3\,\varepsilon_f'` (von Mises). k is found from
+tests in torsion and in tension; 1 is customary for steel where there are none. Torsion tests of a hardened
+spring steel: McClaflin & Fatemi (2004), Int. J. Fatigue 26, 773. Smith, Watson & Topper (1970), J. Mater. 5,
+wrote theirs for one axis; on a plane it is Socie's (1987), J. Eng. Mater. Technol. 109, for cracks that
+tension makes:
 
 .. math::
     \sigma_{n,\max}\frac{\Delta\varepsilon_n}{2}
@@ -41,12 +42,13 @@ class Criteria:
     Attributes
     ----------
     normal_sensitivity : float
-        k of Fatemi and Socie; 1 where no test tells it (McClaflin & Fatemi 2004).
+        k of Fatemi and Socie; 1 is customary where no test tells it.
     yield_strength : float or None
         sigma_y, Pa; None: the cyclic one at 0.2 % plastic strain, K' 0.002^n'.
     torsion_limit : float
         tau_w of Dang Van, Pa. Default: 375 MPa, the amplitude 0.25 p of the shear stress parallel to the
-        surface under the 1.5 GPa that ISO 281:2007 takes for the fatigue limit of bearing steel.
+        surface under the 1.5 GPa of Hertz pressure that ISO 281:2007 takes for the fatigue limit of bearing
+        steel. (In a point contact that is a von Mises stress of 0.9 GPa.)
     bending_limit : float
         sigma_w of Dang Van, Pa. Default: sqrt(3) tau_w (von Mises).
     """

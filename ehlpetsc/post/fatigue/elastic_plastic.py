@@ -11,8 +11,9 @@ r"""The elastic-plastic range that belongs to an elastic one: none, Neuber's or 
 with the cyclic stress-strain curve :math:`\Delta\varepsilon(\Delta\sigma)` of
 :mod:`ehlpetsc.post.fatigue.strain_life`, eq. (13). "direct" is what Holmes et al. (2005) do: the elastic
 range enters (13) as if it were the true one, so that above yield both stress and strain are too large.
-Neuber (1961), J. Appl. Mech. 28, keeps the product of stress and strain; Molski & Glinka (1981), Mater. Sci.
-Eng. 50, the strain energy of a notch. Both are for a small yielding zone held by an elastic body, as one
+Neuber (1961), J. Appl. Mech. 28, keeps the product of stress and strain (derived for prisms in shear);
+Molski & Glinka (1981), Mater. Sci. Eng. 50, the strain energy of a notch: Neuber's strains tend to be too
+large, theirs too small. Both are for a small yielding zone held by an elastic body, as one
 under an asperity is; ranges are on the doubled curve (Masing).
 """
 
