@@ -3,8 +3,8 @@
 import difflib
 import json
 
-from ehlpetsc.case.table import item_type
-from ehlpetsc.case.validation import ValidationError
+from ehlpetsc.case.tables.table import item_type
+from ehlpetsc.case.tables.validation import ValidationError
 
 
 def allowed(field):

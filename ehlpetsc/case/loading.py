@@ -7,15 +7,15 @@ import tomllib
 from pathlib import Path
 
 from ehlpetsc.case.faults import describe, shortened, show
-from ehlpetsc.case.post_table import Post
 from ehlpetsc.case.profiles import profile_faults
-from ehlpetsc.case.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
 from ehlpetsc.case.settings import PARTS, parsed, put, text_with
-from ehlpetsc.case.surface_tables import Surface
 from ehlpetsc.case.sweep import member_tables, series_faults, settings_of
-from ehlpetsc.case.table import Table, is_plain
+from ehlpetsc.case.tables.post import Post
+from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
+from ehlpetsc.case.tables.surface import Surface
+from ehlpetsc.case.tables.table import Table, is_plain
+from ehlpetsc.case.tables.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.case.toml_text import plain, toml_text
-from ehlpetsc.case.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.errors import CaseError
 
 DICT = "case"  # what faults call a case that is no file

@@ -1,8 +1,8 @@
 """Faults of the profile files that a case names: unreadable, or absurd beside its contact."""
 
 from ehlpetsc.case.faults import show
-from ehlpetsc.case.surface_tables import SurfaceProfile
-from ehlpetsc.case.validation import ValidationError
+from ehlpetsc.case.tables.surface import SurfaceProfile
+from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales

@@ -33,7 +33,7 @@ class StepInputs:
         What the roughness adds to the gap, in a^2/R.
     history : reynolds.FilmHistory or None
         Previous time levels; None: steady.
-    fluid : case.schema.Fluid or None
+    fluid : case.tables.schema.Fluid or None
         None: dry.
     inlet_film : float or None
         Oil given at the inlet in a^2/R; None: flooded.

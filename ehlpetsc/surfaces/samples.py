@@ -51,7 +51,7 @@ def samples(folder, spec):
     ----------
     folder : pathlib.Path
         Of the case file: profile files lie beside it.
-    spec : ehlpetsc.case.surface_tables.SurfaceProfile
+    spec : ehlpetsc.case.tables.surface.SurfaceProfile
 
     Raises
     ------

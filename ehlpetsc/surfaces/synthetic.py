@@ -12,7 +12,7 @@ def sampled(spec):
 
     Parameters
     ----------
-    spec : case.surface_tables.Ground, .Wave or .Bump
+    spec : case.tables.surface.Ground, .Wave or .Bump
 
     Returns
     -------

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case import loading as case
-from ehlpetsc.case.surface_tables import SurfaceProfile
+from ehlpetsc.case.tables.surface import SurfaceProfile
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.arrival import arrival

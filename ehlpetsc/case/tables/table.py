@@ -1,6 +1,6 @@
 """What the tables of a case file have in common: frozen, no unknown keys, the types of TOML as they are."""
 
-from ehlpetsc.case.validation import BaseModel, Extra, validator
+from ehlpetsc.case.tables.validation import BaseModel, Extra, validator
 
 
 def is_of(kind, value):

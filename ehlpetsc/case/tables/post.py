@@ -1,7 +1,7 @@
 """`[post]` of a case file: what the fatigue of both surfaces is worked out with."""
 
-from ehlpetsc.case.table import Table, is_of
-from ehlpetsc.case.validation import Field, confloat, validator
+from ehlpetsc.case.tables.table import Table, is_of
+from ehlpetsc.case.tables.validation import Field, confloat, validator
 
 Depth = confloat(ge=0, le=100)
 Residual = confloat(ge=-1e10, le=1e10)

@@ -7,8 +7,8 @@ for any machine element in SI units and narrow enough that a value in GPa, mm or
 import math
 from typing import Any, Literal
 
-from ehlpetsc.case.table import Table
-from ehlpetsc.case.validation import Field, confloat, constr, root_validator, validator
+from ehlpetsc.case.tables.table import Table
+from ehlpetsc.case.tables.validation import Field, confloat, constr, root_validator, validator
 from ehlpetsc.quantities import FIELDS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm

@@ -1,0 +1,1 @@
+"""The tables of a case file: every key with its type, unit, bounds, default and meaning."""
