@@ -5,7 +5,7 @@ set -eu
 
 usage() {
     cat <<'END'
-./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case, on 2 ranks unless told otherwise
+./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n on 2 ranks where they are worth it, else on 1
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
@@ -200,6 +200,13 @@ without_mpiruns_comment() {
         END { if (!comment) flush_held() }'
 }
 
+# One rank where two would be no quicker, which the program knows of its cases; faults are told by the run
+worthwhile_ranks() {
+    local told
+    told=$("$python" -m ehlpetsc --ranks "$@" 2>/dev/null) || true
+    [ "$told" = 2 ] && echo 2 || echo 1
+}
+
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it hands on, and they stop after the step in hand.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
@@ -282,7 +289,7 @@ if [[ " $commands " = *" $called "* ]]; then # by a link of write_commands
     exec "$python" -m ehlpetsc.commands "$called" "$@"
 fi
 
-ranks=2
+ranks=""
 if [ "${1-}" = -n ]; then
     ranks=${2-}
     [[ $ranks =~ ^[1-9][0-9]{0,4}$ ]] || { say "-n $ranks: allowed: a whole number of ranks, at least 1"; exit 2; }
@@ -304,6 +311,7 @@ case ${1-} in
         ;;
     *)
         prepare "$run_modules" "$drawing"
+        [ -n "$ranks" ] || ranks=$(worthwhile_ranks "$@")
         run_case "$@"
         ;;
 esac

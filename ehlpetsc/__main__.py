@@ -28,7 +28,7 @@ def main(argv):
         command = parse_command_line(argv[1:])
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
-    if command.explain:
+    if command.explain or command.ranks:
         return explain(command)
     nowhere = environment.no_place()
     if nowhere:
@@ -60,14 +60,15 @@ def tell_keys(words):
 
 
 def explain(command):
-    """Print the scene in words."""
+    """Print the scene in words, or the number of ranks that it is worth."""
     from ehlpetsc.case.loading import load
     from ehlpetsc.environment import first_rank
     from ehlpetsc.errors import CaseError
     from ehlpetsc.run.describe import explain as words
+    from ehlpetsc.run.describe import worthwhile_ranks
 
     try:
-        text = words(load(command.case, command.overrides))
+        text = (worthwhile_ranks if command.ranks else words)(load(command.case, command.overrides))
     except CaseError as error:
         return refuse("\n".join(error.faults))
     if first_rank():

@@ -92,7 +92,7 @@ install='^sudo apt-get update && sudo apt-get install -y .*python3-petsc4py-real
 expect 2 guest "$first" "$install"
 expect 0 root "$first" '^run_mpi.sh: installed$' '^result: table1_rough.h5$' "$finished"
 say "$release: $((SECONDS - began)) s from the clone to the first result"
-expect 0 guest "$first" ' 2 ranks;' "$finished"
+expect 0 guest "$first" ' 1 rank;' "$finished"
 expect 0 guest './run_mpi.sh --commands ~/.local/bin' 'in /home/guest/.local/bin: ehlpetsc ehlpetsc-post '
 picture='cd /tmp && PATH=$HOME/.local/bin:$PATH && ehlpetsc-plot ~/ehlpetsc/table1_rough.h5'
 expect 0 guest "$picture" '^/home/guest/ehlpetsc/table1_rough.png$'

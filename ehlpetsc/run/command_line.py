@@ -23,6 +23,8 @@ class Command:
         Values of -ehl_set: those of PETSC_OPTIONS, then those of the command line.
     explain : bool
         Whether the scene is to be told in words and not run.
+    ranks : bool
+        Whether the ranks that the case is worth are to be told and it is not to be run.
     petsc : list of str
         All other words, for PETSc.
     """
@@ -30,6 +32,7 @@ class Command:
     case: str | None = None
     overrides: list = field(default_factory=list)
     explain: bool = False
+    ranks: bool = False
     petsc: list = field(default_factory=list)
 
 
@@ -53,8 +56,8 @@ def parse_command_line(arguments):
     if earlier:
         os.environ["PETSC_OPTIONS"] = shlex.join(environment)
     command.overrides = earlier + sets
-    command.explain = "--explain" in rest
-    rest = [word for word in rest if word != "--explain"]
+    command.explain, command.ranks = "--explain" in rest, "--ranks" in rest
+    rest = [word for word in rest if word not in ("--explain", "--ranks")]
     names = [word for word in rest if word.endswith(".toml")] or [word for word in rest[:1] if word[0] != "-"]
     if len(names) > 1:
         raise UsageError(f"one case file at a time, not {' and '.join(names)}: {usage()}")

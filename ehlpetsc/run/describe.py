@@ -75,6 +75,11 @@ def banner(case, scales, rough, ranks):
     ]
 
 
+def worthwhile_ranks(case):
+    """Ranks that a case is worth where nobody says how many: two for a series or a large mesh, else one."""
+    return 2 if case.series or case.mesh.nodes >= WORTH_TWO_RANKS else 1
+
+
 def _ranks_for_nothing(scales, ranks):
     if ranks == 1 or scales.nx >= WORTH_TWO_RANKS:
         return []

@@ -6,7 +6,12 @@ import numpy as np
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.physics.film_formulas import inlet_opening, moes_central_film, points_for_opening
+from ehlpetsc.physics.film_formulas import (
+    expected_film,
+    inlet_opening,
+    moes_central_film,
+    points_for_opening,
+)
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.study.runs import TIMED_OUT
@@ -40,6 +45,12 @@ def _findings(outcome, case, scales):
     hertz = float(viscosity(np.array([scales.p0]), case.fluid)[0][0]) if case.fluid else 0.0
     if case.fluid:
         found += _too_coarse(case, scales)
+        film = scales.h * expected_film(case, scales)
+        if film > scales.a:
+            found.append(
+                f"the expected film, {1e6 * film:.2g} um, is thicker than Hertz' half width, "
+                f"{1e6 * scales.a:.2g} um: the solids hardly deform, the domain is too small"
+            )
     if hertz > SOLID:
         decades = hertz / math.log(10)
         found.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")

@@ -9,7 +9,7 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run.describe import explain, warnings
+from ehlpetsc.run.describe import explain, warnings, worthwhile_ranks
 from ehlpetsc.run.forecast import dowson_higginson, file_size, steps
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -111,6 +111,18 @@ def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
     assert len(still) == 1 and "surface.slow with [motion] but without [time]" in still[0]
     c = case.load(CASES / "dry_rough.toml")
     assert warnings(c, Scales.of(c)) == []
+
+
+@pytest.mark.parametrize(
+    "name, overrides, ranks",
+    [
+        ("table1_rough.toml", (), 1),
+        ("table1_rough.toml", ("mesh.points_per_half_width=500",), 2),
+        ("fig4.toml", (), 2),
+    ],
+)
+def test_a_case_is_worth_two_ranks_on_a_fine_mesh_or_as_a_series(name, overrides, ranks):
+    assert worthwhile_ranks(case.load(CASES / name, overrides)) == ranks
 
 
 def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp_path):

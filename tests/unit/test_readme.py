@@ -90,6 +90,6 @@ def test_the_case_file_shown_has_twelve_lines_and_is_a_case(tmp_path):
 def test_a_run_begins_with_the_lines_shown():
     case = load(ROOT / "cases" / "table1_rough.toml", ())
     scales = Scales.of(case)
-    lines = banner(case, scales, Roughness.of(case, scales), 2)
+    lines = banner(case, scales, Roughness.of(case, scales), 1)
     for line in lines:
         assert line[:90] in MAIN

@@ -12,6 +12,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 ECHO = """\
 import os, sys
+if "--ranks" in sys.argv:
+    print(os.environ.get("WORTH", "2"))
+    sys.exit()
 from mpi4py import MPI
 world = MPI.COMM_WORLD
 if world.rank == 0:
@@ -47,10 +50,11 @@ def script(tmp_path):
     return run
 
 
-def test_two_ranks_by_default_in_the_callers_folder_with_debians_python(script):
-    done = script("my case.toml")
+@pytest.mark.parametrize("worth", [1, 2])
+def test_the_ranks_that_a_case_is_worth_in_the_callers_folder_with_debians_python(script, worth):
+    done = script("my case.toml", WORTH=str(worth))
     assert done.returncode == 0
-    assert "ARGS ['my case.toml'] SIZE 2" in done.stdout
+    assert f"ARGS ['my case.toml'] SIZE {worth}" in done.stdout
     assert "/elsewhere PYTHON /usr/bin/python3" in done.stdout
     assert "OMP 1" in done.stdout
     assert done.stderr == ""
