@@ -14,6 +14,7 @@ NAMES = {
 }
 SECTION = 2.0  # half widths shown
 SCALE = "viridis_r"
+SHARES = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)  # of the fatigue limit, written at the axis
 
 
 def criteria_picture(result, surface):
@@ -78,6 +79,11 @@ def _row(figure, row, result, surface, name, values, length, levels):
         right.plot(ends, ends, color="0.6", lw=0.7)
         right.set_xlim(*ends)
         right.set_ylim(ends[0] / 100, ends[1])
+    else:
+        low, high = right.get_ylim()
+        shown = [share for share in SHARES if low <= share <= high]
+        right.set_yticks(shown, [f"{share:g}" for share in shown])
+        right.set_yticks([], minor=True)
     ranks = rank_correlation(paper[:, complete].ravel(), values[:, complete].ravel())
     top = rank_correlation(paper[0, complete], values[0, complete])
     right.set_title(f"rank correlation {ranks:.2f}, z/a = {result.z[0]:g}: {top:.2f}", fontsize=8, pad=2)
