@@ -5,6 +5,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
+from ehlpetsc.post.stresses import body_stress
+from ehlpetsc.post.stresses.body_stress import BodyStress, parity_weights
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.kernels import point_kernels
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
@@ -72,3 +74,19 @@ def test_kernels_equal_direct_integration(depth):
 
             exact = quad(value, -1, 1, points=[0], epsabs=1e-12, epsrel=1e-12)[0]
             assert -np.pi / 2 * kernels[part, distance] == pytest.approx(exact, abs=1.2e-4)
+
+
+@pytest.mark.parametrize("depth, kept", [(12.0, 0.75), (20.0, 0.55), (200.0, 0.2)])
+def test_ripples_left_out_at_depth_are_not_felt(monkeypatch, depth, kept):
+    """Under a load with ripples of all lengths."""
+    x = np.linspace(-2.5, 1.5, 801)
+    rough = 1 + 0.2 * np.random.default_rng(1).normal(size=(2, x.size))
+    p = np.sqrt(np.clip(1 - x * x, 0, None)) * rough
+    weights = parity_weights(np.array([0.0, 0.3]))
+    found = []
+    for share in (body_stress.kept_share, lambda nx, depth: np.ones(padded_length(nx) // 2 + 1)):
+        monkeypatch.setattr(body_stress, "kept_share", share)
+        body = BodyStress(x.size, np.array([depth]))
+        found.append((body.tables[0].size, body(0, body.transform(p, 0.1 * p), weights)[..., : x.size]))
+    assert found[0][0] < kept * found[1][0]
+    assert np.abs(found[0][1] - found[1][1]).max() < 1e-9
