@@ -12,6 +12,7 @@ import h5py
 from ehlpetsc import environment
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.results import reader
+from ehlpetsc.results.hdf5.opening import open_result
 
 __all__ = ["Result", "load", "members", "read_result", "solve"]
 
@@ -70,7 +71,7 @@ def read_result(path):
     OutputError
         Missing, damaged, not a result file, or of a later format version.
     """
-    return Result(reader.open_result(path), path)
+    return Result(open_result(path), path)
 
 
 def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite=False, progress=None):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import plain
-from ehlpetsc.results.reader import open_result
+from ehlpetsc.results.hdf5.opening import open_result
 
 
 def check_place(path, inputs):

@@ -19,8 +19,8 @@ from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.hdf5.batch import Batch
 from ehlpetsc.results.hdf5.continuation import copy_up_to
 from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, lay_out, room
+from ehlpetsc.results.hdf5.opening import FORMAT_VERSION
 from ehlpetsc.results.provenance import git_commit, versions
-from ehlpetsc.results.reader import FORMAT_VERSION
 from ehlpetsc.results.whole_file import plain_reason, replacing
 
 LIMITS_ROOM = 2000  # characters kept free for what close() may have to say

@@ -8,7 +8,7 @@ import numpy as np
 from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.post.inputs.reading import in_words, reading, text
 from ehlpetsc.post.stresses.half_plane import spacing
-from ehlpetsc.results.reader import FORMAT_VERSION, open_for_reading
+from ehlpetsc.results.hdf5.opening import FORMAT_VERSION, open_for_reading
 
 CACHE = 32 << 20  # bytes of chunks kept a dataset
 SURFACES = ("slow", "fast")
