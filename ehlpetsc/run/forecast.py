@@ -1,16 +1,28 @@
 """What is to be expected of a case before it runs: film, run time, file size."""
 
 import math
+import time as clock
+from functools import cache
+
+import numpy as np
 
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.hdf5.datasets import CHUNK_BYTES, CHUNK_STEPS
+from ehlpetsc.surfaces.arrival import arrival
 
-# measured on one rank: seconds a time step takes in full film, as such and for each node
-STEP_TIME, NODE_TIME = 2.0e-3, 2.0e-6
-MIXED_FACTOR = 2.0  # times that where asperities squeeze the film to nothing
+# of one Newton iteration on one rank, in times of `probe`: as such and for each node, measured side by side
+# with it on 141 to 2661 nodes; a step takes that of its iterations and one more
+ITERATION, NODE = 0.105, 6.7e-5
+SMOOTH, FILM, MIXED = (
+    1.6,
+    2.5,
+    4.5,
+)  # iterations a step: before roughness comes, under it, in mixed lubrication
+PROBE = 3000  # operations of the probe
+BEGIN = 1.0  # s for imports and compiled loops from their cache
 FULL_FILM = 3.0  # lambda ratio from which on they do not
-STEADY_STEPS = 20  # what a steady solution takes, in time steps
+STEADY = 20  # iterations of a steady solution
 
 
 def dowson_higginson(scales, alpha):
@@ -34,10 +46,42 @@ def lambda_ratio(case, s, rough):
 
 
 def run_time(case, s, rough):
-    """Expected wall clock time on one rank [s], an order of magnitude."""
-    seconds = (steps(s) if case.time else STEADY_STEPS) * (STEP_TIME + NODE_TIME * s.nx)
+    """Expected wall clock time on one rank of this machine, as busy as it is now [s]."""
+    solves = steps(s) if case.time else 1
+    return BEGIN + (iterations(case, s, rough) + solves) * (ITERATION + NODE * s.nx) * probe()
+
+
+def iterations(case, s, rough):
+    """Expected Newton iterations of a run."""
+    arrived = _share_under_roughness(case, s, rough)
     mixed = rough and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
-    return MIXED_FACTOR * seconds if mixed else seconds
+    each = (1.0 - arrived) * SMOOTH + arrived * (MIXED if mixed else FILM)
+    return STEADY + (steps(s) if case.time else 0) * each
+
+
+def _share_under_roughness(case, s, rough):
+    """Share of the steps after the first profile has reached the contact."""
+    if not rough or case.time is None:
+        return 0.0
+    arrivals = [arrival(profile, s) for profile in (rough.fast, rough.slow) if profile]
+    reaches = min(found[0] if found else 0.0 for found in arrivals)
+    return min(max(1.0 - reaches / case.time.travel, 0.0), 1.0)
+
+
+@cache
+def probe():
+    """Seconds that this machine takes for `PROBE` small array operations, such as a step consists of."""
+    return sorted(_timed_operations() for _ in range(3))[1]
+
+
+def _timed_operations():
+    small = np.linspace(0.0, 1.0, 400)
+    begun = clock.perf_counter()
+    for k in range(PROBE):
+        other = small * 0.5 + small
+        other[3:30] = other[2:29]
+        float(np.fft.rfft(other)[k % 200].real if k % 4 == 0 else other.max())
+    return clock.perf_counter() - begun
 
 
 def steps(s):

@@ -9,9 +9,12 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.run import forecast
 from ehlpetsc.run.describe import explain, warnings, worthwhile_ranks
 from ehlpetsc.run.forecast import dowson_higginson, file_size, steps
+from ehlpetsc.surfaces.roughness import Roughness
 
+MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
 CASES = Path(__file__).parents[2] / "cases"
 
 
@@ -111,6 +114,32 @@ def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
     assert len(still) == 1 and "surface.slow with [motion] but without [time]" in still[0]
     c = case.load(CASES / "dry_rough.toml")
     assert warnings(c, Scales.of(c)) == []
+
+
+@pytest.mark.parametrize(
+    "name, overrides, newton",
+    [  # iterations that the runs of these took
+        ("table1_rough.toml", (), 10591),
+        ("table1_mixed.toml", MIXED, 3232),
+        ("ridge.toml", ("mesh.points_per_half_width=100", "time.travel=2", "mesh.inlet=-1.5"), 776),
+        ("table1_rough.toml", ("mesh.points_per_half_width=50", "time.travel=4"), 1777),
+    ],
+)
+def test_the_iterations_expected_are_those_taken_within_a_factor_of_one_and_a_half(name, overrides, newton):
+    c = case.load(CASES / name, overrides)
+    scales = Scales.of(c)
+    expected = forecast.iterations(c, scales, Roughness.of(c, scales))
+    assert newton / 1.5 < expected < 1.5 * newton
+
+
+def test_the_run_time_expected_goes_with_the_speed_of_the_machine(monkeypatch):
+    c = case.load(CASES / "table1_rough.toml")
+    scales = Scales.of(c)
+    found = []
+    for seconds in (0.01, 0.02):
+        monkeypatch.setattr(forecast, "probe", lambda seconds=seconds: seconds)
+        found.append(forecast.run_time(c, scales, None) - forecast.BEGIN)
+    assert found[1] == pytest.approx(2.0 * found[0])
 
 
 @pytest.mark.parametrize(
