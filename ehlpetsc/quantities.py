@@ -81,6 +81,7 @@ SCENES = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
     "mixed": lambda case: case.contact.model == "mixed",
+    "yielding": lambda case: case.contact.yield_pressure is not None,
 }
 """Whether a case has what a quantity needs."""
 
@@ -92,6 +93,8 @@ FIELDS = {
     "shear_stress_fast": Field("Pa", "shear stress on the fast solid"),
     "shear_stress_slow": Field("Pa", "shear stress on the slow solid"),
     "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
+    "set_fast": Field("m", "depth by which the fast solid has yielded", only="yielding"),
+    "set_slow": Field("m", "depth by which the slow solid has yielded", only="yielding"),
 }
 """Fields over (stored frame, node), in the order in which files list them."""
 
@@ -169,6 +172,17 @@ STEP_SCALARS = {
     "contact_length": Figure("m", "length where solids carry", compared=True, only="mixed"),
     "thin_length": Figure("m", "length where the film is thin", compared=True, only="mixed"),
     "thin_share": Figure("1", "share of the load where the film is thin", compared=True, only="mixed"),
+    "yielding": Figure(
+        "1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True, only="yielding"
+    ),
+    "set_volume": Figure(
+        "m^2",
+        "permanent set of both solids since the first pass",
+        over_run="last",
+        summary=".4g",
+        compared=True,
+        only="yielding",
+    ),
     "wall": Figure("s", "wall clock time of the step", over_run="sum"),
 }
 """Scalars of every time step, below ``steps/``, in the order in which progress and summary tell them."""
@@ -180,6 +194,7 @@ OTHERS = {
     "contact_count": Field("1", "time steps in contact over the whole run", ("x",), "i8"),
     "surface/s": Field("m", "coordinate fixed to the surface, s = x - speed time", ("s",)),
     "surface/z": Field("m", "height, positive out of the metal", ("s",)),
+    "surface/set": Field("m", "depth of the permanent set at the end", ("s",)),
 }
 """Coordinates and what else is neither a field nor a scalar of the step."""
 

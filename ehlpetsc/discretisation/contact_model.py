@@ -11,7 +11,7 @@ The second one w is the solids':
   .. math:: h-h_b\ge0,\quad p_c\ge0,\quad p_c(h-h_b)=0,
 
   which the sign of w carries: :math:`h=h_b+\max(w,0)`, :math:`p_c=K\max(-w,0)`. All three hold exactly,
-  whatever w is, and Reynolds' equation holds at every node.
+  whatever w is, and Reynolds' equation holds at every node. Solids that yield: :mod:`.yielding`.
 
 Lengths in x are in half widths, films in a^2/R, pressures in p0.
 """
@@ -28,25 +28,88 @@ def full_of_oil(q):
     return q > -ROUNDING
 
 
+class Yield(NamedTuple):
+    """What yielding solids add to :class:`Relations`; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    depth
+        delta, by which solids that face each other yield in the step.
+    yielding
+        Nodes where they do, of bool.
+    depth_q, depth_w, oil_q, oil_w
+        Derivatives of delta, and of `Relations.oil`, with respect to q and w.
+    hardening
+        Pressure that Newton's method is told to rise with what q and w would carry over the yield pressure.
+    """
+
+    depth: np.ndarray
+    yielding: np.ndarray
+    depth_q: np.ndarray
+    depth_w: np.ndarray
+    oil_q: np.ndarray
+    oil_w: np.ndarray
+    hardening: float = 0.0
+
+
 class Relations(NamedTuple):
     """What q and w mean at every node, with derivatives; arrays of shape (nx,).
 
     Attributes
     ----------
+    oil
+        What the oil's flow knows of q: its pressure or, negative, its void fraction.
     pressure, film
         Total pressure p; film h, of which the oil's flow knows.
     p_q, p_w, h_w
         Derivatives of p with respect to q and w, of h with respect to w.
     touching
         Nodes whose solids carry, of bool.
+    plastic : Yield or None
+        None where solids are elastic.
     """
 
+    oil: np.ndarray
     pressure: np.ndarray
     film: np.ndarray
     p_q: np.ndarray
     p_w: np.ndarray
     h_w: np.ndarray
     touching: np.ndarray
+    plastic: Yield | None = None
+
+    @property
+    def separation(self):
+        """Film less what the solids have yielded: what shape and elastic deflection give."""
+        return self.film if self.plastic is None else self.film - self.plastic.depth
+
+    @property
+    def separation_q(self):
+        """Derivative of the separation with respect to q."""
+        return np.zeros_like(self.film) if self.plastic is None else -self.plastic.depth_q
+
+    @property
+    def separation_w(self):
+        """Derivative of the separation with respect to w."""
+        return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
+
+    def changes(self, v_q, v_w):
+        """Changes of oil, pressure, film and separation with q and w.
+
+        Parameters
+        ----------
+        v_q, v_w : ndarray, shape (nx,)
+
+        Returns
+        -------
+        oil, pressure, film, separation : ndarray, shape (nx,)
+        """
+        pressure, film = self.p_q * v_q + self.p_w * v_w, self.h_w * v_w
+        if self.plastic is None:
+            return v_q, pressure, film, film
+        y = self.plastic
+        oil = y.oil_q * v_q + y.oil_w * v_w
+        return oil, pressure, film, film - (y.depth_q * v_q + y.depth_w * v_w)
 
 
 class DirectContact:
@@ -58,7 +121,7 @@ class DirectContact:
         Films above the bound that the solver does not tell from it, in a^2/R; it sets its own.
     """
 
-    is_mixed = False
+    is_mixed = yields = False
 
     def __init__(self, bound, dry):
         self.bound, self.dry = bound, dry
@@ -71,7 +134,7 @@ class DirectContact:
             pressure, p_q = q, np.ones_like(q)
         else:
             pressure, p_q = np.maximum(q, 0.0), full_of_oil(q) * 1.0
-        return Relations(pressure, w, p_q, np.zeros_like(w), np.ones_like(w), w <= self.bound)
+        return Relations(q, pressure, w, p_q, np.zeros_like(w), np.ones_like(w), w <= self.bound)
 
     def in_contact(self, w, imbalance):
         """Nodes that a solution leaves out of Reynolds' equation: at the bound, or near it with F > 0."""
@@ -101,7 +164,7 @@ class MixedContact:
         K, p0 per a^2/R: a scale between the two meanings of w, which no answer depends on.
     """
 
-    is_mixed = True
+    is_mixed, yields = True, False
 
     def __init__(self, boundary_film, stiffness):
         self.boundary_film, self.stiffness = boundary_film, stiffness
@@ -110,18 +173,21 @@ class MixedContact:
     def relations(self, q, w):
         """See :class:`Relations`."""
         touching = w < 0.0
-        pressure = np.maximum(q, 0.0) + self.contact_pressure(w)
+        pressure = np.maximum(q, 0.0) + self._carried(w)
         p_w = np.where(touching, -self.stiffness, 0.0)
         film = self.boundary_film + np.maximum(w, 0.0)
-        return Relations(pressure, film, full_of_oil(q) * 1.0, p_w, np.where(touching, 0.0, 1.0), touching)
+        return Relations(q, pressure, film, full_of_oil(q) * 1.0, p_w, np.where(touching, 0.0, 1.0), touching)
 
     def in_contact(self, w, imbalance):
         """Nodes whose solids carry, of a solution."""
         return w < 0.0
 
+    def _carried(self, w):
+        return self.stiffness * np.maximum(-w, 0.0)
+
     def contact_pressure(self, w):
         """Pressure of the solids in p0."""
-        return self.stiffness * np.maximum(-w, 0.0)
+        return self._carried(w)
 
     def from_film(self, h):
         """The second unknown of an open gap; none where the film is below the boundary film."""
@@ -130,10 +196,3 @@ class MixedContact:
     def second_unknown(self, h, contact_pressure):
         """The second unknown of a film and the solids' pressure in p0."""
         return np.where(contact_pressure > 0.0, -contact_pressure / self.stiffness, self.from_film(h))
-
-
-def contact_model(case, scales, film_scale):
-    """The model that a case asks for, see :class:`DirectContact` and :class:`MixedContact`."""
-    if case.contact.model == "mixed":
-        return MixedContact(case.contact.boundary_film / scales.h, 1.0 / film_scale)
-    return DirectContact(case.contact.minimum_film / scales.h, case.fluid is None)

@@ -16,11 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact_model import contact_model
+from ehlpetsc.discretisation.contact_model import DirectContact, MixedContact
 from ehlpetsc.discretisation.deflection import Deflection
 from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, reynolds_product
 from ehlpetsc.discretisation.interleaving import both_of, count, firsts, seconds
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
+from ehlpetsc.discretisation.yielding import YieldingContact
 
 
 @dataclass(frozen=True)
@@ -37,12 +38,15 @@ class StepInputs:
         None: dry.
     inlet_film : float or None
         Oil given at the inlet in a^2/R; None: flooded.
+    load : float
+        Share of the case's load.
     """
 
     phi: np.ndarray
     history: FilmHistory | None
     fluid: object
     inlet_film: float | None
+    load: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -110,7 +114,8 @@ class EHLProblem:
         r"""Film content :math:`\rho h(1-\theta)` of every node, None without oil."""
         if self.dry:
             return None
-        return self.reynolds.content(q, self.model.relations(q, w).film, self.fluid)[0]
+        relations = self.model.relations(q, w)
+        return self.reynolds.content(relations.oil, relations.film, self.fluid)[0]
 
     def evaluate(self, q, w, h00, inputs):
         """Local rows and their derivatives at one state.
@@ -128,16 +133,16 @@ class EHLProblem:
         relations = self.model.relations(q, w)
         residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
-        separation = relations.film - 0.5 * self.x**2 - inputs.phi
+        separation = relations.separation - 0.5 * self.x**2 - inputs.phi
         deflection = self.deflection.rows(separation, relations.pressure, h00)
         firsts(residual, self.local)[:] = deflection
         if self.dry:
-            imbalance, derivatives = q[self.first : self.last], self._dry_derivatives()
+            imbalance, derivatives = relations.oil[self.first : self.last], self._dry_derivatives()
         else:
-            imbalance, derivatives = self.reynolds.evaluate(q, relations.film, inputs)
+            imbalance, derivatives = self.reynolds.evaluate(relations.oil, relations.film, inputs)
         seconds(residual, self.local)[:] = imbalance
         if self.load_is_local:
-            residual[-1] = self.dx * relations.pressure.sum() - 0.5 * np.pi
+            residual[-1] = self.dx * relations.pressure.sum() - 0.5 * np.pi * inputs.load
         return Evaluation(relations, residual, derivatives)
 
     def product(self, relations, derivatives, v_q, v_w, v_h00):
@@ -155,12 +160,12 @@ class EHLProblem:
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        dp, dh = relations.p_q * v_q + relations.p_w * v_w, relations.h_w * v_w
+        oil, pressure, film, separation = relations.changes(v_q, v_w)
         rows = np.empty(count(self.local) + self.load_is_local)
-        firsts(rows, self.local)[:] = self.deflection.rows(dh, dp, v_h00)
-        reynolds_product(derivatives, v_q, dh, self.first, seconds(rows, self.local))
+        firsts(rows, self.local)[:] = self.deflection.rows(separation, pressure, v_h00)
+        reynolds_product(derivatives, oil, film, self.first, seconds(rows, self.local))
         if self.load_is_local:
-            rows[-1] = self.dx * dp.sum()
+            rows[-1] = self.dx * pressure.sum()
         return rows
 
     def _dry_columns(self):
@@ -173,3 +178,22 @@ class EHLProblem:
         derivatives = np.zeros((self.local, count(STENCIL)))
         derivatives[:, OWN] = 1.0
         return derivatives
+
+
+def contact_model(case, scales, film_scale):
+    """The model that a case asks for, see :mod:`.contact_model` and :mod:`.yielding`.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : scales.Scales
+    film_scale : float
+        About the expected film, in a^2/R.
+    """
+    contact = case.contact
+    if contact.model == "direct":
+        return DirectContact(contact.minimum_film / scales.h, case.fluid is None)
+    boundary_film, stiffness = contact.boundary_film / scales.h, 1.0 / film_scale
+    if contact.yield_pressure is None:
+        return MixedContact(boundary_film, stiffness)
+    return YieldingContact(boundary_film, stiffness, min(contact.yield_pressure) / scales.p0)

@@ -14,6 +14,7 @@ DEFAULTS = {
     "snes_atol": "1e-7",
     "snes_rtol": "0",  # the first residual of a thick film may be 1e17: a share of it says nothing
     "snes_stol": "0",
+    "snes_divergence_tolerance": "-1",  # of the first residual, which may be next to nothing
     "snes_max_funcs": "100000",
     "ksp_type": "fgmres",  # keeps what the preconditioner gave: one application less than gmres
     "ksp_rtol": "1e-4",  # tighter gains nothing, looser costs Newton iterations

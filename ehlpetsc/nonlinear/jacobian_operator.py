@@ -13,6 +13,7 @@ from ehlpetsc.discretisation.interleaving import (
     count,
     first_of,
     firsts,
+    firsts_of_rows,
     nodes_of_seconds,
     second_of,
     seconds,
@@ -23,9 +24,16 @@ from ehlpetsc.nonlinear import events
 LEAK = 1e-3  # of dp/dq at cavitated nodes, in preconditioners alone: a pivot that is never zero
 
 
-def leaks(p_q):
-    """What preconditioners add to the diagonal of the deflection rows: where q has no pressure, a little."""
-    return np.where(p_q > 0.0, 0.0, LEAK)
+def leaks(*derivatives):
+    """What preconditioners add to the diagonal of the deflection rows: where they do not know q, a little.
+
+    Parameters
+    ----------
+    derivatives : ndarray
+        Of all that the rows have of q at their own node.
+    """
+    known = np.any([d != 0.0 for d in derivatives], axis=0)
+    return np.where(known, 0.0, LEAK)
 
 
 class JacobianOperator:
@@ -54,8 +62,10 @@ class JacobianOperator:
 
     def linearise(self, evaluation):
         """Take the derivatives of a state."""
-        relations = evaluation.relations
-        if not self.problem.model.is_mixed:
+        relations, model = evaluation.relations, self.problem.model
+        if model.yields:
+            relations = model.linearised(relations)
+        if not model.is_mixed:
             # a node in contact and cavitated at once would leave its deflection row blind
             relations = relations._replace(p_q=np.where(relations.touching, 1.0, relations.p_q))
         self.relations, self.reynolds_derivatives = relations, evaluation.reynolds_derivatives
@@ -163,9 +173,10 @@ class NearFieldMatrix:
             row = end - p.first
             kernel[row], bend[row] = d.end_row(end)[self.nodes[row]], 0.0
             bend[row, near] = d.end_scale
-        by_q = kernel * relations.p_q[self.nodes]
-        by_q[:, near] += leaks(relations.p_q[p.first : p.last])
-        by_w = kernel * relations.p_w[self.nodes] + bend * relations.h_w[self.nodes]
+        by_q = kernel * relations.p_q[self.nodes] + bend * relations.separation_q[self.nodes]
+        own = slice(p.first, p.last)
+        by_q[:, near] += leaks(relations.p_q[own], relations.separation_q[own])
+        by_w = kernel * relations.p_w[self.nodes] + bend * relations.separation_w[self.nodes]
         approach = np.full((p.local, 1), -d.end_scale)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
@@ -180,8 +191,12 @@ class NearFieldMatrix:
         """Reynolds' rows by q and w."""
         p, values = self.problem, derivatives.copy()
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
-        by_film = seconds_of_rows(values)
-        by_film *= relations.h_w[np.clip(nodes, 0, p.n - 1)]
+        nodes = np.clip(nodes, 0, p.n - 1)
+        by_oil, by_film = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+        seconds_of_rows(values)[:] = by_film * relations.h_w[nodes]
+        if relations.plastic is not None:
+            firsts_of_rows(values)[:] = by_oil * relations.plastic.oil_q[nodes]
+            seconds_of_rows(values)[:] += by_oil * relations.plastic.oil_w[nodes]
         return values
 
 

@@ -177,7 +177,9 @@ class NewtonSolver:
             self.watch()
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
         model, dry = self.model, self.problem.dry
-        if model.is_mixed:
+        if model.yields:
+            change = step_limits.yielding_change(now, step, model.stiffness, model.yield_pressure)
+        elif model.is_mixed:
             change = step_limits.mixed_change(now, step, model.stiffness)
         else:
             change = step_limits.largest_change(now, step, model.bound, -np.inf if dry else 0.0)
@@ -187,6 +189,8 @@ class NewtonSolver:
         step = pairs(y.array, self.local)
         if model.is_mixed:
             step_limits.cross_gently(now, step, model.stiffness, OPENED * self.problem.film_scale)
+            if model.yields:
+                step_limits.yield_gently(now, step, model.stiffness, model.yield_pressure)
         else:
             (step_limits.let_overlaps_touch if dry else step_limits.keep_oil)(now, step, model.bound)
         return True
@@ -254,8 +258,8 @@ class NewtonSolver:
         Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
         """
         evaluation = self._evaluation(self.x)
-        q, _, _ = self._parts(self.place)
-        mine = reynolds_rounding(evaluation.reynolds_derivatives, q, evaluation.relations.film, self.first)
+        oil, film = evaluation.relations.oil, evaluation.relations.film
+        mine = reynolds_rounding(evaluation.reynolds_derivatives, oil, film, self.first)
         return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
     def _solution(self):

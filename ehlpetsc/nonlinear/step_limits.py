@@ -80,3 +80,56 @@ def cross_gently(now, step, stiffness, opened):
             step[i, 1] = w + REFILLED / stiffness
         elif w < 0.0 and w - dw > opened:
             step[i, 1] = w - opened
+
+
+@compiled
+def yielding_change(now, step, stiffness, limit):
+    """As :func:`mixed_change` with the pressure bounded by `limit`; where it is at its bound, the solids' part."""
+    largest = 0.0
+    for i in range(len(now)):
+        new_q, new_w = now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
+        solids = min(stiffness * max(-now[i, 1], 0.0), limit)
+        # what crosses to solids that touch is held there, as in mixed_change
+        new_solids = min(stiffness * max(-new_w, 0.0), limit) if now[i, 1] < 0.0 else 0.0
+        total = min(max(now[i, 0], 0.0) + solids, limit)
+        new_total = min(max(new_q, 0.0) + new_solids, limit)
+        change = abs(new_total - total)
+        if total == limit and new_total == limit:
+            change = abs(new_solids - solids)
+        largest = max(largest, change)
+    return largest
+
+
+@compiled
+def yield_gently(now, step, stiffness, limit):
+    """Change steps in place where solids begin or cease to yield: both stop just beyond.
+
+    The excess is what oil and solids would carry over `limit`. Where they yield and there is oil, q tells of
+    the excess and the oil has what the solids leave; oil that they leave nothing is a void from then on, under
+    which w tells of the excess, and the other way round.
+    """
+    for i in range(len(now)):
+        q, new_q = now[i, 0], now[i, 0] - step[i, 0]
+        solids, new_solids = stiffness * max(-now[i, 1], 0.0), stiffness * max(-now[i, 1] + step[i, 1], 0.0)
+        yields = max(q, 0.0) + solids > limit
+        by_oil = yields and q > 0.0
+        excess = (new_q if by_oil else max(new_q, 0.0)) + new_solids - limit
+        if not yields and excess <= 0.0:
+            continue
+        if yields != (excess > 0.0):
+            excess = -REFILLED if yields else REFILLED
+            if (solids > 0.0) != (new_solids > 0.0):  # one of both at a time, or Newton's method goes to and fro
+                excess, new_solids = REFILLED, max(solids, REFILLED)
+        if by_oil or new_q > 0.0:
+            if new_solids < limit - REFILLED:
+                new_q = limit + excess - new_solids
+            elif by_oil:
+                new_q, new_solids = -REFILLED, limit + excess
+            else:
+                new_solids = limit - REFILLED
+                new_q = excess + REFILLED
+        else:
+            new_solids = limit + excess
+        step[i, 0] = q - new_q
+        if new_solids > 0.0:
+            step[i, 1] = now[i, 1] + new_solids / stiffness

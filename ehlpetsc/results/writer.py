@@ -51,7 +51,8 @@ class ResultWriter:
     precision : {"float64", "float32"}
         Type of the stored fields.
     profiles : dict
-        ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk).
+        ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
+        fifth one tells whether there is room for a permanent set.
     figures : list of str, optional
         Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`; by default those that every case has.
     resume_step : int, optional
@@ -92,7 +93,7 @@ class ResultWriter:
         beside = contextlib.nullcontext() if path is None else replacing(self.path)
         with self._plain_faults("not created"), beside as place:
             self._file = create(place)
-            with room(self._file, sum(8 * len(p[0]) * 2 for p in profiles.values() if p)):
+            with room(self._file, sum(8 * len(p[0]) * 3 for p in profiles.values() if p)):
                 self._root_attributes(case_text, title, dict(scalars_attrs))
                 lay_out(self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles)
                 attributes.put(self._file, {"contents": " ".join(dataset_names(self._file))})
@@ -141,6 +142,11 @@ class ResultWriter:
         with self._plain_faults("not written on"), room(self._file, self._batch.size):
             self._batch.write(self.contact_count)
         self._written_step, self._flushed = self.last_step, clock.monotonic()
+
+    def put_set(self, side, depth):
+        """Note the permanent set [m] of a surface, "fast" or "slow", at the points s of its profile."""
+        with self._plain_faults("not written on"):
+            self._file[f"surface/{side}/set"][:] = depth
 
     def close(self, status, limits=()):
         """Write what is left, note how the run ended and close.

@@ -11,6 +11,7 @@ from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import faults, help_text, text_of, time_limit
 from ehlpetsc.nonlinear.scheme import scheme
 from ehlpetsc.run.describe import banner, warnings
+from ehlpetsc.run.passes import Passes
 from ehlpetsc.run.series.series import Series
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
@@ -56,10 +57,16 @@ def run(path, overrides):
             PETSc.Sys.Print(help_text())
             return ExitStatus.DONE
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
+        several = case.time is not None and case.time.passes > 1
+        if case.series and several:
+            return refuse(comm, [f"{case.path}: [series] and time.passes: one of them at a time"])
         if case.series:
             return Series(comm, case, options, stop, output).run()
         overwrite = options.getBool("ehl_overwrite", False)
-        return run_single(comm, case, stop, output, text_of(options, "ehl_restart"), overwrite)
+        restart = text_of(options, "ehl_restart")
+        if several:
+            return Passes(comm, case, output, stop).run(restart, overwrite)
+        return run_single(comm, case, stop, output, restart, overwrite)
     except CaseError as error:
         return refuse(comm, error.faults)
     except (OutputError, UsageError) as error:

@@ -187,11 +187,15 @@ class Recorder:
             simulation.case,
             simulation.scales,
             simulation.march.problem.model,
-            simulation.bodies.entrances,
+            simulation.bodies,
+            simulation.pass_number,
         )
 
     def _close(self, status):
         simulation = self.simulation
+        if simulation.march.bodies:
+            for side, (s, *_) in self._profiles().items():
+                self._writer.put_set(side, set_at(simulation, side, s))
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
         self._writer.close(status.words, self.limits)
 
@@ -203,6 +207,15 @@ class Recorder:
         now, constant = simulation.solution.travelled, simulation.scales.travelled(simulation.solution.time)
         apart = [way - steady for way, steady in zip(now, constant, strict=True)]
         return [offset if abs(offset) > SAME_PLACE * simulation.scales.dx else 0.0 for offset in apart]
+
+    def _profiles(self):
+        simulation = self.simulation
+        yields = bool(simulation.march.bodies)
+        sides = profiles(simulation.roughness, self._offsets(), yields)
+        for k, side in enumerate(sides):
+            if yields and sides[side] is None:
+                sides[side] = smooth_side(simulation, k)
+        return sides
 
     def _create(self, step, count):
         case, scales = self.simulation.case, self.simulation.scales
@@ -224,17 +237,33 @@ class Recorder:
             figures=of_case(STEP_SCALARS, case),
             every=case.output.every,
             precision=case.output.precision,
-            profiles=profiles(self.simulation.roughness, self._offsets()),
+            profiles=self._profiles(),
             resume_step=step,
             contact_count=count,
         )
 
 
-def profiles(roughness, offsets):
+def smooth_side(simulation, side):
+    """A smooth surface that may yield, as the writer takes it: the stretch that passes, 0: fast."""
+    scales = simulation.scales
+    speed = (scales.u1, scales.u2)[side]
+    way = 0.0 if scales.duration is None else speed * scales.duration
+    ends = scales.x[[0, -1]] * scales.a
+    s = np.arange(ends[0] - max(way, 0.0), ends[1] - min(way, 0.0), scales.dx)
+    return s, np.zeros_like(s), speed, {"ra": 0.0, "rq": 0.0, "rsk": 0.0}, True
+
+
+def set_at(simulation, side, s):
+    """Permanent set [m] of a surface around the points s [m] of a result."""
+    side = ("fast", "slow").index(side)
+    return simulation.march.bodies.at(side, simulation.solution.sets[side], s)
+
+
+def profiles(roughness, offsets, yields=False):
     """Both surfaces as the writer takes them, their coordinates moved by `offsets` [m]."""
     sides = {side: roughness and getattr(roughness, side) for side in ("fast", "slow")}
     return {
-        side: p and (p.s + offset, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk})
+        side: p and (p.s + offset, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk}, yields)
         for (side, p), offset in zip(sides.items(), offsets, strict=True)
     }
 

@@ -1,7 +1,7 @@
 """One case on the ranks of one communicator, from accepted state to accepted state."""
 
 import time as clock
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -18,6 +18,7 @@ from ehlpetsc.run.domain import domain_faults
 from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.observables import observe
 from ehlpetsc.stepping.time_stepping import TimeStepping
+from ehlpetsc.surfaces.permanent_set import BothBodies
 from ehlpetsc.surfaces.roughness import Bodies, Roughness
 
 FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
@@ -65,6 +66,10 @@ class Simulation:
     options : dict, optional
         PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, before all others;
         PETSc's table holds them only while the simulation is solving.
+    after : Simulation, optional
+        The pass before, of the same case, that is over: both bodies meet again as it has left them.
+    pass_number : int, optional
+        Of a pass that goes on from a restart file; else it follows from `after`.
 
     Attributes
     ----------
@@ -75,6 +80,8 @@ class Simulation:
     options : nonlinear.defaults.RunOptions
         A context: whoever takes many steps enters it once around them.
     march : stepping.time_stepping.TimeStepping
+    pass_number : int
+        Of the passes of both bodies over each other, from 1.
     state : AcceptedState or None
         The last one of this process.
     solution : stepping.time_stepping.State or None
@@ -101,7 +108,7 @@ class Simulation:
     ((81,), True)
     """
 
-    def __init__(self, case, comm=None, options=None):
+    def __init__(self, case, comm=None, options=None, after=None, pass_number=None):
         self.case = case = case if isinstance(case, Case) else load(case)
         if case.series:
             raise CaseError(
@@ -110,7 +117,11 @@ class Simulation:
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.petsc, {name: _text(v) for name, v in (options or {}).items()})
         self.scales = Scales.of(case)
+        self.pass_number = pass_number or (after.pass_number + 1 if after else 1)
         self.bodies = Bodies.at_rest(self.scales)
+        if case.time and case.time.pass_shift:
+            shift = (self.pass_number - 1) * case.time.pass_shift
+            self.bodies = replace(self.bodies, begins=(0.0, shift))
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
         self.roughness = Roughness.of(case, self.scales)
@@ -121,7 +132,17 @@ class Simulation:
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
             solver.limited = "snes_max_it" in self.options.users
             self._followed = any(map(table.hasName, FOLLOWED))
+        sets = after.solution.sets if after else ()
         self.march = TimeStepping(solver, self.scales, self.roughness, film)
+        self._carry(sets)
+
+    def _carry(self, sets):
+        """Hand over what both bodies have yielded before, and what they need to yield."""
+        pressures = self.case.contact.yield_pressure
+        if not (pressures or sets):
+            return
+        bodies = BothBodies(self.scales, pressures, self.bodies.offsets(self.scales))
+        self.march.bodies, self.march.sets = bodies, sets or bodies.none()
 
     @property
     def finished(self):
@@ -158,6 +179,8 @@ class Simulation:
             solution.m = self.march.problem.content(solution.q, solution.w)
         self.solution, self.march.smooth, self.bodies = solution, smooth, bodies
         self.roughness = self.march.roughness = Roughness.of(self.case, self.scales, bodies)
+        self._carry(solution.sets)
+        solution.sets = self.march.sets
 
     def advance(self, dt=None):
         """Solve the steady contact, afterwards one time step.
@@ -187,8 +210,11 @@ class Simulation:
                 error.state = self.state
                 raise
         rq = self.roughness.rq if self.roughness else 0.0
+        depths, solution = (), self.solution
+        if solution.sets:
+            depths = self.march.bodies.depths(solution.sets, solution.travelled)
         figures, fields, in_contact = observe(
-            self.case, self.scales, rq, self.march.problem, self.solution, started
+            self.case, self.scales, rq, self.march.problem, solution, depths, started
         )
         figures |= {"step": self.solution.step, "time": self.solution.time}
         self.state = AcceptedState(figures, fields, in_contact, self.solution)

@@ -10,7 +10,7 @@ MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
 ATOM = 1e-10  # m: least film that oil balances are held against
 
 
-def observe(case, scales, rq, problem, state, started):
+def observe(case, scales, rq, problem, state, depths, started):
     """Per-step figures and fields in SI units.
 
     Parameters
@@ -20,6 +20,8 @@ def observe(case, scales, rq, problem, state, started):
     rq : float
         Combined root mean square height of both surfaces [m]; 0: smooth.
     state : stepping.time_stepping.State
+    depths : pair of ndarray, or empty
+        Permanent sets at the nodes [m].
     started : float
         Monotonic clock at the begin of the step [s].
 
@@ -73,6 +75,10 @@ def observe(case, scales, rq, problem, state, started):
             "oil_pressure": (oil if model.is_mixed else np.where(touching, 0.0, pressure)).max(),
             "molecular_films": int((~touching & (thickness < MOLECULES)).sum()),
         }
+    if model.yields:
+        volumes = [one.volume for one in state.sets]
+        figures |= {"yielding": int(np.count_nonzero(state.depth)), "set_volume": sum(volumes)}
+        fields |= dict(zip(("set_fast", "set_slow"), depths, strict=True))
     if model.is_mixed:
         thin = state.h < case.output.thin_film * model.boundary_film
         figures |= {

@@ -73,4 +73,4 @@ def predict(problem, smooth, levels, nodes):
     if model.is_mixed:  # solids that touch move along as they are
         moved = whole_nodes(level.w, way)
         w = np.where(moved < 0.0, moved, w)
-    return q, w
+    return model.settled(q, w) if model.yields else (q, w)

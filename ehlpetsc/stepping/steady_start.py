@@ -30,10 +30,11 @@ SMOOTHED = 0.2
 DIRECT = 1000  # nodes on either side: beyond it a transform is quicker than the sum
 AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
 LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
+PRESSED = 1.2  # growth of the load on solids that yield as a whole
 LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
 
 
-def hertz_start(problem, film, phi, thick=1.3):
+def hertz_start(problem, film, phi, thick=1.3, load=1.0):
     """Hertz pressure and a film everywhere above the expected one; behind the outlet a cavity.
 
     The pressure is smoothed over `SMOOTHED` times the length of the inlet sweep, film^(2/3): the infinite
@@ -48,6 +49,8 @@ def hertz_start(problem, film, phi, thick=1.3):
         Roughness in the gap, in a^2/R.
     thick : float
         Times the expected film.
+    load : float
+        Share of the load.
 
     Returns
     -------
@@ -55,10 +58,10 @@ def hertz_start(problem, film, phi, thick=1.3):
     h00 : float
     """
     x = problem.x
-    p = np.sqrt(np.maximum(1.0 - x**2, 0.0))
+    p = np.sqrt(np.maximum(load - x**2, 0.0))
     if not problem.dry:
         p = smoothed(p, SMOOTHED * film ** (2.0 / 3.0) / problem.dx)
-    p *= 0.5 * np.pi / (problem.dx * p.sum())
+    p *= 0.5 * np.pi * load / (problem.dx * p.sum())
     h = problem.film(p, 0.0, phi)
     if problem.dry:
         gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
@@ -119,6 +122,8 @@ def steady(solver, film, inputs):
     NoSteadyStart
     """
     problem, oil = solver.problem, inputs.inlet_film
+    if problem.model.yields and problem.model.yield_pressure < 1.0:
+        return pressed(solver, film, inputs)
     if oil is None:
         # the set of dry nodes may have all of them to go
         max_it = problem.n if problem.dry and solver.bounded else None
@@ -133,6 +138,33 @@ def steady(solver, film, inputs):
     # the meniscus may have all nodes of the inlet to go
     *state, more = Continuation(solver, inputs, max_it=problem.n).solve(begin)
     return *state, iterations + more
+
+
+def pressed(solver, film, inputs):
+    """Steady solution of solids that yield under Hertz' pressure: the load grown from where they begin to.
+
+    Arguments, returns and errors of :func:`steady`. All that touches would yield under the whole load at once,
+    and a pressure that is at its bound everywhere tells Newton's method nothing of the load.
+    """
+    problem = solver.problem
+    load, growth, spent, failure = 0.8 * problem.model.yield_pressure**2, PRESSED, 0, None
+    state = hertz_start(problem, film, inputs.phi, load=load)
+    while True:
+        try:
+            *nearer, iterations = certified(
+                solver, *state, replace(inputs, load=load), solver.start_iterations
+            )
+        except SolveFailed as error:
+            iterations, failure = error.iterations, error
+            nearer, growth = None, 1.0 + 0.5 * (growth - 1.0)
+        spent += iterations
+        if nearer:
+            reached, state = load, nearer
+        elif growth < 1.0 + LEAST_GROWTH or spent == iterations:
+            raise NoSteadyStart(failure, None, spent)
+        if reached == 1.0:
+            return *state, spent
+        load = min(reached * growth, 1.0)
 
 
 class Continuation:

@@ -42,6 +42,10 @@ class State:
         The two levels before this one, latest first.
     imbalance
         Reynolds' rows F of the solution.
+    sets
+        Permanent sets of the fast and the slow body; empty where solids are elastic.
+    depth
+        What this step has added to both together, in a^2/R (None: elastic).
     """
 
     q: np.ndarray
@@ -59,6 +63,8 @@ class State:
     newton: int = 0
     retries: int = 0
     imbalance: np.ndarray = field(default=None, repr=False)
+    sets: tuple = field(default=(), repr=False)
+    depth: np.ndarray | None = field(default=None, repr=False)
 
     @property
     def level(self):
@@ -76,6 +82,10 @@ class TimeStepping:
     roughness : roughness.Roughness or None
     film : float
         Expected film in a^2/R.
+    bodies : surfaces.permanent_set.BothBodies, optional
+        Of solids that yield, or have yielded before.
+    sets : pair of PermanentSet, or empty
+        What they have yielded before.
 
     Attributes
     ----------
@@ -85,28 +95,32 @@ class TimeStepping:
         For how long before time 0 roughness at rest has grown [s]; 0 where a steady solution was found.
     """
 
-    def __init__(self, solver, scales, roughness, film):
+    def __init__(self, solver, scales, roughness, film, bodies=None, sets=()):
         self.solver, self.problem, self.scales, self.film = solver, solver.problem, scales, film
-        self.roughness = roughness
+        self.roughness, self.bodies, self.sets = roughness, bodies, sets
         self.smooth, self.before = None, 0.0
 
-    def phi(self, travelled):
-        """What the roughness adds to the gap, in a^2/R: means over the cells of the mesh.
+    def phi(self, travelled, sets=()):
+        """What roughness and permanent sets add to the gap, in a^2/R: means over the cells of the mesh.
 
         Parameters
         ----------
         travelled : (float, float)
             Ways of the fast and the slow surface [m].
+        sets : pair of PermanentSet, or empty
         """
-        if self.roughness is None:
-            return np.zeros(self.problem.n)
+        phi = np.zeros(self.problem.n)
         with events.ROUGHNESS:
-            places, cell = self.scales.x * self.scales.a, self.scales.dx
-            return self.roughness.phi_after(places, travelled, cell) / self.scales.h
+            if self.roughness is not None:
+                places, cell = self.scales.x * self.scales.a, self.scales.dx
+                phi += self.roughness.phi_after(places, travelled, cell) / self.scales.h
+            if sets:
+                phi += sum(self.bodies.depths(sets, travelled)) / self.scales.h
+        return phi
 
     def start(self):
         """Steady solution at time 0 or, under roughness at rest that has none in reach, one marched to."""
-        phi = self.phi((0.0, 0.0))
+        phi = self.phi((0.0, 0.0), self.sets)
         try:
             state = self._steady(phi)
         except NoSteadyStart as error:
@@ -118,7 +132,7 @@ class TimeStepping:
 
     def _steady(self, phi):
         q, w, h00, newton = steady(self.solver, self.film, self.problem.inputs(phi))
-        return self._state(q, w, h00, newton=newton)
+        return self._state(q, w, h00, newton=newton, sets=self.sets)
 
     def _marched(self):
         """The state at time 0 of a film into which roughness at rest has grown by time steps before.
@@ -145,10 +159,18 @@ class TimeStepping:
         r = 1.0 + time / self.before if time < 0.0 else 1.0
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
-    def _state(self, q, w, h00, **more):
-        relations, m = self.problem.model.relations(q, w), self.problem.content(q, w)
+    def _state(self, q, w, h00, *, sets, travelled=(0.0, 0.0), **more):
+        model = self.problem.model
+        relations, m = model.relations(q, w), self.problem.content(q, w)
         p, h = relations.pressure, relations.film
-        return State(q, w, h00, p=p, h=h, m=m, imbalance=self.solver.mass_imbalance(), **more)
+        if model.yields:
+            more["depth"] = relations.plastic.depth
+            sets = self.bodies.laid_down(sets, travelled, self.scales.h * more["depth"])
+            q, w = model.settled(q, w)
+        imbalance = self.solver.mass_imbalance()
+        return State(
+            q, w, h00, p=p, h=h, m=m, imbalance=imbalance, travelled=travelled, sets=sets, **more
+        )
 
     def guess(self, state, dt):
         """Start of Newton's iteration for a step of dt [s]."""
@@ -169,8 +191,27 @@ class TimeStepping:
             unit = self.scales.u / self.scales.a
             older = None if state.dt is None else state.dt * unit
             history = FilmHistory(state.m, state.m_older, dt * unit, older)
-        phi = self._grown(state.time + dt) * self.phi(self._travelled(state, dt))
+        phi = self._grown(state.time + dt) * self.phi(self._travelled(state, dt), state.sets)
         return self.problem.inputs(phi, history)
+
+    def _solve(self, q, w, h00, inputs):
+        """As of the solver; where solids yield, failing that, from what they would do elastically."""
+        model = self.problem.model
+        try:
+            return certified(self.solver, q, w, h00, inputs)
+        except SolveFailed as error:
+            if not model.yields:
+                raise
+            spent = error.iterations
+        try:
+            with model.elastic():
+                *begin, more = certified(self.solver, q, w, h00, inputs)
+            spent += more
+            *state, more = certified(self.solver, *begin, inputs)
+        except SolveFailed as error:
+            error.iterations += spent
+            raise
+        return *state, spent + more
 
     def advance(self, state, dt=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
@@ -180,7 +221,7 @@ class TimeStepping:
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
-                q, w, h00, iterations = certified(self.solver, *guess, state.h00, self._inputs(state, dt))
+                q, w, h00, iterations = self._solve(*guess, state.h00, self._inputs(state, dt))
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1
@@ -197,6 +238,7 @@ class TimeStepping:
             m_older=state.m,
             time=state.time + dt,
             travelled=self._travelled(state, dt),
+            sets=state.sets,
             dt=dt,
             step=state.step + 1,
             newton=newton + iterations,

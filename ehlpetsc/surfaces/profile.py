@@ -29,6 +29,8 @@ class Profile:
         False in a steady case.
     inlet, outlet, ramp, drawn_in : float
         Ends of the domain, length of the ramp and of the profile that enters during the run [m].
+    begin : float
+        Abscissa in the profile with which it begins, instead of 0 [m].
 
     Attributes
     ----------
@@ -36,11 +38,13 @@ class Profile:
         False where it lies under the domain from the start.
     ramp, travelled : float
         Length of the ramp, and of the profile that is drawn in [m].
+    moved : float
+        What body points s are further on in the profile's own body by `begin`, signed [m].
     ra, rq, rsk : float
         Of the samples about their mean: m, m, 1.
     """
 
-    def __init__(self, given, speed, moving, inlet, outlet, ramp, drawn_in):
+    def __init__(self, given, speed, moving, inlet, outlet, ramp, drawn_in, begin=0.0):
         from scipy.interpolate import CubicSpline
 
         X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
@@ -49,6 +53,7 @@ class Profile:
         self._origin, self._sign = (inlet, -1.0) if self.enters and speed > 0 else (outlet, 1.0)
         if not self.enters:
             self._origin = inlet
+        self._begin, self.moved = begin, self._sign * begin
         self.ramp = ramp
         self.travelled = drawn_in if self.enters else outlet - inlet
         # level ends: mirrored end to end, the profile has no kink
@@ -61,8 +66,8 @@ class Profile:
         """Heights [m] at body points s [m]."""
         X = self._sign * (s - self._origin)
         if not self.enters:
-            return self._at(X)
-        return self._come_in(X) * self._at(np.maximum(X, 0.0))
+            return self._at(X + self._begin)
+        return self._come_in(X) * self._at(np.maximum(X, 0.0) + self._begin)
 
     def mean_height(self, faces):
         r"""Mean height [m] of each cell between faces at body points s [m].
@@ -79,7 +84,7 @@ class Profile:
         ndarray, shape (n,)
         """
         X = self._sign * (faces - self._origin)
-        mean = self._level + np.diff(self._integral(X)) / np.diff(X)
+        mean = self._level + np.diff(self._integral(X + self._begin)) / np.diff(X)
         return self._come_in(0.5 * (X[1:] + X[:-1])) * mean if self.enters else mean
 
     def extremes_of_cells(self, cell):

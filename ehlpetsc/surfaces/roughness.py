@@ -21,15 +21,25 @@ class Bodies:
         Ways of the fast and the slow body since their profiles began to enter [m], signed.
     entrances : (float, float)
         Inlet and outlet at which they entered [m].
+    begins : (float, float)
+        Abscissas in their profiles with which they began to enter [m].
     """
 
     travelled: tuple
     entrances: tuple
+    begins: tuple = (0.0, 0.0)
 
     @classmethod
     def at_rest(cls, scales):
         """Those of a run that begins at time 0."""
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
+
+    def offsets(self, scales):
+        """What body points are further on by `begins`, signed [m], as of `profile.Profile.moved`."""
+        return tuple(
+            -begin if speed > 0.0 else begin
+            for begin, speed in zip(self.begins, (scales.u1, scales.u2), strict=True)
+        )
 
 
 @dataclass(frozen=True)
@@ -56,9 +66,9 @@ class Roughness:
         """
         sides, bodies = {}, bodies or Bodies.at_rest(scales)
         speeds = (scales.u1, scales.u2)
-        for side, speed, travelled in zip(("fast", "slow"), speeds, bodies.travelled, strict=True):
+        for k, side in enumerate(("fast", "slow")):
             spec = getattr(case.surface, side)
-            sides[side] = spec and _profile(case, scales, spec, speed, travelled, bodies)
+            sides[side] = spec and _profile(case, scales, spec, speeds[k], k, bodies)
         return cls(**sides) if any(sides.values()) else None
 
     def phi(self, x, t, cell=None):
@@ -92,8 +102,8 @@ class Roughness:
         return float(np.hypot(*(p.rq if p else 0.0 for p in (self.fast, self.slow))))
 
 
-def _profile(case, scales, spec, speed, travelled, bodies):
-    inlet, outlet = bodies.entrances
+def _profile(case, scales, spec, speed, side, bodies):
+    (inlet, outlet), travelled = bodies.entrances, bodies.travelled[side]
     drawn_in = 0.0
     if case.time is not None:
         left = max(scales.travel - max(map(abs, bodies.travelled)), 0.0)
@@ -109,4 +119,5 @@ def _profile(case, scales, spec, speed, travelled, bodies):
         outlet,
         RAMP * scales.a,
         drawn_in,
+        bodies.begins[side],
     )

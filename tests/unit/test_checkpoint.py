@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.contact_model import contact_model
+from ehlpetsc.discretisation.ehl_problem import contact_model
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.physics.film_formulas import expected_film

@@ -27,6 +27,8 @@ SCENES = {
     "direct": ("table1_smooth.toml", []),
     "direct over 1 nm": ("table1_smooth.toml", ["contact.minimum_film=1e-9"]),
     "mixed": ("table1_smooth.toml", ["contact.model='mixed'"]),
+    "yielding": ("table1_smooth.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
+    "dry, yielding": ("dry_hertz.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
     "starved": ("table1_smooth.toml", ["fluid.inlet_film=1e-7"]),
     "dry": ("dry_hertz.toml", []),
 }

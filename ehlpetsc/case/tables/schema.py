@@ -18,6 +18,7 @@ MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip
 
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
+Pressure = confloat(ge=1e6, le=1e18)
 
 
 class Contact(Table):
@@ -41,6 +42,12 @@ class Contact(Table):
     minimum_film: float = Field(
         0.0, ge=0, le=1e-6, unit="m", description="direct contact: the bound of the film thickness"
     )
+    yield_pressure: tuple[Pressure, Pressure] | None = Field(
+        None,
+        unit="Pa",
+        description="mixed contact: pressure at which solids yield, of both or of surface fast and slow; "
+        "left out: elastic",
+    )
 
     @validator("boundary_film", always=True)
     def _of_mixed_contact(cls, value, values):
@@ -49,6 +56,16 @@ class Contact(Table):
                 raise ValueError("for mixed contact")
             return None
         return BOUNDARY_FILM if value is None else value
+
+    @validator("yield_pressure", pre=True)
+    def _of_both(cls, value):
+        return value if value is None or isinstance(value, (list, tuple)) else [value, value]
+
+    @validator("yield_pressure")
+    def _of_mixed_contact_too(cls, value, values):
+        if value is not None and values.get("model") != "mixed":
+            raise ValueError("for mixed contact")
+        return value
 
 
 class Fluid(Table):
@@ -130,13 +147,23 @@ class Time(Table):
         ..., ge=1e-6, le=1e5, unit="half widths", description="of the faster surface, from the smooth start"
     )
     courant: float = Field(0.5, ge=1e-3, le=100, description="u_max dt/dx")
+    passes: int = Field(1, ge=1, le=10_000, description="times that the same stretch of both surfaces meets")
+    pass_shift: float = Field(
+        0.0,
+        ge=-1,
+        le=1,
+        unit="m",
+        description="by which the slow surface's profile enters further on, from pass to pass",
+    )
 
 
 class Output(Table):
     """`[output]`: what the result file holds."""
 
     every: int = Field(1, ge=1, le=10**9, description="steps between stored fields")
-    fields: list[Literal[tuple(FIELDS)]] = Field(list(FIELDS), min_items=1, description="stored fields")
+    fields: list[Literal[tuple(FIELDS)]] = Field(
+        [name for name in FIELDS if not name.startswith("set_")], min_items=1, description="stored fields"
+    )
     precision: Literal["float64", "float32"] = Field("float64", description="of the stored fields")
     thin_film: float = Field(
         2.0, ge=1, le=1000, unit="boundary films", description="mixed contact: films below it count as thin"

@@ -125,11 +125,12 @@ class BandedJacobian:
         self.base[self._at(row[:, None], sums)] = -self.weights
 
     def _under_pressures(self):
-        """What the recurrences and the deflection rows have of pressures: nodes, values, places."""
+        """What recurrences and deflection rows have of first unknowns, pressures or depths: nodes, values, places."""
         p, inner, d = self.problem, self._inner(), self.problem.deflection
         own = np.repeat(self.nodes, len(self.rates))
         rows = [self._group(own) * self.size + np.tile(np.arange(len(self.rates)), len(self.nodes))]
         nodes, values = [own], [np.tile(-2.0 * np.sinh(self.rates), len(self.nodes))]
+        bend, bent = dict(zip((-1, 0, 1), SECOND_DIFFERENCE, strict=True)), [np.zeros(len(own))]
         for k in range(1 - 2 * GROUP, 2 * GROUP):
             apart = np.abs(self._group(inner + k) - self._group(inner))
             near = (apart <= 1) & (inner + k >= 0) & (inner + k < p.n)
@@ -137,12 +138,15 @@ class BandedJacobian:
             nodes.append(inner[near] + k)
             far = np.exp(-np.outer(apart[near], self.rates)) @ self.weights
             values.append(far - d.curvature[abs(k)])
+            bent.append(np.full(near.sum(), d.stretch * bend.get(k, 0.0)))
         for end in d.ends:
             near = self._beside(end)
             rows.append(np.full(len(near), self._film(end) - 1))
             nodes.append(near)
             values.append(d.end_row(end)[near])
+            bent.append(np.where(near == end, d.end_scale, 0.0))
         self.pressure_nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
+        self.by_depth = np.concatenate(bent)
         self.pressure_place = self._at(np.concatenate(rows), self._film(self.pressure_nodes) - 1)
         self.diagonal = self._at(self._film(self.nodes) - 1, self._film(self.nodes) - 1)
 
@@ -209,17 +213,21 @@ class BandedJacobian:
     def _fill_deflection(self, entries):
         """Refill what a change of contact or cavity touches."""
         before, self.entries = self.entries, entries
-        everywhere = np.ones(self.problem.n, dtype=bool)
-        changed = everywhere if before is None else entries.p_first != before.p_first
+        pressure, depth, film = entries.p_first, entries.separation_first, entries.separation_second
+        changed = film_changed = np.ones(self.problem.n, dtype=bool)
+        if before is not None:
+            changed = (pressure != before.p_first) | (depth != before.separation_first)
+            film_changed = film != before.separation_second
         if changed.any():
             some = np.flatnonzero(changed[self.pressure_nodes])
             node = self.pressure_nodes[some]
-            self.base[self.pressure_place[some]] = self.by_pressure[some] * entries.p_first[node]
+            values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
+            self.base[self.pressure_place[some]] = values
             local = np.flatnonzero(changed[self.nodes])
-            self.base[self.diagonal[local]] += leaks(entries.p_first[self.nodes[local]])
-            self.dense = self.under_pressure * entries.p_first[self.nodes]
-        changed = everywhere if before is None else entries.h_second != before.h_second
-        if changed.any():
-            some = np.flatnonzero(changed[self.film_nodes])
+            node = self.nodes[local]
+            self.base[self.diagonal[local]] += leaks(pressure[node], depth[node])
+            self.dense = self.under_pressure * pressure[self.nodes]
+        if film_changed.any():
+            some = np.flatnonzero(film_changed[self.film_nodes])
             node = self.film_nodes[some]
-            self.base[self.film_place[some]] = self.by_film[some] * entries.h_second[node]
+            self.base[self.film_place[some]] = self.by_film[some] * film[node]

@@ -2,7 +2,9 @@
 
 The kernel of the deflection reaches far, the film's second difference does not: a band stays narrow if what
 carries pressure always stands in the first place. So the band knows, at an open node, the changes of
-(q, h), but where solids touch in mixed contact those of (p, q): the film does not change there.
+(q, h), but where solids touch in mixed contact those of (p, p_f): the film does not change there. Where
+solids yield, the pressure does not change; in the first place then stands the excess e over the yield
+pressure, which the depth follows, in the second h or p_f as before, or under a void that touches q.
 """
 
 from typing import NamedTuple
@@ -17,15 +19,20 @@ class BandEntries(NamedTuple):
 
     Attributes
     ----------
-    p_first, h_second : ndarray, shape (nx,)
-        Of the pressure by the first, of the film by the second unknown of each node.
+    p_first, separation_first, separation_second : ndarray, shape (nx,)
+        Of the pressure by the first, of the separation by both unknowns of each node.
     reynolds_derivatives : ndarray, shape (local nodes, 8)
         Of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1.
     """
 
     p_first: np.ndarray
-    h_second: np.ndarray
+    separation_first: np.ndarray
+    separation_second: np.ndarray
     reynolds_derivatives: np.ndarray
+
+    def same_deflection(self, other):
+        """Whether the deflection rows of another state are the same."""
+        return all((one == two).all() for one, two in zip(self[:3], other[:3], strict=True))
 
 
 def band_entries(model, relations, derivatives, stencil):
@@ -35,19 +42,26 @@ def band_entries(model, relations, derivatives, stencil):
     ----------
     model : contact_model.DirectContact or MixedContact
     relations, derivatives
-        Of the state, as in `ehl_problem.Evaluation`.
+        As in `ehl_problem.Evaluation`.
     stencil : ndarray of int, shape (local nodes, 4)
         Nodes of each Reynolds row, within the mesh.
     """
+    none = np.zeros_like(relations.film)
     if not model.is_mixed:
-        return BandEntries(relations.p_q, relations.h_w, derivatives)
-    touching = relations.touching
-    if touching.any():
-        derivatives, solid = derivatives.copy(), touching[stencil]
+        return BandEntries(relations.p_q, none, relations.h_w, derivatives)
+    touching, plastic = relations.touching, relations.plastic
+    p_first, separation_first = np.where(touching, 1.0, relations.p_q), none
+    blind = touching  # Reynolds' rows do not know the first unknown there
+    if plastic is not None and plastic.yielding.any():
+        p_first = np.where(plastic.yielding, plastic.hardening, p_first)
+        separation_first = np.where(plastic.yielding, -model.compliance, 0.0)
+        blind = touching | plastic.yielding
+    if blind.any():
+        derivatives = derivatives.copy()
         by_first, by_second = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
-        by_second[:] = np.where(solid, by_first, by_second)
-        by_first[:] = np.where(solid, 0.0, by_first)
-    return BandEntries(np.where(touching, 1.0, relations.p_q), relations.h_w, derivatives)
+        by_second[:] = np.where(touching[stencil], by_first, by_second)
+        by_first[:] = np.where(blind[stencil], 0.0, by_first)
+    return BandEntries(p_first, separation_first, relations.h_w, derivatives)
 
 
 def in_unknowns(model, relations, local, solution):
@@ -55,6 +69,12 @@ def in_unknowns(model, relations, local, solution):
     if not model.is_mixed:
         return
     solid = np.flatnonzero(relations.touching[local])
-    p, q = solution[solid, 0], solution[solid, 1]
+    first, oil = solution[solid, 0], solution[solid, 1]
+    q, p_c = oil, first - relations.p_q[local][solid] * oil
+    if relations.plastic is not None:
+        by_oil = relations.plastic.depth_q[local][solid] > 0.0
+        yielding = relations.plastic.yielding[local][solid]
+        q = np.where(by_oil, first + oil, q)
+        p_c = np.where(by_oil, -oil, np.where(yielding, first, p_c))
     solution[solid, 0] = q
-    solution[solid, 1] = (relations.p_q[local][solid] * q - p) / model.stiffness
+    solution[solid, 1] = -p_c / model.stiffness

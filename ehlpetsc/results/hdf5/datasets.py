@@ -136,9 +136,11 @@ def extend(dataset, rows):
         dataset[begin:] = rows
 
 
-def _surface(file, name, s, z, speed, statistics=None):
+def _surface(file, name, s, z, speed, statistics=None, yields=False):
     _fixed(file, f"{name}/s", OTHERS["surface/s"], s)
     _fixed(file, f"{name}/z", OTHERS["surface/z"], z)
+    if yields:
+        _fixed(file, f"{name}/set", OTHERS["surface/set"], np.zeros(len(s)))
     attributes.put(file[name], {"speed": speed} | (statistics or {}))
 
 

@@ -10,13 +10,15 @@ from ehlpetsc.run.restart.contents import TOTAL, fault
 from ehlpetsc.run.restart.rescaling import rescale
 from ehlpetsc.stepping.predictor import Level
 from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.surfaces.permanent_set import PermanentSet
 from ehlpetsc.surfaces.roughness import Bodies
 
+SIDES = ("fast", "slow")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
 MESH = 1e-9  # of the domain: how far nodes may have moved in x/a
 
 
-def save(path, state, smooth, contact_count, totals, case, scales, model, entrances):
+def save(path, state, smooth, contact_count, totals, case, scales, model, bodies, pass_number):
     """Write the restart file of a run.
 
     Parameters
@@ -30,8 +32,9 @@ def save(path, state, smooth, contact_count, totals, case, scales, model, entran
         Of all steps so far, for the summary.
     case, scales, model
         Of the run; the contact model.
-    entrances : (float, float)
-        As of `surfaces.roughness.Bodies`.
+    bodies : surfaces.roughness.Bodies
+        As they were at the begin of the run.
+    pass_number : int
 
     Raises
     ------
@@ -46,9 +49,16 @@ def save(path, state, smooth, contact_count, totals, case, scales, model, entran
     numbers = {"time": state.time, "dt": state.dt or 0.0, "h00": state.h00}
     numbers |= {"a": scales.a, "p0": scales.p0, "h_scale": scales.h, "u1": scales.u1, "u2": scales.u2}
     numbers |= dict(zip(("travelled_fast", "travelled_slow"), state.travelled, strict=True))
-    numbers |= dict(zip(("entered_inlet", "entered_outlet"), entrances, strict=True))
+    numbers |= dict(zip(("entered_inlet", "entered_outlet"), bodies.entrances, strict=True))
+    numbers |= dict(zip(("begin_fast", "begin_slow"), bodies.begins, strict=True))
+    numbers["set_spacing"] = state.sets[0].spacing if state.sets else 0.0
     attributes = {name: float(value) for name, value in numbers.items()}
     attributes |= {"retries": int(state.retries), "step": int(state.step), "case": case.text}
+    attributes["pass_number"] = pass_number
+    for side, one in zip(SIDES, state.sets or (None, None), strict=True):
+        attributes[f"set_first_{side}"] = one.first if one else 0
+        if one:
+            arrays[f"set_{side}"] = one.depth
     save_restart(path, arrays, attributes | {TOTAL + name: value for name, value in totals.items()})
 
 
@@ -88,6 +98,7 @@ def load(path, case, scales, model):
     bodies = Bodies(
         (float(attributes["travelled_fast"]), float(attributes["travelled_slow"])),
         (float(attributes["entered_inlet"]), float(attributes["entered_outlet"])),
+        (float(attributes["begin_fast"]), float(attributes["begin_slow"])),
     )
     state = State(
         *_unknowns(model, arrays, ""),
@@ -100,6 +111,7 @@ def load(path, case, scales, model):
         step=int(attributes["step"]),
         travelled=bodies.travelled,
         earlier=_earlier(model, arrays),
+        sets=_sets(arrays, attributes),
     )
     totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
     notes = changes(earlier, tomllib.loads(case.text))
@@ -115,6 +127,21 @@ def _fields(model, name, q, w):
 def _unknowns(model, arrays, name):
     q, film, solids = (arrays[name + field] for field in ("q", "h", "contact_pressure"))
     return q, model.second_unknown(film, solids)
+
+
+def _sets(arrays, attributes):
+    if "set_fast" not in arrays:
+        return ()
+    spacing = float(attributes["set_spacing"])
+    return tuple(
+        PermanentSet(spacing, int(attributes[f"set_first_{side}"]), arrays[f"set_{side}"]) for side in SIDES
+    )
+
+
+def pass_of(path):
+    """Number of the pass that a restart file belongs to; for the errors see :func:`load`."""
+    _, attributes = load_restart(path)
+    return int(attributes.get("pass_number", 1))
 
 
 def _earlier(model, arrays):

@@ -54,6 +54,8 @@ ARRAYS = (
         "earlier_travelled": Item("way of the film at these levels [m]", ("level",), needed=False),
         "m": Item("film content in a^2/R", ("node",), 0.0, needed=False),
         "m_older": Item("one level ago", ("node",), 0.0, needed=False),
+        "set_fast": Item("permanent set of the fast body [m]", ("cell of the fast body",), 0.0, needed=False),
+        "set_slow": Item("permanent set of the slow body [m]", ("cell of the slow body",), 0.0, needed=False),
     }
 )
 NUMBERS = {
@@ -71,6 +73,12 @@ NUMBERS = {
     "travelled_slow": Item("way of the slow surface since time 0 [m]"),
     "entered_inlet": Item("inlet at which profiles entered [m]"),
     "entered_outlet": Item("outlet at which profiles entered [m]"),
+    "begin_fast": Item("abscissa with which the fast profile entered [m]"),
+    "begin_slow": Item("abscissa with which the slow profile entered [m]"),
+    "pass_number": Item("of the passes of both bodies over each other", least=1, whole=True),
+    "set_spacing": Item("cells of both sets [m], 0: none", least=0.0),
+    "set_first_fast": Item("number of the first cell of the fast body's set", whole=True),
+    "set_first_slow": Item("number of the first cell of the slow body's set", whole=True),
 }
 TEXTS = {"case": "the case as it was run"}
 
@@ -143,6 +151,9 @@ def _inconsistency(arrays, attributes):
         return f"contact_count is {arrays['contact_count'].max()} after {step} steps"
     if attributes["dt"] > attributes["time"] * (1.0 + 1e-9):
         return "its last step is longer than its time"
+    sets = {"set_fast", "set_slow"} & arrays.keys()
+    if len(sets) == 1 or bool(sets) != (attributes["set_spacing"] > 0.0):
+        return "of the permanent sets of both bodies something is missing"
     if "m_older" in arrays and "m" not in arrays:
         return "m_older is there and m is not"
     return None

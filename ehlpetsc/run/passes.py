@@ -1,0 +1,180 @@
+"""Running in: the same stretch of both bodies meets again and again, as the pass before has left it.
+
+Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` holds what each
+has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.errors import ExitStatus
+from ehlpetsc.results.output_guard import check_place, inputs_of
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.whole_file import write_whole
+from ehlpetsc.run.recorder import on_root
+from ehlpetsc.run.restart.checkpoint import pass_of
+from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.solve import Run
+from ehlpetsc.surfaces.arrival import arrival
+
+RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
+MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
+
+
+class Passes:
+    """All passes of a case.
+
+    Parameters
+    ----------
+    comm : mpi4py communicator
+    case : case.loading.Case
+    output : path-like
+        Its stem begins the passes' file names.
+    stop : stop.StopRequest, optional
+    """
+
+    def __init__(self, comm, case, output, stop=None):
+        self.comm, self.case, self.stop = comm, case, stop
+        output = Path(output)
+        self.stem = output.with_name(output.name.removesuffix(".h5"))
+        self.index = self.stem.with_name(f"{self.stem.name}.passes.json")
+        self.rows = []
+
+    def file(self, number):
+        """Result file of a pass."""
+        return self.stem.with_name(f"{self.stem.name}.pass{number}.h5")
+
+    def run(self, restart=None, overwrite=False):
+        """Run every pass, or go on with one from its restart file.
+
+        Returns
+        -------
+        errors.ExitStatus
+            Of the last pass that was run.
+
+        Raises
+        ------
+        OutputError
+        """
+        on_root(self.comm, lambda: check_place(self.index, inputs_of(self.case)))
+        first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
+        if first > 1:
+            self.rows = self.comm.bcast(on_root(self.comm, self._rows_before, first))
+        simulation, status = None, ExitStatus.DONE
+        for number in range(first, self.case.time.passes + 1):
+            simulation = Simulation(self.case, self.comm, after=simulation, pass_number=number)
+            self._say(f"pass {number} of {self.case.time.passes}")
+            outcome = Run(simulation, self.file(number), self.stop).run(restart, overwrite)
+            status, restart = outcome.status, None
+            if status is not ExitStatus.DONE:
+                return status
+            self._note(number, simulation)
+        self._tell_end()
+        return status
+
+    def _rows_before(self, first):
+        """Index rows of the passes before one that is gone on with; none where the index is not there."""
+        try:
+            rows = json.loads(self.index.read_text())["passes"]
+            return [row for row in rows if row["pass"] < first]
+        except (OSError, ValueError, KeyError, TypeError):
+            return []
+
+    def _note(self, number, simulation):
+        if self.comm.rank != 0:
+            return
+        row = {"pass": number, "file": self.file(number).name} | figures(self.file(number), simulation)
+        before = self.rows[-1]["set_volume"] if self.rows else 0.0
+        row["added"] = row.get("set_volume", 0.0) - before
+        self.rows.append(row)
+        text = json.dumps({"title": self.case.title, "case": self.case.text, "passes": self.rows}, indent=1)
+        write_whole(self.index, text.encode())
+        self._say(line(row))
+
+    def _tell_end(self):
+        if self.comm.rank != 0:
+            return
+        self._say(f"passes: {self.index}")
+        number = passes_to_run_in(self.rows)
+        if number:
+            self._say(f"run in: pass {number} adds less than {RUN_IN:.0%} of what the first one added")
+
+    def _say(self, text):
+        if self.comm.rank == 0:
+            print(text, flush=True)
+
+
+def figures(path, simulation):
+    """What a pass has made of the surfaces, and its means over the time that both fill the contact.
+
+    Parameters
+    ----------
+    path : Path
+        Its result.
+    simulation : run.simulation.Simulation
+        As it has ended.
+
+    Returns
+    -------
+    dict
+        SI units.
+    """
+    with read_result(path) as result:
+        steps, begin = result.steps, filled_from(simulation)
+        inside = steps("time") >= begin
+        dt = np.where(inside, steps("dt"), 0.0)
+        names = [name for name in MEANS if name in result.figures]
+        found = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
+        found |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
+        found["halved"] = int(np.count_nonzero(steps("retries")))
+        for name in ("set_volume",):
+            if name in result.figures:
+                found[name] = float(steps(name)[-1])
+        return found | {side: statistics(result, side) for side in ("fast", "slow")}
+
+
+def filled_from(simulation):
+    """Time from which both surfaces fill the contact [s]; 0 where none is rough."""
+    scales, rough = simulation.scales, simulation.roughness
+    arrivals = [arrival(p, scales) for p in (rough and rough.fast, rough and rough.slow) if p]
+    travel = max((fills for _, fills in filter(None, arrivals)), default=0.0)
+    return travel * scales.a / scales.u_max
+
+
+def statistics(result, side):
+    """Ra, Rq [m], Rsk, largest slope and deepest set [m] of a surface as a pass has left it; None: smooth."""
+    name = f"surface/{side}"
+    if f"{name}/s" not in result:
+        return None
+    s, z = result[f"{name}/s"][:], result[f"{name}/z"][:]
+    depth = result[f"{name}/set"][:] if f"{name}/set" in result else np.zeros_like(z)
+    left = z - depth
+    height = left - left.mean()
+    rq = float(np.sqrt((height**2).mean()))
+    return {
+        "ra": float(np.abs(height).mean()),
+        "rq": rq,
+        "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
+        "slope": float(np.abs(np.diff(left) / np.diff(s)).max()),
+        "deepest": float(depth.max()),
+    }
+
+
+def line(row):
+    """One line that tells of a pass."""
+    parts = [f"pass {row['pass']}: set {row['set_volume']:.4g} m^2, added {row['added']:.4g} m^2"]
+    for side in ("fast", "slow"):
+        if row[side]:
+            parts.append(f"Ra {side} {1e6 * row[side]['ra']:.4f} um")
+    if row.get("contact_share") is not None:
+        parts.append(f"share on solids {row['contact_share']:.4f}")
+    return ", ".join(parts)
+
+
+def passes_to_run_in(rows):
+    """Number of the first pass that adds less than `RUN_IN` of what the first one added; None: none does."""
+    if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
+        return None
+    return next((row["pass"] for row in rows if row["added"] < RUN_IN * rows[0]["added"]), None)
