@@ -27,6 +27,8 @@ class Field:
         Type on disk; the stored fields may be narrowed to float32 on request.
     only : str
         Scenes that have it, a key of `SCENES`; "": all.
+    on_request : bool
+        Whether a case must ask for it.
     """
 
     units: str
@@ -34,6 +36,7 @@ class Field:
     dims: tuple = _FRAME
     dtype: str = "f8"
     only: str = ""
+    on_request: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,10 +96,13 @@ FIELDS = {
     "shear_stress_fast": Field("Pa", "shear stress on the fast solid"),
     "shear_stress_slow": Field("Pa", "shear stress on the slow solid"),
     "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
-    "set_fast": Field("m", "depth by which the fast solid has yielded", only="yielding"),
-    "set_slow": Field("m", "depth by which the slow solid has yielded", only="yielding"),
+    "set_fast": Field("m", "depth by which the fast solid has yielded", only="yielding", on_request=True),
+    "set_slow": Field("m", "depth by which the slow solid has yielded", only="yielding", on_request=True),
 }
 """Fields over (stored frame, node), in the order in which files list them."""
+
+STORED = [name for name, field in FIELDS.items() if not field.on_request]
+"""Fields that a case stores unless it names its own."""
 
 STEP_SCALARS = {
     "step": Figure(

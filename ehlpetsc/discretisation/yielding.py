@@ -96,7 +96,7 @@ class YieldingContact(MixedContact):
         return np.minimum(self._carried(w), self.yield_pressure)
 
     def settled(self, q, w):
-        """The same pressures and film by unknowns that tell of no more yielding: what the next step begins with.
+        """The same pressures and film by unknowns that tell of no yielding: what the next step begins with.
 
         Parameters
         ----------

@@ -84,7 +84,7 @@ def cross_gently(now, step, stiffness, opened):
 
 @compiled
 def yielding_change(now, step, stiffness, limit):
-    """As :func:`mixed_change` with the pressure bounded by `limit`; where it is at its bound, the solids' part."""
+    """As :func:`mixed_change`, the pressure bounded by `limit`; where it stays there, the solids' part."""
     largest = 0.0
     for i in range(len(now)):
         new_q, new_w = now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
@@ -104,9 +104,9 @@ def yielding_change(now, step, stiffness, limit):
 def yield_gently(now, step, stiffness, limit):
     """Change steps in place where solids begin or cease to yield: both stop just beyond.
 
-    The excess is what oil and solids would carry over `limit`. Where they yield and there is oil, q tells of
-    the excess and the oil has what the solids leave; oil that they leave nothing is a void from then on, under
-    which w tells of the excess, and the other way round.
+    The excess is what oil and solids would carry over `limit`. Where they yield and there is oil, q tells
+    of the excess and the oil has what the solids leave; oil that they leave nothing is a void from then on,
+    under which w tells of the excess, and the other way round.
     """
     for i in range(len(now)):
         q, new_q = now[i, 0], now[i, 0] - step[i, 0]
@@ -118,7 +118,7 @@ def yield_gently(now, step, stiffness, limit):
             continue
         if yields != (excess > 0.0):
             excess = -REFILLED if yields else REFILLED
-            if (solids > 0.0) != (new_solids > 0.0):  # one of both at a time, or Newton's method goes to and fro
+            if (solids > 0.0) != (new_solids > 0.0):  # both at once would be taken back in the next one
                 excess, new_solids = REFILLED, max(solids, REFILLED)
         if by_oil or new_q > 0.0:
             if new_solids < limit - REFILLED:

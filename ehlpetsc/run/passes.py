@@ -1,7 +1,7 @@
 """Running in: the same stretch of both bodies meets again and again, as the pass before has left it.
 
-Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` holds what each
-has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
+Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` holds what
+each has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
 """
 
 import json

@@ -30,7 +30,8 @@ SMOOTHED = 0.2
 DIRECT = 1000  # nodes on either side: beyond it a transform is quicker than the sum
 AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
 LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
-PRESSED = 1.2  # growth of the load on solids that yield as a whole
+FROM = 0.8  # of the load under which Hertz' pressure is the yield pressure
+PRESSED = 1.2  # growth of the load from there
 LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
 
 
@@ -143,28 +144,26 @@ def steady(solver, film, inputs):
 def pressed(solver, film, inputs):
     """Steady solution of solids that yield under Hertz' pressure: the load grown from where they begin to.
 
-    Arguments, returns and errors of :func:`steady`. All that touches would yield under the whole load at once,
-    and a pressure that is at its bound everywhere tells Newton's method nothing of the load.
+    Arguments, returns and errors of :func:`steady`. All that touches would yield under the whole load at
+    once, and a pressure that is at its bound everywhere tells Newton's method nothing of the load.
     """
     problem = solver.problem
-    load, growth, spent, failure = 0.8 * problem.model.yield_pressure**2, PRESSED, 0, None
+    load, reached, spent = FROM * problem.model.yield_pressure**2, 0.0, 0
     state = hertz_start(problem, film, inputs.phi, load=load)
     while True:
         try:
-            *nearer, iterations = certified(
-                solver, *state, replace(inputs, load=load), solver.start_iterations
+            *state, iterations = certified(
+                solver, *state, replace(inputs, load=load), solver.start_iterations()
             )
         except SolveFailed as error:
-            iterations, failure = error.iterations, error
-            nearer, growth = None, 1.0 + 0.5 * (growth - 1.0)
-        spent += iterations
-        if nearer:
-            reached, state = load, nearer
-        elif growth < 1.0 + LEAST_GROWTH or spent == iterations:
-            raise NoSteadyStart(failure, None, spent)
+            spent, load = spent + error.iterations, 0.5 * (reached + load)
+            if not reached or load < reached * (1.0 + LEAST_GROWTH):
+                raise NoSteadyStart(error, None, spent) from error
+            continue
+        spent, reached = spent + iterations, load
         if reached == 1.0:
             return *state, spent
-        load = min(reached * growth, 1.0)
+        load = min(reached * PRESSED, 1.0)
 
 
 class Continuation:

@@ -168,9 +168,7 @@ class TimeStepping:
             sets = self.bodies.laid_down(sets, travelled, self.scales.h * more["depth"])
             q, w = model.settled(q, w)
         imbalance = self.solver.mass_imbalance()
-        return State(
-            q, w, h00, p=p, h=h, m=m, imbalance=imbalance, travelled=travelled, sets=sets, **more
-        )
+        return State(q, w, h00, p=p, h=h, m=m, imbalance=imbalance, travelled=travelled, sets=sets, **more)
 
     def guess(self, state, dt):
         """Start of Newton's iteration for a step of dt [s]."""

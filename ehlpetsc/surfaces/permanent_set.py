@@ -1,8 +1,8 @@
 r"""Depth by which a body has yielded, kept in the body: cells of its own that travel with it.
 
-What a step adds at the nodes of the mesh is shared out to these cells by overlap, and the mesh gets means over
-its cells back: both keep the volume, and as nothing is ever moved from cell to cell, nothing is smeared on
-the way, however far the body goes.
+What a step adds at the nodes of the mesh is shared out to these cells by overlap, and the mesh gets means
+over its cells back: both keep the volume, and as nothing is ever moved from cell to cell, nothing is smeared
+on the way, however far the body goes.
 """
 
 from dataclasses import dataclass, replace

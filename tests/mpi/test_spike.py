@@ -85,7 +85,9 @@ def test_it_solves_its_matrix(model):
     evaluation = part.evaluate(*at, part.inputs())
     entries = band_entries(part.model, evaluation.relations, evaluation.reynolds_derivatives, lu.band.stencil)
     other = entries._replace(
-        p_first=np.zeros(n), separation_second=np.zeros(n), reynolds_derivatives=3.0 * entries.reynolds_derivatives
+        p_first=np.zeros(n),
+        separation_second=np.zeros(n),
+        reynolds_derivatives=3.0 * entries.reynolds_derivatives,
     )
     lu.factor(other, dropped[:0])  # what it leaves must not matter
     lu.factor(entries, mine)

@@ -7,7 +7,7 @@ import pytest
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError
-from ehlpetsc.quantities import FIELDS
+from ehlpetsc.quantities import STORED
 
 CASES = Path(__file__).parents[2] / "cases"
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
@@ -51,7 +51,7 @@ def test_sections_left_out_are_none_or_default():
     c = case.load(SMOOTH)
     assert (c.time, c.series, c.surface.fast, c.surface.slow) == (None,) * 4
     assert (c.mesh.near_field, c.output.every, c.output.precision) == (3, 1, "float64")
-    assert c.output.fields == list(FIELDS)
+    assert c.output.fields == STORED
     dry = case.load(CASES / "dry_hertz.toml")
     assert (dry.fluid, dry.motion) == (None, None)
     assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.0, 0.0)

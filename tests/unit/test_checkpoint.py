@@ -30,8 +30,8 @@ class Scene:
 
     def save(self, path, state, smooth):
         count = np.arange(self.scales.nx) % 4
-        entrances = Bodies.at_rest(self.scales).entrances
-        checkpoint.save(path, state, smooth, count, TOTALS, self.case, self.scales, self.model, entrances)
+        bodies = Bodies.at_rest(self.scales)
+        checkpoint.save(path, state, smooth, count, TOTALS, self.case, self.scales, self.model, bodies, 1)
 
     def load(self, path):
         return checkpoint.load(path, self.case, self.scales, self.model)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.quantities import FIELDS, STEP_SCALARS
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, STORED
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import ResultWriter
@@ -30,7 +30,7 @@ def make_writer(path, **changes):
         case_text='title = "ä"\n',
         title="ä",
         x=X,
-        fields=list(FIELDS),
+        fields=STORED,
         figures=list(STEP_SCALARS),
         every=1,
         precision="float64",
@@ -43,7 +43,7 @@ def make_writer(path, **changes):
 def put(writer, steps):
     """Steps whose every value tells its step and node; node k is in contact in steps that k divides."""
     for step in steps:
-        values = {name: step + np.arange(NX) / 100 for name in FIELDS}
+        values = {name: step + np.arange(NX) / 100 for name in STORED}
         contact = step % (np.arange(NX) + 1) == 0
         writer.append(step, step * 1e-7, values, SCALARS | {"newton": step}, contact)
 
@@ -73,11 +73,11 @@ def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
     with h5py.File(written(tmp_path / "r.h5", range(3)), "r") as file:
         datasets = []
         file.visititems(lambda _, item: datasets.append(item) if isinstance(item, h5py.Dataset) else None)
-        assert len(datasets) == len(FIELDS) + len(STEP_SCALARS) + 6
+        assert len(datasets) == len(STORED) + len(STEP_SCALARS) + 6
         for dataset in datasets:
             assert dataset.attrs["units"] and dataset.attrs["long_name"], dataset.name
             assert h5py.h5ds.is_scale(dataset.id) or all(dim.keys() for dim in dataset.dims), dataset.name
-        for name in FIELDS:
+        for name in STORED:
             assert [dim.keys()[0] for dim in file[name].dims] == ["time", "x"]
         assert file["in_contact"].dtype == np.uint8
         assert file["surface/fast"].attrs["speed"] == 5.6
@@ -88,7 +88,7 @@ def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
 def test_headers_alone_tell_what_is_stored(tmp_path):
     """`h5dump -H` shows comments, which h5py cannot read, and leaves out the values of attributes."""
     raw = written(tmp_path / "r.h5", range(3)).read_bytes()
-    for name, field in {**FIELDS, **STEP_SCALARS}.items():
+    for name, field in {**{name: FIELDS[name] for name in STORED}, **STEP_SCALARS}.items():
         assert f"{field.long_name} [{field.units}] ({', '.join(field.dims)})".encode() in raw, name
 
 
@@ -101,7 +101,7 @@ def test_texts_are_of_fixed_length_and_fields_have_checksums(tmp_path):
         kinds = [h5py.check_string_dtype(item.attrs.get_id(name).dtype) for item, name in attributes]
         assert sum(kind is not None for kind in kinds) > 2 * len(STEP_SCALARS)
         assert all(kind is None or kind.length is not None for kind in kinds)
-        assert all(file[name].fletcher32 for name in FIELDS)
+        assert all(file[name].fletcher32 for name in STORED)
     with read_result(tmp_path / "r.h5") as result:
         assert result.attrs["case"] == "c" * 100_000
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from ehlpetsc.case.tables.table import Table
 from ehlpetsc.case.tables.validation import Field, confloat, constr, root_validator, validator
-from ehlpetsc.quantities import FIELDS
+from ehlpetsc.quantities import FIELDS, STORED
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
 DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_]+)+$"  # a key below a table
@@ -161,9 +161,7 @@ class Output(Table):
     """`[output]`: what the result file holds."""
 
     every: int = Field(1, ge=1, le=10**9, description="steps between stored fields")
-    fields: list[Literal[tuple(FIELDS)]] = Field(
-        [name for name in FIELDS if not name.startswith("set_")], min_items=1, description="stored fields"
-    )
+    fields: list[Literal[tuple(FIELDS)]] = Field(STORED, min_items=1, description="stored fields")
     precision: Literal["float64", "float32"] = Field("float64", description="of the stored fields")
     thin_film: float = Field(
         2.0, ge=1, le=1000, unit="boundary films", description="mixed contact: films below it count as thin"

@@ -125,7 +125,7 @@ class BandedJacobian:
         self.base[self._at(row[:, None], sums)] = -self.weights
 
     def _under_pressures(self):
-        """What recurrences and deflection rows have of first unknowns, pressures or depths: nodes, values, places."""
+        """What recurrences and deflection rows have of first unknowns: nodes, values, places."""
         p, inner, d = self.problem, self._inner(), self.problem.deflection
         own = np.repeat(self.nodes, len(self.rates))
         rows = [self._group(own) * self.size + np.tile(np.arange(len(self.rates)), len(self.nodes))]
