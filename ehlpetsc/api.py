@@ -11,6 +11,7 @@ import h5py
 
 from ehlpetsc import environment
 from ehlpetsc.case.loading import load, members
+from ehlpetsc.errors import CaseError
 from ehlpetsc.results import reader
 from ehlpetsc.results.hdf5.opening import open_result
 
@@ -53,6 +54,13 @@ class Result(reader.Result):
         title = ": ".join(filter(None, [self.attrs["title"], frames.instant(self, index)]))
         axes[0].set_title(title, fontsize="medium")
         return figure
+
+
+def refuse_passes(case):
+    """Several passes have as many results: they are not one for `solve`."""
+    if case.time is not None and case.time.passes > 1:
+        passes = f"{case.path}: time.passes = {case.time.passes}: solve one after the other"
+        raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
 
 
 def read_result(path):
@@ -123,6 +131,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     from ehlpetsc.run.solve import record
 
     simulation = Simulation(case, comm, options)
+    refuse_passes(simulation.case)
     if progress is None:
         progress = on_terminal(sys.stdout) or in_notebook()
     stream = sys.stdout if progress and simulation.comm.rank == 0 else None

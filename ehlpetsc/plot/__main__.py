@@ -1,4 +1,5 @@
-"""Draw results: ``python3 -m ehlpetsc.plot RESULT.h5 [...]``, or the index of a series, OUTPUT.series.json.
+"""Draw results: ``python3 -m ehlpetsc.plot RESULT.h5 [...]``, or the index of a series or of passes,
+OUTPUT.series.json, OUTPUT.passes.json.
 
 Pressure and film of one frame, by default that with most contacts; of several files, a series, the same
 instant of each in one picture. Or a map of pressure over place and time, contacts per millisecond, a movie;
@@ -62,6 +63,7 @@ def _parser():
     kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")
     kind.add_argument("--stribeck", action="store_true", help="friction against speed, of a series over it")
     kind.add_argument("--ensemble", action="store_true", help="figures of runs that differ in their seeds")
+    kind.add_argument("--running-in", action="store_true", help="surfaces and pressure pass by pass")
     kind.add_argument("--report", action="store_true", help="all of one result as one HTML page")
     kind.add_argument("--movie", action="store_true", help="pressure and film over time, as a GIF, MP4, WebM")
     return parser
@@ -89,7 +91,9 @@ def main(arguments=None):
     options = _parser().parse_args(arguments)
     kind = next((k for k in (*FIGURES, *ENDINGS) if getattr(options, k) not in (None, False)), None)
     ending = ENDINGS.get(kind, f".{kind}.png" if kind else ".png")
-    output = options.output or Path(re.sub(r"(\.series\.json|\.h5)$", "", options.results[0]) + ending)
+    output = options.output or Path(
+        re.sub(r"(\.(series|passes)\.json|\.h5)$", "", options.results[0]) + ending
+    )
     try:
         with contextlib.ExitStack() as stack:
             draw(in_order(open_all(options.results, stack)), kind, options, output)

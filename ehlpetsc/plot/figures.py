@@ -6,6 +6,7 @@ from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import collision_pictures, frames, labels, over_time
 from ehlpetsc.plot.ensemble import draw_ensemble
+from ehlpetsc.plot.running_in import draw_running_in
 from ehlpetsc.plot.stribeck import draw_stribeck
 from ehlpetsc.results.series_index import from_thick_to_thin
 
@@ -128,4 +129,5 @@ FIGURES = {
     "entrapment": draw_entrapment,
     "stribeck": draw_stribeck,
     "ensemble": draw_ensemble,
+    "running_in": draw_running_in,
 }

@@ -74,7 +74,8 @@ def files_of(path):
     if path.suffix != ".json":
         return [path]
     try:
-        members = json.loads(path.read_text())["members"]
+        index = json.loads(path.read_text())
+        members = index["passes"] if "passes" in index else index["members"]
         files = [path.with_name(member["file"]) for member in members]
     except OSError as error:
         raise OutputError(f"{path}: {error.strerror}") from error

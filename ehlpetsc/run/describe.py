@@ -13,6 +13,7 @@ from ehlpetsc.surfaces.arrival import arrival, arrival_warnings
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
+SOFT = 0.25  # of p0: solids softer than that flow as a whole
 WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 0.8 to 0.9 of it
 
 
@@ -99,6 +100,11 @@ def warnings(case, scales):
     """
     rough = [f"surface.{name}" for name in ("fast", "slow") if getattr(case.surface, name)]
     notes = []
+    if case.contact.yield_pressure and min(case.contact.yield_pressure) < SOFT * scales.p0:
+        notes.append(
+            f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
+            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, which a half space does not tell"
+        )
     if rough and case.time is None and case.motion is not None:
         notes.append(
             f"{' and '.join(rough)} with [motion] but without [time]: "

@@ -7,20 +7,16 @@ each has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json
 import json
 from pathlib import Path
 
-import numpy as np
-
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.results.output_guard import check_place, inputs_of
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
 from ehlpetsc.results.whole_file import write_whole
 from ehlpetsc.run.recorder import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 from ehlpetsc.surfaces.arrival import arrival
-
-RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
-MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
 
 class Passes:
@@ -85,7 +81,9 @@ class Passes:
     def _note(self, number, simulation):
         if self.comm.rank != 0:
             return
-        row = {"pass": number, "file": self.file(number).name} | figures(self.file(number), simulation)
+        with read_result(self.file(number)) as result:
+            found = pass_figures(result, filled_from(simulation))
+        row = {"pass": number, "file": self.file(number).name} | found
         before = self.rows[-1]["set_volume"] if self.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
         self.rows.append(row)
@@ -106,60 +104,12 @@ class Passes:
             print(text, flush=True)
 
 
-def figures(path, simulation):
-    """What a pass has made of the surfaces, and its means over the time that both fill the contact.
-
-    Parameters
-    ----------
-    path : Path
-        Its result.
-    simulation : run.simulation.Simulation
-        As it has ended.
-
-    Returns
-    -------
-    dict
-        SI units.
-    """
-    with read_result(path) as result:
-        steps, begin = result.steps, filled_from(simulation)
-        inside = steps("time") >= begin
-        dt = np.where(inside, steps("dt"), 0.0)
-        names = [name for name in MEANS if name in result.figures]
-        found = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
-        found |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
-        found["halved"] = int(np.count_nonzero(steps("retries")))
-        for name in ("set_volume",):
-            if name in result.figures:
-                found[name] = float(steps(name)[-1])
-        return found | {side: statistics(result, side) for side in ("fast", "slow")}
-
-
 def filled_from(simulation):
     """Time from which both surfaces fill the contact [s]; 0 where none is rough."""
     scales, rough = simulation.scales, simulation.roughness
     arrivals = [arrival(p, scales) for p in (rough and rough.fast, rough and rough.slow) if p]
     travel = max((fills for _, fills in filter(None, arrivals)), default=0.0)
     return travel * scales.a / scales.u_max
-
-
-def statistics(result, side):
-    """Ra, Rq [m], Rsk, largest slope and deepest set [m] of a surface as a pass has left it; None: smooth."""
-    name = f"surface/{side}"
-    if f"{name}/s" not in result:
-        return None
-    s, z = result[f"{name}/s"][:], result[f"{name}/z"][:]
-    depth = result[f"{name}/set"][:] if f"{name}/set" in result else np.zeros_like(z)
-    left = z - depth
-    height = left - left.mean()
-    rq = float(np.sqrt((height**2).mean()))
-    return {
-        "ra": float(np.abs(height).mean()),
-        "rq": rq,
-        "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
-        "slope": float(np.abs(np.diff(left) / np.diff(s)).max()),
-        "deepest": float(depth.max()),
-    }
 
 
 def line(row):
@@ -171,10 +121,3 @@ def line(row):
     if row.get("contact_share") is not None:
         parts.append(f"share on solids {row['contact_share']:.4f}")
     return ", ".join(parts)
-
-
-def passes_to_run_in(rows):
-    """Number of the first pass that adds less than `RUN_IN` of what the first one added; None: none does."""
-    if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
-        return None
-    return next((row["pass"] for row in rows if row["added"] < RUN_IN * rows[0]["added"]), None)

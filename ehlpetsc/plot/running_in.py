@@ -1,0 +1,106 @@
+"""Running in: heights and pressure before and after, and what each pass still changes."""
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot import labels
+from ehlpetsc.plot.stribeck import filled_from
+from ehlpetsc.results.running_in import heights, pass_figures
+
+SIZE = (11.0, 7.0)  # inches
+STRETCH = 0.6  # half widths of profile shown, around the deepest set
+FIRST, LAST = "0.65", "C3"
+
+
+def draw_running_in(results, _options):
+    """Figure of all passes of a run, in their order.
+
+    Parameters
+    ----------
+    results : list of Result
+
+    Raises
+    ------
+    OutputError
+        Fewer than two passes, or solids that do not yield.
+    """
+    if len(results) < 2:
+        raise OutputError("one pass alone; allowed: --running-in of two passes or more")
+    if any("set_volume" not in result.figures for result in results):
+        raise OutputError("solids that do not yield: there is no set; needs contact.yield_pressure")
+    rows = [pass_figures(result, filled_from(result)) for result in results]
+    figure, axes = labels.new_figure(2, 2, SIZE)
+    surface(axes[0, 0], results)
+    pressure(axes[1, 0], results)
+    added(axes[0, 1], rows)
+    contact(axes[1, 1], rows)
+    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    return figure
+
+
+def surface(axes, results):
+    """Heights of the surface with the deepest set as made, after the first and after the last pass."""
+    sides = [side for side in ("fast", "slow") if heights(results[-1], side) is not None]
+    side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
+    s, made, last = heights(results[-1], side)
+    first = heights(results[0], side)[2]
+    a = results[0].attrs["a"]
+    place = s[np.argmax(made - last)]
+    near = np.abs(s - place) <= 0.5 * STRETCH * a
+    for z, colour, name, style in (
+        (made, "k", "as made", ":"),
+        (first, FIRST, "after pass 1", "-"),
+        (last, LAST, f"after pass {len(results)}", "-"),
+    ):
+        axes.plot((s[near] - place) / a, 1e6 * z[near], style, color=colour, label=name)
+    axes.set(xlabel="along the body, from its deepest set [a]", ylabel=f"height of the {side} surface [µm]")
+    axes.legend(fontsize="small")
+
+
+def pressure(axes, results):
+    """Pressure of the first and the last pass, at the stored instant of the first one's greatest."""
+    first, last = results[0], results[-1]
+    common = min(len(first.time), len(last.time))
+    frame = int(np.argmax([first["pressure"][k].max() for k in range(common)]))
+    x = first.x / first.attrs["a"]
+    for result, colour, name in ((first, FIRST, "pass 1"), (last, LAST, f"pass {len(results)}")):
+        axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
+    axes.set(xlabel="x/a", ylabel="pressure [GPa]", xlim=(-1.2, 1.2))
+    axes.set_title(f"at {1e6 * first.time[frame]:.1f} µs of each pass", fontsize="small")
+    axes.legend(fontsize="small")
+
+
+def added(axes, rows):
+    """What each pass adds to the set, to the first, and Ra of both surfaces."""
+    numbers = np.arange(1, len(rows) + 1)
+    volumes = np.array([row["set_volume"] for row in rows])
+    parts = np.diff(volumes, prepend=0.0) / volumes[0]
+    axes.semilogy(numbers, np.maximum(parts, 1e-6), "o-", color=LAST)
+    axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
+    axes.set(xlabel="pass", ylabel="set added, to pass 1", xticks=ticks(numbers))
+    beside = axes.twinx()
+    for side, style in (("fast", "^--"), ("slow", "v--")):
+        if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
+            ra = [1e6 * row[side]["ra"] for row in rows]
+            beside.plot(numbers, ra, style, color="C0", ms=4, label=f"Ra {side}")
+    beside.set_ylabel("Ra [µm]", color="C0")
+    if beside.lines:
+        beside.legend(fontsize="small", loc="upper right")
+
+
+def contact(axes, rows):
+    """Share of the load on the solids and length of contact, means over the time that both surfaces fill it."""
+    numbers = np.arange(1, len(rows) + 1)
+    axes.plot(numbers, [row.get("contact_share") or np.nan for row in rows], "o-", color=LAST)
+    axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers), ylim=(0.0, None))
+    beside = axes.twinx()
+    beside.plot(
+        numbers, [1e6 * (row.get("contact_length") or np.nan) for row in rows], "s--", color="C0", ms=4
+    )
+    beside.set_ylabel("length in contact [µm]", color="C0")
+    beside.set_ylim(0.0, None)
+
+
+def ticks(numbers):
+    """At most ten whole numbers."""
+    return numbers[:: -(-len(numbers) // 10)]

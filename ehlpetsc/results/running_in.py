@@ -1,0 +1,70 @@
+"""What the passes of both surfaces over each other make of them, pass by pass, from their results."""
+
+import numpy as np
+
+RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
+MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
+
+
+def pass_figures(result, begin):
+    """What a pass has made of the surfaces, and its means over the time that both fill the contact.
+
+    Parameters
+    ----------
+    result : results.reader.Result
+    begin : float
+        Time from which both surfaces fill the contact [s].
+
+    Returns
+    -------
+    dict
+        SI units; a surface is None where nothing is known of it.
+    """
+    steps = result.steps
+    dt = np.where(steps("time") >= begin, steps("dt"), 0.0)
+    names = [name for name in MEANS if name in result.figures]
+    found = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
+    found |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
+    found["halved"] = int(np.count_nonzero(steps("retries")))
+    found["set_volume"] = float(steps("set_volume")[-1]) if "set_volume" in result.figures else 0.0
+    return found | {side: statistics(result, side) for side in ("fast", "slow")}
+
+
+def heights(result, side):
+    """Body points, heights as made and as the pass has left them [m]; None: nothing is known of the surface."""
+    name = f"surface/{side}"
+    if f"{name}/s" not in result:
+        return None
+    s, z = result[f"{name}/s"][:], result[f"{name}/z"][:]
+    depth = result[f"{name}/set"][:] if f"{name}/set" in result else np.zeros_like(z)
+    return s, z, z - depth
+
+
+def statistics(result, side):
+    """Ra, Rq [m], Rsk, largest slope and deepest set [m] of a surface as a pass has left it."""
+    found = heights(result, side)
+    if found is None:
+        return None
+    s, z, left = found
+    height = left - left.mean()
+    rq = float(np.sqrt((height**2).mean()))
+    return {
+        "ra": float(np.abs(height).mean()),
+        "rq": rq,
+        "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
+        "slope": float(np.abs(np.diff(left) / np.diff(s)).max()),
+        "deepest": float((z - left).max()),
+    }
+
+
+def passes_to_run_in(rows):
+    """Number of the first pass that adds less than `RUN_IN` of what the first one added; None: none does.
+
+    Parameters
+    ----------
+    rows : list of dict
+        Of the passes from the first on, each with its number, "pass", and the volume it "added".
+    """
+    if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
+        return None
+    return next((row["pass"] for row in rows if row["added"] < RUN_IN * rows[0]["added"]), None)
