@@ -89,7 +89,7 @@ def added(axes, rows):
 
 
 def contact(axes, rows):
-    """Share of the load on the solids and length of contact, means over the time that both surfaces fill it."""
+    """Share of the load on the solids and length of contact, means while both surfaces fill it."""
     numbers = np.arange(1, len(rows) + 1)
     axes.plot(numbers, [row.get("contact_share") or np.nan for row in rows], "o-", color=LAST)
     axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers), ylim=(0.0, None))

@@ -31,7 +31,7 @@ def pass_figures(result, begin):
 
 
 def heights(result, side):
-    """Body points, heights as made and as the pass has left them [m]; None: nothing is known of the surface."""
+    """Body points, heights as made and as the pass has left them [m]; None: nothing is known of them."""
     name = f"surface/{side}"
     if f"{name}/s" not in result:
         return None

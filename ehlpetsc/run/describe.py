@@ -103,7 +103,7 @@ def warnings(case, scales):
     if case.contact.yield_pressure and min(case.contact.yield_pressure) < SOFT * scales.p0:
         notes.append(
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
-            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, which a half space does not tell"
+            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, which no half space tells"
         )
     if rough and case.time is None and case.motion is not None:
         notes.append(
