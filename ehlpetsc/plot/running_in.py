@@ -9,6 +9,7 @@ from ehlpetsc.results.running_in import heights, pass_figures
 
 SIZE = (11.0, 7.0)  # inches
 STRETCH = 0.6  # half widths of profile shown, around the deepest set
+ROOM = 1.15  # above the highest value
 FIRST, LAST = "0.65", "C3"
 
 
@@ -85,20 +86,21 @@ def added(axes, rows):
             beside.plot(numbers, ra, style, color="C0", ms=4, label=f"Ra {side}")
     beside.set_ylabel("Ra [µm]", color="C0")
     if beside.lines:
-        beside.legend(fontsize="small", loc="upper right")
+        beside.legend(fontsize="small", loc="center right")
 
 
 def contact(axes, rows):
     """Share of the load on the solids and length of contact, means while both surfaces fill it."""
     numbers = np.arange(1, len(rows) + 1)
-    axes.plot(numbers, [row.get("contact_share") or np.nan for row in rows], "o-", color=LAST)
-    axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers), ylim=(0.0, None))
+    share = [row.get("contact_share") or np.nan for row in rows]
+    axes.plot(numbers, share, "o-", color=LAST)
+    axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers))
+    axes.set_ylim(0.0, ROOM * np.nanmax(share))
     beside = axes.twinx()
-    beside.plot(
-        numbers, [1e6 * (row.get("contact_length") or np.nan) for row in rows], "s--", color="C0", ms=4
-    )
+    length = [1e6 * (row.get("contact_length") or np.nan) for row in rows]
+    beside.plot(numbers, length, "s--", color="C0", ms=4)
     beside.set_ylabel("length in contact [µm]", color="C0")
-    beside.set_ylim(0.0, None)
+    beside.set_ylim(0.0, ROOM**2 * np.nanmax(length))
 
 
 def ticks(numbers):
