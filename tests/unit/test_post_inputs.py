@@ -194,3 +194,29 @@ def test_a_point_of_a_picture_must_have_passed(scene, tmp_path):
     for s in (0.0, allowed[-1] + 0.1, allowed[0] - 0.1):  # began inside the contact, did not go through it
         with pytest.raises(PostError, match=f"{allowed[0]:.6g} to {allowed[-1]:.6g} is allowed"):
             history_picture(path, result, (s, 0.0))
+
+
+def of_fixed_length(file):
+    """As the solver writes: texts of a fixed length, check sums, what a pass has left on a surface."""
+    for name, value in file.attrs.items():
+        if isinstance(value, str):
+            file.attrs[name] = np.bytes_(value.encode())
+    for name in ("pressure", "shear_stress_slow"):
+        values = file[name][:]
+        del file[name]
+        file.create_dataset(name, data=values, chunks=(8, values.shape[1]), fletcher32=True)
+        file[name].attrs["units"] = np.bytes_(b"Pa")
+    file["surface/slow/set"] = 1e-9 * np.ones(file["surface/slow/z"].shape)
+
+
+def test_texts_of_any_kind_and_check_sums_are_read(scene, tmp_path):
+    paths = [write(tmp_path / f"{k}.h5", scene, edit=edit) for k, edit in enumerate((None, of_fixed_length))]
+    digests = []
+    for path in paths:
+        with Loads(path) as loads:
+            assert loads.title == "made up" and loads.status == "done"
+            digests.append(prepare(loads, ("slow",), (0.0,), print).digest)
+    assert digests[0] == digests[1]
+    with h5py.File(paths[1], "r+") as file:
+        file["pressure"].attrs["units"] = np.bytes_(b"MPa")
+    assert 'its unit is "MPa", it must be "Pa"' in refused(paths[1])

@@ -147,8 +147,9 @@ class Loads:
         if not shape or dimensions and len(shape) != dimensions:
             raise PostError(f"dataset {name}: has {len(shape or ())} dimensions, not {dimensions or 'one'}")
         wanted = UNITS[name.rpartition("/")[2]]
-        if units is not None and text(units, f"dataset {name}, attribute units") != wanted:
-            raise PostError(f'dataset {name}: its unit is "{in_words(units)}", it must be "{wanted}"')
+        unit = wanted if units is None else text(units, f"dataset {name}, attribute units")
+        if unit != wanted:
+            raise PostError(f'dataset {name}: its unit is "{in_words(unit)}", it must be "{wanted}"')
         return found
 
     def _row(self, name, most=MOST_VALUES):
