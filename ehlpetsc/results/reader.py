@@ -20,8 +20,8 @@ def read_result(path):
 
 def _whole_rows(group):
     """Rows that a group's datasets share; its ``time`` is written last and so vouches for the rest."""
-    rows = [d.shape[0] for d in group.values() if isinstance(d, h5py.Dataset) and d.maxshape[0] is None]
-    return min(rows, default=0)
+    datasets = [d for d in group.values() if isinstance(d, h5py.Dataset)]
+    return min((d.shape[0] for d in datasets if d.maxshape[0] is None or d.ndim == 2), default=0)
 
 
 class Steps:

@@ -20,7 +20,7 @@ SCENES = (
     ["table1_rough.toml", "time.travel=0.14", "fluid.viscosity=0.003"],
     ["dry_hertz.toml"],
 )
-LIMIT, RUN_MINUTES = 90, 0.15
+LIMIT, RUN_MINUTES = 300, 0.15
 SAME = 1e-5  # relative, of least film and largest pressure
 NUMBERS = (
     "0",

@@ -11,8 +11,8 @@ from ehlpetsc.analysis import compare
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import read_result
 
-LIMIT = 60  # s
-PICTURES = 10
+LIMIT = 240  # s
+PICTURES = 25
 
 
 class Draw:

@@ -193,6 +193,7 @@ DAMAGE = [
     (change("total newton", lambda v: np.inf), "total newton is inf"),
     (change("a", lambda v: 0.0), "a .half width"),
     (change("a", lambda v: 2.0 * v), "its nodes lie from"),
+    (lambda arrays, _: arrays.pop("m_older"), "its film contents m, m_older are missing"),
 ]
 
 

@@ -87,9 +87,10 @@ def _fault(file):
 
 
 def _fault_of_datasets(file):
-    lost = [name for name in str(plain(file.attrs.get("contents", ""))).split() if name not in file]
+    named = str(plain(file.attrs.get("contents", ""))).split()
+    lost = [name for name in named if not isinstance(file.get(name), h5py.Dataset)]
     if lost:
-        return f"damaged: {lost[0]} is missing"
+        return f"damaged: {lost[0]} is missing, or cannot be read"
     room = BEYOND * os.fstat(file.id.get_vfd_handle()).st_size
     for name in ("x", "contact_count", *(f"surface/{s}/{v}" for s in ("fast", "slow") for v in "sz")):
         if name in file and not (isinstance(file[name], h5py.Dataset) and (file[name].nbytes or 0) <= room):

@@ -161,8 +161,8 @@ def _misfit(arrays, attributes, earlier, case, scales):
     if ("fluid" in earlier) != (case.fluid is not None):
         one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
         return f"a run {one} [fluid] cannot go on {other} it"
-    if case.fluid is not None and attributes["dt"] and "m" not in arrays:
-        return "damaged restart file: m (film content in a^2/R) is missing"
+    if case.fluid is not None and attributes["dt"] and not {"m", "m_older"} <= arrays.keys():
+        return "damaged restart file: its film contents m, m_older are missing"
     for side, name, speed in (("fast", "u1", scales.u1), ("slow", "u2", scales.u2)):
         if getattr(case.surface, side) and np.sign(attributes[name]) != np.sign(speed):
             return (
