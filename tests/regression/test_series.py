@@ -5,6 +5,9 @@ import json
 import pytest
 from running import ROOT, SHORT, run, settings, summary
 
+from ehlpetsc.analysis import contact_statistics, ensemble
+from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.post.arguments import arguments
 from ehlpetsc.results.reader import read_result
 
 pytestmark = pytest.mark.slow
@@ -123,3 +126,27 @@ def test_what_makes_no_series(tmp_path, words, fault):
     done = series(tmp_path, *words, ranks=0)
     assert done.returncode == 2 and fault in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_several_keys_make_a_grid_that_all_commands_take(tmp_path):
+    keys = ["surface.slow.synthetic.seed", "motion.entrainment_speed"]
+    sets = [
+        *SHORT[:2],
+        "mesh.points_per_half_width=20",
+        "time.travel=0.2",
+        "surface.slow={synthetic={kind='ground',ra=1e-7,correlation=3e-5,seed=1}}",
+        "surface.fast={synthetic={kind='ground',ra=1e-7,correlation=3e-5,seed=9}}",
+        f"series={{keys={json.dumps(keys)},values=[[1,2],[5.0,2.0]]}}",
+    ]
+    done = run(CASE, "-ehl_output", "out.h5", *settings(*sets), cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    index = json.loads((tmp_path / "out.series.json").read_text())
+    assert index["keys"] == keys and "key" not in index
+    assert [entry["value"] for entry in index["members"]] == [[1, 5.0], [1, 2.0], [2, 5.0], [2, 2.0]]
+    assert index["members"][1]["file"] == "out_seed_1_entrainment_speed_2.0.h5"
+    assert {entry["state"] for entry in index["members"]} == {"done"}
+    series_index = str(tmp_path / "out.series.json")
+    assert plot([series_index]) == plot([series_index, "--ensemble"]) == 0
+    assert contact_statistics.main([series_index]) == ensemble.main([series_index]) == 0
+    assert len((tmp_path / "out.ensemble.csv").read_text().splitlines()) > 20
+    assert arguments([series_index]).results == [str(tmp_path / one["file"]) for one in index["members"]]
