@@ -40,11 +40,11 @@ def limits(case, scales, rough, totals):
 
 
 def _yield(case, totals):
-    if getattr(case.contact, "yield_pressure", None) is not None or totals["p_max"] <= YIELD:
+    if case.contact.yield_pressure is not None or totals["p_max"] <= YIELD:
         return None
     return (
         f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
-        f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic"
+        f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic; in mixed contact yield_pressure lets them flow"
     )
 
 
