@@ -44,7 +44,8 @@ def _yield(case, totals):
         return None
     return (
         f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
-        f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic; in mixed contact yield_pressure lets them flow"
+        f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic; "
+        "in mixed contact yield_pressure lets them flow"
     )
 
 
