@@ -81,7 +81,7 @@ class Lock:
     def take(self):
         """Take it; OutputError names who has it."""
         file = self._locked()
-        while not self._path.exists() or not self._path.samefile(f"/proc/self/fd/{file.fileno()}"):
+        while not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
             file.close()  # the one before gave it back between our opening and our locking
             file = self._locked()
         file.truncate(0)

@@ -104,8 +104,8 @@ class Simulation:
     >>> simulation = ehlpetsc.Simulation(ehlpetsc.load("cases/ridge.toml", short))
     >>> [state.step for state in simulation]
     [0, 1, 2, 3, 4]
-    >>> simulation.state.pressure.shape, simulation.state.h_min < 1e-6  # Pa, m
-    ((81,), True)
+    >>> print(simulation.state.pressure.shape, simulation.state.h_min < 1e-6)  # Pa, m
+    (81,) True
     """
 
     def __init__(self, case, comm=None, options=None, after=None, pass_number=None):

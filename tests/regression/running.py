@@ -38,7 +38,11 @@ SCRIPT = {
 }
 BARE = {"PATH": "/usr/bin:/bin", "HOME": "/", "TERM": "dumb"}
 PREPARED = Prepared(PYTHON, BARE | SCRIPT)
-MPIRUNS_COMMENT = re.compile(r"^-{70,}\nprterun detected that one or more processes.*?^-{70,}\n", re.S | re.M)
+MPIRUNS_COMMENT = re.compile(  # what run_mpi.sh leaves out too
+    r"^-{70,}\nprterun detected that one or more processes.*?^-{70,}\n"
+    r"|^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH.*?\n",
+    re.S | re.M,
+)
 
 # the inlet near the contact, so that a few steps carry the roughness there; 40 steps on 113 nodes
 SHORT = ["mesh.inlet=-1.5", "mesh.outlet=1.3", "mesh.points_per_half_width=40", "time.travel=0.5"]

@@ -227,7 +227,7 @@ def test_importing_is_light_and_finds_petsc_by_itself(tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", LIGHT],
         cwd=tmp_path,
-        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", "HOME": "/"},
         capture_output=True,
         text=True,
     )
