@@ -67,6 +67,7 @@ def help_text():
     lines += [f"  -{name}{o.shown}: {o.text} (default: {o.default})" for name, o in OWN.items()]
     lines += [
         "  --explain: tell the scene in words, with expected film, run time and file size; nothing is run",
+        "  --ranks: print how many ranks the case is worth, one or two; nothing is run",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
     ]
     return "\n".join(lines)

@@ -57,9 +57,9 @@ def _of_model(line, model):
 
 def _shortened(line):
     keys = {override.partition("=")[0] for override in line.overrides}
-    if line.before or "mesh.points_per_half_width" in keys:  # nodes where an earlier run has them
-        return (*line.overrides, *BRIEF)
-    return (*line.overrides, *COARSE, *(BRIEF if "time.travel" in keys else ()))
+    brief = BRIEF if line.before or "time.travel" in keys else ()
+    coarse = () if line.before or "mesh.points_per_half_width" in keys else COARSE  # nodes of an earlier run
+    return (*line.overrides, *coarse, *brief)
 
 
 def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):

@@ -1,6 +1,8 @@
 """Case files that are text of another kind than meant: nul, endless keys, byte order marks, dotted tables."""
 
 import itertools
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -132,3 +134,18 @@ def test_what_is_stored_is_what_is_run_whatever_the_layout(tmp_path):
             assert tomllib.loads(case.text)
             count += 1
     assert count > 400
+
+
+def test_warnings_of_numpy_reach_no_user():
+    """They are for developers: python3 -W default shows them."""
+    code = "import sys; import numpy; from ehlpetsc import __main__ as command\n"
+    code += "command.main = lambda argv: numpy.log(numpy.zeros(1)) is None\n"
+    code += "sys.exit(command.guarded(['ehlpetsc']))"
+    told = {}
+    for words in ((), ("-W", "default")):
+        done = subprocess.run(
+            [sys.executable, *words, "-c", code], capture_output=True, text=True, timeout=60
+        )
+        assert done.returncode == 0
+        told[words] = done.stderr
+    assert told[()] == "" and "divide by zero" in told["-W", "default"]
