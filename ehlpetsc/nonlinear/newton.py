@@ -236,6 +236,9 @@ class NewtonSolver:
             self.snes.solve(None, self.x)
             self.snes.setTolerances(max_it=usual[0], atol=usual[1])
         except PETSc.Error as error:
+            raised = error.__cause__  # by what PETSc called: newer releases wrap it
+            if raised and not isinstance(raised, PETSc.Error):
+                raise raised from None
             self._refuse(error)
         return self._solution()
 
