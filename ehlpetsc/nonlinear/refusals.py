@@ -75,5 +75,5 @@ def looser():
 def _number(text):
     try:
         return float(text)
-    except ValueError:
+    except (TypeError, ValueError):  # without a value, or a word
         return None

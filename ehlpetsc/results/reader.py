@@ -11,6 +11,7 @@ from ehlpetsc.results.hdf5.opening import open_result
 from ehlpetsc.results.hdf5.stored import Stored, reading
 
 CHECKED = 1024  # frames at a time
+OVER_NODES = ("x", "contact_count")
 
 
 def read_result(path):
@@ -20,8 +21,8 @@ def read_result(path):
 
 def _whole_rows(group):
     """Rows that a group's datasets share; its ``time`` is written last and so vouches for the rest."""
-    datasets = [d for d in group.values() if isinstance(d, h5py.Dataset)]
-    return min((d.shape[0] for d in datasets if d.maxshape[0] is None or d.ndim == 2), default=0)
+    rows = [d.shape[0] for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in OVER_NODES]
+    return min(rows, default=0)
 
 
 class Steps:
@@ -85,6 +86,9 @@ class Result:
         for times in (self.time, self.steps("time")):
             if not (np.isfinite(times).all() and (np.diff(times) >= 0.0).all()):
                 raise OutputError(f"{path}: damaged, its times do not increase")
+        for steps in (self.step, self.steps("step")) if "step" in self.figures else ():
+            if not (np.diff(steps) > 0).all():
+                raise OutputError(f"{path}: damaged, its numbers of steps do not increase")
 
     def __enter__(self):
         return self

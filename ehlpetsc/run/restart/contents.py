@@ -134,7 +134,7 @@ def _fault_of_totals(attributes):
             continue
         if name.removeprefix(TOTAL) not in STEP_SCALARS:
             return f"nobody knows its {name}"
-        if not isinstance(value, int | float | np.number) or np.isinf(value):
+        if not isinstance(value, int | float | np.integer | np.floating) or np.isinf(value):
             return f"{name} is {value!r}"
     return None
 
