@@ -149,7 +149,7 @@ def test_runs_that_take_turns_do_not_disturb_each_other(case, result):
 def test_no_convergence_is_an_exception_with_the_last_good_state(case, result, tmp_path, monkeypatch):
     from ehlpetsc.errors import SolveFailed
 
-    def fail(*_):
+    def fail(*_, **__):
         raise SolveFailed("MADE_UP", 1)
 
     simulation = ehlpetsc.Simulation(case)

@@ -16,7 +16,7 @@ CASES = Path(__file__).parents[2] / "cases"
 SHORT = {"mesh.inlet": -1.4, "mesh.outlet": 1.3, "mesh.points_per_half_width": 60, "time.travel": 1.0}
 SCENES = {
     "direct": ("table1_rough.toml", SHORT | {"fluid.viscosity": 0.001}),
-    "slow direct": ("table1_rough.toml", SHORT | {"motion.entrainment_speed": 0.01, "time.travel": 0.7}),
+    "slow direct": ("table1_rough.toml", SHORT | {"motion.entrainment_speed": 0.03, "time.travel": 0.7}),
     "mixed": ("table1_mixed.toml", SHORT | {"fluid.viscosity": 0.001}),
     "film": ("ridge.toml", SHORT | {"surface.slow.synthetic.position": 0.0}),
     "dry": ("dry_hertz.toml", {}),
