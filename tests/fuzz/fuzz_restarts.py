@@ -117,6 +117,8 @@ class Draw:
     def _other_array(rng, arrays):
         name = str(rng.choice(sorted(arrays)))
         how = int(rng.integers(9))
+        if not np.size(arrays[name]) or not np.ndim(arrays[name]):
+            return "nothing"
         values = arrays.pop(name)
         changed = values.copy()
         with np.errstate(all="ignore"):
