@@ -130,7 +130,10 @@ class EHLProblem:
         -------
         Evaluation
         """
-        relations = self.model.relations(q, w)
+        return self.rows_of(self.model.relations(q, w), h00, inputs)
+
+    def rows_of(self, relations, h00, inputs):
+        """As :meth:`evaluate`, of a state given by what its unknowns mean."""
         residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
         separation = relations.separation - 0.5 * self.x**2 - inputs.phi
@@ -160,7 +163,11 @@ class EHLProblem:
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        oil, pressure, film, separation = relations.changes(v_q, v_w)
+        return self.changes_of_rows(relations.changes(v_q, v_w), derivatives, v_h00)
+
+    def changes_of_rows(self, changes, derivatives, v_h00):
+        """As :meth:`product`, of changes of oil, pressure, film and separation."""
+        oil, pressure, film, separation = changes
         rows = np.empty(count(self.local) + self.load_is_local)
         firsts(rows, self.local)[:] = self.deflection.rows(separation, pressure, v_h00)
         reynolds_product(derivatives, oil, film, self.first, seconds(rows, self.local))

@@ -36,7 +36,29 @@ def leaks(*derivatives):
     return np.where(known, 0.0, LEAK)
 
 
-class JacobianOperator:
+class BandSystem:
+    """What the default preconditioner asks of an operator on some of the pairs (q, w), h00 last.
+
+    Attributes
+    ----------
+    kept : ndarray of int
+        Local places, of the pairs alone, that are in the system.
+    dropped : ndarray of int
+        Local nodes whose second unknown is not.
+    """
+
+    def rows_for_band(self, b):
+        """A right-hand side as the rows of `kept` and the load's, which the last rank has."""
+        return b[: len(self.kept)], b[len(self.kept) :]
+
+    def take_from_band(self, solution, approach, out):
+        """Fill in the unknowns from the local pairs and h00."""
+        count = len(self.kept)
+        out[:count] = solution if count == len(solution) else solution[self.kept]
+        out[count:] = approach  # on the last rank
+
+
+class JacobianOperator(BandSystem):
     """Context of PETSc's Python matrix.
 
     Parameters
@@ -86,16 +108,8 @@ class JacobianOperator:
         return made
 
 
-class RestrictedOperator:
-    """The Jacobian of the unknowns that SNESVI has kept; context of a Python matrix.
-
-    Attributes
-    ----------
-    kept : ndarray of int
-        Local places, of the pairs alone, that are in the system.
-    dropped : ndarray of int
-        Local nodes whose second unknown is not.
-    """
+class RestrictedOperator(BandSystem):
+    """The Jacobian of the unknowns that SNESVI has kept; context of a Python matrix."""
 
     def __init__(self, whole, rows, mat):
         self.whole, self.problem, self.factors = whole, whole.problem, whole.factors

@@ -2,7 +2,8 @@ r"""SNES set-up for one solve: Newton's method with the exact deflection in the 
 
 Direct contact: ``vinewtonrsls``. At every iteration the nodes with h at its bound and F > 0 form the contact
 set, whose Reynolds rows and films leave the system. Mixed contact: ``newtonls`` on the semismooth system,
-whose unknowns carry the complementarity in their sign. Either way the operator is matrix-free
+whose unknowns carry the complementarity in their sign (asked for ``vinewtonrsls``, it is
+:mod:`.variational_inequality`). Either way the operator is matrix-free
 (:mod:`ehlpetsc.nonlinear.jacobian_operator`), so that Newton converges as with the full Jacobian, and its
 preconditioner (:mod:`ehlpetsc.nonlinear.preconditioner`) has the far field too, by exponentials. Other
 preconditioners (``-pc_type lu`` ...) get the near-field matrix.
@@ -62,15 +63,19 @@ class NewtonSolver:
         self.n, self.local, self.first, self.comm = n, last - first, first, comm
         self.problem = EHLProblem(case, scales, film_scale, first, last)
         self.model = self.problem.model
-        sizes = (count(self.local) + self.problem.load_is_local, count(n) + 1)
-        self.x = PETSc.Vec().createMPI(sizes, comm=comm)
-        self.f = self.x.duplicate()
-        self.to_all, self.all = PETSc.Scatter.toAll(self.x)
+        self._create_vectors(count)
         self.near_field = case.mesh.near_field
         self._create_bounds()
         self.jacobian = self.place = self.watch = None
         self.limited = False
         self._create_snes()
+
+    def _create_vectors(self, count):
+        """`count`: unknowns of so many nodes."""
+        sizes = (count(self.local) + self.problem.load_is_local, count(self.n) + 1)
+        self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
+        self.f = self.x.duplicate()
+        self.to_all, self.all = PETSc.Scatter.toAll(self.x)
 
     @property
     def bound(self):

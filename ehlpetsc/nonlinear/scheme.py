@@ -4,6 +4,7 @@ from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import text_of
+from ehlpetsc.nonlinear.variational_inequality import VariationalInequalitySolver
 
 ALLOWED = ("newton", "sweep")
 
@@ -31,6 +32,11 @@ def solver_of(case, scales, film_scale, comm, options):
         Sweeps are asked for, but the contact is dry or mixed.
     """
     if scheme(options) == "newton":
+        bounded = text_of(options, "snes_type") == "vinewtonrsls"
+        if case.contact.model == "mixed" and bounded:
+            if case.contact.yield_pressure is not None:
+                raise UsageError("-snes_type vinewtonrsls: solids that yield need newtonls; leave it out")
+            return VariationalInequalitySolver(case, scales, film_scale, comm)
         return NewtonSolver(case, scales, film_scale, comm)
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")

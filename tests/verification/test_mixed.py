@@ -179,3 +179,18 @@ def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
     assert contents[-1] - contents[0] == pytest.approx(leak, abs=1e-9 * contents[0])
     assert abs(leak) < 3e-3 * contents[0]
     assert within > beyond.max()
+
+
+def test_the_variational_inequality_gives_the_same(rough):
+    """p_c as a third, bounded unknown (SNES's vinewtonrsls) against the sign of one unknown (newtonls)."""
+    simulation, states = rough
+    bounded = Simulation(simulation.case, options={"snes_type": "vinewtonrsls"})
+    p0, h = simulation.scales.p0, simulation.scales.h
+    for one, other in zip(states, bounded, strict=True):
+        np.testing.assert_array_equal(other.in_contact, one.in_contact)
+        np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=1e-7 * p0)
+        np.testing.assert_allclose(other.film_thickness, one.film_thickness, rtol=0, atol=1e-8 * h)
+        assert (
+            other.contact_pressure * (other.film_thickness - bounded.case.contact.boundary_film)
+        ).max() < 1e-9
+        assert other.retries == 0 and other.mass_error < 1e-6

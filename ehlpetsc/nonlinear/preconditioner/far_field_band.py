@@ -49,12 +49,10 @@ class FarFieldBand:
 
     def apply(self, pc, x, y):
         """Solve."""
-        o = self.operator
-        b, out, kept, problem = x.array_r, y.array, o.kept, o.problem
-        count = len(kept)
+        o, problem = self.operator, self.operator.problem
         with events.BACK_SOLVE:
-            solution, approach = o.factors.lu.solve(b[:count], kept, b[count:].sum())
+            rows, load = o.rows_for_band(x.array_r)
+            solution, approach = o.factors.lu.solve(rows, o.kept, load.sum())
             local = slice(problem.first, problem.last)
             in_unknowns(problem.model, o.relations, local, solution.reshape(-1, 2))
-            out[:count] = solution if count == len(solution) else solution[kept]
-            out[count:] = approach  # on the last rank
+            o.take_from_band(solution, approach, y.array)

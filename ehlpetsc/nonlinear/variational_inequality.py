@@ -1,0 +1,268 @@
+r"""Mixed contact as a variational inequality: ``-snes_type vinewtonrsls``.
+
+The solids' pressure is a third unknown of each node, bounded below, and the film over the boundary film its
+row,
+
+.. math:: p_c\ge0,\quad h-h_b\ge0,\quad p_c(h-h_b)=0;
+
+SNESVI drops both wherever solids do not carry. Deflection and Reynolds' equation are those of
+:mod:`ehlpetsc.discretisation.ehl_problem`, the answers those of the semismooth system (``newtonls``), whose
+two unknowns a node carry the complementarity in their sign, to Newton's tolerance.
+
+Unknowns (q_0, h_0, p_c0, q_1, ..., h00), rows (deflection, Reynolds, gap) in the same places.
+"""
+
+import numpy as np
+from petsc4py import PETSc
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact_model import Relations, full_of_oil
+from ehlpetsc.discretisation.interleaving import count, firsts, seconds
+from ehlpetsc.errors import UsageError
+from ehlpetsc.nonlinear import events, step_limits
+from ehlpetsc.nonlinear.jacobian_operator import BandSystem
+from ehlpetsc.nonlinear.newton import OPENED, NewtonSolver
+from ehlpetsc.nonlinear.preconditioner import FarFieldBand
+from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
+
+UNKNOWNS = 3  # of a node
+
+
+def three(nodes):
+    """Unknowns of so many nodes, h00 left out."""
+    return UNKNOWNS * nodes
+
+
+def triples(vector, nodes):
+    """View of the unknowns, or rows, of so many nodes, shape (nodes, 3)."""
+    return vector[: three(nodes)].reshape(nodes, UNKNOWNS)
+
+
+class ThreeFieldOperator:
+    """The whole Jacobian; context of PETSc's Python matrix.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    gather : callable
+        Whole (q, h, p_c, h00) of a distributed vector.
+    factors : preconditioner.far_field_band.Factors
+    """
+
+    def __init__(self, problem, gather, factors):
+        self.problem, self.gather, self.factors = problem, gather, factors
+
+    def linearise(self, evaluation):
+        """Take the derivatives of a state."""
+        self.relations, self.derivatives = evaluation.relations, evaluation.reynolds_derivatives
+
+    def rows(self, q, h, p_c, h00):
+        """Deflection, Reynolds and load of changes of the unknowns, as of `EHLProblem.product`."""
+        changes = q, self.relations.p_q * q + p_c, h, h
+        return self.problem.changes_of_rows(changes, self.derivatives, h00)
+
+    def mult(self, mat, v, out):
+        """PETSc's product."""
+        p, (q, h, p_c, h00) = self.problem, self.gather(v)
+        with events.PRODUCT:
+            rows, mine = self.rows(q, h, p_c, h00), slice(p.first, p.last)
+            put_rows(out.array, p, rows, h[mine] / p.film_scale)
+
+    def createSubMatrix(self, mat, rows, columns, out=None):
+        """What SNESVI keeps of the system."""
+        restricted = RestrictedThreeFields(self, rows, mat)
+        sizes = (rows.getLocalSize(), rows.getSize())
+        made = PETSc.Mat().createPython((sizes, sizes), restricted, comm=mat.comm)
+        made.setUp()
+        return made
+
+
+def put_rows(out, problem, pairs, gap):
+    """Fill in local rows from the pairs (deflection, Reynolds) with the load's, and the gap's."""
+    local = problem.local
+    rows = triples(out, local)
+    rows[:, 0], rows[:, 1], rows[:, 2] = firsts(pairs, local), seconds(pairs, local), gap
+    if problem.load_is_local:
+        out[-1] = pairs[-1]
+
+
+class RestrictedThreeFields(BandSystem):
+    """The Jacobian where p_c and its row are left out of the nodes whose solids do not carry.
+
+    The preconditioner's band has two unknowns a node. Where solids carry, the row of the gap alone gives the
+    change of the film; what that does to the other rows goes to their right-hand sides, and p_c takes the
+    film's place.
+    """
+
+    def __init__(self, whole, rows, mat):
+        self.whole, self.problem, self.factors = whole, whole.problem, whole.factors
+        p, local = self.problem, self.problem.local
+        self.places = rows.indices - mat.getOwnershipRange()[0]
+        inner = self.places[: len(self.places) - p.load_is_local]
+        self.solid = inner[inner % UNKNOWNS == 2] // UNKNOWNS
+        self.kept, self.dropped = np.arange(count(local)), np.arange(0)
+        self.full, self.product = mat.createVecs()
+        self.comm = mat.comm.tompi4py()
+        mine = np.zeros(local)
+        mine[self.solid] = 1.0
+        self.touching = self._everywhere(mine) > 0.0
+
+    def _everywhere(self, mine):
+        """Whole array of the local ones."""
+        return np.concatenate(self.comm.allgather(mine))
+
+    @property
+    def relations(self):
+        """As of the semismooth system with these nodes in contact."""
+        r, model = self.whole.relations, self.problem.model
+        p_w, h_w = np.where(self.touching, -model.stiffness, 0.0), np.where(self.touching, 0.0, 1.0)
+        return r._replace(p_w=p_w, h_w=h_w, touching=self.touching)
+
+    @property
+    def reynolds_derivatives(self):
+        return self.whole.derivatives
+
+    def mult(self, mat, v, out):
+        """PETSc's product."""
+        self.full.set(0.0)
+        self.full.array[self.places] = v.array_r
+        self.whole.mult(None, self.full, self.product)
+        out.array[:] = self.product.array_r[self.places]
+
+    def rows_for_band(self, b):
+        p = self.problem
+        self.full.set(0.0)
+        self.full.array[self.places] = b
+        rows = triples(self.full.array, p.local)
+        self.film = np.zeros(p.local)
+        self.film[self.solid] = p.film_scale * rows[self.solid, 2]
+        pairs, load = rows[:, :2].reshape(-1).copy(), self.full.array[three(p.local) :].copy()
+        if self.comm.allreduce(bool(self.film.any()), max):
+            none = np.zeros(p.n)
+            moved = self.whole.rows(none, self._everywhere(self.film), none, 0.0)
+            pairs -= moved[: count(p.local)]
+        return pairs, load
+
+    def take_from_band(self, solution, approach, out):
+        p, q, w = self.problem, solution[::2], solution[1::2]
+        rows = triples(self.full.array, p.local)
+        rows[:, 0], rows[:, 1] = q, w
+        rows[self.solid, 1] = self.film[self.solid]
+        rows[self.solid, 2] = -p.model.stiffness * w[self.solid]
+        self.full.array[three(p.local) :] = approach
+        out[:] = self.full.array[self.places]
+
+
+class VariationalInequalitySolver(NewtonSolver):
+    """Newton's method with active sets on three unknowns a node; speaks in those of the contact model."""
+
+    def _create_vectors(self, _):
+        super()._create_vectors(three)
+
+    def _create_bounds(self):
+        self.lower, self.upper = self.x.duplicate(), self.x.duplicate()
+        self.lower.set(PETSc.NINFINITY)
+        self.upper.set(PETSc.INFINITY)
+        triples(self.lower.array, self.local)[:, 2] = 0.0
+
+    def _create_matrices(self):
+        sizes, pc = (self.x.getSizes(),) * 2, self.snes.ksp.pc
+        if not (pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)):
+            self.snes.destroy()
+            raise UsageError(
+                "-snes_type vinewtonrsls in mixed contact has the preconditioner of this program alone; "
+                "leave -pc_type out"
+            )
+        self.factors, self.assembled = Factors(self.problem, self.comm.tompi4py()), None
+        self.jacobian = ThreeFieldOperator(self.problem, self._whole, self.factors)
+        self.operator = PETSc.Mat().createPython(sizes, self.jacobian, comm=self.comm)
+        self.operator.setUp()
+        self.preconditioned = self.operator
+
+    def _whole(self, v):
+        """Whole q, h, p_c and h00 of a distributed vector."""
+        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
+        return self._fields(self.all.array_r)
+
+    def _fields(self, whole):
+        rows = triples(whole, self.n)
+        return rows[:, 0].copy(), rows[:, 1].copy(), rows[:, 2].copy(), whole[three(self.n)]
+
+    def gather(self, v):
+        """The whole solution in the unknowns of the contact model."""
+        q, h, p_c, h00 = self._whole(v)
+        return q, self.model.second_unknown(h, p_c), h00
+
+    def scatter(self, q, w, h00):
+        """Fill the local part of the unknowns from those of the contact model."""
+        mine, rows = slice(self.first, self.first + self.local), triples(self.x.array, self.local)
+        rows[:, 0], rows[:, 1] = q[mine], self.model.relations(q, w).film[mine]
+        rows[:, 2] = self.model.contact_pressure(w)[mine]
+        if self.problem.load_is_local:
+            self.x.array[-1] = h00
+
+    def residual(self):
+        """Rows of the last solution in the unknowns of the contact model, as of `NewtonSolver`."""
+        rows = self.problem.evaluate(*self.gather(self.x), self.inputs).residual
+        parts = firsts(rows, self.local).copy(), seconds(rows, self.local).copy(), rows[count(self.local) :]
+        deflection, imbalance, load = zip(*self.comm.tompi4py().allgather(parts), strict=True)
+        return np.concatenate(deflection), np.concatenate(imbalance), float(np.concatenate(load)[0])
+
+    def _evaluation(self, x):
+        self.to_all.scatter(x, self.all, mode=PETSc.ScatterMode.FORWARD)
+        if self.place is None or not np.array_equal(self.all.array_r, self.place):
+            self.place = self.all.array_r.copy()
+            q, h, p_c, h00 = self._fields(self.place)
+            none, one, touching = np.zeros(self.n), np.ones(self.n), p_c > 0.0
+            pressure = np.maximum(q, 0.0) + p_c
+            relations = Relations(q, pressure, h, full_of_oil(q) * 1.0, none, one, touching)
+            with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
+                self.evaluation = self.problem.rows_of(relations, h00, self.inputs)
+        return self.evaluation
+
+    def _function(self, snes, x, f):
+        evaluation, p = self._evaluation(x), self.problem
+        film = evaluation.relations.film[p.first : p.last]
+        put_rows(f.array, p, evaluation.residual, (film - self.model.boundary_film) / p.film_scale)
+
+    def _limit_step(self, x, y):
+        if self.watch:
+            self.watch()
+        now, step = triples(x.array_r, self.local), triples(y.array, self.local)
+        largest = self.comm.tompi4py().allreduce(largest_change(now, step), max)
+        if largest > step_limits.STEP_LIMIT:
+            y.scale(step_limits.STEP_LIMIT / largest)
+        cross_gently(now, step, self.model.boundary_film, OPENED * self.problem.film_scale)
+        return True
+
+
+@compiled
+def largest_change(now, step):
+    """Largest change of total pressure; solids that do not carry yet do not count."""
+    largest = 0.0
+    for i in range(len(now)):
+        q, p_c = now[i, 0], now[i, 2]
+        solids = max(p_c - step[i, 2], 0.0) - p_c if p_c > 0.0 else 0.0
+        largest = max(largest, abs(max(q - step[i, 0], 0.0) - max(q, 0.0) + solids))
+    return largest
+
+
+@compiled
+def cross_gently(now, step, boundary_film, opened):
+    """Change steps in place where solids come to touch or part, cavities fill or empty.
+
+    Solids that touch have the boundary film between them and next to no pressure; those that part get
+    the film `opened` over it, which tells SNESVI that they do not carry.
+    """
+    for i in range(len(now)):
+        q, dq, h, p_c = now[i, 0], step[i, 0], now[i, 1], now[i, 2]
+        if q < 0.0 and q - dq > step_limits.REFILLED:
+            step[i, 0] = q - step_limits.REFILLED
+        elif q - dq < 0.0:
+            step[i, 0] = min(dq, q + 1.0 - step_limits.OIL_KEPT * (1.0 + min(q, 0.0)))
+        if p_c > 0.0 and p_c - step[i, 2] <= 0.0:
+            step[i, 2], step[i, 1] = p_c, h - boundary_film - opened
+        elif p_c > 0.0 or h - step[i, 1] <= boundary_film:
+            step[i, 1] = h - boundary_film
+            if p_c <= 0.0:
+                step[i, 2] = p_c - step_limits.REFILLED
