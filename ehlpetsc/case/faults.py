@@ -15,7 +15,8 @@ def allowed(field):
     field : pydantic.fields.ModelField
     """
     info = field.field_info
-    text = _kind(field) + _bounds(item_type(field))
+    text = ("a number or " if info.extra.get("one_for_both") else "") + _kind(field)
+    text += _bounds(item_type(field))
     if "unit" in info.extra:
         text += f" [{info.extra['unit']}]"
     return f"{text} ({info.description})" if info.description else text

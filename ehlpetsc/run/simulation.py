@@ -124,7 +124,7 @@ class Simulation:
             self.bodies = replace(self.bodies, begins=(0.0, shift))
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
-        self.roughness = Roughness.of(case, self.scales)
+        self.roughness = Roughness.of(case, self.scales, self.bodies)
         film = expected_film(case, self.scales)
         self.state = self.solution = self.watch = None
         with self.options:

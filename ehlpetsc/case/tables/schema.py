@@ -45,6 +45,7 @@ class Contact(Table):
     yield_pressure: tuple[Pressure, Pressure] | None = Field(
         None,
         unit="Pa",
+        one_for_both=True,
         description="mixed contact: pressure at which solids yield, of both or of surface fast and slow; "
         "left out: elastic",
     )

@@ -1,0 +1,115 @@
+"""Passes of two bodies over each other: files, index, restart in the middle of one, refusals."""
+
+import json
+
+import numpy as np
+import pytest
+from running import ROOT, run, settings
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError, ExitStatus
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.simulation import Simulation
+
+CASES = ROOT / "cases"
+CASE = CASES / "running_in.toml"
+SHORT = (
+    "mesh.points_per_half_width=40",
+    "time.travel=1.2",
+    "time.passes=2",
+    "contact.yield_pressure=1.1e9",
+    "output.every=1",
+)
+
+
+def test_a_result_a_pass_and_an_index(tmp_path):
+    done = run(CASE, *settings(*SHORT), cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rows = json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
+    assert [row["file"] for row in rows] == ["running_in.pass1.h5", "running_in.pass2.h5"]
+    assert rows[0]["added"] > 0.0 and rows[1]["added"] < 0.5 * rows[0]["added"]
+    for row in rows:
+        with read_result(tmp_path / row["file"]) as result:
+            volumes = result.steps("set_volume")
+            assert volumes[-1] == pytest.approx(row["set_volume"], rel=1e-12)
+            laid = sum(
+                (result[f"surface/{side}/set"][:] * np.gradient(result[f"surface/{side}/s"][:])).sum()
+                for side in ("fast", "slow")
+            )
+            # its points reach as far as the profile does: the smooth surface ahead of it yields too
+            assert 0.5 * volumes[-1] < laid < volumes[-1]
+            assert row["fast"]["deepest"] == result["surface/fast/set"][:].max()
+    assert volumes[0] == pytest.approx(rows[0]["set_volume"], rel=1e-12)  # the second begins with the first's
+    assert "pass 2 of 2" in done.stdout and "passes: running_in.passes.json" in done.stdout
+
+
+def passes(case, path=None, stop=None):
+    """Both passes; the second one recorded and broken off after so many states, where that is asked for."""
+    first = Simulation(case)
+    list(first)
+    second = Simulation(case, after=first)
+    if stop is None:
+        return second, list(second)
+    with Recorder(second, path) as recorder:
+        recorder.reserve()
+        for state in second:
+            recorder.take(state)
+            if state.step == stop:
+                recorder.checkpoint()
+                break
+        recorder.close(ExitStatus.STOPPED)
+    return second, recorder.restart
+
+
+def test_a_pass_goes_on_in_its_middle(tmp_path):
+    case = load(CASE, SHORT)
+    whole, states = passes(case)
+    _, restart = passes(case, tmp_path / "r.h5", stop=40)
+    resumed = Simulation(case, pass_number=2)
+    with Recorder(resumed, tmp_path / "r.h5") as recorder:
+        recorder.reserve(restart)
+        recorder.resume(restart)
+        after = list(resumed)
+    assert after[0].step == 41 and after[-1].step == states[-1].step
+    np.testing.assert_allclose(after[-1].pressure, states[-1].pressure, rtol=0, atol=1e-9 * whole.scales.p0)
+    assert after[-1].set_volume == pytest.approx(states[-1].set_volume, rel=1e-9)
+    assert after[-1].set_volume > states[0].set_volume > 0.0
+
+
+def test_a_shifted_pass_meets_other_parts():
+    keys = [*SHORT, "time.pass_shift=50e-6"]
+    first = Simulation(load(CASE, keys))
+    list(first)
+    shifted = Simulation(load(CASE, keys), after=first)
+    for side, moved in (("fast", 0.0), ("slow", 50e-6)):
+        one, other = (getattr(s.roughness, side) for s in (first, shifted))
+        at = other.s[20:-200]
+        inner = at[np.abs(at - other.s[-1]) > 0.2 * shifted.scales.a]
+        np.testing.assert_allclose(other.height(inner), one.height(inner - moved), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "value, words",
+    [
+        ("0.0", "1e+06"),
+        ("nan", "a number or a list of two numbers"),
+        ("[3e9, 3e9, 3e9]", "yield_pressure"),
+        ("-1e9", "1e+06"),
+        ('"hard"', "yield_pressure"),
+    ],
+)
+def test_yield_pressures_that_cannot_be_are_refused(value, words):
+    with pytest.raises(CaseError) as refused:
+        load(CASE, [f"contact.yield_pressure={value}"])
+    assert "contact.yield_pressure" in str(refused.value) and words in str(refused.value)
+
+
+def test_direct_contact_does_not_yield():
+    with pytest.raises(CaseError, match="mixed contact"):
+        load(CASES / "table1_rough.toml", ["contact.yield_pressure=3e9"])
+
+
+def test_a_series_of_passes_is_refused(tmp_path):
+    done = run(CASES / "fig1.toml", *settings("time.passes=2"), cwd=tmp_path)
+    assert done.returncode == 2 and "one of them at a time" in done.stderr
