@@ -77,7 +77,7 @@ def draw(results, kind, options, output):
 
         save_movie(results, options, output)
     elif kind == "report":
-        from ehlpetsc.plot.report import save_report
+        from ehlpetsc.plot.page.report import save_report
 
         if len(results) > 1:
             raise OutputError(f"{len(results)} results; allowed: --report of one")

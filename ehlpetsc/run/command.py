@@ -11,7 +11,7 @@ from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import faults, help_text, text_of, time_limit
 from ehlpetsc.nonlinear.scheme import scheme
 from ehlpetsc.run.describe import banner, warnings
-from ehlpetsc.run.passes import Passes
+from ehlpetsc.run.series.passes import Passes
 from ehlpetsc.run.series.series import Series
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run

@@ -11,7 +11,7 @@ import pytest
 from made_results import make_result, with_solids
 
 from ehlpetsc.plot import __main__ as plot
-from ehlpetsc.plot import report_data
+from ehlpetsc.plot.page import report_data
 from ehlpetsc.results.reader import read_result
 
 

@@ -4,7 +4,7 @@ import html
 import json
 from importlib.resources import files
 
-from ehlpetsc.plot.report_data import report_data
+from ehlpetsc.plot.page.report_data import report_data
 
 PARTS = {"style": "report.css", "script": "report.js"}
 
@@ -18,7 +18,7 @@ def save_report(result, path):
     path : pathlib.Path
     """
     data = report_data(result)
-    page = files("ehlpetsc.plot") / "page"
+    page = files("ehlpetsc.plot.page")
     text = page.joinpath("report.html").read_text(encoding="utf-8")
     for name, file in PARTS.items():
         text = text.replace("{{" + name + "}}", page.joinpath(file).read_text(encoding="utf-8"))
