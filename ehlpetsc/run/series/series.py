@@ -87,11 +87,13 @@ class Series:
         output = Path(output)
         self.index = output.parent / f"{output.stem}.series.json"
         self.swept = tomllib.loads(case.text)["series"]
+        settings = settings_of(self.swept)
         self.members = [
             Member(name, value, member, output)
-            for name, (value, member) in zip(named(settings_of(self.swept)), members(case), strict=True)
+            for name, (value, member) in zip(named(settings), members(case), strict=True)
         ]
-        if len({member.output for member in self.members}) < len(self.members):
+        files = {member.output for member in self.members}
+        if min(len(files), len({repr(setting) for setting in settings})) < len(self.members):
             raise UsageError("series.values: two values have the same name; allowed: values that differ")
         ranks = ranks_per_member(options, world.size)
         foreign = world.bcast([m.output for m in self.members if m.is_foreign()] if world.rank == 0 else None)
