@@ -3,10 +3,9 @@ r"""SNES set-up for one solve: Newton's method with the exact deflection in the 
 Direct contact: ``vinewtonrsls``. At every iteration the nodes with h at its bound and F > 0 form the contact
 set, whose Reynolds rows and films leave the system. Mixed contact: ``newtonls`` on the semismooth system,
 whose unknowns carry the complementarity in their sign (asked for ``vinewtonrsls``, it is
-:mod:`.variational_inequality`). Either way the operator is matrix-free
-(:mod:`ehlpetsc.nonlinear.jacobian_operator`), so that Newton converges as with the full Jacobian, and its
-preconditioner (:mod:`ehlpetsc.nonlinear.preconditioner`) has the far field too, by exponentials. Other
-preconditioners (``-pc_type lu`` ...) get the near-field matrix.
+:mod:`.variational_inequality`). Either way the operator is matrix-free (:mod:`.operators`), so that Newton
+converges as with the full Jacobian, and its preconditioner (:mod:`ehlpetsc.nonlinear.preconditioner`) has the
+far field too, by exponentials. Other preconditioners (``-pc_type lu`` ...) get the near-field matrix.
 
 Newton's steps are limited in the line search's pre-check (:mod:`ehlpetsc.nonlinear.step_limits`).
 """
@@ -20,7 +19,7 @@ from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
 from ehlpetsc.nonlinear.defaults import DEFAULTS, PRECONDITIONER
-from ehlpetsc.nonlinear.jacobian_operator import JacobianOperator, NearFieldMatrix
+from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors

@@ -21,9 +21,9 @@ from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events, step_limits
 from ehlpetsc.nonlinear.newton import OPENED, NewtonSolver
+from ehlpetsc.nonlinear.operators.three_field_operator import ThreeFieldOperator, put_rows, three, triples
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
-from ehlpetsc.nonlinear.three_field_operator import ThreeFieldOperator, put_rows, three, triples
 
 
 class VariationalInequalitySolver(NewtonSolver):

@@ -194,8 +194,9 @@ class Recorder:
     def _close(self, status):
         simulation = self.simulation
         if simulation.march.bodies:
-            for side, (s, *_) in self._profiles().items():
-                self._writer.put_set(side, set_at(simulation, side, s))
+            for k, (side, (s, *_)) in enumerate(self._profiles().items()):
+                depth = simulation.march.bodies.at(k, simulation.solution.sets[k], s - self._offsets()[k])
+                self._writer.put_set(side, depth)
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
         self._writer.close(status.words, self.limits)
 
@@ -251,12 +252,6 @@ def smooth_side(simulation, side):
     ends = scales.x[[0, -1]] * scales.a
     s = np.arange(ends[0] - max(way, 0.0), ends[1] - min(way, 0.0), scales.dx)
     return s, np.zeros_like(s), speed, {"ra": 0.0, "rq": 0.0, "rsk": 0.0}, True
-
-
-def set_at(simulation, side, s):
-    """Permanent set [m] of a surface around the points s [m] of a result."""
-    side = ("fast", "slow").index(side)
-    return simulation.march.bodies.at(side, simulation.solution.sets[side], s)
 
 
 def profiles(roughness, offsets, yields=False):

@@ -12,7 +12,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.nonlinear.jacobian_operator import LEAK
+from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
 from ehlpetsc.nonlinear.preconditioner.node_variables import band_entries, in_unknowns

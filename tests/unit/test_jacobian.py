@@ -14,8 +14,8 @@ from petsc4py import PETSc
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.interleaving import firsts, second_of, seconds
 from ehlpetsc.discretisation.reynolds import FilmHistory
-from ehlpetsc.nonlinear.jacobian_operator import LEAK, NearFieldMatrix
 from ehlpetsc.nonlinear.newton import NewtonSolver
+from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK, NearFieldMatrix
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
-from ehlpetsc.nonlinear.jacobian_operator import leaks
+from ehlpetsc.nonlinear.operators.jacobian_operator import leaks
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
 
 

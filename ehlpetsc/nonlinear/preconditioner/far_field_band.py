@@ -31,7 +31,7 @@ class Factors:
         self.fresh = False
 
     def factor(self, operator):
-        """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian_operator`."""
+        """Factor for the state of a :mod:`ehlpetsc.nonlinear.operators.jacobian_operator`."""
         model, stencil = operator.problem.model, self.lu.band.stencil
         entries = band_entries(model, operator.relations, operator.reynolds_derivatives, stencil)
         self.lu.factor(entries, operator.dropped, anew=not self.fresh)

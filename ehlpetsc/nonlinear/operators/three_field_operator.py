@@ -5,7 +5,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.jacobian_operator import BandSystem
+from ehlpetsc.nonlinear.operators.jacobian_operator import BandSystem
 
 UNKNOWNS = 3  # of a node
 
