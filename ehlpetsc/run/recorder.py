@@ -215,7 +215,7 @@ class Recorder:
         sides = profiles(simulation.roughness, self._offsets(), yields)
         for k, side in enumerate(sides):
             if yields and sides[side] is None:
-                sides[side] = smooth_side(simulation, k)
+                sides[side] = smooth_side(simulation, k, self._offsets()[k])
         return sides
 
     def _create(self, step, count):
@@ -244,14 +244,14 @@ class Recorder:
         )
 
 
-def smooth_side(simulation, side):
+def smooth_side(simulation, side, offset):
     """A smooth surface that may yield, as the writer takes it: the stretch that passes, 0: fast."""
     scales = simulation.scales
     speed = (scales.u1, scales.u2)[side]
     way = 0.0 if scales.duration is None else speed * scales.duration
     ends = scales.x[[0, -1]] * scales.a
     s = np.arange(ends[0] - max(way, 0.0), ends[1] - min(way, 0.0), scales.dx)
-    return s, np.zeros_like(s), speed, {"ra": 0.0, "rq": 0.0, "rsk": 0.0}, True
+    return s + offset, np.zeros_like(s), speed, {"ra": 0.0, "rq": 0.0, "rsk": 0.0}, True
 
 
 def profiles(roughness, offsets, yields=False):
