@@ -118,13 +118,19 @@ class Interrupted(BaseException):
 
 
 def stops_raise():
-    """From now on a signal to stop is an `Interrupted`; returns whether one has come."""
-    asked = []
+    """From now on a signal to stop is an `Interrupted`; returns whether one has come.
+
+    One that comes inside a callback of numba's compiler is lost there: `stop.asked` is for who handles
+    signals next.
+    """
+    asked, told = [], sys.unraisablehook
 
     def stop(*_):
         asked.append(True)
         raise Interrupted
 
+    stop.asked = asked
+    sys.unraisablehook = lambda lost: None if isinstance(lost.exc_value, Interrupted) else told(lost)
     for name in STOPS:
         if signal.getsignal(name) is not signal.SIG_IGN:  # nohup
             signal.signal(name, stop)

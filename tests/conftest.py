@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 MPI_TESTS = Path(__file__).parent / "mpi"
-# a shell lets what it starts in the background ignore Ctrl-C, and that would be handed on to every process
+# what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def pytest_collection_modifyitems(items):

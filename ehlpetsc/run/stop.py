@@ -24,8 +24,11 @@ class StopRequest:
     def __init__(self, minutes=0.0):
         self.until = clock.monotonic() + 60.0 * minutes if minutes else np.inf
         for name in SIGNALS:
-            if signal.getsignal(name) is not signal.SIG_IGN:
+            before = signal.getsignal(name)
+            if before is not signal.SIG_IGN:
                 signal.signal(name, self._ask)
+            if getattr(before, "asked", None):  # a signal that came before, and was lost on its way
+                self._ask()
 
     def _ask(self, *_):
         self.until = min(self.until, clock.monotonic())
