@@ -64,8 +64,8 @@ def explain(command):
     from ehlpetsc.case.loading import load
     from ehlpetsc.environment import first_rank
     from ehlpetsc.errors import CaseError
-    from ehlpetsc.run.describe import explain as words
-    from ehlpetsc.run.describe import worthwhile_ranks
+    from ehlpetsc.run.preview.banner import worthwhile_ranks
+    from ehlpetsc.run.preview.explain import explain as words
 
     try:
         text = (worthwhile_ranks if command.ranks else words)(load(command.case, command.overrides))

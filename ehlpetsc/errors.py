@@ -91,7 +91,7 @@ class NotConverged(Exception):
 
     Attributes
     ----------
-    state : run.simulation.AcceptedState or None
+    state : run.accepted_state.AcceptedState or None
         The last good one, None if there is none.
     """
 

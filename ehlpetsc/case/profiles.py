@@ -6,7 +6,7 @@ from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.plausibility import absurd, likely_unit
+from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
 from ehlpetsc.surfaces.samples import layout_of, samples
 
 

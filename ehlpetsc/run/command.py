@@ -10,7 +10,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import faults, help_text, text_of, time_limit
 from ehlpetsc.nonlinear.scheme import scheme
-from ehlpetsc.run.describe import banner, warnings
+from ehlpetsc.run.preview.banner import banner
+from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.series.passes import Passes
 from ehlpetsc.run.series.series import Series
 from ehlpetsc.run.simulation import Simulation

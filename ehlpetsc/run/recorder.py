@@ -18,9 +18,9 @@ from ehlpetsc.results.whole_file import remove_left
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.limits import limits
 from ehlpetsc.run.restart import checkpoint
+from ehlpetsc.run.stored_surfaces import permanent_sets, profiles
 from ehlpetsc.stepping.step_control import on_level
 
-SAME_PLACE = 1e-6  # mesh spacings: ways nearer than this differ by rounding
 MESSAGE_BYTES = 2**30  # MPI counts to twice as many
 
 
@@ -126,7 +126,7 @@ class Recorder:
 
         Parameters
         ----------
-        state : run.simulation.AcceptedState
+        state : run.accepted_state.AcceptedState
         """
         if not self._opened:
             self._open()
@@ -193,30 +193,10 @@ class Recorder:
 
     def _close(self, status):
         simulation = self.simulation
-        if simulation.march.bodies:
-            for k, (side, (s, *_)) in enumerate(self._profiles().items()):
-                depth = simulation.march.bodies.at(k, simulation.solution.sets[k], s - self._offsets()[k])
-                self._writer.put_set(side, depth)
+        for side, depth in permanent_sets(simulation).items():
+            self._writer.put_set(side, depth)
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
         self._writer.close(status.words, self.limits)
-
-    def _offsets(self):
-        """What makes s = x - speed time hold in a result that begins after a change of speed [m]."""
-        simulation = self.simulation
-        if simulation.solution is None:
-            return 0.0, 0.0
-        now, constant = simulation.solution.travelled, simulation.scales.travelled(simulation.solution.time)
-        apart = [way - steady for way, steady in zip(now, constant, strict=True)]
-        return [offset if abs(offset) > SAME_PLACE * simulation.scales.dx else 0.0 for offset in apart]
-
-    def _profiles(self):
-        simulation = self.simulation
-        yields = bool(simulation.march.bodies)
-        sides = profiles(simulation.roughness, self._offsets(), yields)
-        for k, side in enumerate(sides):
-            if yields and sides[side] is None:
-                sides[side] = smooth_side(simulation, k, self._offsets()[k])
-        return sides
 
     def _create(self, step, count):
         case, scales = self.simulation.case, self.simulation.scales
@@ -238,29 +218,10 @@ class Recorder:
             figures=of_case(STEP_SCALARS, case),
             every=case.output.every,
             precision=case.output.precision,
-            profiles=self._profiles(),
+            profiles=profiles(self.simulation),
             resume_step=step,
             contact_count=count,
         )
-
-
-def smooth_side(simulation, side, offset):
-    """A smooth surface that may yield, as the writer takes it: the stretch that passes, 0: fast."""
-    scales = simulation.scales
-    speed = (scales.u1, scales.u2)[side]
-    way = 0.0 if scales.duration is None else speed * scales.duration
-    ends = scales.x[[0, -1]] * scales.a
-    s = np.arange(ends[0] - max(way, 0.0), ends[1] - min(way, 0.0), scales.dx)
-    return s + offset, np.zeros_like(s), speed, {"ra": 0.0, "rq": 0.0, "rsk": 0.0}, True
-
-
-def profiles(roughness, offsets, yields=False):
-    """Both surfaces as the writer takes them, their coordinates moved by `offsets` [m]."""
-    sides = {side: roughness and getattr(roughness, side) for side in ("fast", "slow")}
-    return {
-        side: p and (p.s + offset, p.z, p.speed, {"ra": p.ra, "rq": p.rq, "rsk": p.rsk}, yields)
-        for (side, p), offset in zip(sides.items(), offsets, strict=True)
-    }
 
 
 def libraries():

@@ -1,7 +1,7 @@
 """One case on the ranks of one communicator, from accepted state to accepted state."""
 
 import time as clock
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -14,41 +14,14 @@ from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.domain import domain_faults
+from ehlpetsc.run.accepted_state import AcceptedState
+from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.stepping.domain_ends import check_ends
-from ehlpetsc.stepping.observables import observe
 from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.permanent_set import BothBodies
 from ehlpetsc.surfaces.roughness import Bodies, Roughness
 
 FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
-
-
-@dataclass(frozen=True)
-class AcceptedState:
-    """A time level that a simulation has come to; every figure and field is also an attribute.
-
-    Attributes
-    ----------
-    figures : dict of str to number
-        Of the step, as below ``steps/`` of a result file [SI units].
-    fields : dict of str to ndarray, shape (nx,)
-        In SI units.
-    in_contact : ndarray of bool, shape (nx,)
-    solution : stepping.time_stepping.State
-        Unknowns, and what the next step needs of the past.
-    """
-
-    figures: dict
-    fields: dict = field(repr=False)
-    in_contact: object = field(repr=False)
-    solution: object = field(repr=False)
-
-    def __getattr__(self, name):
-        for values in (vars(self).get("figures", {}), vars(self).get("fields", {})):
-            if name in values:
-                return values[name]
-        raise AttributeError(name)
 
 
 class Simulation:
@@ -86,7 +59,6 @@ class Simulation:
         The last one of this process.
     solution : stepping.time_stepping.State or None
         Its unknowns, or those of a restart file.
-
     watch : callable or None
         Called in every iteration on every rank; what it raises ends it.
 
@@ -209,15 +181,7 @@ class Simulation:
             except NotConverged as error:
                 error.state = self.state
                 raise
-        rq = self.roughness.rq if self.roughness else 0.0
-        depths, solution = (), self.solution
-        if solution.sets:
-            depths = self.march.bodies.depths(solution.sets, solution.travelled)
-        figures, fields, in_contact = observe(
-            self.case, self.scales, rq, self.march.problem, solution, depths, started
-        )
-        figures |= {"step": self.solution.step, "time": self.solution.time}
-        self.state = AcceptedState(figures, fields, in_contact, self.solution)
+        self.state = AcceptedState.of(self, started)
         return self.state
 
     def _check_ends(self, solution):

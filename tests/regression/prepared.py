@@ -27,7 +27,7 @@ HEAVY = (
     "ehlpetsc.physics.traction",
     "ehlpetsc.results.reader",
     "ehlpetsc.results.writer",
-    "ehlpetsc.run.describe",
+    "ehlpetsc.run.preview.explain",
     "ehlpetsc.surfaces.roughness",
 )
 

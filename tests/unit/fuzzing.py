@@ -9,7 +9,7 @@ import pytest
 
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.describe import explain
+from ehlpetsc.run.preview.explain import explain
 from ehlpetsc.surfaces.roughness import Roughness
 
 CASES = Path(__file__).parents[2] / "cases"

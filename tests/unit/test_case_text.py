@@ -10,7 +10,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError
-from ehlpetsc.surfaces.text_columns import text_columns
+from ehlpetsc.surfaces.measured.text_columns import text_columns
 
 CASE = (Path(__file__).parents[2] / "cases" / "table1_smooth.toml").read_text()
 MARK = "\ufeff"

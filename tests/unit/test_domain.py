@@ -14,7 +14,7 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.domain import domain_faults, domain_warnings
+from ehlpetsc.run.preview.domain import domain_faults, domain_warnings
 from ehlpetsc.stepping.domain_ends import check_ends
 
 CASES = Path(__file__).parents[2] / "cases"

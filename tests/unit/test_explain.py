@@ -9,9 +9,11 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run import forecast
-from ehlpetsc.run.describe import explain, warnings, worthwhile_ranks
-from ehlpetsc.run.forecast import dowson_higginson, file_size, steps
+from ehlpetsc.run.preview import forecast
+from ehlpetsc.run.preview.banner import worthwhile_ranks
+from ehlpetsc.run.preview.explain import explain
+from ehlpetsc.run.preview.forecast import dowson_higginson, file_size, steps
+from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")

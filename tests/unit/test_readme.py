@@ -7,7 +7,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.describe import banner
+from ehlpetsc.run.preview.banner import banner
 from ehlpetsc.surfaces.roughness import Roughness
 
 ROOT = Path(__file__).parents[2]

@@ -10,10 +10,10 @@ from ehlpetsc.case.tables.surface import SurfaceProfile
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.arrival import arrival
-from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.measured.profile_files import read_profile
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings, spikes
 from ehlpetsc.surfaces.profile import Profile
-from ehlpetsc.surfaces.profile_files import read_profile
 from ehlpetsc.surfaces.roughness import RAMP, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
 

@@ -7,7 +7,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.forecast import dowson_higginson, steps
+from ehlpetsc.run.preview.forecast import dowson_higginson, steps
 
 LONGEST = 60  # characters of a name
 

@@ -20,7 +20,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.whole_file import write_whole
-from ehlpetsc.run.describe import warnings
+from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.progress import summary_line
 from ehlpetsc.run.recorder import on_root
 from ehlpetsc.run.series.member import Member, named

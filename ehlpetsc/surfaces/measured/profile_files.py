@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import ProfileError
-from ehlpetsc.surfaces.text_columns import text_columns, units_in
+from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 FARTHEST = 1e6  # m: beyond it squares and cubes of a spline overflow

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.surfaces.profile_files import UNITS
+from ehlpetsc.surfaces.measured.profile_files import UNITS
 
 COARSE = 0.25  # half widths between two points: no asperity of such a profile lies in the contact
 HIGH = 0.1  # half widths: greatest Rq
@@ -50,7 +50,7 @@ def likely_unit(given, layout, scale):
     Parameters
     ----------
     given : ehlpetsc.surfaces.samples.Samples
-    layout : ehlpetsc.surfaces.profile_files.Layout
+    layout : ehlpetsc.surfaces.measured.profile_files.Layout
         As it was read.
     scale : float
         Factor on the heights that the user asked for.

@@ -1,0 +1,51 @@
+"""What a simulation yields: a time level in SI units."""
+
+from dataclasses import dataclass, field
+
+from ehlpetsc.stepping.observables import observe
+
+
+@dataclass(frozen=True)
+class AcceptedState:
+    """A time level that a simulation has come to; every figure and field is also an attribute.
+
+    Attributes
+    ----------
+    figures : dict of str to number
+        Of the step, as below ``steps/`` of a result file [SI units].
+    fields : dict of str to ndarray, shape (nx,)
+        In SI units.
+    in_contact : ndarray of bool, shape (nx,)
+    solution : stepping.time_stepping.State
+        Unknowns, and what the next step needs of the past.
+    """
+
+    figures: dict
+    fields: dict = field(repr=False)
+    in_contact: object = field(repr=False)
+    solution: object = field(repr=False)
+
+    def __getattr__(self, name):
+        for values in (vars(self).get("figures", {}), vars(self).get("fields", {})):
+            if name in values:
+                return values[name]
+        raise AttributeError(name)
+
+    @classmethod
+    def of(cls, simulation, started):
+        """That of a simulation's `solution`.
+
+        Parameters
+        ----------
+        simulation : run.simulation.Simulation
+        started : float
+            Monotonic clock at the begin of the step [s].
+        """
+        case, march, solution = simulation.case, simulation.march, simulation.solution
+        rq = simulation.roughness.rq if simulation.roughness else 0.0
+        depths = march.bodies.depths(solution.sets, solution.travelled) if solution.sets else ()
+        figures, fields, in_contact = observe(
+            case, simulation.scales, rq, march.problem, solution, depths, started
+        )
+        figures |= {"step": solution.step, "time": solution.time}
+        return cls(figures, fields, in_contact, solution)

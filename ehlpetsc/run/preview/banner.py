@@ -1,0 +1,45 @@
+"""What is about to run, in a few lines, and the ranks that it is worth."""
+
+from ehlpetsc import __version__
+from ehlpetsc.run.preview.forecast import steps
+from ehlpetsc.run.preview.surfaces import surface_lines
+
+WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 0.8 to 0.9 of it
+
+
+def banner(case, scales, rough, ranks):
+    """What is about to run, in a few lines: title, size, surfaces.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : scales.Scales
+    rough : roughness.Roughness or None
+    ranks : int
+
+    Returns
+    -------
+    list of str
+    """
+    length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
+    return [
+        f"ehlpetsc {__version__}: {case.title}",
+        f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
+        f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
+        *(surface_lines(case, scales, rough) if rough else []),
+        *_ranks_for_nothing(scales, ranks),
+    ]
+
+
+def worthwhile_ranks(case):
+    """Ranks that a case is worth where nobody says how many: two for a series or a large mesh, else one."""
+    return 2 if case.series or case.mesh.nodes >= WORTH_TWO_RANKS else 1
+
+
+def _ranks_for_nothing(scales, ranks):
+    if ranks == 1 or scales.nx >= WORTH_TWO_RANKS:
+        return []
+    return [
+        f"note: one rank would be about as quick: at {scales.nx} nodes exchanging vectors costs what more "
+        "cores save; the members of a series gain from ranks at any size"
+    ]

@@ -1,0 +1,155 @@
+"""The scene of a case in words."""
+
+import math
+import tomllib
+
+from ehlpetsc.case.loading import members
+from ehlpetsc.case.sweep import combinations, keys_of
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.preview.domain import domain_faults
+from ehlpetsc.run.preview.forecast import (
+    FULL_FILM,
+    dowson_higginson,
+    file_size,
+    lambda_ratio,
+    run_time,
+    steps,
+)
+from ehlpetsc.run.preview.surfaces import height_lines, surface_lines
+from ehlpetsc.run.preview.warnings import warnings
+from ehlpetsc.surfaces.roughness import Roughness
+
+
+def explain(case):
+    """The scene in words: figures, size, what is switched off.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+
+    Returns
+    -------
+    str
+        Several lines.
+
+    Raises
+    ------
+    profiles.ProfileError
+    """
+    scales = Scales.of(case)
+    rough = Roughness.of(case, scales)
+    sections = [
+        [case.title],
+        _contact(scales),
+        _film(case, scales, rough),
+        _motion(case, scales),
+        surface_lines(case, scales, rough),
+        height_lines(rough, scales),
+        _size(case, scales, rough),
+        _switched_off(case, rough),
+        [f"Warning: {line}" for line in warnings(case, scales)],
+        [f"Refused: {line}" for line in domain_faults(case, scales)],
+    ]
+    if case.series:
+        sections.insert(1, _series(case))
+    return "\n".join(line for section in sections for line in section)
+
+
+def _contact(s):
+    return [
+        f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
+        f"Hertz: half width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
+    ]
+
+
+def _film(case, s, rough):
+    if case.fluid is None:
+        return ["Film: none, dry contact"]
+    h_min = dowson_higginson(s, case.fluid.pressure_viscosity)
+    lines = [
+        f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
+        f"L = {s.moes_l:.2f}",
+        f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3g} um",
+    ]
+    if rough and rough.rq > 0:
+        ratio = lambda_ratio(case, s, rough)
+        lines.append(
+            f"Lambda ratio: {ratio:.2g} "
+            f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(ratio)}"
+        )
+    return lines
+
+
+def _regime(ratio):
+    """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
+    if ratio > FULL_FILM:
+        return "full film"
+    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
+
+
+def _motion(case, s):
+    if case.motion is None:
+        return ["Motion: none"]
+    line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; fast {s.u1:g} m/s, slow {s.u2:g} m/s"
+    if case.time is None:
+        return [line, "Time: steady"]
+    return [
+        line,
+        f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
+        f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
+    ]
+
+
+def _size(case, s, rough):
+    seconds = run_time(case, s, rough)
+    return [
+        f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
+        f"{2 * s.nx + 1} unknowns",
+        f"Expected run time on one rank: {_duration(seconds)}; result file: {_bytes(file_size(case, s))}",
+    ]
+
+
+def _series(case):
+    """The members of a series and what they take together."""
+    series = tomllib.loads(case.text)["series"]
+    shown = "; ".join(
+        f"{key} = {', '.join(map(str, values))}"
+        for key, values in zip(keys_of(series), zip(*combinations(series), strict=True), strict=True)
+    )
+    seconds = size = 0.0
+    for _, member in members(case):
+        scales = Scales.of(member)
+        seconds += run_time(member, scales, Roughness.of(member, scales))
+        size += file_size(member, scales)
+    return [
+        f"A series: {shown}; below, the base case.",
+        f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
+    ]
+
+
+def _switched_off(case, rough):
+    fluid = case.fluid
+    off = {
+        "Reynolds equation (no [fluid])": fluid is None,
+        "time (no [time])": case.time is None,
+        "roughness (no [surface])": not rough,
+        "Eyring stress (Newtonian)": fluid and fluid.eyring_stress is None,
+        "compressibility": fluid and fluid.density == "incompressible",
+        "starvation (fully flooded inlet)": fluid and fluid.inlet_film is None,
+        "boundary friction at dry nodes": case.contact.boundary_friction == 0.0,
+    }
+    return ["Switched off: " + (", ".join(name for name, is_off in off.items() if is_off) or "nothing")]
+
+
+def _duration(seconds):
+    for limit, unit, size in ((90, "s", 1), (5400, "min", 60)):
+        if seconds < limit:
+            return f"about {max(seconds / size, 1):.0f} {unit}"
+    return f"about {seconds / 3600:.1f} h"
+
+
+def _bytes(count):
+    for unit, size in (("GB", 1e9), ("MB", 1e6)):
+        if count >= size:
+            return f"about {count / size:.1f} {unit}"
+    return f"about {math.ceil(count / 1e3)} kB"
