@@ -44,7 +44,7 @@ def lines(short=False, far=False, model=None):
     """
     whole = far_lines() if far else [*steady_lines(), *time_lines()]
     if short:
-        whole = [replace(line, overrides=_shortened(line)) for line in whole if line.short]
+        whole = [_shortened(line) for line in whole if line.short]
     return [_of_model(line, model) for line in whole] if model else whole
 
 
@@ -57,9 +57,10 @@ def _of_model(line, model):
 
 def _shortened(line):
     keys = {override.partition("=")[0] for override in line.overrides}
-    brief = BRIEF if line.before or "time.travel" in keys else ()
-    coarse = () if line.before or "mesh.points_per_half_width" in keys else COARSE  # nodes of an earlier run
-    return (*line.overrides, *coarse, *brief)
+    brief = BRIEF if "time.travel" in keys else ()
+    coarse = () if "mesh.points_per_half_width" in keys else COARSE
+    before = line.before and (*line.before, *coarse)  # the mesh of both runs is one
+    return replace(line, overrides=(*line.overrides, *coarse, *brief), before=before)
 
 
 def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):

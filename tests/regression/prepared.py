@@ -4,7 +4,9 @@ A run has a process, arguments, a folder and streams of its own as otherwise; th
 whose import starts them, are imported in it alone. Orders come in as lines of JSON, exit statuses go out.
 """
 
+import ctypes
 import gc
+import importlib.util
 import json
 import os
 import runpy
@@ -24,10 +26,13 @@ HEAVY = (
     "ehlpetsc.__main__",
     "ehlpetsc.case.loading",
     "ehlpetsc.discretisation.ehl_problem",
+    "ehlpetsc.nonlinear.step_limits",
     "ehlpetsc.physics.traction",
     "ehlpetsc.results.reader",
     "ehlpetsc.results.writer",
     "ehlpetsc.run.preview.explain",
+    "ehlpetsc.stepping.steady_start",
+    "ehlpetsc.surfaces.permanent_set",
     "ehlpetsc.surfaces.roughness",
 )
 
@@ -49,10 +54,23 @@ class Prepared:
 
 
 def load_compiled():
-    """Have numba ready: its first function takes as long to load as all else that a short run does."""
-    from ehlpetsc.discretisation.finite_volumes import reynolds_product
+    """Have the compiled loops ready: to load them takes as long as all else that a short run does."""
+    from ehlpetsc.case.loading import load
+    from ehlpetsc.discretisation.ehl_problem import EHLProblem
+    from ehlpetsc.physics.scales import Scales
 
-    reynolds_product(np.zeros((1, 8)), np.zeros(2), np.zeros(2), 0, np.empty(1))
+    case = load(HERE.parents[2] / "cases" / "table1_smooth.toml", ["mesh.points_per_half_width=20"])
+    scales = Scales.of(case)
+    problem, one = EHLProblem(case, scales, 1.0, 0, scales.nx), np.ones(scales.nx)
+    found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
+    problem.product(found.relations, found.reynolds_derivatives, one, one, 0.0)
+
+
+def load_libraries():
+    """Have the libraries of MPI and PETSc in memory; what starts them is that Python imports them."""
+    place = importlib.util.find_spec("petsc4py").submodule_search_locations[0]
+    for path in Path(place, "lib").rglob(f"PETSc.{sys.implementation.cache_tag}-*.so"):
+        ctypes.CDLL(path)
 
 
 def serve():
@@ -83,6 +101,7 @@ if __name__ == "__main__":
     for name in HEAVY:
         __import__(name)
     load_compiled()
+    load_libraries()
     assert not {"mpi4py.MPI", "petsc4py.PETSc"} & sys.modules.keys(), "started before the fork"
     gc.freeze()  # or a run's first collection would copy all that it shares with this process
     serve()

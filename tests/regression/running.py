@@ -28,6 +28,7 @@ SCRIPT = {
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_smsc": "^cma",
     "OMPI_MCA_orte_execute_quiet": "1",
+    "OMPI_MCA_ess_singleton_isolated": "1",  # of Open MPI 4: without mpirun no daemon is started
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
