@@ -1,4 +1,4 @@
-"""What all tests share: the marker of tests under mpirun, and signals as a terminal has them."""
+"""What all tests share: the marker of tests under mpirun, their order, and signals as a terminal has them."""
 
 import signal
 from pathlib import Path
@@ -6,6 +6,29 @@ from pathlib import Path
 import pytest
 
 MPI_TESTS = Path(__file__).parent / "mpi"
+DEAREST = (  # files by processor time, those of ten seconds and more
+    "test_figures",
+    "test_stops",
+    "test_mixed",
+    "test_extremes",
+    "test_interruptions",
+    "test_series",
+    "test_cases",
+    "test_order",
+    "test_options",
+    "test_yielding",
+    "test_waviness",
+    "test_plot",
+    "test_post_histories",
+    "test_starts",
+    "test_outputs",
+    "test_output",
+    "test_notebook",
+    "test_passes",
+    "test_fuzz",
+    "test_stored_figures",
+    "test_packaging",
+)
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
@@ -16,3 +39,25 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if MPI_TESTS in item.path.parents:
             item.add_marker(pytest.mark.mpi)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Files go whole to the processes of ``--dist loadfile``, dearest first: all end at about one time."""
+    if config.getvalue("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class DearestFirst(LoadFileScheduling):
+        def _assign_work_unit(self, node):
+            dearest = min(self.workqueue, key=rank)
+            self.workqueue.move_to_end(dearest, last=False)
+            super()._assign_work_unit(node)
+
+    return DearestFirst(config, log)
+
+
+def rank(path):
+    """Place of a file in `DEAREST`; all others, in their order, come after."""
+    name = Path(path).stem
+    return DEAREST.index(name) if name in DEAREST else len(DEAREST)

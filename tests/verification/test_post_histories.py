@@ -11,6 +11,7 @@ from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, history_at, parity_weights
+from ehlpetsc.post.stresses.half_plane import StressField
 
 FINE = 16  # elements of the reference a node spacing
 DEPTHS = (0.0, 0.02, 0.05, 0.1)  # z/a: 0 to 5 elements
@@ -42,14 +43,15 @@ def loads(scene, tmp_path_factory):
 def reference(scene, s, frames):
     """Histories (3, nz, frames) at body point s from the continuous pressure on a mesh FINE times finer."""
     fine = np.arange(scene.x[0], scene.x[-1] + scene.dx / 2 / FINE, scene.dx / FINE)
+    field = StressField(fine.size, scene.dx / FINE, np.array(DEPTHS) * A)
     out = np.empty((3, len(DEPTHS), frames.size))
     for n, k in enumerate(frames):
         place = s + scene.u2 * scene.time[k]
         shifted = fine + (place - fine[0]) % (scene.dx / FINE)  # a node of the reference at the point
         p = scene.load(shifted, k)
         node = int(np.rint((place - shifted[0]) / (scene.dx / FINE)))
-        for part, field in enumerate(stress(shifted, np.array(DEPTHS) * A, p, 0.05 * p, 0.3)):
-            out[part, :, n] = field[:, node]
+        for part, values in enumerate(field(p, 0.05 * p)):
+            out[part, :, n] = values[:, node]
     return out
 
 
