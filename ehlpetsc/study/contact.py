@@ -9,12 +9,14 @@ and has `ehlpetsc.post` count the damage of the fast surface at z = 0 and 0.01 a
 import csv
 import itertools
 import json
+import tomllib
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.analysis.contact_statistics import both_fill
+from ehlpetsc.case.toml_text import toml_text
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.runs import greatest_damage, run
@@ -33,6 +35,7 @@ FIGURES = (
 )
 FIELDS = ("pressure", "film_thickness", "contact_pressure", "in_contact")
 SHEAR = ("shear_stress_fast", "shear_stress_slow")
+OF_MIXED_CONTACT = ("boundary_film", "yield_pressure")  # keys of [contact] that direct contact refuses
 
 
 @dataclass(frozen=True)
@@ -158,6 +161,40 @@ def settings(models, meshes, courants, boundary_films):
             yield Setting(model, mesh, courant, film)
 
 
+def for_direct_contact(case, overrides, folder):
+    """A case and its overrides as direct contact takes them: without the keys of mixed contact alone.
+
+    Parameters
+    ----------
+    case : path-like
+    overrides : sequence of str
+        ``table.key=value``.
+    folder : path-like
+        Where the shortened case is written, if the case has such keys.
+
+    Returns
+    -------
+    path-like, list of str
+    """
+    names = tuple(f"contact.{key}" for key in OF_MIXED_CONTACT)
+    kept = [override for override in overrides if override.partition("=")[0].strip() not in names]
+    try:
+        tables = tomllib.loads(Path(case).read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError):  # the run refuses it in words
+        return case, kept
+    of_contact = tables.get("contact", {})
+    if not any(key in of_contact for key in OF_MIXED_CONTACT):
+        return case, kept
+    for key in OF_MIXED_CONTACT:
+        of_contact.pop(key, None)
+    for side in tables.get("surface", {}).values():
+        if "file" in side:  # relative to the case, which now lies elsewhere
+            side["file"] = str((Path(case).parent / side["file"]).absolute())
+    shortened = Path(folder) / f"{Path(case).stem}.direct.toml"
+    shortened.write_text(toml_text(tables), encoding="utf-8")
+    return shortened, kept
+
+
 def table(case, overrides, chosen, path, folder, limit, say=print, damage=False):
     """Run the settings; rows to a CSV file and lines to `say`.
 
@@ -173,7 +210,7 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
         writer.writerow(head)
         say(" ".join(f"{name:>13}" for name in head))
         for setting in chosen:
-            outcome = run(case, [*overrides, *setting.overrides(damage)], folder=folder, limit=limit)
+            outcome = _run(case, overrides, setting, damage, folder, limit)
             found = None
             if outcome.status == ExitStatus.DONE:
                 found = measured(outcome.result, setting.boundary_film, outcome.processor)
@@ -189,6 +226,12 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
     for line in orders(rows):
         say(line)
     return rows
+
+
+def _run(case, overrides, setting, damage, folder, limit):
+    if setting.model == "direct":
+        case, overrides = for_direct_contact(case, overrides, folder)
+    return run(case, [*overrides, *setting.overrides(damage)], folder=folder, limit=limit)
 
 
 def orders(rows):

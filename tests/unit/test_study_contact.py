@@ -1,14 +1,17 @@
 """How much contact there is: which runs a study makes of it, observed orders and limits."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ehlpetsc.case.loading import load
 from ehlpetsc.study import contact
-from ehlpetsc.study.contact import Measured, Setting, order, orders, settings, table
+from ehlpetsc.study.contact import Measured, Setting, for_direct_contact, order, orders, settings, table
 from ehlpetsc.study.runs import Outcome
 
+CASES = Path(__file__).parents[2] / "cases"
 FOUND = Measured(0.05, 0.07, 0.09, 0.1, 0.2, 0.3, 8.0, 6.0, 5.5, 0, 1e-8, 3.0)
 
 
@@ -27,6 +30,17 @@ def test_direct_contact_runs_once_whatever_the_boundary_films():
     chosen = list(settings(["direct", "mixed"], [100, 200], [0.5], [2e-9, 5e-9, 10e-9]))
     assert sum(s.model == "direct" for s in chosen) == 2
     assert sum(s.model == "mixed" for s in chosen) == 6
+
+
+@pytest.mark.parametrize("name", ["table1_mixed", "resolved_mixed", "table1_rough"])
+def test_direct_contact_takes_a_case_of_mixed_contact_without_what_is_mixed_alone(tmp_path, name):
+    overrides = ["contact.yield_pressure=5e9", "mesh.inlet=-1.5"]
+    path, kept = for_direct_contact(CASES / f"{name}.toml", overrides, tmp_path)
+    case = load(path, [*kept, *Setting("direct", 100, 0.5, 10e-9).overrides()])
+    of = load(CASES / f"{name}.toml")
+    assert case.contact.model == "direct" and case.contact.boundary_film is None
+    assert case.mesh.inlet == -1.5 and case.fluid == of.fluid and case.contact.load == of.contact.load
+    assert (path == CASES / f"{name}.toml") == (name == "table1_rough")
 
 
 @pytest.mark.parametrize(
