@@ -72,7 +72,8 @@ class RunOptions:
         wanted = self._of_case | there | self._given
         self.users = set(wanted)
         check_options(wanted, len(DEFAULTS) + len(PRECONDITIONER))
-        wanted = DEFAULTS | ({} if "pc_type" in wanted else PRECONDITIONER) | wanted
+        own = wanted.get("pc_type", PRECONDITIONER["pc_type"]) == PRECONDITIONER["pc_type"]
+        wanted = DEFAULTS | (PRECONDITIONER if own else {}) | wanted
         self.views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
         changed = [name for name in [*self._entered, *self.views] if name in there]

@@ -1,14 +1,15 @@
 """Options that cannot be, told with PETSc's own sentence, and tolerances looser than the program's."""
 
+import importlib
+
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
 
 MOST = 512  # options that PETSc's table holds
 LOOSER = {"snes_atol": 1e-7, "snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
-REFUSED = {
-    "snes_mf": "PETSc's differences would stand in for the Jacobian, a product here; leave it out",
-}
+DIFFERENCES = "PETSc's differences would stand in for the Jacobian, a product here; leave it out"
+REFUSED = {"snes_mf": DIFFERENCES, "snes_mf_operator": DIFFERENCES}
 NUMERIC, NO_NUMBERS = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
 # in names of options that only tell
 NO_CAUSE = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
@@ -24,7 +25,7 @@ def refusal(error, defaults):
         The program's own options.
     """
     reason = sentence(error)
-    given = {n: v for n, v in PETSc.Options().getAll().items() if defaults.get(n) != v}
+    given = {n: v for n, v in PETSc.Options().getAll().items() if n not in defaults or defaults[n] != v}
     can = {n: v for n, v in given.items() if not (n.startswith("ehl_") or any(map(n.__contains__, NO_CAUSE)))}
     named = {n: v for n, v in can.items() if n in reason or v and v in reason}
     told = [f"-{name} {value or ''}".strip() for name, value in (named if len(named) == 1 else can).items()]
@@ -60,6 +61,19 @@ def check_options(options, own):
             raise UsageError(f"-{name}: {REFUSED[name]}")
         if name.startswith(NUMERIC) and str(value).lower().strip().lstrip("+-") in NO_NUMBERS:
             raise UsageError(f"-{name} {value}: allowed: a number")
+    if options.get("pc_python_type"):
+        _check_class(options["pc_python_type"])
+
+
+def _check_class(path):
+    """Refuse what cannot be made, or not be applied, as a preconditioner: PETSc finds out while it solves."""
+    module, _, name = path.rpartition(".")
+    try:
+        made = getattr(importlib.import_module(module), name)()
+    except Exception as error:
+        raise UsageError(f"-pc_python_type {path}: {error}; allowed: a class, package.module.Class") from None
+    if not callable(getattr(made, "apply", None)):
+        raise UsageError(f"-pc_python_type {path}: has no method apply(pc, x, y), as a preconditioner has")
 
 
 def looser():

@@ -32,7 +32,7 @@ def solver_of(case, scales, film_scale, comm, options):
         Sweeps are asked for, but the contact is dry or mixed.
     """
     if scheme(options) == "newton":
-        bounded = text_of(options, "snes_type") == "vinewtonrsls"
+        bounded = options.getString("snes_type", "") == "vinewtonrsls"
         if case.contact.model == "mixed" and bounded:
             if case.contact.yield_pressure is not None:
                 raise UsageError("-snes_type vinewtonrsls: solids that yield need newtonls; leave it out")

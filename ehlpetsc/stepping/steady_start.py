@@ -16,89 +16,22 @@ and did not always arrive.
 A starved inlet needs another start: the meniscus moves one node per iteration, so that the void is put where
 the gap is wider than the oil film. Whether a contact starves at all, the flooded solution tells: it does if
 it takes more oil than it is given, and else it is the solution but for the first node.
+
+Solids whose yield pressure Hertz' would exceed begin with the dry contact, see :mod:`.bounded_contact`.
 """
 
 from dataclasses import replace
 
-import numpy as np
-
-from ehlpetsc.discretisation.elasticity import fast_length
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
+from ehlpetsc.stepping.bounded_contact import bounded_start
 from ehlpetsc.stepping.certificate import certified
+from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
 
-SMOOTHED = 0.2
-DIRECT = 1000  # nodes on either side: beyond it a transform is quicker than the sum
-AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
 LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
 FROM = 0.8  # of the load under which Hertz' pressure is the yield pressure
 PRESSED = 1.2  # growth of the load from there
 LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
-
-
-def hertz_start(problem, film, phi, thick=1.3, load=1.0):
-    """Hertz pressure and a film everywhere above the expected one; behind the outlet a cavity.
-
-    The pressure is smoothed over `SMOOTHED` times the length of the inlet sweep, film^(2/3): the infinite
-    slope at Hertz' edge drives more oil through a thick film than all that follows.
-
-    Parameters
-    ----------
-    problem : ehl_problem.EHLProblem
-    film : float
-        Expected film in a^2/R.
-    phi : ndarray, shape (nx,)
-        Roughness in the gap, in a^2/R.
-    thick : float
-        Times the expected film.
-    load : float
-        Share of the load.
-
-    Returns
-    -------
-    q, w : ndarray, shape (nx,)
-    h00 : float
-    """
-    x = problem.x
-    p = np.sqrt(np.maximum(load - x**2, 0.0))
-    if not problem.dry:
-        p = smoothed(p, SMOOTHED * film ** (2.0 / 3.0) / problem.dx)
-    p *= 0.5 * np.pi * load / (problem.dx * p.sum())
-    h = problem.film(p, 0.0, phi)
-    if problem.dry:
-        gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
-        begin = (
-            (np.zeros_like(p), problem.model.second_unknown(gap, p)) if problem.model.is_mixed else (p, gap)
-        )
-        return *begin, -h[np.argmax(p)]
-    h00 = thick * film - h.min()
-    h += h00
-    behind = (x > 1.0) & (p < AMBIENT)
-    q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(p, AMBIENT))
-    return q, problem.model.from_film(h), h00
-
-
-def smoothed(p, width):
-    """Mean of p, zero beyond its ends, under a Gaussian of so many nodes, which is cut at the mesh's length.
-
-    (scipy.ndimage has it, but loads 14 MB, which a smooth contact has no other need of.)
-    """
-    reach = min(int(4.0 * width + 0.5), len(p) - 1)
-    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
-    weights /= weights.sum()
-    if reach <= DIRECT:
-        return np.convolve(p, weights)[reach : reach + len(p)]
-    length = fast_length(len(p) + 2 * reach)
-    product = np.fft.irfft(np.fft.rfft(p, length) * np.fft.rfft(weights, length), length)
-    return np.maximum(product[reach : reach + len(p)], 0.0)
-
-
-def starved_start(problem, film, inputs):
-    """Hertz pressure and the oil film of the inlet, void wherever the gap is wider."""
-    oil = inputs.inlet_film
-    q, w, h00 = hertz_start(problem, min(film, oil), inputs.phi)
-    h = problem.model.relations(q, w).film
-    void = (problem.x < -1.0) & (h > oil)
-    return np.where(void, oil / h - 1.0, q), w, h00
+MOST_ATTEMPTS = 100  # at a solution of one start, those that fail too
 
 
 def steady(solver, film, inputs):
@@ -142,48 +75,71 @@ def steady(solver, film, inputs):
 
 
 def pressed(solver, film, inputs):
-    """Steady solution of solids that yield under Hertz' pressure: the load grown from where they begin to.
+    """Steady solution of solids that yield under Hertz' pressure: from that of the dry contact.
 
-    Arguments, returns and errors of :func:`steady`. All that touches would yield under the whole load at
-    once, and a pressure that is at its bound everywhere tells Newton's method nothing of the load.
+    Arguments, returns and errors of :func:`steady`. All that touches would yield at once under Hertz'
+    pressure, and a pressure that is at its bound everywhere tells Newton's method nothing of the load. Most
+    films want the edges of the flat pressure smoothed; of several times the yield pressure thin films do not,
+    and for thick ones the load is grown from where the solids begin to yield.
     """
-    problem = solver.problem
-    load, reached, spent = FROM * problem.model.yield_pressure**2, 0.0, 0
+    problem, attempt = solver.problem, Attempts(solver)
+    for width in (SMOOTHED, 0.0):
+        state = attempt(bounded_start(problem, film, inputs.phi, width), inputs)
+        if state is not None:
+            return *state, attempt.spent
+    load, reached = FROM * problem.model.yield_pressure**2, 0.0
     state = hertz_start(problem, film, inputs.phi, load=load)
-    while True:
-        try:
-            *state, iterations = certified(
-                solver, *state, replace(inputs, load=load), solver.start_iterations()
-            )
-        except SolveFailed as error:
-            spent, load = spent + error.iterations, 0.5 * (reached + load)
-            if not reached or load < reached * (1.0 + LEAST_GROWTH):
-                raise NoSteadyStart(error, None, spent) from error
+    while reached < 1.0:
+        nearer = attempt(state, replace(inputs, load=load))
+        if nearer is not None:
+            state, reached, load = nearer, load, min(load * PRESSED, 1.0)
             continue
-        spent, reached = spent + iterations, load
-        if reached == 1.0:
-            return *state, spent
-        load = min(reached * PRESSED, 1.0)
+        load = 0.5 * (reached + load)
+        if load < reached * (1.0 + LEAST_GROWTH) or not reached:
+            raise NoSteadyStart(attempt.failure, None, attempt.spent)
+    return *state, attempt.spent
 
 
-class Continuation:
-    """Solve at once or, failing that, with a growing share of what makes the contact hard.
+class Attempts:
+    """Certified solves from one state or another, `MOST_ATTEMPTS` at most.
 
     Attributes
     ----------
     spent : int
         Newton iterations, those of failed attempts too.
+    failure : SolveFailed or None
+        The last one.
     """
 
+    def __init__(self, solver, max_it=None):
+        self.solver, self.max_it = solver, solver.start_iterations(max_it)
+        self.made, self.spent, self.failure = 0, 0, None
+
+    def __call__(self, begin, inputs):
+        """q, w and h00; None: Newton's method does not arrive."""
+        if self.made == MOST_ATTEMPTS:
+            told = f"given up after {self.made} attempts and {self.spent} Newton iterations; the last failure"
+            raise NoSteadyStart(f"{told}: {self.failure}", None, self.spent)
+        self.made += 1
+        try:
+            *state, iterations = certified(self.solver, *begin, inputs, max_it=self.max_it)
+        except SolveFailed as error:
+            self.spent, self.failure = self.spent + error.iterations, error
+            return None
+        self.spent += iterations
+        return state
+
+
+class Continuation:
+    """Solve at once or, failing that, with a growing share of what makes the contact hard."""
+
     def __init__(self, solver, inputs, max_it=None):
-        self.solver, self.inputs = solver, inputs
-        self.max_it = solver.start_iterations(max_it)
-        self.spent, self.failure = 0, None
+        self.inputs, self.attempt = inputs, Attempts(solver, max_it)
 
     def solve(self, begin):
         """Returns q, w, h00 and the iterations spent."""
         state = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
-        return *state, self.spent
+        return *state, self.attempt.spent
 
     def _by_steps(self, begin):
         """The smooth contact, its oil made stiff by steps; then the roughness grown under it."""
@@ -200,7 +156,7 @@ class Continuation:
             if state is not None:
                 return state, share
             share *= 0.5
-        raise NoSteadyStart(self.failure, None, self.spent)
+        raise NoSteadyStart(self.attempt.failure, None, self.attempt.spent)
 
     def _grown(self, state, share, of):
         growth = share or 0.5
@@ -211,18 +167,11 @@ class Continuation:
                 continue
             growth *= 0.4
             if growth < LEAST_GROWTH:
-                raise NoSteadyStart(self.failure, share, self.spent)
+                raise NoSteadyStart(self.attempt.failure, share, self.attempt.spent)
         return state
 
     def _try(self, begin, share, roughness):
-        inputs = easier(self.inputs, share, roughness)
-        try:
-            *state, iterations = certified(self.solver, *begin, inputs, max_it=self.max_it)
-        except SolveFailed as error:
-            self.spent, self.failure = self.spent + error.iterations, error
-            return None
-        self.spent += iterations
-        return state
+        return self.attempt(begin, easier(self.inputs, share, roughness))
 
 
 def easier(inputs, share, roughness):

@@ -15,7 +15,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import NoSteadyStart
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import time_stepping
-from ehlpetsc.stepping.steady_start import DIRECT, smoothed
+from ehlpetsc.stepping.first_guess import DIRECT, smoothed
 
 CASES = Path(__file__).parents[2] / "cases"
 GROUND = {"kind": "ground", "ra": 0.1e-6, "correlation": 25e-6, "skewness": -1.0, "seed": 1}

@@ -42,6 +42,8 @@ def domain_faults(case, scales):
 
     Parameters as of `domain_warnings`.
     """
+    if case.contact.yield_pressure:
+        return _too_narrow(case, scales)
     if case.fluid is None or case.contact.model == "mixed":  # where the boundary film stays
         return []
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
@@ -50,6 +52,18 @@ def domain_faults(case, scales):
     points = case.mesh.points_per_half_width
     where = f"{case.path}: mesh.points_per_half_width = {points}"
     return [f"{where}: {_coarse(opening)}, which leaves no film; {_cure(case, scales)}"]
+
+
+def _too_narrow(case, scales):
+    """A domain on which solids at their yield pressure everywhere do not bear the load."""
+    pressure = min(case.contact.yield_pressure)
+    needed, there = scales.load / (pressure * scales.a), case.mesh.outlet - case.mesh.inlet
+    if needed < there:
+        return []
+    return [
+        f"{case.path}: contact.yield_pressure = {1e-9 * pressure:g} GPa bears the load on {needed:.3g} half "
+        f"widths or more, the domain has {there:.3g}; put mesh.inlet and mesh.outlet further out"
+    ]
 
 
 def _thinnest(case, scales):

@@ -1,0 +1,92 @@
+r"""Dry contact of solids that yield, as a convex problem: a start for Newton's method.
+
+.. math:: \min_p\ \tfrac12\,p\cdot Ap+p\cdot g,\qquad 0\le p\le p_y,\quad \sum p\,\Delta x=W,
+
+A the deflection, g the gap of the undeformed shapes: the gradient is the deformed gap, but for the approach.
+Projected gradients with Nesterov's momentum, begun anew wherever a step turns back, reach it from anywhere;
+where nearly all that touches yields, Newton's method alone wanders from one set of elastic nodes to the next.
+"""
+
+import numpy as np
+
+from ehlpetsc.stepping.first_guess import AMBIENT, smoothed
+
+LARGEST = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
+MOST = 4000  # steps
+STILL = 1e-9  # change in a step, of the yield pressure, that ends it
+HALVINGS = 60  # of an interval: to rounding
+
+
+def bounded_pressure(problem, phi):
+    """Pressure of the dry contact, 0 <= p <= p_y, and its gap but for the approach.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+        Of solids that yield.
+    phi : ndarray, shape (nx,)
+        Roughness in the gap, in a^2/R.
+
+    Returns
+    -------
+    p, gap : ndarray, shape (nx,)
+        In p0; in a^2/R.
+    """
+    limit, total = problem.model.yield_pressure, 0.5 * np.pi / problem.dx
+    rate = 1.0 / (LARGEST * (problem.x[-1] - problem.x[0]))
+    p = ahead = onto(np.sqrt(np.maximum(1.0 - problem.x**2, 0.0)), limit, total)
+    momentum = 1.0
+    for _ in range(MOST):
+        new = onto(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
+        if np.abs(new - p).max() < STILL * limit:
+            break
+        if (ahead - new) @ (new - p) > 0.0:
+            momentum = 1.0
+        following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
+        ahead, p, momentum = new + (momentum - 1.0) / following * (new - p), new, following
+    return new, problem.film(new, 0.0, phi)
+
+
+def onto(p, limit, total):
+    """The nearest pressures between 0 and `limit` of the given sum: a constant added, and cut."""
+    low, high = -p.max(), limit - p.min()
+    for _ in range(HALVINGS):
+        shift = 0.5 * (low + high)
+        low, high = (shift, high) if np.clip(p + shift, 0.0, limit).sum() < total else (low, shift)
+    return np.clip(p + high, 0.0, limit)
+
+
+def bounded_start(problem, film, phi, smoothing):
+    """Unknowns q, w and the approach h00 of that contact; with oil the oil carries it on an even film.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    film : float
+        Of oil, in a^2/R.
+    phi : ndarray, shape (nx,)
+    smoothing : float
+        Of the pressure under oil, over so many lengths of the inlet sweep, film^(2/3).
+
+    Returns
+    -------
+    q, w : ndarray, shape (nx,)
+    h00 : float
+    """
+    model, limit = problem.model, problem.model.yield_pressure
+    p, gap = bounded_pressure(problem, phi)
+    least = model.boundary_film if problem.dry else max(film, model.boundary_film)
+    elastic = (p > 0.0) & (p < limit)
+    h00 = least - gap[elastic if elastic.any() else p > 0.0].max()
+    depth = np.where(p < limit, 0.0, np.maximum(least - gap - h00, 0.0))
+    if problem.dry:
+        carried = p + depth / model.compliance
+        return np.zeros_like(p), model.second_unknown(gap + h00 + depth, carried), h00
+    edge = problem.x[p > 0.0].max()
+    if smoothing:
+        p = smoothed(p, smoothing * film ** (2.0 / 3.0) / problem.dx)
+    depth[p < limit * (1.0 - 1e-9)] = 0.0
+    h = np.maximum(problem.film(p, h00, phi) + depth, least)
+    behind = (problem.x > edge) & (p < AMBIENT)
+    q = np.where(behind, np.minimum(least / h - 1.0, 0.0), np.maximum(p + depth / model.compliance, AMBIENT))
+    return q, model.from_film(h), h00
