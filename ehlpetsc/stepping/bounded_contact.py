@@ -12,8 +12,8 @@ import numpy as np
 from ehlpetsc.stepping.first_guess import AMBIENT, smoothed
 
 LARGEST = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
-MOST = 4000  # steps
-STILL = 1e-9  # change in a step, of the yield pressure, that ends it
+MOST = 1000  # steps
+STILL = 1e-5  # change in a step, of the yield pressure, that ends it
 HALVINGS = 60  # of an interval: to rounding
 
 

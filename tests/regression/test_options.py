@@ -129,6 +129,11 @@ def test_the_case_must_be_named_once(arguments, message):
         (["-snes_max_it", "-1"], "PETSc refuses -snes_max_it -1: Maximum number of iterations"),
         (["-pc_type", "galerkin"], "PETSc refuses -pc_type galerkin: Must set operator"),
         (["-snes_mf"], "-snes_mf: PETSc's differences would"),
+        (["-snes_mf_operator"], "-snes_mf_operator: PETSc's differences would"),
+        (["-snes_type"], "PETSc refuses -snes_type: Unable to find requested SNES type"),
+        (["-ksp_diagonal_scale"], "PETSc refuses -ksp_diagonal_scale: method getDiagonal()"),
+        (["-pc_python_type", "numpy.array"], "-pc_python_type numpy.array: array() missing"),
+        (["-pc_python_type", "collections.Counter"], "has no method apply(pc, x, y)"),
         (["-snes_atol", "nan"], "-snes_atol nan: allowed: a number"),
         (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: allowed: a number"),
         (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
@@ -139,6 +144,14 @@ def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_the_type_python_alone_is_the_programs_own_preconditioner(case, tmp_path):
+    own, told = (
+        summary(run(case, *words, cwd=tmp_path).stdout)
+        for words in ((), ("-pc_type", "python", "-ehl_overwrite"))
+    )
+    assert {**own, "wall": 0} == {**told, "wall": 0}
 
 
 def test_more_options_than_petscs_table_holds_are_refused(case, tmp_path):

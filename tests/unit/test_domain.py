@@ -90,6 +90,16 @@ def test_a_boundary_film_needs_no_mesh_for_the_oil_below_it():
     assert of(mixed, about=domain_faults) == []
 
 
+def test_solids_too_soft_for_the_domain_are_refused():
+    soft = {"contact.model": "mixed", "contact.yield_pressure": 0.25e9}
+    (line,) = of(soft | {"mesh.inlet": -3.0, "mesh.outlet": 3.0}, about=domain_faults)
+    assert (
+        "contact.yield_pressure = 0.25 GPa bears the load on 6.28 half widths or more, the domain has 6"
+        in line
+    )
+    assert of(soft | {"mesh.outlet": 4.0, "mesh.inlet": -4.0}, about=domain_faults) == []
+
+
 def test_a_contact_wider_than_the_domain_is_an_error():
     """A dent of 50 um: without oil its flanks carry at the ends of the mesh."""
     dent = {"kind": "dent", "amplitude": 50e-6, "wavelength": 600e-6, "position": 340e-6}

@@ -12,9 +12,9 @@ import pytest
 petsc4py.init([])
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import NoSteadyStart
+from ehlpetsc.errors import NoSteadyStart, NotConverged
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.stepping import time_stepping
+from ehlpetsc.stepping import steady_start, time_stepping
 from ehlpetsc.stepping.first_guess import DIRECT, smoothed
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -85,3 +85,27 @@ def test_next_to_no_load_takes_no_more_memory_than_any_other():
         [sys.executable, "-c", code], preexec_fn=bounded, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_a_start_that_finds_nothing_gives_up_after_so_many_attempts(monkeypatch):
+    monkeypatch.setattr(steady_start, "MOST_ATTEMPTS", 3)
+    simulation = Simulation(load(CASES / "table1_smooth.toml", MESH), options={"snes_max_it": 1})
+    with pytest.raises(NotConverged, match="given up after 3 attempts and 3 Newton iterations"):
+        simulation.advance()
+
+
+@pytest.mark.parametrize("share", [1.25, 2.0, 4.0])
+def test_oil_between_solids_that_yield_as_a_whole(share):
+    """Hertz' pressure above the yield pressure: few iterations, from the dry contact."""
+    keys = {
+        "contact.model": "mixed",
+        "mesh.points_per_half_width": 50,
+        "mesh.inlet": -6.0,
+        "mesh.outlet": 4.0,
+    }
+    hertz = Simulation(load(CASES / "table1_smooth.toml")).scales.p0
+    state = Simulation(
+        load(CASES / "table1_smooth.toml", keys | {"contact.yield_pressure": hertz / share})
+    ).advance()
+    assert state.newton < 60 and state.load_error < 1e-10
+    assert state.p_max == pytest.approx(hertz / share, rel=1e-15) and state.yielding > 30

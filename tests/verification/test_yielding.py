@@ -117,14 +117,31 @@ def test_a_dry_cylinder_is_the_minimum_of_the_bounded_energy(share):
     assert state.load_error < 1e-10
 
 
-@pytest.mark.parametrize("share", [2.0, 4.0])
-def test_pressure_is_flat_over_the_width_that_the_load_asks_for(share):
+@pytest.mark.parametrize("share, mesh", [(2.0, 60), (4.0, 50), (4.0, 60), (4.0, 200)])
+def test_pressure_is_flat_over_the_width_that_the_load_asks_for(share, mesh):
     """Far beyond yield the elastic rest at the edges is next to nothing: p_y over W/p_y."""
-    simulation, state = pressed(share, 60)
+    simulation, state = pressed(share, mesh)
     bound = simulation.case.contact.yield_pressure[0]
     flat = (state.pressure == state.pressure.max()).sum() * simulation.scales.dx
     assert state.pressure.max() == pytest.approx(bound, rel=1e-15)
     assert flat == pytest.approx(simulation.scales.load / bound, abs=3.0 * simulation.scales.dx)
+
+
+def test_pressure_converges_with_the_mesh_far_beyond_yield():
+    """At p0 = 2 p_y, against the finest mesh: first order, for the edge falls to zero within a few nodes."""
+    meshes, finest = (25, 50, 100, 200, 400, 800), 1600
+    simulation, state = pressed(2.0, finest)
+    x, exact = simulation.scales.x, state.pressure
+    flat = (exact == exact.max()).sum() * simulation.scales.dx
+    errors = []
+    for mesh in meshes:
+        simulation, state = pressed(2.0, mesh)
+        scales = simulation.scales
+        errors.append(np.abs(state.pressure - np.interp(scales.x, x, exact)).mean() / scales.p0)
+        width = (state.pressure == state.pressure.max()).sum() * scales.dx
+        assert abs(width - flat) < 3.0 * scales.dx, mesh
+    order = -np.polyfit(np.log(meshes), np.log(errors), 1)[0]
+    assert order > 0.9 and errors[-1] < 1e-4, (order, errors)
 
 
 def test_the_set_converges_with_the_mesh():
