@@ -5,9 +5,9 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
 from ehlpetsc.plot.stribeck import filled_from
-from ehlpetsc.results.running_in import heights, pass_figures
+from ehlpetsc.results.running_in import damage, heights, pass_figures
 
-SIZE = (11.0, 7.0)  # inches
+SIZE, WIDER = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
 STRETCH = 0.6  # half widths of profile shown, around the deepest set
 ROOM = 1.15  # above the highest value
 FIRST, LAST = "0.65", "C3"
@@ -30,11 +30,16 @@ def draw_running_in(results, _options):
     if any("set_volume" not in result.figures for result in results):
         raise OutputError("solids that do not yield: there is no set; needs contact.yield_pressure")
     rows = [pass_figures(result, filled_from(result)) for result in results]
-    figure, axes = labels.new_figure(2, 2, SIZE)
+    damages = [damage(result) for result in results]
+    known = all(damages)
+    figure, axes = labels.new_figure(2, 3 if known else 2, WIDER if known else SIZE)
     surface(axes[0, 0], results)
     pressure(axes[1, 0], results)
     added(axes[0, 1], rows)
     contact(axes[1, 1], rows)
+    if known:
+        for row, side in zip(axes, ("fast", "slow"), strict=True):
+            fatigue(row[2], damages, side)
     figure.suptitle(results[0].attrs["title"], fontsize="medium")
     return figure
 
@@ -101,6 +106,21 @@ def contact(axes, rows):
     beside.plot(numbers, length, "s--", color="C0", ms=4)
     beside.set_ylabel("length in contact [µm]", color="C0")
     beside.set_ylim(0.0, ROOM**2 * np.nanmax(length))
+
+
+def fatigue(axes, damages, side):
+    """Largest damage of a surface at each depth, pass by pass."""
+    numbers = np.arange(1, len(damages) + 1)
+    depths = damages[0]["z_over_a"]
+    if any(side not in one or one["z_over_a"] != depths for one in damages):
+        axes.set_axis_off()
+        return
+    for k, depth in enumerate(depths):
+        colour = labels.mpl.colormaps["viridis"](0.9 * k / max(len(depths) - 1, 1))
+        largest = [one[side]["largest"][k] for one in damages]
+        axes.semilogy(numbers, largest, "o-", ms=4, color=colour, label=f"{depth:g} a")
+    axes.set(xlabel="pass", ylabel=f"largest damage D of the {side} surface", xticks=ticks(numbers))
+    labels.legend_beside(axes, title="depth")
 
 
 def ticks(numbers):

@@ -11,6 +11,7 @@ from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS
 from ehlpetsc.post.inputs.loads import SURFACES
+from ehlpetsc.post.outputs.passes_index import is_of_passes
 from ehlpetsc.post.run import WITHIN
 from ehlpetsc.results.series_index import files_of
 
@@ -34,7 +35,8 @@ def arguments(argv=None):
         "results",
         nargs="+",
         metavar="RESULT.h5",
-        help="several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members",
+        help="several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
+        "OUTPUT.passes.json: its passes, whose damage is then added to it",
     )
     add(
         "-o", "--output", metavar="FILE", help="result, of a single input (default: RESULT.post.h5 beside it)"
@@ -102,6 +104,7 @@ def arguments(argv=None):
     )
     add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
     chosen = parser.parse_args(argv)
+    chosen.indexes = [path for path in chosen.results if is_of_passes(path)]
     try:
         chosen.results = [str(file) for path in chosen.results for file in files_of(path)]
     except OutputError as fault:

@@ -7,12 +7,13 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.compiled import COMPILED
-from ehlpetsc.errors import ExitStatus, PostError
+from ehlpetsc.errors import ExitStatus, OutputError, PostError
 from ehlpetsc.post.arguments import arguments
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import SURFACES
 from ehlpetsc.post.outputs.passes_file import store_passes
+from ehlpetsc.post.outputs.passes_index import note_damage
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.outputs.result_file import check_output
 from ehlpetsc.post.run import Job, run
@@ -110,6 +111,20 @@ def _store_passes(paths, chosen):
     )
 
 
+def _note_damage(index):
+    """Damage of every pass into the index of a run, and one greppable line a pass."""
+    try:
+        found = note_damage(index)
+    except OutputError as fault:
+        raise PostError(fault) from None
+    for number, known in found:
+        largest = (
+            f"{side} D_max={max(known[side]['largest']):.3e}" for side in ("fast", "slow") if side in known
+        )
+        print(f"pass {number}: {' '.join(largest)}")
+    print(f"ehlpetsc.post: done {index} passes={len(found)}")
+
+
 def _draw(paths, chosen):
     from ehlpetsc.post.pictures.gallery import draw
 
@@ -163,6 +178,8 @@ def main(argv=None, call=lambda name, work: work()):
         statuses.append(status)
         if status == ExitStatus.DONE:
             done.append(path)
+    for index in chosen.indexes if done else ():
+        statuses.append(call(index, partial(_status, partial(_note_damage, index), index, index)))
     if chosen.passes:
         work = partial(_status, partial(_store_passes, done, chosen), "--passes", _passes_file(chosen))
         statuses.append(call("passes", work))

@@ -19,10 +19,13 @@ def read_result(path):
     return Result(open_result(path), path)
 
 
-def _whole_rows(group):
+def _whole_rows(group, path):
     """Rows that a group's datasets share; its ``time`` is written last and so vouches for the rest."""
-    rows = [d.shape[0] for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in OVER_NODES]
-    return min(rows, default=0)
+    rows = [d for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in OVER_NODES]
+    for dataset in rows:
+        if not dataset.shape:
+            raise OutputError(f"{path}: {dataset.name.lstrip('/')}: damaged, it has no rows")
+    return min((dataset.shape[0] for dataset in rows), default=0)
 
 
 class Steps:
@@ -77,8 +80,8 @@ class Result:
         self.attrs = Attributes(file, path)
         with reading(path):
             # a killed writer may have lengthened some datasets and not yet others
-            self._frames = _whole_rows(file)
-            self.steps = Steps(file["steps"], _whole_rows(file["steps"]), path)
+            self._frames = _whole_rows(file, path)
+            self.steps = Steps(file["steps"], _whole_rows(file["steps"], path), path)
             self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
         self.figures = self.steps.names
         self.x, self.contact_count = self["x"][:], self["contact_count"][:]

@@ -73,18 +73,31 @@ def files_of(path):
     path = Path(path)
     if path.suffix != ".json":
         return [path]
+    index = read_index(path)
     try:
-        index = json.loads(path.read_text())
         members = index["passes"] if "passes" in index else index["members"]
         files = [path.with_name(member["file"]) for member in members]
-    except OSError as error:
-        raise OutputError(f"{path}: {error.strerror}") from error
     except (ValueError, KeyError, TypeError) as error:
         raise OutputError(f"{path}: not the index of a series ({error})") from error
     there = [file for file in files if file.exists()]
     if not there:
         raise OutputError(f"{path}: no member of the series has a result file beside it")
     return there
+
+
+def read_index(path):
+    """What an index file holds.
+
+    Raises
+    ------
+    OutputError
+    """
+    try:
+        return json.loads(path.read_text())
+    except OSError as error:
+        raise OutputError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise OutputError(f"{path}: not the index of a series ({error})") from error
 
 
 def series_values(results):

@@ -343,6 +343,7 @@ def test_full_disk_is_named_and_the_file_stays_whole(tmp_path, limit):
         (lambda path: h5py.File(path, "w").close(), "not a result of ehlpetsc"),
         (lambda path: save_restart(path, {"p": X}, {}), "not a result of ehlpetsc"),
         (lambda path: later_version(path), "format version 2"),
+        (lambda path: without_rows(path), "pressure: damaged, it has no rows"),
     ],
 )
 def test_other_files_are_refused_in_words(tmp_path, make, message):
@@ -356,6 +357,13 @@ def later_version(path):
     written(path, range(2))
     with h5py.File(path, "r+") as file:
         file.attrs["format_version"] = 2
+
+
+def without_rows(path):
+    written(path, range(2))
+    with h5py.File(path, "r+") as file:
+        del file["pressure"]
+        file["pressure"] = 1.0
 
 
 def test_restart_gives_back_what_was_saved(tmp_path):

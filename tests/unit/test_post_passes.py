@@ -1,9 +1,17 @@
 """Statistics over passes, passes within one result, and damage near an asperity."""
 
+import json
+
 import numpy as np
 import pytest
+from post_result_file import Scene, write
 
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.post import fold, largest_near, pass_statistics
+from ehlpetsc.post.command import main
+from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.running_in import damage
 
 
 def test_mean_scatter_and_life():
@@ -55,3 +63,55 @@ def test_largest_near_a_peak():
     assert largest_near(s, damage, places, 0.0)[0][0] == 1  # the nearest point always counts
     assert np.isnan(largest_near(s, damage, places, 0.05)[0][1])
     assert largest_near(s, damage[0], places, 0.2).shape == (2,)
+
+
+@pytest.fixture
+def index(tmp_path):
+    """The index of two passes, the second of a calmer pressure."""
+
+    def with_steps(file):
+        file["contact_count"] = np.zeros(file["x"].shape, int)
+        file["steps/time"], file["steps/step"] = file["time"][:], file["step"][:]
+
+    rows = []
+    for number, ripple in ((1, 3e6), (2, 1e6)):
+        scene = Scene(per_width=20, ratio=0.5, travel=9.0, ripple=ripple)
+        write(tmp_path / f"run.pass{number}.h5", scene, depths=(0.0, 0.1), edit=with_steps)
+        rows.append({"pass": number, "file": f"run.pass{number}.h5", "set_volume": 1e-12})
+    path = tmp_path / "run.passes.json"
+    path.write_text(json.dumps({"title": "made up", "passes": rows}))
+    return path
+
+
+def test_damage_of_every_pass_is_added_to_the_index(index, capsys):
+    assert main([str(index)]) == ExitStatus.DONE
+    said = capsys.readouterr().out
+    rows = json.loads(index.read_text())["passes"]
+    for number, row in enumerate(rows, 1):
+        known = PostResult(index.with_name(f"run.pass{number}.post.h5"))
+        assert row["set_volume"] == 1e-12 and row["damage"]["z_over_a"] == [0.0, 0.1]
+        for side in ("fast", "slow"):
+            passed = known.damage[side][:, known.complete[side]]
+            assert row["damage"][side]["largest"] == passed.max(axis=1).tolist()
+            assert row["damage"][side]["median"] == np.median(passed, axis=1).tolist()
+        assert f"pass {number}: fast D_max={max(row['damage']['fast']['largest']):.3e}" in said
+    assert rows[1]["damage"]["slow"]["largest"][0] < rows[0]["damage"]["slow"]["largest"][0]
+    assert f"done {index} passes=2" in said
+
+
+def test_damage_of_another_case_is_not_taken_for_that_of_a_pass(index):
+    pass_file = index.with_name("run.pass1.h5")
+    assert main([str(pass_file)]) == ExitStatus.DONE
+    with read_result(pass_file) as result:
+        assert damage(result) is not None
+        result.attrs = {"case": "another"}
+        assert damage(result) is None
+
+
+def test_an_index_that_is_none_is_refused(tmp_path, capsys):
+    bad = tmp_path / "run.passes.json"
+    for text, words in (("{", "not the index"), ('{"passes": [{}]}', "not the index")):
+        bad.write_text(text)
+        with pytest.raises(SystemExit) as ended:
+            main([str(bad)])
+        assert ended.value.code == ExitStatus.BAD_INPUT and words in capsys.readouterr().err

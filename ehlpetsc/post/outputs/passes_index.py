@@ -1,0 +1,43 @@
+"""Damage of every pass of a run, put into the index that the run has left of its passes."""
+
+import json
+from pathlib import Path
+
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.running_in import damage
+from ehlpetsc.results.series_index import read_index
+from ehlpetsc.results.whole_file import write_whole
+
+
+def is_of_passes(path):
+    """Whether a name is that of an index of passes, ``OUTPUT.passes.json``."""
+    return Path(path).name.endswith(".passes.json")
+
+
+def note_damage(index):
+    """Add to each pass of an index what post-processing has left beside it, under "damage".
+
+    Parameters
+    ----------
+    index : path-like
+        Its passes have been processed.
+
+    Returns
+    -------
+    list of (int, dict)
+        Number and damage of each pass, see `ehlpetsc.results.running_in.damage`.
+
+    Raises
+    ------
+    OutputError
+    """
+    index = Path(index)
+    content, found = read_index(index), []
+    for row in content["passes"]:
+        with read_result(index.with_name(row["file"])) as result:
+            known = damage(result)
+        if known is not None:
+            row["damage"] = known
+            found.append((row["pass"], known))
+    write_whole(index, json.dumps(content, indent=1).encode())
+    return found
