@@ -3,6 +3,7 @@
 options   a small case run with one to four PETSc and own options drawn from a list of good and bad ones
 restarts  damaged restart files: bytes changed or cut off; or content changed under a right checksum, run on
 results   damaged result files: a bit changed, or datasets and attributes replaced; read, compared, drawn
+layouts   shipped cases laid out otherwise in TOML, keys set, stored, loaded again: the same case
 cases     case files with one to three mutations, loaded, told, used as far as a run does before it computes
 
 Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
@@ -27,12 +28,8 @@ from sandbox import BAD, WORDS
 from ehlpetsc import environment
 
 environment.prepare()
-KINDS = (
-    "cases",
-    "results",
-    "options",
-    "restarts",
-)  # the last imports PETSc, which must not be forked running
+# restarts import PETSc, after which nothing may be forked
+KINDS = ("cases", "results", "options", "restarts", "layouts")
 
 
 def fuzz(seed, show=False, keep=None, **numbers):
