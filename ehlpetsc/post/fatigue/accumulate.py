@@ -184,8 +184,7 @@ def damage(
         Morrow takes the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading the
         mean stress itself) off the fatigue strength. Compression helps no further than in a uniaxial cycle
         that ends at zero stress, where the mean is minus half the range: below -dsv/2 the mean counts as
-        -dsv/2. So the FKM guideline (Rechnerischer Festigkeitsnachweis, stress ratio R > 1) has it; without
-        the floor the pressure of the contact itself would lengthen lives by decades.
+        -dsv/2. Without the floor the pressure of the contact itself would lengthen lives by decades.
     strain : {"direct", "neuber", "glinka"}
         How the elastic range enters the cyclic stress-strain curve (13): as it is, as in the paper, or by
         Neuber's or Glinka's rule (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).

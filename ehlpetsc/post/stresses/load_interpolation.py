@@ -3,8 +3,9 @@
 The solution has loads at nodes, and a body point sees what lies between them as well. Straight lines cut the
 peaks of short ripples. A spline keeps them, but beside a contact one to three nodes wide it swings to the
 other side by up to 14 % of the peak: tension on a surface under pressure. Here slopes are those of sixth
-order, held within what Huynh (1993), *Accurate monotone cubic interpolation*, SIAM J. Numer. Anal. 30, calls
-for: ripples of ten nodes are kept to 5e-4 of their amplitude, and a steep flank does not overshoot.
+order, held to three times the smaller secant beside the node, which keeps monotone values monotone (Fritsch &
+Carlson (1980), SIAM J. Numer. Anal. 17), or to what the parabolas beside it allow where they bend the same
+way: ripples of ten nodes are kept to 5e-4 of their amplitude, and a steep flank does not overshoot.
 """
 
 import numpy as np
