@@ -60,7 +60,7 @@ def surface(axes, results):
     ):
         axes.plot((s[near] - place) / a, 1e6 * z[near], style, color=colour, label=name)
     axes.set(xlabel="along the body, from its deepest set [a]", ylabel=f"height of the {side} surface [µm]")
-    axes.legend(fontsize="small")
+    above(axes)
 
 
 def pressure(axes, results):
@@ -72,8 +72,14 @@ def pressure(axes, results):
     for result, colour, name in ((first, FIRST, "pass 1"), (last, LAST, f"pass {len(results)}")):
         axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
     axes.set(xlabel="x/a", ylabel="pressure [GPa]", xlim=(-1.2, 1.2))
-    axes.set_title(f"at {1e6 * first.time[frame]:.1f} µs of each pass", fontsize="small")
-    axes.legend(fontsize="small")
+    at = f"at {1e6 * first.time[frame]:.1f} µs"
+    above(axes, title=at)
+
+
+def above(axes, title=None):
+    """A legend in a row over the axes, where no curve runs."""
+    place = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
+    axes.legend(title=title, fontsize="small", title_fontsize="small", **place)
 
 
 def added(axes, rows):
@@ -91,7 +97,7 @@ def added(axes, rows):
             beside.plot(numbers, ra, style, color="C0", ms=4, label=f"Ra {side}")
     beside.set_ylabel("Ra [µm]", color="C0")
     if beside.lines:
-        beside.legend(fontsize="small", loc="center right")
+        above(beside)
 
 
 def contact(axes, rows):

@@ -11,9 +11,9 @@ reversed torsion and reversed bending. Up to U = 1 no crack starts; the margin i
 
 Dang Van, Griveau & Message (1989), *On a new multiaxial fatigue limit criterion*, in Biaxial and Multiaxial
 Fatigue, EGF 3; constants from the two limits. The smallest ball is to the deviator what the smallest circle
-is to the shear stress on a plane (Bernasconi & Papadopoulos (2005), Computational Materials Science 34). Under
-the pressure of a rolling contact the straight line would let ever more shear pass; here compression counts as
-no hydrostatic stress, which is the careful side.
+is to the shear stress on a plane (Bernasconi & Papadopoulos (2005), Computational Materials Science 34).
+Under the pressure of a rolling contact the straight line would let ever more shear pass; here compression
+counts as no hydrostatic stress, which is the careful side.
 """
 
 from math import sqrt
