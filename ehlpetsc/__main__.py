@@ -35,7 +35,10 @@ def main(argv):
         return refuse(f"ehlpetsc: {nowhere}")
     import petsc4py
 
-    petsc4py.init([argv[0], *QUIET, *command.petsc])
+    try:
+        petsc4py.init([argv[0], *QUIET, *command.petsc])
+    except RuntimeError as error:  # PETSc's own kind, which cannot be imported before it has begun
+        return refuse(f"ehlpetsc: PETSc cannot begin with {' '.join(command.petsc)}: {error}")
     from petsc4py import PETSc
 
     PETSc.Options().delValue(QUIET[0])  # it is no option of the run

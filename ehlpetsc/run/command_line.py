@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ehlpetsc.environment import program
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.options import usage
+from ehlpetsc.nonlinear.options import OWN, usage
 
 
 @dataclass
@@ -45,7 +45,7 @@ def parse_command_line(arguments):
     Raises
     ------
     UsageError
-        Two case files, or none where one is needed; an options file that is not there.
+        Two case files, or none where one is needed; an options file that is not there; -ehl_set alone.
     """
     command = Command()
     rest, sets = _without_sets(arguments)
@@ -78,7 +78,10 @@ def _without_sets(words):
     words = iter(words)
     for word in words:
         if word in ("-ehl_set", "--ehl_set"):
-            sets.append(next(words, ""))
+            value = next(words, "")
+            if not value or value.startswith("-"):
+                raise UsageError(f"{word} stands without a value; allowed: {word} {OWN['ehl_set'].value}")
+            sets.append(value)
         else:
             rest.append(word)
     return rest, sets

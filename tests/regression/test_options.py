@@ -137,6 +137,7 @@ def test_the_case_must_be_named_once(arguments, message):
         (["-snes_atol", "nan"], "-snes_atol nan: allowed: a number"),
         (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: allowed: a number"),
         (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
+        (["-ehl_set", "-help"], "-ehl_set stands without a value; allowed: -ehl_set TABLE.KEY=VALUE"),
     ],
 )
 def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
@@ -144,6 +145,12 @@ def test_bad_values_are_told_in_one_line(case, tmp_path, words, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_options_that_petsc_cannot_begin_with_are_refused(case, tmp_path):
+    done = run(case, "-help", "maybe", cwd=tmp_path)
+    assert done.returncode == 2 and "ehlpetsc: PETSc cannot begin with -help maybe: error code" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_the_type_python_alone_is_the_programs_own_preconditioner(case, tmp_path):
