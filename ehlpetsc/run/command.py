@@ -63,7 +63,8 @@ def run(path, overrides):
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
         several = case.time is not None and case.time.passes > 1
         if case.series and several:
-            return refuse(comm, [f"{case.path}: [series] and time.passes: one of them at a time"])
+            told = "one of them at a time; a member: -ehl_set KEY=VALUE -ehl_output NAME.h5"
+            return refuse(comm, [f"{case.path}: [series] and time.passes: {told}"])
         if case.series:
             return Series(comm, case, options, stop, output).run()
         overwrite = options.getBool("ehl_overwrite", False)
