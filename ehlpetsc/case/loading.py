@@ -6,10 +6,10 @@ import re
 import tomllib
 from pathlib import Path
 
+from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
 from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import PARTS, parsed, put, text_with
-from ehlpetsc.case.sweep import member_tables, series_faults, settings_of
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
 from ehlpetsc.case.tables.surface import Surface

@@ -64,6 +64,3 @@ RIDGE = {
 """Gaussian ridge 0.1 um exp(-((X-Xc)/0.1)^2) at Xc = 0, Table 1, eta0 = 0.005, u = 5, xi = 0.25 [m, m, Pa].
 
 It travels at 0.875 u from Xc = -2 with the load held; computed by a dense solver."""
-
-CONTACT_PROPORTIONS = {100: 1.0, 200: 1.26, 300: 1.48, 400: 1.76}
-"""Points per half width -> mean contact rate over the coarsest mesh's; Holmes et al. 2005, section 3.1."""

@@ -2,7 +2,7 @@
 
 import time
 
-from ehlpetsc.run.series.work_queue import Dealer
+from ehlpetsc.run.series.work_queue import WorkQueue
 
 
 def deal(ranks, pieces, ending_after=None):
@@ -10,18 +10,18 @@ def deal(ranks, pieces, ending_after=None):
     from mpi4py import MPI
 
     told, mine, report = [], [], None
-    dealer = Dealer(MPI.COMM_WORLD, ranks, pieces, told.append)
+    queue = WorkQueue(MPI.COMM_WORLD, ranks, pieces, told.append)
     while True:
-        number = dealer.next(report, ending_after is not None and len(mine) >= ending_after)
+        number = queue.next(report, ending_after is not None and len(mine) >= ending_after)
         if number is None:
             break
         mine.append(number)
         for _ in range(5):
-            dealer.serve()
+            queue.serve()
             time.sleep(0.001)
         report = number
-    status = dealer.finish(lambda: sorted(told))
-    return MPI.COMM_WORLD.allgather(mine), status, dealer.group.size
+    status = queue.finish(lambda: sorted(told))
+    return MPI.COMM_WORLD.allgather(mine), status, queue.group.size
 
 
 def test_every_piece_is_dealt_once_and_reported():

@@ -16,6 +16,7 @@ from ehlpetsc.post.command import main
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.outputs.passes_file import same_points
 from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.post.pictures import gallery
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 
@@ -26,6 +27,12 @@ FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "e
 @pytest.fixture(scope="module")
 def scene():
     return Scene(per_width=40, ratio=0.5, travel=9.0)
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    """To draw fine ones takes longer than all else here."""
+    monkeypatch.setattr(gallery, "DPI", 20)
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from made_results import make_result
 
+from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.case.sweep import settings_of
 from ehlpetsc.errors import CaseError
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals

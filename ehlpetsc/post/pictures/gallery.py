@@ -19,6 +19,7 @@ from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 
 STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # without the salt, no two SVG files would be the same
+DPI = 160
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
 TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
@@ -32,7 +33,7 @@ def _save(figure, stem):
     for kind in ("png", "svg"):
         names.append(f"{stem}.{kind}")
         metadata = {"Date": None} if kind == "svg" else None
-        figure.savefig(names[-1], dpi=160, bbox_inches="tight", metadata=metadata)
+        figure.savefig(names[-1], dpi=DPI, bbox_inches="tight", metadata=metadata)
     return names
 
 

@@ -3,8 +3,8 @@
 import math
 import tomllib
 
+from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import members
-from ehlpetsc.case.sweep import combinations, keys_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.preview.forecast import (

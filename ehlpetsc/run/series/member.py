@@ -21,7 +21,7 @@ def named(settings):
     Parameters
     ----------
     settings : list of list of (list of str, value)
-        Of each member, see `ehlpetsc.case.sweep.settings_of`.
+        Of each member, see `ehlpetsc.case.combinations.settings_of`.
 
     Returns
     -------
@@ -96,7 +96,7 @@ class Member:
             return False  # none, or a damaged one: it is computed again
 
     def weight(self):
-        """For dealing the longest first: nodes times steps; of equals, the thinner film."""
+        """For beginning with the longest: nodes times steps; of equals, the thinner film."""
         scales = Scales.of(self.case)
         film = dowson_higginson(scales, self.case.fluid.pressure_viscosity) if self.case.fluid else 0.0
         return scales.nx * (steps(scales) if self.case.time else 1), -film

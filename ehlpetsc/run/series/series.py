@@ -12,8 +12,8 @@ import time as clock
 import tomllib
 from pathlib import Path
 
+from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
-from ehlpetsc.case.sweep import settings_of
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
@@ -24,7 +24,7 @@ from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.progress import summary_line
 from ehlpetsc.run.recorder import on_root
 from ehlpetsc.run.series.member import Member, named
-from ehlpetsc.run.series.work_queue import Dealer
+from ehlpetsc.run.series.work_queue import WorkQueue
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 
@@ -50,15 +50,15 @@ class Named:
 class Serving:
     """A request to stop that serves the other groups whenever it is asked; as of run.stop.StopRequest."""
 
-    def __init__(self, dealer, stop):
-        self._dealer, self._stop = dealer, stop
+    def __init__(self, queue, stop):
+        self._queue, self._stop = queue, stop
 
     def __call__(self, group):
-        self._dealer.serve()
+        self._queue.serve()
         return self._stop(group)
 
     def overdue(self, group):
-        self._dealer.serve()
+        self._queue.serve()
         return self._stop.overdue(group)
 
 
@@ -108,7 +108,7 @@ class Series:
         self.states = ["waiting" if state == "begun" else state for state in self.states]
         missing = [n for n, state in enumerate(self.states) if state != "done"]
         missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
-        self.dealer = Dealer(world, ranks, missing, self._take)
+        self.queue = WorkQueue(world, ranks, missing, self._take)
         self.failures = {}
         self._announce(ranks, len(missing))
 
@@ -118,24 +118,22 @@ class Series:
         self._write_index()
         report = None
         while True:
-            number = self.dealer.next(report, self.stop(self.dealer.group))
+            number = self.queue.next(report, self.stop(self.queue.group))
             if number is None:
                 break
             report = (number, *self._run_member(self.members[number]))
         try:
-            return self.dealer.finish(lambda: self._conclude(clock.monotonic() - begun))
+            return self.queue.finish(lambda: self._conclude(clock.monotonic() - begun))
         finally:
             self._lock.give_back()
 
     def _run_member(self, member):
         """Run one member on this group; its exit status and why it failed."""
-        group = self.dealer.group
+        group = self.queue.group
         out, err = Named(member.name, sys.stdout), Named(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
-            one = Run(
-                Simulation(member.case, group), member.output, Serving(self.dealer, self.stop), out, err
-            )
+            one = Run(Simulation(member.case, group), member.output, Serving(self.queue, self.stop), out, err)
             outcome = one.run(member.restart if begun else None, overwrite=True)  # looked at before: ours
             return outcome.status, str(outcome.failure or "")
         except (CaseError, OutputError, UsageError) as error:

@@ -1,7 +1,7 @@
 """Dealing pieces of work to groups of ranks: whoever is free gets the next one.
 
 The first rank deals and works at the same time: it looks for requests between its own time steps
-(:meth:`Dealer.serve`), so that no rank is spent on waiting and no shared memory is needed.
+(:meth:`WorkQueue.serve`), so that no rank is spent on waiting and no shared memory is needed.
 """
 
 import time as clock
@@ -12,7 +12,7 @@ REQUEST, ANSWER = 71, 72
 PAUSE = 0.01  # s between two looks of a rank that waits
 
 
-class Dealer:
+class WorkQueue:
     """Deals the numbers in `order` to groups of `ranks` ranks each.
 
     Parameters
