@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 
+import pytest
 from running import BARE, ROOT, SHORT, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
@@ -21,6 +22,7 @@ def slurm(folder):
     return BARE | {"PATH": path, "SLURM_JOB_ID": "17", "SLURM_NTASKS": "1", "SLURM_SUBMIT_DIR": str(ROOT)}
 
 
+@pytest.mark.slow
 def test_a_job_stopped_before_its_time_is_over_goes_on_when_queued_again(tmp_path):
     result, restart = tmp_path / "table1_rough.h5", tmp_path / "table1_rough.restart.h5"
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}

@@ -61,6 +61,7 @@ def test_signals_to_a_run_of_one_process(tmp_path, name):
     assert_stopped_whole(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_step_that_lasts_is_not_waited_for(tmp_path):
     """mpirun kills a second after the signal: the state before the step in hand is saved by then."""
     never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip"]

@@ -65,6 +65,7 @@ def test_an_options_file_counts_where_it_stands(case, tmp_path):
     assert (tmp_path / "other.h5").exists()
 
 
+@pytest.mark.slow
 def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
     monkeypatch.setenv("PETSC_OPTIONS", "-ehl_set a.b=1 -snes_monitor -ehl_set 'title=two words'")
     command = parse_command_line(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
@@ -252,6 +253,7 @@ def test_views_come_once_and_monitors_are_headed(tmp_path):
     assert text.count("Nonlinear solve converged") == len(heads)
 
 
+@pytest.mark.slow
 def test_a_bare_environment_will_do(case, tmp_path):
     bare = {name: value for name, value in SCRIPT.items() if name not in ("PETSC_DIR", "OMP_NUM_THREADS")}
     done = subprocess.run(

@@ -100,6 +100,7 @@ def running(folder):
     return process
 
 
+@pytest.mark.slow
 def test_a_second_run_is_kept_away_and_a_killed_one_is_not_in_the_way(tmp_path):
     process = running(tmp_path)
     try:
@@ -115,6 +116,7 @@ def test_a_second_run_is_kept_away_and_a_killed_one_is_not_in_the_way(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
 
 
+@pytest.mark.slow
 def test_a_result_removed_in_mid_run_is_seen(tmp_path):
     process = running(tmp_path)
     try:

@@ -23,6 +23,7 @@ SHORT = (
 )
 
 
+@pytest.mark.slow
 def test_a_result_a_pass_and_an_index(tmp_path):
     done = run(CASE, *settings(*SHORT), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -62,6 +63,7 @@ def passes(case, path=None, stop=None):
     return second, recorder.restart
 
 
+@pytest.mark.slow
 def test_a_pass_goes_on_in_its_middle(tmp_path):
     case = load(CASE, SHORT)
     whole, states = passes(case)

@@ -10,7 +10,6 @@ from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.post.arguments import arguments
 from ehlpetsc.results.reader import read_result
 
-pytestmark = pytest.mark.slow
 CASE = ROOT / "cases" / "fig4.toml"
 VALUES = (0.01, 0.006, 0.003)
 QUICK = [*SHORT[:-1], "time.travel=0.5"]
@@ -35,6 +34,7 @@ def finished(tmp_path_factory):
     return folder, series(folder)
 
 
+@pytest.mark.slow
 def test_every_member_has_its_file(finished):
     folder, done = finished
     assert done.returncode == 0, done.stderr
@@ -52,6 +52,7 @@ def test_every_member_has_its_file(finished):
     assert float(whole["p_max"]) == pytest.approx(max(p for *_, p in one), rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_member_is_what_the_case_alone_gives(finished, tmp_path):
     folder, _ = finished
     alone = run(
@@ -66,6 +67,7 @@ def test_a_member_is_what_the_case_alone_gives(finished, tmp_path):
         assert (a.steps("p_max") == b.steps("p_max")).all() and (a.steps("time") == b.steps("time")).all()
 
 
+@pytest.mark.slow
 def test_members_are_at_the_same_times(finished):
     folder, _ = finished
     times = []
@@ -76,6 +78,7 @@ def test_members_are_at_the_same_times(finished):
     assert times[0] == times[1] == times[2] == list(range(len(times[0])))
 
 
+@pytest.mark.slow
 def test_a_rerun_does_only_what_is_missing(finished):
     folder, first = finished
     files = sorted(folder.glob("out_*.h5"))
@@ -102,6 +105,7 @@ def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
     assert done.stdout.strip().splitlines()[-1].startswith("ehlpetsc: not converged steps=")
 
 
+@pytest.mark.slow
 def test_a_stopped_series_goes_on_where_it_was(tmp_path, finished):
     stopped = series(tmp_path, tampered=("SIGUSR1", 0, 10))  # in the first rank's first member
     assert stopped.returncode == 4, stopped.stdout + stopped.stderr
@@ -128,6 +132,7 @@ def test_what_makes_no_series(tmp_path, words, fault):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_several_keys_make_a_grid_that_all_commands_take(tmp_path):
     keys = ["surface.slow.synthetic.seed", "motion.entrainment_speed"]
     sets = [

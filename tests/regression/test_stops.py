@@ -47,6 +47,7 @@ def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
     assert "tampered.py" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name, ranks", [("SIGTERM", 2), ("SIGUSR1", 0), ("SIGINT", 0)])
 def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(whole, tmp_path, name, ranks):
     stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), 20))
@@ -68,6 +69,7 @@ def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(whole
         assert earlier["ranks"] == max(ranks, 1) and earlier["up_to_step"] == 20
 
 
+@pytest.mark.slow
 def test_a_killed_run_leaves_its_last_checkpoint_and_goes_on_from_there(whole, tmp_path):
     often = [*CASE, *settings("output.checkpoint=1e-5")]
     killed = run(*often, cwd=tmp_path, ranks=2, tampered=("SIGKILL", 0, 21))
@@ -149,6 +151,7 @@ def test_a_restart_file_of_another_mesh_is_refused(stopped, tmp_path, more, mess
 SMOOTH = [ROOT / "cases" / "table1_smooth.toml", *settings(*SHORT[:3], "mesh.outlet=1.5")]
 
 
+@pytest.mark.slow
 def test_after_a_jump_of_the_load_the_film_becomes_that_of_the_new_load(tmp_path):
     """Twice the load, half the radius or a softer solid, at once; the film of before leaves."""
     moving = [*SMOOTH, *settings("time.courant=1.0", "time.travel=0.5")]
@@ -212,6 +215,7 @@ def test_a_finished_run_has_nothing_left_to_do(whole, stopped, tmp_path):
     assert summary(done.stdout)["steps"] == "10"
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_told_and_leaves_a_whole_file(tmp_path):
     limited = ["prlimit", "--fsize=9000000", *command(*CASE, *settings("mesh.points_per_half_width=400"))]
     done = subprocess.run(

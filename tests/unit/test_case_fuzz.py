@@ -124,7 +124,6 @@ def _cut(text, rng):
     return text[:start] + text[start + rng.randrange(200) :]
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 def test_corrupted_files_end_in_case_errors(tmp_path):
     rng = random.Random(SEED)
@@ -141,7 +140,6 @@ def test_corrupted_files_end_in_case_errors(tmp_path):
     assert refused > 0.7 * DRAWS
 
 
-@pytest.mark.slow
 def test_corrupted_overrides_end_in_case_errors():
     rng = random.Random(SEED)
     refused = 0

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import matplotlib
+import pytest
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOK = ROOT / "cases" / "first_steps.ipynb"
@@ -47,6 +48,7 @@ def printed(outputs):
     return "".join("".join(output["text"]) for output in outputs if output["output_type"] == "stream")
 
 
+@pytest.mark.slow
 def test_it_runs_and_prints_what_is_stored(monkeypatch):
     monkeypatch.chdir(NOTEBOOK.parent)
     cells = code_cells(json.loads(NOTEBOOK.read_text(encoding="utf-8")))

@@ -95,6 +95,7 @@ def test_an_installation_brings_the_commands_and_replaces_nothing(environment):
     assert {path.name.split("-")[0] for path in packages.iterdir()} == {"ehlpetsc"}
 
 
+@pytest.mark.slow
 def test_the_commands_work_from_any_folder(environment, tmp_path):
     def call(name, *words):
         done = subprocess.run(

@@ -301,6 +301,7 @@ def test_movies_by_ffmpeg(tmp_path, monkeypatch, ending, capsys):
     assert "needs ffmpeg" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_axes_of_a_movie_stand_still(tmp_path, monkeypatch):
     seen = []
 
@@ -331,6 +332,7 @@ def stribeck_series(tmp_path):
     return paths
 
 
+@pytest.mark.slow
 def test_the_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
     results = [read_result(path) for path in stribeck_series]
     points, short = stribeck.stribeck_points(results)

@@ -206,6 +206,7 @@ def test_dang_van_under_hertz_uses_the_limit_up_where_the_standard_says():
     assert use[0] == pytest.approx((1 - 0.6) * 1.5e9 / 4 / 375e6, rel=1e-6)  # out of the section
 
 
+@pytest.mark.slow
 def test_smallest_ball():
     rng = np.random.default_rng(0)
     for count in (1, 2, 3, 4, 50, 1000):

@@ -144,6 +144,7 @@ def test_a_signal_while_everything_is_being_imported(number, result, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
 
 
+@pytest.mark.slow
 def test_sigterm_at_work_and_going_on(scene, tmp_path):
     depths = tuple(0.05 * k for k in range(16))
     path, output = write(tmp_path / "run.h5", scene, depths=depths), tmp_path / "run.post.h5"
@@ -219,6 +220,7 @@ def test_a_crash_of_our_own_is_a_bug(supervisor):
     assert supervisor("a.h5", crash) == ExitStatus.BUG
 
 
+@pytest.mark.slow
 def test_damaged_files():
     """A few of `tests/fuzz/post.py`: every one is refused with its reason, or read."""
     spec = importlib.util.spec_from_file_location("fuzz_post", ROOT / "tests" / "fuzz" / "post.py")

@@ -48,7 +48,6 @@ def fault(capsys, *argv):
     return said
 
 
-@pytest.mark.slow
 def test_result_has_the_fixed_names(result, scene, capsys):
     assert main([str(result)]) == 0
     assert "ehlpetsc.post: done" in capsys.readouterr().out
@@ -291,6 +290,7 @@ def test_pictures_of_two_ratios(scene, tmp_path, capsys):
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
 
 
+@pytest.mark.slow
 def test_passes_of_one_surface(tmp_path, capsys):
     """The slow surface is one; that it meets is another in each pass."""
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
@@ -333,6 +333,7 @@ def judged(scene, tmp_path_factory):
     return folder / "a.post.h5"
 
 
+@pytest.mark.slow
 def test_criteria_stand_beside_the_papers_damage(judged, scene, tmp_path):
     plain = write(tmp_path / "a.h5", scene, depths=(0.0, 0.5))
     run(Job(str(plain), str(tmp_path / "plain.h5")))

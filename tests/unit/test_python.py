@@ -246,6 +246,7 @@ def test_examples_in_docstrings_work(module, monkeypatch):
     assert tried >= 3 and failed == 0
 
 
+@pytest.mark.slow
 def test_the_page_shows_what_works(monkeypatch, capsys):
     import matplotlib
 

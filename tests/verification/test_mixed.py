@@ -20,6 +20,7 @@ def rough():
     return simulation, list(simulation)
 
 
+@pytest.mark.slow
 def test_solids_and_film_are_complementary_to_the_bit(rough):
     simulation, states = rough
     bound = simulation.case.contact.boundary_film
@@ -33,18 +34,21 @@ def test_solids_and_film_are_complementary_to_the_bit(rough):
         np.testing.assert_array_equal(state.in_contact, state.contact_pressure > 0.0)
 
 
+@pytest.mark.slow
 def test_load_and_oil_balance_hold_at_every_step(rough):
     _, states = rough
     assert max(s.load_error for s in states) < 1e-10
     assert max(s.mass_error for s in states) < 1e-6
 
 
+@pytest.mark.slow
 def test_steps_are_few_and_none_is_halved(rough):
     _, states = rough
     assert sum(s.retries for s in states) == 0
     assert np.mean([s.newton for s in states[1:]]) < 7.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name, overrides",
     [
@@ -111,6 +115,7 @@ def stored(state):
     return np.maximum(state.m + 0.5 * (state.m - state.m_older), 0.5 * state.m)
 
 
+@pytest.mark.slow
 def test_oil_in_less_oil_out_is_what_is_stored():
     """Over a whole run with contact, to 1e-8 of what has passed, from the flows at both ends."""
     simulation = Simulation(load(CASES / "table1_mixed.toml", SHORT), options={"snes_atol": "1e-9"})
@@ -151,6 +156,7 @@ POCKET = (
 )
 
 
+@pytest.mark.slow
 def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
     """Two flat ridges, 1 um high, 90 um apart, in pure rolling: one node a step, as windows travel along."""
     x, first, apart = np.arange(0.0, 600e-6, 0.5e-6), 100e-6, 90e-6
@@ -181,6 +187,7 @@ def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
     assert within > beyond.max()
 
 
+@pytest.mark.slow
 def test_the_variational_inequality_gives_the_same(rough):
     """p_c as a third, bounded unknown (SNES's vinewtonrsls) against the sign of one unknown (newtonls)."""
     simulation, states = rough

@@ -80,6 +80,7 @@ def test_damage_on_ripples_of_ten_nodes_within_a_fifth_of_a_percent(scene, loads
     assert np.mean(losses) > 0.2  # what linear interpolation would lose
 
 
+@pytest.mark.slow
 def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
     """To rounding, but for equal ripples that pair otherwise where one rounds up and one down."""
     output = tmp_path / "a.post.h5"

@@ -39,6 +39,7 @@ def test_names_of_the_surfaces_do_not_matter(xi):
         np.testing.assert_allclose(a.film_thickness, b.film_thickness, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_roughness_at_rest_is_marched_to_where_no_steady_solution_is_found(monkeypatch):
     """After the oil has passed the domain it is the steady film that continuation finds."""
     known = next(iter(Simulation(rough("fast", -2.0, 1.0))))

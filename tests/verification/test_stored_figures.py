@@ -111,6 +111,7 @@ def logarithms(x):
     return dx * (twice(k + 1) - 2.0 * twice(k) + twice(k - 1) + np.log(dx))
 
 
+@pytest.mark.slow
 def test_film_pressure_contacts_and_load(run):
     case, result, of = run
     dx, steps = spacing(result), result.steps

@@ -28,6 +28,7 @@ def rough():
     return simulation, list(simulation)
 
 
+@pytest.mark.slow
 def test_every_step_is_certified(rough):
     simulation, states = rough
     bound, film = simulation.case.contact.yield_pressure[0], simulation.case.contact.boundary_film
@@ -41,6 +42,7 @@ def test_every_step_is_certified(rough):
     assert sum(state.retries > 0 for state in states) <= 0.01 * len(states)
 
 
+@pytest.mark.slow
 def test_both_bodies_take_what_the_steps_add(rough):
     simulation, states = rough
     scales, sets = simulation.scales, simulation.solution.sets
@@ -58,6 +60,7 @@ def test_the_softer_surface_takes_all():
     assert slow.volume == pytest.approx(last.set_volume, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_above_every_pressure_the_result_is_the_elastic_one():
     elastic, yielding = (
         list(Simulation(load(CASES / "table1_mixed.toml", [*ROUGH, "time.travel=1.6", *more])))
@@ -161,6 +164,7 @@ def test_pressed_again_nothing_yields_further():
     np.testing.assert_allclose(again.pressure, state.pressure, atol=5e-4 * state.p_max)
 
 
+@pytest.mark.slow
 def test_a_second_pass_over_a_ridge_adds_next_to_nothing():
     case = load(CASES / "ridge.toml", [*RIDGE, "contact.yield_pressure=2e9"])
     before, volumes = None, []
