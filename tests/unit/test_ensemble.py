@@ -7,9 +7,11 @@ import h5py
 import numpy as np
 import pytest
 from made_results import make_result, with_solids
+from matplotlib.image import imread
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.plot.ensemble import draw_ensemble
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import told_apart
 
@@ -120,10 +122,22 @@ def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])
-def test_it_is_drawn(tmp_path, speeds, seeds):
+def test_every_run_and_every_mean_is_drawn(tmp_path, speeds, seeds):
+    paths = made(tmp_path, speeds, seeds)
+    axes = draw_ensemble(opened(paths), None).axes
+    panel = next(one for one in axes if one.get_ylabel() == "share of the load\non the solids")
+    shares = [one.figures["contact_share"] for one in ensemble.ensembles(opened(paths))]
+    expected = [part for values in shares for part in (values, [values.mean()])]
+    assert [len(values) for values in shares] == [len(seeds)] * len(speeds)
+    assert len(panel.lines) == len(expected)
+    for line, values in zip(panel.lines, expected, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), values, rtol=1e-12)
+    assert len(panel.collections) == (len(speeds) if len(seeds) > 1 else 0)  # intervals
+    if len(seeds) > 1:
+        return
     picture = tmp_path / "p.png"
-    assert plot([*made(tmp_path, speeds, seeds), "--ensemble", "-o", str(picture)]) == 0
-    assert picture.stat().st_size > 10_000
+    assert plot([*paths, "--ensemble", "-o", str(picture)]) == 0
+    assert imread(picture).std() > 0.02  # not blank
 
 
 def test_what_is_no_result_is_refused(tmp_path, capsys):
