@@ -28,7 +28,7 @@ def prepare():
 
     Debian keeps petsc4py beside its PETSc and not on Python's path, and so does a PETSc built by hand: that
     of ``PETSC_DIR`` is taken, without it Debian's newest real one. Threads of BLAS would fight the ranks for
-    the cores: one, unless the user says otherwise.
+    the cores: one, unless the user says otherwise. UCX, which Open MPI 5 starts, would take SIGHUP.
 
     Returns
     -------
@@ -36,6 +36,7 @@ def prepare():
         Packages that this Python does not have.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
     if not has("petsc4py"):
         sys.path += map(str, [*_of_petsc_dir(), *_debians()][:1])
     return missing(NEEDED)

@@ -39,13 +39,14 @@ def assert_stopped_whole(folder):
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path, name):
-    """Open MPI 4 then ends with a status of its own, 1, whatever its ranks end with."""
+    """Open MPI then ends with a status of its own, 1; the fifth hands on nothing that its ranks still say."""
+    version = subprocess.run(["mpirun", "--version"], capture_output=True, text=True, env=BARE).stdout
     process = start(*LONG, cwd=tmp_path, ranks=2)
     wait_for(tmp_path / "r.h5", process)
     process.send_signal(getattr(signal, name))
     _, output, errors = ended(process)
     assert process.returncode in (1, 4)
-    assert "go on with -ehl_restart r.restart.h5" in output
+    assert "go on with -ehl_restart r.restart.h5" in output or "(Open MPI) 5." in version
     assert "Traceback" not in errors and "PETSC ERROR" not in errors
     assert_stopped_whole(tmp_path)
 
@@ -91,8 +92,9 @@ def test_a_hangup_that_is_ignored_stays_so(tmp_path):
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_signal_during_imports_ends_in_one_sentence(tmp_path, name):
-    for delay in (0.5, 0.8, 1.1):
-        process = start(*STEADY, "-ehl_overwrite", cwd=tmp_path)
+    endless = [*STEADY, *settings("time.courant=1.0", "time.travel=500"), "-ehl_overwrite"]
+    for delay in (0.5, 0.8, 1.1):  # on a quick machine it has begun by then, and stops all the same
+        process = start(*endless, cwd=tmp_path)
         time.sleep(delay)
         process.send_signal(getattr(signal, name))
         _, output, errors = ended(process)
