@@ -127,7 +127,7 @@ def test_the_case_must_be_named_once(arguments, message):
         (["-ksp_rtol", "abc"], "PETSc refuses -ksp_rtol abc: Input string abc has no numeric value"),
         (["-ksp_pc_side", "left"], "PETSc refuses -ksp_pc_side left: KSP fgmres does not support"),
         (["-ksp_type", "minres"], "PETSc refuses -ksp_type minres: KSP minres does not support"),
-        (["-snes_max_it", "-1"], "PETSc refuses -snes_max_it -1: Maximum number of iterations"),
+        (["-snes_max_it", "-7"], "PETSc refuses -snes_max_it -7: Maximum number of iterations"),
         (["-pc_type", "galerkin"], "PETSc refuses -pc_type galerkin: Must set operator"),
         (["-snes_mf"], "-snes_mf: PETSc's differences would"),
         (["-snes_mf_operator"], "-snes_mf_operator: PETSc's differences would"),
