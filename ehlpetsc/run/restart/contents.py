@@ -135,7 +135,8 @@ def _fault_of_totals(attributes):
         if name.removeprefix(TOTAL) not in STEP_SCALARS:
             return f"nobody knows its {name}"
         if not isinstance(value, int | float | np.integer | np.floating) or np.isinf(value):
-            return f"{name} is {value!r}"
+            plain = value.item() if isinstance(value, np.generic) else value  # numpy 2 would tell its type
+            return f"{name} is {plain!r}"
     return None
 
 
