@@ -98,11 +98,12 @@ class Relations(NamedTuple):
 
         Parameters
         ----------
-        v_q, v_w : ndarray, shape (nx,)
+        v_q, v_w : ndarray
+            At the nodes of the relations.
 
         Returns
         -------
-        oil, pressure, film, separation : ndarray, shape (nx,)
+        oil, pressure, film, separation : ndarray
         """
         pressure, film = self.p_q * v_q + self.p_w * v_w, self.h_w * v_w
         if self.plastic is None:

@@ -9,7 +9,8 @@ places, as SNESVI pairs row with unknown:
 * last the load, :math:`\sum p\,\Delta x=\pi/2`.
 
 Nothing here keeps a state: a step's inputs go in as one frozen record, residual and derivatives come out
-as another.
+as another. A part of the mesh takes the unknowns of its window, see :mod:`.deflection`, and gives its own
+rows.
 """
 
 from dataclasses import dataclass
@@ -78,6 +79,11 @@ class EHLProblem:
         What Reynolds' rows are divided by, about the expected film, in a^2/R.
     first, last : int
         Local nodes; the rank that owns the last one owns the load row.
+
+    Attributes
+    ----------
+    window, own : slice
+        Nodes whose unknowns the local rows are given; the local ones among them.
     """
 
     def __init__(self, case, scales, film_scale, first, last):
@@ -90,7 +96,9 @@ class EHLProblem:
         self.film_scale = film_scale
         self.model = contact_model(case, scales, film_scale)
         self.deflection = Deflection(self.n, self.dx, first, last)
-        self.reynolds = None if self.dry else Reynolds(scales, film_scale, first, last)
+        self.window, self.own = self.deflection.window, self.deflection.own
+        self._parabola = 0.5 * self.x[self.window] ** 2
+        self.reynolds = None if self.dry else Reynolds(scales, film_scale, first, last, self.window.start)
         self.inlet_film = None
         if not self.dry and case.fluid.inlet_film is not None:
             self.inlet_film = case.fluid.inlet_film / scales.h
@@ -117,62 +125,68 @@ class EHLProblem:
         relations = self.model.relations(q, w)
         return self.reynolds.content(relations.oil, relations.film, self.fluid)[0]
 
-    def evaluate(self, q, w, h00, inputs):
+    def evaluate(self, q, w, h00, inputs, outside=None):
         """Local rows and their derivatives at one state.
 
         Parameters
         ----------
-        q, w : ndarray, shape (nx,)
+        q, w : ndarray
+            At the nodes of the window.
         h00 : float
         inputs : StepInputs
+        outside : deflection.Outside, optional
+            Needed unless the window is the whole mesh.
 
         Returns
         -------
         Evaluation
         """
-        return self.rows_of(self.model.relations(q, w), h00, inputs)
+        return self.rows_of(self.model.relations(q, w), h00, inputs, outside)
 
-    def rows_of(self, relations, h00, inputs):
+    def rows_of(self, relations, h00, inputs, outside=None):
         """As :meth:`evaluate`, of a state given by what its unknowns mean."""
         residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
-        separation = relations.separation - 0.5 * self.x**2 - inputs.phi
-        deflection = self.deflection.rows(separation, relations.pressure, h00)
+        separation = relations.separation - self._parabola - inputs.phi[self.window]
+        deflection, load = self.deflection.rows(separation, relations.pressure, h00, outside)
         firsts(residual, self.local)[:] = deflection
         if self.dry:
-            imbalance, derivatives = relations.oil[self.first : self.last], self._dry_derivatives()
+            imbalance, derivatives = relations.oil[self.own], self._dry_derivatives()
         else:
             imbalance, derivatives = self.reynolds.evaluate(relations.oil, relations.film, inputs)
         seconds(residual, self.local)[:] = imbalance
         if self.load_is_local:
-            residual[-1] = self.dx * relations.pressure.sum() - 0.5 * np.pi * inputs.load
+            residual[-1] = load - 0.5 * np.pi * inputs.load
         return Evaluation(relations, residual, derivatives)
 
-    def product(self, relations, derivatives, v_q, v_w, v_h00):
+    def product(self, relations, derivatives, v_q, v_w, v_h00, outside=None):
         """The whole Jacobian times a vector, in the local rows.
 
         Parameters
         ----------
         relations, derivatives
             Of the state, as in :class:`Evaluation`.
-        v_q, v_w : ndarray, shape (nx,)
+        v_q, v_w : ndarray
+            At the nodes of the window.
         v_h00 : float
+        outside : deflection.Outside, optional
+            Of the change of pressure.
 
         Returns
         -------
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        return self.changes_of_rows(relations.changes(v_q, v_w), derivatives, v_h00)
+        return self.changes_of_rows(relations.changes(v_q, v_w), derivatives, v_h00, outside)
 
-    def changes_of_rows(self, changes, derivatives, v_h00):
+    def changes_of_rows(self, changes, derivatives, v_h00, outside=None):
         """As :meth:`product`, of changes of oil, pressure, film and separation."""
         oil, pressure, film, separation = changes
         rows = np.empty(count(self.local) + self.load_is_local)
-        firsts(rows, self.local)[:] = self.deflection.rows(separation, pressure, v_h00)
-        reynolds_product(derivatives, oil, film, self.first, seconds(rows, self.local))
+        firsts(rows, self.local)[:], load = self.deflection.rows(separation, pressure, v_h00, outside)
+        reynolds_product(derivatives, oil, film, self.own.start, seconds(rows, self.local))
         if self.load_is_local:
-            rows[-1] = self.dx * pressure.sum()
+            rows[-1] = load
         return rows
 
     def _dry_columns(self):

@@ -11,21 +11,21 @@ in second differences equal the integral form exactly.
 import numpy as np
 from numpy.fft import irfft, rfft
 
-ASYMPTOTIC = 30  # from here on differences of the primitive cancel; the series is exact to 1e-14
+ASYMPTOTIC = 40  # from here on the series are exact to 1e-14
 
 
 def deflection_kernel(n):
     r"""Hat-function kernel :math:`g_k+\ln\Delta x`, k = 0 .. n-1 (dimensionless)."""
-    k = np.arange(n, dtype=float)
+    near = np.arange(min(n, ASYMPTOTIC), dtype=np.longdouble)  # differences of the primitive cancel
 
     def primitive(x):  # its second derivative is ln|x|
         x = np.abs(x)
-        return 0.5 * x**2 * np.log(np.where(x == 0.0, 1.0, x)) - 0.75 * x**2
+        return x**2 * np.log(np.where(x == 0.0, 1.0, x)) / 2 - 3 * x**2 / 4
 
-    near = -(primitive(k + 1) - 2 * primitive(k) + primitive(k - 1))
-    far = np.where(k < ASYMPTOTIC, 1.0, k)
+    far = np.arange(len(near), n, dtype=float)
     series = -np.log(far) + 1 / (12 * far**2) + 1 / (60 * far**4) + 1 / (168 * far**6)
-    return np.where(k < ASYMPTOTIC, near, series)
+    exact = -(primitive(near + 1) - 2 * primitive(near) + primitive(near - 1))
+    return np.concatenate([exact.astype(float), series])
 
 
 def curvature_kernel(n):

@@ -26,14 +26,6 @@ RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 
 
-def nodal(*properties):
-    """The ten properties above, in their order, each of shape (nodes,), as one array."""
-    at = np.empty((LN_ETA_P + 1, len(properties[P])))
-    for row, values in enumerate(properties):
-        at[row] = values
-    return at
-
-
 @compiled
 def positive_extrapolation(m, behind, k):
     r"""Extrapolate m from the values at `behind` and here, kept positive for m > 0.

@@ -14,8 +14,24 @@ Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact_model import full_of_oil
-from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, M, balance, extrapolated, nodal
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact_model import ROUNDING, full_of_oil
+from ehlpetsc.discretisation.finite_volumes import (
+    DP,
+    FLUIDITY,
+    LN_ETA_P,
+    M_H,
+    M_Q,
+    OWN,
+    RHO,
+    RHO_P,
+    STENCIL,
+    H,
+    M,
+    P,
+    balance,
+    extrapolated,
+)
 from ehlpetsc.discretisation.interleaving import both_of, count
 from ehlpetsc.physics import rheology
 
@@ -54,6 +70,8 @@ class Reynolds:
         What F is divided by, in a^2/R.
     first, last : int
         Nodes whose rows are evaluated here.
+    start : int
+        Node that what it is given begins with.
 
     Attributes
     ----------
@@ -61,13 +79,15 @@ class Reynolds:
         Places of the unknowns in the rows: q and h of the nodes i-2 .. i+1; -1: none.
     """
 
-    def __init__(self, scales, film_scale, first, last):
+    def __init__(self, scales, film_scale, first, last, start=0):
         self.scales, self.film_scale = scales, film_scale
         n = scales.nx
         self.local = slice(first, last)
         self.rows = slice(max(first, 1), last)
         self.has_inlet, self.has_outlet = first == 0, last == n
-        self.nodes = slice(max(self.rows.start - 2, 0), min(last + 1, n))  # all that the local rows need
+        nodes = slice(max(self.rows.start - 2, 0), min(last + 1, n))  # all that the local rows need
+        self.given = slice(nodes.start - start, nodes.stop - start)
+        self.row_in_given = self.rows.start - nodes.start
         self.dx = scales.x[1] - scales.x[0]
         self.columns = self._columns(np.arange(first, last), n)
 
@@ -79,39 +99,25 @@ class Reynolds:
 
     def content(self, q, h, fluid):
         r"""Film content :math:`\rho h(1-\theta)` and its derivatives with respect to q and h."""
-        return self._content(q, h, rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid))
-
-    def _content(self, q, h, density):
-        full, (rho, drho) = full_of_oil(q), density
+        full, (rho, drho) = full_of_oil(q), rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid)
         left = 1.0 + np.minimum(q, 0.0)
         return rho * left * h, np.where(full, drho * self.scales.p0, 1.0) * h, rho * left
 
     def _at(self, q, h, fluid):
         """Properties of the nodes that the local rows need."""
-        q, h = q[self.nodes], h[self.nodes]
-        if self.has_outlet:  # beyond the outlet: same film, no pressure
-            q, h = np.append(q, 0.0), np.append(h, h[-1])
-        s, p = self.scales, np.maximum(q, 0.0)
-        rho, drho = density = rheology.density(p * s.p0, fluid)
-        ln_eta, dln_eta = rheology.viscosity(p * s.p0, fluid)
-        unit, content = 1.0 / (s.u * s.h), self._content(q, h, density)
-        return nodal(
-            p,
-            full_of_oil(q),
-            s.h * h,
-            *content,
-            unit * rho,
-            unit * s.p0 * drho,
-            np.exp(-ln_eta) / fluid.viscosity,
-            s.p0 * dln_eta,
-        )
+        q, h = q[self.given], h[self.given]
+        s, laws = self.scales, (rheology.viscosity_constants(fluid), rheology.density_constants(fluid))
+        at = np.empty((LN_ETA_P + 1, len(q) + self.has_outlet))
+        nodal(q, h, *laws, s.p0, s.h, 1.0 / (s.u * s.h), 1.0 / fluid.viscosity, at)
+        return at
 
     def evaluate(self, q, h, inputs):
         """Imbalance F of the local rows and its derivatives.
 
         Parameters
         ----------
-        q, h : ndarray, shape (nx,)
+        q, h : ndarray
+            From the node `start` on.
         inputs : ehl_problem.StepInputs
 
         Returns
@@ -121,7 +127,7 @@ class Reynolds:
             With respect to the unknowns of `columns`, h the second one of a node.
         """
         s, rows, fluid, history = self.scales, self.rows, inputs.fluid, inputs.history
-        at, first = self._at(q, h, fluid), rows.start - self.nodes.start
+        at, first = self._at(q, h, fluid), self.row_in_given
         eyring = np.inf if fluid.eyring_stress is None else fluid.eyring_stress
         law = s.p0 / (s.a * self.dx), s.h, eyring, abs(s.u1 - s.u2) / eyring
         then = at[M, first:], at[M, first:], 0.0, 0.0
@@ -135,7 +141,7 @@ class Reynolds:
             derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
             derivatives[-1, OWN + 2 :] = 0.0
         imbalance /= self.film_scale
-        derivatives /= self.film_scale
+        derivatives *= 1.0 / self.film_scale
         if self.has_inlet:
             imbalance[0], derivatives[0, OWN : OWN + 2] = _inlet(q[0], h[0], inputs.inlet_film)
         return imbalance, derivatives
@@ -146,3 +152,37 @@ def _inlet(q, h, oil_film):
     if oil_film is None or oil_film >= h:
         return q, (1.0, 0.0)
     return q + 1.0 - oil_film / h, (1.0, oil_film / h**2)
+
+
+_power_law, _compression = compiled(rheology.power_law), compiled(rheology.compression)
+
+
+@compiled
+def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
+    """Fill in what faces need of nodes, see :mod:`.finite_volumes`.
+
+    Parameters
+    ----------
+    q, h : ndarray, shape (nodes,)
+    viscosity, density : tuple of float
+        Constants of both laws, see :mod:`ehlpetsc.physics.rheology`.
+    p0, film : float
+        Scales of pressure [Pa] and film [m].
+    unit : float
+        1/(u film) [s/m^2].
+    fluidity : float
+        1/eta0 [1/(Pa s)].
+    at : ndarray, shape (10, nodes)
+        One node more is beyond the outlet: same film, no pressure.
+    """
+    nodes = len(q)
+    for i in range(at.shape[1]):
+        here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
+        p, left, full = max(here, 0.0), 1.0 + min(here, 0.0), here > -ROUNDING
+        rho, rho_p = _compression(p0 * p, *density)
+        ln_eta, ln_eta_p = _power_law(p0 * p, *viscosity)
+        at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * gap
+        at[M, i], at[M_H, i] = rho * left * gap, rho * left
+        at[M_Q, i] = (rho_p * p0 if full else 1.0) * gap
+        at[RHO, i], at[RHO_P, i] = unit * rho, unit * p0 * rho_p
+        at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p

@@ -74,17 +74,24 @@ class YieldingContact(MixedContact):
             plastic=plastic,
         )
 
-    def linearised(self, relations):
+    def yielding_and_elastic(self, relations, some):
+        """How many of some nodes yield, and how many carry without."""
+        yielding, pressure = relations.plastic.yielding[some], relations.pressure[some]
+        return yielding.sum(), (~yielding & (pressure > CARRIES * self.yield_pressure)).sum()
+
+    def is_all_yielding(self, yielding, elastic):
+        """Whether next to nothing that carries is elastic still, by the numbers of nodes."""
+        return yielding > 0 and elastic < ELASTIC_NODES
+
+    def linearised(self, relations, all_yields):
         """The same relations with derivatives that know of the load.
 
         Where all that carries yields, no pressure depends on any unknown: the solids are then taken to
         harden a little, by which the next iteration reaches nodes that do not carry yet.
         """
-        y = relations.plastic
-        elastic = relations.pressure[~y.yielding] > CARRIES * self.yield_pressure
-        if not y.yielding.any() or elastic.sum() >= ELASTIC_NODES:
+        if not all_yields:
             return relations
-        per_depth = HARDENING / self.compliance
+        y, per_depth = relations.plastic, HARDENING / self.compliance
         return relations._replace(
             p_q=relations.p_q + per_depth * y.depth_q,
             p_w=relations.p_w + per_depth * y.depth_w,

@@ -10,15 +10,19 @@ far field too, by exponentials. Other preconditioners (``-pc_type lu`` ...) get 
 Newton's steps are limited in the line search's pre-check (:mod:`ehlpetsc.nonlinear.step_limits`).
 """
 
+import weakref
+
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc.discretisation.deflection import HALO
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
 from ehlpetsc.nonlinear.defaults import DEFAULTS, PRECONDITIONER
+from ehlpetsc.nonlinear.exchange import Exchange
 from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
@@ -53,20 +57,25 @@ class NewtonSolver:
         What the last solve was asked to bring the residual to.
     """
 
+    unknowns = 2  # of a node
+
     def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
         n, rank, size = scales.nx, comm.rank, comm.size
-        if size > n // GROUP:
-            raise UsageError(f"{size} ranks for {n} nodes; allowed: at most {n // GROUP}")
+        most = max(n // (HALO + GROUP), 1)  # a part must be as wide as what its neighbours know of it
+        if size > most:
+            raise UsageError(f"{size} ranks for {n} nodes; allowed: at most {most}")
         cuts = [n * k // size // GROUP * GROUP for k in range(size)] + [n]
         first, last = cuts[rank], cuts[rank + 1]
         self.n, self.local, self.first, self.comm = n, last - first, first, comm
         self.problem = EHLProblem(case, scales, film_scale, first, last)
         self.model = self.problem.model
         self._create_vectors(count)
+        self.exchange = Exchange(self.problem, cuts, comm.tompi4py(), self.unknowns)
         self.near_field = case.mesh.near_field
         self._create_bounds()
         self.jacobian = self.place = self.watch = None
-        self.limited = False
+        self.limited, self._made = False, [self.x, self.f, self.lower, self.upper, self.all, self.to_all]
+        weakref.finalize(self, _destroy_all, self._made)
         self._create_snes()
 
     def _create_vectors(self, count):
@@ -90,8 +99,9 @@ class NewtonSolver:
 
     def _create_snes(self):
         self.snes = PETSc.SNES().create(self.comm)
+        self._made.append(self.snes)
         self.snes.setType("newtonls" if self.model.is_mixed else "vinewtonrsls")
-        self.snes.setFunction(self._function, self.f)
+        self.snes.setFunction(_weakly(self._function), self.f)
         try:
             self.snes.setFromOptions()
         except PETSc.Error as error:
@@ -101,14 +111,14 @@ class NewtonSolver:
         self._check_type()
         if self.jacobian is None:
             self._create_matrices()
-        self.snes.setJacobian(self._jacobian, self.operator, self.preconditioned)
+            self._made += [self.operator, self.preconditioned]
+        self.snes.setJacobian(_weakly(self._jacobian), self.operator, self.preconditioned)
         if self.bounded:
             self.snes.setVariableBounds(self.lower, self.upper)
-        self.snes.setLineSearchPreCheck(self._limit_step)
+        self.snes.setLineSearchPreCheck(_weakly(self._limit_step))
 
     def _refuse(self, error):
         """What PETSc raises over an option that the user gave is the user's to mend."""
-        self.snes.destroy()  # left to the end of the process, it would crash there
         told = refusal(error, DEFAULTS | PRECONDITIONER)
         if told is None:
             raise error
@@ -132,7 +142,7 @@ class NewtonSolver:
         pc = self.snes.ksp.pc
         own = pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
         self.factors = Factors(self.problem, self.comm.tompi4py()) if own else None
-        self.jacobian = JacobianOperator(self.problem, self.gather, self.factors)
+        self.jacobian = JacobianOperator(self.problem, self.exchange, self.factors)
         self.operator = PETSc.Mat().createPython(sizes, self.jacobian, comm=self.comm)
         self.operator.setUp()
         self.assembled, self.preconditioned = None, self.operator
@@ -143,9 +153,7 @@ class NewtonSolver:
     def gather(self, v):
         """The whole vector on every rank, as q, w (shape (nx,)) and h00."""
         self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        return self._parts(self.all.array_r)
-
-    def _parts(self, whole):
+        whole = self.all.array_r
         return firsts(whole, self.n).copy(), seconds(whole, self.n).copy(), whole[count(self.n)]
 
     def scatter(self, q, w, h00):
@@ -160,12 +168,20 @@ class NewtonSolver:
 
     def _evaluation(self, x):
         """Residual and derivatives at x; SNES asks two or three times at the same place."""
-        self.to_all.scatter(x, self.all, mode=PETSc.ScatterMode.FORWARD)
-        if self.place is None or not np.array_equal(self.all.array_r, self.place):
-            self.place = self.all.array_r.copy()
+        here = x.array_r
+        if self.place is None or not self.exchange.same(np.array_equal(here, self.place)):
+            self.place = here.copy()
             with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
-                self.evaluation = self.problem.evaluate(*self._parts(self.place), self.inputs)
+                self.evaluation = self._evaluate(self.place)
         return self.evaluation
+
+    def _evaluate(self, vector):
+        nodes, h00, outside = self.exchange(vector, self._pressure)
+        q, w = np.ascontiguousarray(nodes.T)
+        return self.problem.evaluate(q, w, h00, self.inputs, outside)
+
+    def _pressure(self, nodes):
+        return self.model.relations(nodes[:, 0], nodes[:, 1]).pressure
 
     def _jacobian(self, snes, x, operator, preconditioner):
         self.jacobian.linearise(self._evaluation(x))
@@ -173,7 +189,8 @@ class NewtonSolver:
         snes.ksp.setTolerances(max_it=min(self.linear_limit, max(left, 1)))
         if self.assembled:
             with events.ASSEMBLY:
-                self.assembled.fill(self.jacobian.relations, self.jacobian.reynolds_derivatives)
+                whole = self.exchange.whole(self.jacobian.relations)
+                self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
         operator.assemble()
 
     def _limit_step(self, x, y):
@@ -266,7 +283,7 @@ class NewtonSolver:
         """
         evaluation = self._evaluation(self.x)
         oil, film = evaluation.relations.oil, evaluation.relations.film
-        mine = reynolds_rounding(evaluation.reynolds_derivatives, oil, film, self.first)
+        mine = reynolds_rounding(evaluation.reynolds_derivatives, oil, film, self.problem.own.start)
         return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
     def _solution(self):
@@ -282,6 +299,18 @@ class NewtonSolver:
         if not (self.bounded or self.model.is_mixed) and w.min() < self.model.bound:
             raise SolveFailed("FILM_BELOW_ITS_BOUND", iterations)
         return q, w, h00, iterations
+
+
+def _weakly(method):
+    """A bound method for PETSc to call, by which it does not keep the solver alive."""
+    method = weakref.WeakMethod(method)
+    return lambda *arguments: method()(*arguments)
+
+
+def _destroy_all(made):
+    """With the solver, or before Python ends: PETSc would call Python objects that are gone by then."""
+    while made:
+        made.pop().destroy()
 
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}

@@ -19,15 +19,23 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact_model import Relations, full_of_oil
 from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear import events, step_limits
+from ehlpetsc.nonlinear import step_limits
 from ehlpetsc.nonlinear.newton import OPENED, NewtonSolver
-from ehlpetsc.nonlinear.operators.three_field_operator import ThreeFieldOperator, put_rows, three, triples
+from ehlpetsc.nonlinear.operators.three_field_operator import (
+    UNKNOWNS,
+    ThreeFieldOperator,
+    put_rows,
+    three,
+    triples,
+)
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 
 
 class VariationalInequalitySolver(NewtonSolver):
     """Newton's method with active sets on three unknowns a node; speaks in those of the contact model."""
+
+    unknowns = UNKNOWNS
 
     def _create_vectors(self, _):
         super()._create_vectors(three)
@@ -47,24 +55,17 @@ class VariationalInequalitySolver(NewtonSolver):
                 "leave -pc_type out"
             )
         self.factors, self.assembled = Factors(self.problem, self.comm.tompi4py()), None
-        self.jacobian = ThreeFieldOperator(self.problem, self._whole, self.factors)
+        self.jacobian = ThreeFieldOperator(self.problem, self.exchange, self.factors)
         self.operator = PETSc.Mat().createPython(sizes, self.jacobian, comm=self.comm)
         self.operator.setUp()
         self.preconditioned = self.operator
 
-    def _whole(self, v):
-        """Whole q, h, p_c and h00 of a distributed vector."""
-        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        return self._fields(self.all.array_r)
-
-    def _fields(self, whole):
-        rows = triples(whole, self.n)
-        return rows[:, 0].copy(), rows[:, 1].copy(), rows[:, 2].copy(), whole[three(self.n)]
-
     def gather(self, v):
         """The whole solution in the unknowns of the contact model."""
-        q, h, p_c, h00 = self._whole(v)
-        return q, self.model.second_unknown(h, p_c), h00
+        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
+        whole = self.all.array_r
+        q, h, p_c = triples(whole, self.n).T.copy()
+        return q, self.model.second_unknown(h, p_c), whole[three(self.n)]
 
     def scatter(self, q, w, h00):
         """Fill the local part of the unknowns from those of the contact model."""
@@ -76,26 +77,25 @@ class VariationalInequalitySolver(NewtonSolver):
 
     def residual(self):
         """Rows of the last solution in the unknowns of the contact model, as of `NewtonSolver`."""
-        rows = self.problem.evaluate(*self.gather(self.x), self.inputs).residual
+        rows = self._evaluation(self.x).residual
         parts = firsts(rows, self.local).copy(), seconds(rows, self.local).copy(), rows[count(self.local) :]
         deflection, imbalance, load = zip(*self.comm.tompi4py().allgather(parts), strict=True)
         return np.concatenate(deflection), np.concatenate(imbalance), float(np.concatenate(load)[0])
 
-    def _evaluation(self, x):
-        self.to_all.scatter(x, self.all, mode=PETSc.ScatterMode.FORWARD)
-        if self.place is None or not np.array_equal(self.all.array_r, self.place):
-            self.place = self.all.array_r.copy()
-            q, h, p_c, h00 = self._fields(self.place)
-            none, one, touching = np.zeros(self.n), np.ones(self.n), p_c > 0.0
-            pressure = np.maximum(q, 0.0) + p_c
-            relations = Relations(q, pressure, h, full_of_oil(q) * 1.0, none, one, touching)
-            with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
-                self.evaluation = self.problem.rows_of(relations, h00, self.inputs)
-        return self.evaluation
+    def _evaluate(self, vector):
+        nodes, h00, outside = self.exchange(vector, self._pressure)
+        q, h, p_c = np.ascontiguousarray(nodes.T)
+        none, one, touching = np.zeros_like(q), np.ones_like(q), p_c > 0.0
+        pressure = np.maximum(q, 0.0) + p_c
+        relations = Relations(q, pressure, h, full_of_oil(q) * 1.0, none, one, touching)
+        return self.problem.rows_of(relations, h00, self.inputs, outside)
+
+    def _pressure(self, nodes):
+        return np.maximum(nodes[:, 0], 0.0) + nodes[:, 2]
 
     def _function(self, snes, x, f):
         evaluation, p = self._evaluation(x), self.problem
-        film = evaluation.relations.film[p.first : p.last]
+        film = evaluation.relations.film[p.own]
         put_rows(f.array, p, evaluation.residual, (film - self.model.boundary_film) / p.film_scale)
 
     def _limit_step(self, x, y):

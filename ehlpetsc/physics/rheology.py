@@ -29,15 +29,25 @@ def viscosity(p, fluid):
     ln_eta, dln_eta_dp : ndarray
         :math:`\ln(\eta/\eta_0)` [1] and its derivative [1/Pa], shape of `p`.
     """
+    return power_law(p, *viscosity_constants(fluid))
+
+
+def viscosity_constants(fluid):
+    """Factor, reference pressure [Pa] and exponent z of the law, for :func:`power_law`."""
     alpha = fluid.pressure_viscosity
     if fluid.law == "barus":
-        return alpha * p, np.full_like(p, alpha)
+        return alpha, 1.0, 1.0
     if fluid.law == "roelands":
         reference, z = fluid.roelands_pressure, fluid.roelands_z
-        factor = alpha * reference / z
-    else:
-        factor = np.log(fluid.viscosity / fluid.kappa)
-        reference, z = 1.0 / fluid.chi, alpha / (fluid.chi * factor)
+        return alpha * reference / z, reference, z
+    factor = np.log(fluid.viscosity / fluid.kappa)
+    return factor, 1.0 / fluid.chi, alpha / (fluid.chi * factor)
+
+
+def power_law(p, factor, reference, z):
+    r""":math:`c[(1+p/p_r)^z-1]` and its derivative; of arrays or numbers."""
+    if z == 1.0:  # Barus: the difference would lose digits
+        return factor / reference * p, factor / reference + 0.0 * p
     base = 1.0 + p / reference
     power = base**z
     return factor * (power - 1.0), factor * z * power / (base * reference)
@@ -51,10 +61,18 @@ def density(p, fluid):
     rho, drho_dp : ndarray
         Ratio [1] and derivative [1/Pa], shape of `p`; exactly 1 and 0 if incompressible.
     """
-    if fluid.density == "incompressible":
-        return np.ones_like(p), np.zeros_like(p)
-    below = 1.0 + fluid.lambda_ * p
-    return (1.0 + fluid.gamma * p) / below, (fluid.gamma - fluid.lambda_) / below**2
+    return compression(p, *density_constants(fluid))
+
+
+def density_constants(fluid):
+    """gamma and lambda [1/Pa] for :func:`compression`."""
+    return (0.0, 0.0) if fluid.density == "incompressible" else (fluid.gamma, fluid.lambda_)
+
+
+def compression(p, gamma, lambda_):
+    r""":math:`(1+\gamma p)/(1+\lambda p)` and its derivative; of arrays or numbers."""
+    below = 1.0 + lambda_ * p
+    return (1.0 + gamma * p) / below, (gamma - lambda_) / (below * below)
 
 
 @compiled

@@ -82,17 +82,18 @@ def test_it_solves_its_matrix(model):
     lu = SpikeLU(BandedJacobian(part), -part.deflection.end_scale, ranks)
     mine = dropped[(dropped >= first) & (dropped < last)] - first
     kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
-    evaluation = part.evaluate(*at, part.inputs())
-    entries = band_entries(part.model, evaluation.relations, evaluation.reynolds_derivatives, lu.band.stencil)
+    relations = part.model.relations(at[0][part.window], at[1][part.window])
+    derivatives = whole.evaluate(*at, whole.inputs()).reynolds_derivatives[first:last]
+    entries = band_entries(part.model, relations, derivatives, lu.band.stencil)
     other = entries._replace(
-        p_first=np.zeros(n),
-        separation_second=np.zeros(n),
+        p_first=np.zeros_like(entries.p_first),
+        separation_second=np.zeros_like(entries.p_first),
         reynolds_derivatives=3.0 * entries.reynolds_derivatives,
     )
     lu.factor(other, dropped[:0])  # what it leaves must not matter
     lu.factor(entries, mine)
     found, approach = lu.solve(right[2 * first : 2 * last][kept], kept, right[-1] if last == n else 0.0)
-    in_unknowns(part.model, evaluation.relations, slice(first, last), found.reshape(-1, 2))
+    in_unknowns(part.model, relations, part.own, found.reshape(-1, 2))
     expected = np.linalg.solve(dense(whole, at, dropped), right)
     scale = np.tile(np.abs(expected[:-1]).reshape(-1, 2).max(axis=0), last - first)
     np.testing.assert_allclose(found / scale, expected[2 * first : 2 * last] / scale, rtol=0, atol=1e-7)

@@ -1,13 +1,16 @@
 """The deflection in second differences and as one integral: the same equations."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.deflection import Deflection
+from ehlpetsc.discretisation.deflection import HALO, Deflection
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.elasticity import curvature_kernel
+from ehlpetsc.discretisation.far_pressures import TOLERANCE, FarPressures, exponentials
 from ehlpetsc.discretisation.interleaving import firsts
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -22,9 +25,10 @@ def test_the_integral_fulfils_the_second_differences(seed):
     rng = np.random.default_rng(seed)
     p, approach = rng.uniform(-1.0, 3.0, N), -0.7
     d = Deflection(N, DX, 0, N)
-    rows = d.rows(approach + d.integral(p), p, approach)
+    rows, load = d.rows(approach + d.integral(p), p, approach)
     terms = d.stretch * np.abs(d.integral(p)).max()
     assert np.abs(rows).max() < 1e-12 * terms
+    assert load == pytest.approx(DX * p.sum(), rel=1e-14)
 
 
 def test_the_second_differences_fulfil_the_integral():
@@ -32,18 +36,33 @@ def test_the_second_differences_fulfil_the_integral():
     rng = np.random.default_rng(3)
     p, approach = rng.uniform(0.0, 2.0, N), 0.4
     d = Deflection(N, DX, 0, N)
-    by_separation = np.array([d.rows(unit, np.zeros(N), 0.0) for unit in np.eye(N)]).T
-    found = np.linalg.solve(by_separation, -d.rows(np.zeros(N), p, approach))
+    by_separation = np.array([d.rows(unit, np.zeros(N), 0.0)[0] for unit in np.eye(N)]).T
+    found = np.linalg.solve(by_separation, -d.rows(np.zeros(N), p, approach)[0])
     np.testing.assert_allclose(found, approach + d.integral(p), rtol=0, atol=1e-9)
 
 
-def test_a_part_of_the_mesh_has_the_rows_of_the_whole():
+@pytest.mark.parametrize("cuts", [(0, 50, N), (0, 50, 90, N), (0, 16, 32, 60, 77, 101, 120, N)])
+def test_parts_of_the_mesh_have_the_rows_of_the_whole(cuts):
+    """Each knows its window, and of all beyond only the moments that the others tell."""
     rng = np.random.default_rng(4)
     g, p = rng.standard_normal((2, N))
-    whole = Deflection(N, DX, 0, N).rows(g, p, 0.3)
-    for first, last in ((0, 50), (50, 90), (90, N)):
-        part = Deflection(N, DX, first, last).rows(g, p, 0.3)
-        np.testing.assert_allclose(part, whole[first:last], rtol=0, atol=1e-11 * np.abs(whole).max())
+    rows, load = Deflection(N, DX, 0, N).rows(g, p, 0.3)
+    parts = [Deflection(N, DX, *ends) for ends in itertools.pairwise(cuts)]
+    far = [FarPressures(part, cuts, k) for k, part in enumerate(parts)]
+    told = np.array([one.tell(p[d.first : d.last]) for one, d in zip(far, parts, strict=True)])
+    for k, d in enumerate(parts):
+        mine, whole_load = d.rows(g[d.window], p[d.window], 0.3, far[k].outside(told, k))
+        np.testing.assert_allclose(mine, rows[d.first : d.last], rtol=0, atol=1e-11)
+        assert whole_load == pytest.approx(load, rel=1e-13)
+
+
+@pytest.mark.parametrize("n, terms", [(301, 24), (801, 28), (3201, 32), (12801, 36)])
+def test_the_far_kernel_is_a_sum_of_exponentials(n, terms):
+    kernel = curvature_kernel(n)
+    rates, weights = exponentials(kernel, HALO + 1)
+    by_terms = np.exp(-np.outer(np.arange(n - HALO - 1), rates)) @ weights
+    assert len(rates) == terms
+    np.testing.assert_allclose(by_terms, kernel[HALO + 1 :], rtol=TOLERANCE, atol=0)
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])

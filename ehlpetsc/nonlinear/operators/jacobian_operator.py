@@ -64,8 +64,7 @@ class JacobianOperator(BandSystem):
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    gather : callable
-        Whole (q, w, h00) of a distributed vector.
+    exchange : exchange.Exchange
     factors : object
         Keeps the default preconditioner's factors between solves, see :mod:`.preconditioner`.
 
@@ -73,12 +72,10 @@ class JacobianOperator(BandSystem):
     ----------
     relations, reynolds_derivatives
         Of the state linearised at, as in `ehl_problem.Evaluation`.
-    held : ndarray of bool, shape (nx,)
-        Nodes of direct contact at their bound.
     """
 
-    def __init__(self, problem, gather, factors):
-        self.problem, self.gather, self.factors = problem, gather, factors
+    def __init__(self, problem, exchange, factors):
+        self.problem, self.exchange, self.factors = problem, exchange, factors
         self.kept = np.arange(count(problem.local))
         self.dropped = np.arange(0)
 
@@ -86,16 +83,33 @@ class JacobianOperator(BandSystem):
         """Take the derivatives of a state."""
         relations, model = evaluation.relations, self.problem.model
         if model.yields:
-            relations = model.linearised(relations)
+            relations = model.linearised(relations, self._all_yields(relations))
         if not model.is_mixed:
             # a node in contact and cavitated at once would leave its deflection row blind
             relations = relations._replace(p_q=np.where(relations.touching, 1.0, relations.p_q))
         self.relations, self.reynolds_derivatives = relations, evaluation.reynolds_derivatives
 
+    def _all_yields(self, relations):
+        """Whether next to nothing that carries is elastic still, on all ranks together."""
+        p = self.problem
+        here = p.model.yielding_and_elastic(relations, p.own)
+        yielding, elastic = np.sum(self.exchange.ranks.allgather(here), axis=0)
+        return p.model.is_all_yielding(yielding, elastic)
+
+    def times(self, v):
+        """Product with the local part of a vector, of all ranks together."""
+        nodes, h00, outside = self.exchange(v, self._pressure)
+        v_q, v_w = np.ascontiguousarray(nodes.T)
+        return self.problem.product(self.relations, self.reynolds_derivatives, v_q, v_w, h00, outside)
+
+    def _pressure(self, nodes):
+        own, r = self.problem.own, self.relations
+        return r.p_q[own] * nodes[:, 0] + r.p_w[own] * nodes[:, 1]
+
     def mult(self, mat, v, out):
         """PETSc's product."""
         with events.PRODUCT:
-            out.array[:] = self.problem.product(self.relations, self.reynolds_derivatives, *self.gather(v))
+            out.array[:] = self.times(v.array_r)
 
     def createSubMatrix(self, mat, rows, columns, out=None):
         """What SNESVI keeps of the system: the same operator, other unknowns zero."""
@@ -113,13 +127,15 @@ class RestrictedOperator(BandSystem):
 
     def __init__(self, whole, rows, mat):
         self.whole, self.problem, self.factors = whole, whole.problem, whole.factors
-        local = self.problem.local
+        local, load = self.problem.local, self.problem.load_is_local
         self.places = rows.indices - mat.getOwnershipRange()[0]
-        self.kept = self.places[: len(self.places) - self.problem.load_is_local]
-        seconds_kept = np.zeros(local, dtype=bool)
-        seconds_kept[nodes_of_seconds(self.kept)] = True
-        self.dropped = np.flatnonzero(~seconds_kept)
-        self.full, self.product = mat.createVecs()
+        self.kept = self.places[: len(self.places) - load]
+        self.size = count(local) + load
+        self.dropped = whole.dropped
+        if len(self.places) < self.size:
+            seconds_kept = np.zeros(local, dtype=bool)
+            seconds_kept[nodes_of_seconds(self.kept)] = True
+            self.dropped = np.flatnonzero(~seconds_kept)
 
     @property
     def relations(self):
@@ -131,10 +147,13 @@ class RestrictedOperator(BandSystem):
 
     def mult(self, mat, v, out):
         """PETSc's product."""
-        self.full.set(0.0)
-        self.full.array[self.places] = v.array_r
-        self.whole.mult(None, self.full, self.product)
-        out.array[:] = self.product.array_r[self.places]
+        with events.PRODUCT:
+            if len(self.places) == self.size:
+                out.array[:] = self.whole.times(v.array_r)
+                return
+            full = np.zeros(self.size)
+            full[self.places] = v.array_r
+            out.array[:] = self.whole.times(full)[self.places]
 
 
 class NearFieldMatrix:
@@ -178,7 +197,7 @@ class NearFieldMatrix:
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
     def fill(self, relations, derivatives):
-        """Values of a state, assembled."""
+        """Values of a state, assembled; the relations those of the whole mesh, on every rank."""
         p, d, near = self.problem, self.problem.deflection, self.near
         kernel = np.tile(-d.curvature[np.abs(np.arange(-near, near + 1))], (p.local, 1))
         bend = np.zeros_like(kernel)

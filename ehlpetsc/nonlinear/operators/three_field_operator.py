@@ -26,29 +26,33 @@ class ThreeFieldOperator:
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    gather : callable
-        Whole (q, h, p_c, h00) of a distributed vector.
+    exchange : nonlinear.exchange.Exchange
     factors : preconditioner.far_field_band.Factors
     """
 
-    def __init__(self, problem, gather, factors):
-        self.problem, self.gather, self.factors = problem, gather, factors
+    def __init__(self, problem, exchange, factors):
+        self.problem, self.exchange, self.factors = problem, exchange, factors
 
     def linearise(self, evaluation):
         """Take the derivatives of a state."""
         self.relations, self.derivatives = evaluation.relations, evaluation.reynolds_derivatives
 
-    def rows(self, q, h, p_c, h00):
-        """Deflection, Reynolds and load of changes of the unknowns, as of `EHLProblem.product`."""
+    def rows(self, v):
+        """Deflection, Reynolds and load of changes of the local unknowns, and the window's films."""
+        nodes, h00, outside = self.exchange(v, self._pressure)
+        q, h, p_c = np.ascontiguousarray(nodes.T)
         changes = q, self.relations.p_q * q + p_c, h, h
-        return self.problem.changes_of_rows(changes, self.derivatives, h00)
+        return self.problem.changes_of_rows(changes, self.derivatives, h00, outside), h
+
+    def _pressure(self, nodes):
+        return self.relations.p_q[self.problem.own] * nodes[:, 0] + nodes[:, 2]
 
     def mult(self, mat, v, out):
         """PETSc's product."""
-        p, (q, h, p_c, h00) = self.problem, self.gather(v)
+        p = self.problem
         with events.PRODUCT:
-            rows, mine = self.rows(q, h, p_c, h00), slice(p.first, p.last)
-            put_rows(out.array, p, rows, h[mine] / p.film_scale)
+            rows, film = self.rows(v.array_r)
+            put_rows(out.array, p, rows, film[p.own] / p.film_scale)
 
     def createSubMatrix(self, mat, rows, columns, out=None):
         """What SNESVI keeps of the system."""
@@ -85,13 +89,10 @@ class RestrictedThreeFields(BandSystem):
         self.kept, self.dropped = np.arange(count(local)), np.arange(0)
         self.full, self.product = mat.createVecs()
         self.comm = mat.comm.tompi4py()
-        mine = np.zeros(local)
-        mine[self.solid] = 1.0
-        self.touching = self._everywhere(mine) > 0.0
-
-    def _everywhere(self, mine):
-        """Whole array of the local ones."""
-        return np.concatenate(self.comm.allgather(mine))
+        mine = np.zeros(len(self.full.array_r))
+        triples(mine, local)[self.solid, 2] = 1.0
+        nodes, _, _ = whole.exchange(mine, lambda nodes: nodes[:, 2])
+        self.touching = nodes[:, 2] > 0.0
 
     @property
     def relations(self):
@@ -120,9 +121,9 @@ class RestrictedThreeFields(BandSystem):
         self.film[self.solid] = p.film_scale * rows[self.solid, 2]
         pairs, load = rows[:, :2].reshape(-1).copy(), self.full.array[three(p.local) :].copy()
         if self.comm.allreduce(bool(self.film.any()), max):
-            none = np.zeros(p.n)
-            moved = self.whole.rows(none, self._everywhere(self.film), none, 0.0)
-            pairs -= moved[: count(p.local)]
+            films = np.zeros(len(self.full.array_r))
+            triples(films, p.local)[:, 1] = self.film
+            pairs -= self.whole.rows(films)[0][: count(p.local)]
         return pairs, load
 
     def take_from_band(self, solution, approach, out):

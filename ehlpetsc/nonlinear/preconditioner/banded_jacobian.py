@@ -31,7 +31,9 @@ class BandedJacobian:
     half : int
         Half-bandwidth.
     place : ndarray, shape (2 nodes,)
-        Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
+        Numbers in the band of the unknowns (q, h, q, h, ...) of the local nodes.
+    groups_at_ends : ndarray, shape (2, size)
+        Those of the unknowns of the first and of the last group.
     backwards : bool
         Whether the band numbers the local unknowns from the last to the first, so that the last rank's
         neighbour is where its elimination ends, as the first one's is: what comes from there is then solved
@@ -55,7 +57,10 @@ class BandedJacobian:
         self.half = self.size + 2 * (GROUP - 1)
         self.height = 3 * self.half + 1
         self.backwards = problem.first > 0 and problem.last == problem.n
-        self.place = np.stack([self._film(self.nodes) - 1, self._film(self.nodes)], axis=1).ravel()
+        place = np.stack([self._film(self.nodes) - 1, self._film(self.nodes)], axis=1).ravel()
+        ends = np.stack([np.arange(self.size), np.arange(self.order - self.size, self.order)])
+        self.place, self.groups_at_ends = self._in_band(place), self._in_band(ends)
+        self.used = place[-1] + 1
         self.beside = self._in_other_rows()
         self.base = np.zeros(self.height * self.order + 2 * self.size**2 + 1)
         self._recurrences()
@@ -80,13 +85,14 @@ class BandedJacobian:
         local = node - self.problem.first
         return local // GROUP * self.size + len(self.rates) + 2 * (local % GROUP) + 1
 
+    def _in_band(self, unknowns):
+        return self.order - 1 - unknowns if self.backwards else unknowns
+
     def _at(self, row, column):
         """Place of an entry among `base`: the band, the block to the left, that to the right, nowhere."""
         left, right = self.height * self.order, self.height * self.order + self.size**2
-        if self.backwards:
-            in_band = (self.order - 1 - column) * self.height + 2 * self.half + column - row
-        else:
-            in_band = column * self.height + 2 * self.half + row - column
+        r, c = self._in_band(row), self._in_band(column)
+        in_band = c * self.height + 2 * self.half + r - c
         to_left = left + row * self.size + column + self.size
         to_right = right + (row - (self.order - self.size)) * self.size + column - self.order
         place = np.where(column < 0, to_left, np.where(column < self.order, in_band, to_right))
@@ -106,26 +112,27 @@ class BandedJacobian:
                     self.base[self._at(outer, outer)] -= np.exp(-rate)
                 else:
                     self.base[self._at(outer, outer + towards * self.size)] = -1.0
-        for spare in range(self.place[-1] + 1, self.order):  # of a last group that is not full
+        for spare in range(self.used, self.order):  # of a last group that is not full
             self.base[self._at(spare, spare)] = 1.0
 
     def _under_films(self):
-        """What the deflection rows have of films (nodes, values, places), and of the sums."""
+        """What the deflection rows have of films (nodes of the window, values, places), and of the sums."""
         d, inner = self.problem.deflection, self._inner()
         ends = np.array(d.ends, dtype=int)
         row = self._film(inner) - 1
         steps = list(zip((-1, 0, 1), SECOND_DIFFERENCE, strict=True))
-        self.film_nodes = np.concatenate([*(inner + k for k, _ in steps), ends])
+        nodes = np.concatenate([*(inner + k for k, _ in steps), ends])
+        self.film_nodes = nodes - self.problem.window.start
         self.by_film = np.repeat(
             [*(d.stretch * value for _, value in steps), d.end_scale], [*[len(inner)] * 3, len(ends)]
         )
         rows = np.concatenate([row, row, row, self._film(ends) - 1])
-        self.film_place = self._at(rows, self._film(self.film_nodes))
+        self.film_place = self._at(rows, self._film(nodes))
         sums = self._group(inner)[:, None] * self.size + np.arange(len(self.rates))
         self.base[self._at(row[:, None], sums)] = -self.weights
 
     def _under_pressures(self):
-        """What recurrences and deflection rows have of first unknowns: nodes, values, places."""
+        """Under first unknowns, of recurrences and deflection rows: nodes in the window, values, places."""
         p, inner, d = self.problem, self._inner(), self.problem.deflection
         own = np.repeat(self.nodes, len(self.rates))
         rows = [self._group(own) * self.size + np.tile(np.arange(len(self.rates)), len(self.nodes))]
@@ -145,9 +152,9 @@ class BandedJacobian:
             nodes.append(near)
             values.append(d.end_row(end)[near])
             bent.append(np.where(near == end, d.end_scale, 0.0))
-        self.pressure_nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
-        self.by_depth = np.concatenate(bent)
-        self.pressure_place = self._at(np.concatenate(rows), self._film(self.pressure_nodes) - 1)
+        nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
+        self.by_depth, self.pressure_nodes = np.concatenate(bent), nodes - p.window.start
+        self.pressure_place = self._at(np.concatenate(rows), self._film(nodes) - 1)
         self.diagonal = self._at(self._film(self.nodes) - 1, self._film(self.nodes) - 1)
 
     def _inner(self):
@@ -169,12 +176,12 @@ class BandedJacobian:
         return self.nodes[self._group(self.nodes) == self._group(end)]
 
     def _under_reynolds(self):
-        """Places of Reynolds' stencil, q and h of the nodes i-2 .. i+1 in each row."""
+        """Places of Reynolds' stencil, q and h of the nodes i-2 .. i+1 of the window in each row."""
         p = self.problem
         node = self.nodes[:, None] + np.arange(-2, 2)
         both = np.stack([self._film(node) - 1, self._film(node)], axis=2).reshape(len(node), -1)
         there = np.repeat((node >= 0) & (node < p.n), 2, axis=1)
-        self.stencil = np.clip(node, 0, p.n - 1)
+        self.stencil = np.clip(node, 0, p.n - 1) - p.window.start
         place = self._at(self._film(self.nodes)[:, None], both)
         self.reynolds_place = np.where(there, place, self.base.size - 1)
 
@@ -214,7 +221,7 @@ class BandedJacobian:
         """Refill what a change of contact or cavity touches."""
         before, self.entries = self.entries, entries
         pressure, depth, film = entries.p_first, entries.separation_first, entries.separation_second
-        changed = film_changed = np.ones(self.problem.n, dtype=bool)
+        changed = film_changed = np.ones(len(pressure), dtype=bool)
         if before is not None:
             changed = (pressure != before.p_first) | (depth != before.separation_first)
             film_changed = film != before.separation_second
@@ -223,10 +230,10 @@ class BandedJacobian:
             node = self.pressure_nodes[some]
             values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
             self.base[self.pressure_place[some]] = values
-            local = np.flatnonzero(changed[self.nodes])
-            node = self.nodes[local]
-            self.base[self.diagonal[local]] += leaks(pressure[node], depth[node])
-            self.dense = self.under_pressure * pressure[self.nodes]
+            own = self.problem.own
+            local = np.flatnonzero(changed[own])
+            self.base[self.diagonal[local]] += leaks(pressure[own][local], depth[own][local])
+            self.dense = self.under_pressure * pressure[own]
         if film_changed.any():
             some = np.flatnonzero(film_changed[self.film_nodes])
             node = self.film_nodes[some]

@@ -53,6 +53,5 @@ class FarFieldBand:
         with events.BACK_SOLVE:
             rows, load = o.rows_for_band(x.array_r)
             solution, approach = o.factors.lu.solve(rows, o.kept, load.sum())
-            local = slice(problem.first, problem.last)
-            in_unknowns(problem.model, o.relations, local, solution.reshape(-1, 2))
+            in_unknowns(problem.model, o.relations, problem.own, solution.reshape(-1, 2))
             o.take_from_band(solution, approach, y.array)

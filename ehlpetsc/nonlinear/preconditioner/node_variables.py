@@ -19,8 +19,8 @@ class BandEntries(NamedTuple):
 
     Attributes
     ----------
-    p_first, separation_first, separation_second : ndarray, shape (nx,)
-        Of the pressure by the first, of the separation by both unknowns of each node.
+    p_first, separation_first, separation_second : ndarray
+        Of the pressure by the first, of the separation by both unknowns of each node of the window.
     reynolds_derivatives : ndarray, shape (local nodes, 8)
         Of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1.
     """
@@ -44,7 +44,7 @@ def band_entries(model, relations, derivatives, stencil):
     relations, derivatives
         As in `ehl_problem.Evaluation`.
     stencil : ndarray of int, shape (local nodes, 4)
-        Nodes of each Reynolds row, within the mesh.
+        Nodes of each Reynolds row, by their places in the window.
     """
     none = np.zeros_like(relations.film)
     if not model.is_mixed:

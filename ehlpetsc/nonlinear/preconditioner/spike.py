@@ -12,7 +12,13 @@ and h00. The columns of G are solved for with every matrix; w obeys a small syst
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgetrf, dgetrs
 
-from ehlpetsc.nonlinear.preconditioner.substitution import substitute
+from ehlpetsc.nonlinear.preconditioner.substitution import (
+    is_close,
+    solve_scattered,
+    substitute,
+    tips,
+    without,
+)
 
 BORDER = 3  # far deflection of the first and of the last node, h00
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
@@ -36,7 +42,7 @@ class SpikeLU:
         self.inner = 2 * size * last  # of w, beside the cuts: groups to the left and to the right of each
         self.of_rank = [self._numbers(rank) for rank in range(ranks.size)]
         self.widest = max(len(unknowns) for unknowns, _, _ in self.of_rank)
-        self.b = np.zeros((1, band.order))
+        self.y, self.tips = np.zeros((1, band.order)), np.zeros((1, 2 * size + BORDER))
 
     def _numbers(self, rank):
         """What a rank has to do with w: columns of its G, its outer groups in w, and these in its tips."""
@@ -55,56 +61,49 @@ class SpikeLU:
         """
         if not anew and self.ranks.allreduce(self._still_good(entries, dropped), min):
             return
-        derivatives = entries.reynolds_derivatives
-        self.factored = dropped, derivatives, CLOSE * np.abs(derivatives).max(axis=1, keepdims=True)
+        self.factored = dropped, entries.reynolds_derivatives
         e = self.band
         matrix, left, right = e.fill(entries, dropped)
         self.lu, self.pivots, singular = dgbtrf(matrix, e.half, e.half, overwrite_ab=True)
         if singular:
             _never_zero(self.lu[2 * e.half])
-        if self.ranks.rank == 0:
-            left = _unit(e.size, e.place[0])
-        if self.ranks.rank == self.ranks.size - 1:
-            right = _unit(e.size, e.place[-2] - (e.order - e.size))
-        g = np.zeros((left.shape[1] + right.shape[1], e.order))
-        from_left, from_right = g[: left.shape[1]], g[left.shape[1] :]
-        from_left[:, : e.size], from_right[:, -e.size :] = left.T, right.T
-        self._own_solve(from_left, 0, e.size)
-        self._own_solve(from_right, e.order - e.size, e.order)
-        tips = np.zeros((self.widest, 2 * e.size + BORDER))
-        tips[: len(g)] = self._tips_of(g)
-        self._couple(tips)
+        g = self._columns(left, right)
+        tips_of_g = np.zeros((self.widest, 2 * e.size + BORDER))
+        tips(g, e.groups_at_ends, e.place, e.dense, tips_of_g[: len(g)])
+        self._couple(tips_of_g)
         self.spread = g[:, e.place]
+
+    def _columns(self, left, right):
+        """G of this rank, from what its outer groups take from their neighbours, or from the mesh's ends."""
+        e = self.band
+        first, last = e.groups_at_ends
+        if self.ranks.rank == 0:
+            left = (first == e.place[0])[:, None]
+        if self.ranks.rank == self.ranks.size - 1:
+            right = (last == e.place[-2])[:, None]
+        parts = []
+        for columns, group in ((left, first), (right, last)):
+            part = np.zeros((columns.shape[1], e.order))
+            part[:, group] = columns.T
+            substitute(self.lu.T, self.pivots, part, group.min())
+            parts.append(part)
+        return np.concatenate(parts)
 
     def _still_good(self, entries, dropped):
         """Whether this rank's factors are nearly those of the given state."""
-        held, rows, change = self.factored
+        held, rows = self.factored
         return (
             np.array_equal(dropped, held)
             and entries.same_deflection(self.band.entries)
-            and bool((np.abs(entries.reynolds_derivatives - rows) <= change).all())
+            and is_close(entries.reynolds_derivatives, rows, CLOSE)
         )
 
-    def _own_solve(self, b, first, last):
-        """Solve in place for right-hand sides (any number, order) that are zero but in first .. last-1."""
-        e = self.band
-        if not e.backwards:
-            return substitute(self.lu.T, self.pivots, b, first)
-        turned = b[:, ::-1].copy()
-        substitute(self.lu.T, self.pivots, turned, e.order - last)
-        b[:] = turned[:, ::-1]
-
-    def _tips_of(self, y):
-        """What the others need of local solutions: both outer groups, and their part of the dense rows."""
-        e = self.band
-        return np.hstack([y[:, : e.size], y[:, -e.size :], y[:, e.place[::2]] @ e.dense.T])
-
-    def _everyone(self, tips):
+    def _everyone(self, mine):
         """The same array of every rank."""
         if self.ranks.size == 1:
-            return tips[None]
-        gathered = np.empty((self.ranks.size, *tips.shape))
-        self.ranks.Allgather(tips, gathered)
+            return mine[None]
+        gathered = np.empty((self.ranks.size, *mine.shape))
+        self.ranks.Allgather(mine, gathered)
         return gathered
 
     def _couple(self, columns):
@@ -114,10 +113,10 @@ class SpikeLU:
         matrix.flat[:: order + 1] = 1.0
         matrix[-1, -1] = 0.0
         matrix[self.inner : -1, -1] = -self.end_scale
-        for (unknowns, own, outer), tips in zip(self.of_rank, self._everyone(columns), strict=True):
-            tips = tips[: len(unknowns)].T
-            matrix[own[:, None], unknowns] += tips[outer]
-            matrix[self.inner :, unknowns] += tips[-BORDER:]
+        for (unknowns, own, outer), theirs in zip(self.of_rank, self._everyone(columns), strict=True):
+            theirs = theirs[: len(unknowns)].T
+            matrix[own[:, None], unknowns] += theirs[outer]
+            matrix[self.inner :, unknowns] += theirs[-BORDER:]
         self.coupled, self.coupled_pivots, singular = dgetrf(matrix, overwrite_a=True)
         if singular:
             _never_zero(np.einsum("ii->i", self.coupled))
@@ -133,26 +132,19 @@ class SpikeLU:
         load : float
             Right-hand side of the load's row, where it is local.
         """
-        e = self.band
-        self.b[:] = 0.0
-        y = self.b[0]
-        y[e.place[kept]] = b
-        self._own_solve(self.b, 0, e.order)
-        tips = self._tips_of(self.b)[0]
-        tips[-1] -= load
-        everyone = self._everyone(tips)
+        e, y, mine = self.band, self.y, self.tips
+        solve_scattered(self.lu.T, self.pivots, e.place, kept, b, y)
+        tips(y, e.groups_at_ends, e.place, e.dense, mine)
+        mine[0, -1] -= load
+        everyone = self._everyone(mine[0])
         right = np.zeros(self.inner + BORDER)
         for (_, own, outer), part in zip(self.of_rank, everyone, strict=True):
             right[own] = part[outer]
         right[self.inner :] = everyone[:, -BORDER:].sum(axis=0)
         w = dgetrs(self.coupled, self.coupled_pivots, right, overwrite_b=True)[0]
-        return y[e.place] - w[self.of_rank[self.ranks.rank][0]] @ self.spread, w[-1]
-
-
-def _unit(size, place):
-    column = np.zeros((size, 1))
-    column[place] = 1.0
-    return column
+        solution = np.empty(len(e.place))
+        without(y[0], e.place, w[self.of_rank[self.ranks.rank][0]], self.spread, solution)
+        return solution, w[-1]
 
 
 def _never_zero(diagonal):

@@ -42,3 +42,72 @@ def substitute(factors, pivots, b, first):
             rest = x[k - above : k]
             for j in range(above):
                 rest[j] -= upper[j] * value
+
+
+@compiled(fastmath={"contract"})
+def solve_scattered(factors, pivots, places, kept, b, y):
+    """Solve for one right-hand side that stands at some places and is zero elsewhere.
+
+    Parameters
+    ----------
+    factors, pivots
+        As of :func:`substitute`.
+    places, kept : ndarray of int
+        ``b[i]`` stands at ``places[kept[i]]``.
+    b : ndarray
+    y : ndarray, shape (1, order)
+        Filled in.
+    """
+    y[:] = 0.0
+    for i in range(len(kept)):
+        y[0, places[kept[i]]] = b[i]
+    substitute(factors, pivots, y, 0)
+
+
+@compiled
+def tips(y, ends, places, dense, out):
+    """Fill in what the small system needs of local solutions.
+
+    Parameters
+    ----------
+    y : ndarray, shape (solutions, order)
+    ends : ndarray of int, shape (2, size)
+        Places of the outer groups.
+    places : ndarray of int
+        Of the local unknowns, two a node.
+    dense : ndarray, shape (3, nodes)
+        Dense rows under the first unknowns.
+    out : ndarray, shape (solutions, 2 size + 3)
+    """
+    size = ends.shape[1]
+    for r in range(len(y)):
+        for j in range(size):
+            out[r, j], out[r, size + j] = y[r, ends[0, j]], y[r, ends[1, j]]
+        for k in range(len(dense)):
+            total = 0.0
+            for node in range(dense.shape[1]):
+                total += dense[k, node] * y[r, places[2 * node]]
+            out[r, 2 * size + k] = total
+
+
+@compiled
+def without(y, places, w, spread, out):
+    """Fill in the local unknowns of y at their places, less what the unknowns w add through `spread`."""
+    for i in range(len(places)):
+        value = y[places[i]]
+        for k in range(len(w)):
+            value -= w[k] * spread[k, i]
+        out[i] = value
+
+
+@compiled
+def is_close(derivatives, held, share):
+    """Whether no entry is off by more than a share of the largest one of its row."""
+    for i in range(len(held)):
+        largest = 0.0
+        for k in range(held.shape[1]):
+            largest = max(largest, abs(held[i, k]))
+        for k in range(held.shape[1]):
+            if not abs(derivatives[i, k] - held[i, k]) <= share * largest:
+                return False
+    return True
