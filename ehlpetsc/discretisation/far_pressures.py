@@ -66,21 +66,25 @@ class FarPressures:
     Attributes
     ----------
     told : int
-        Numbers that a part tells: the moments to both sides, without and with its outer nodes, and its sums.
+        Numbers that a part tells: to its right and to its left the moments without the outer nodes, which its
+        neighbour knows, and with them; and its sums.
     """
 
     def __init__(self, deflection, cuts, part):
         self.deflection, d = deflection, deflection
+        self.part, parts, local = part, len(cuts) - 1, d.last - d.first
         self.rates, weights = exponentials(d.curvature, HALO + 1)
-        self.terms, local = len(self.rates), d.last - d.first
+        self.terms = len(self.rates)
         self.told = 4 * self.terms + 3
         falling = np.exp(-np.outer(self.rates, np.arange(local)))
-        self._received = np.hstack([weights * falling.T, weights * falling.T[::-1]])
-        inner = np.zeros((2, self.terms, local))
-        inner[0, :, : local - HALO] = falling[:, : local - HALO][:, ::-1]
-        inner[1, :, HALO:] = falling[:, : local - HALO]
-        whole = np.stack([falling[:, ::-1], falling])
-        self._telling = np.concatenate([inner, whole]).reshape(-1, local)
+        sides = [part > 0, part < parts - 1]  # is there anything to the left, to the right
+        received = [weights * falling.T, weights * falling.T[::-1]]
+        self._received = [rows.copy() if there else None for rows, there in zip(received, sides, strict=True)]
+        inner = falling[:, : local - HALO]
+        telling = [inner, inner[:, ::-1]]
+        self._telling = [rows.copy() if there else None for rows, there in zip(telling, sides, strict=True)]
+        self._outer = falling[:, :HALO]
+        self._fade = np.exp(-self.rates * HALO)
         self._shares = self._shares_of(cuts, part)
 
     def _shares_of(self, cuts, part):
@@ -99,23 +103,32 @@ class FarPressures:
 
     def tell(self, pressure):
         """What this part tells of its own pressures, shape (told,)."""
-        return np.concatenate([self._telling @ pressure, self.deflection.sums(pressure)])
+        told, to_left, to_right = np.zeros(self.told), *self._telling
+        moments = told[: 4 * self.terms].reshape(4, self.terms)
+        if to_right is not None:
+            moments[0] = to_right @ pressure[:-HALO]
+            moments[2] = self._fade * moments[0] + self._outer @ pressure[: -HALO - 1 : -1]
+        if to_left is not None:
+            moments[1] = to_left @ pressure[HALO:]
+            moments[3] = self._fade * moments[1] + self._outer @ pressure[:HALO]
+        told[-3:] = self.deflection.sums(pressure)
+        return told
 
-    def outside(self, told, part):
+    def outside(self, told):
         """What all others do to this part.
 
         Parameters
         ----------
         told : ndarray, shape (parts, told)
-        part : int
-            This one.
 
         Returns
         -------
         deflection.Outside
         """
-        moments = told[:, : 4 * self.terms].reshape(-1, 4, self.terms) * self._shares
-        left, right = (moments[:, k] + moments[:, k + 2] for k in (0, 1))
-        sums = told[:, 4 * self.terms :]
-        both = np.concatenate([left.sum(axis=0), right.sum(axis=0)])
-        return Outside(self._received @ both, sums.sum(axis=0) - sums[part])
+        moments = (told[:, :-3].reshape(-1, 4, self.terms) * self._shares).sum(axis=0)
+        curvature = 0.0
+        for k, received in enumerate(self._received):
+            if received is not None:
+                curvature = curvature + received @ (moments[k] + moments[k + 2])
+        sums = told[:, -3:]
+        return Outside(curvature, sums.sum(axis=0) - sums[self.part])

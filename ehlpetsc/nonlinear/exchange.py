@@ -5,9 +5,24 @@ pressures, by which they reach all others, and their sums (:mod:`ehlpetsc.discre
 """
 
 import numpy as np
+from mpi4py import MPI
 
 from ehlpetsc.discretisation.deflection import HALO
 from ehlpetsc.discretisation.far_pressures import FarPressures
+
+
+def largest(ranks, number):
+    """Of the numbers of all ranks."""
+    if ranks.size == 1:
+        return number
+    there = np.array([number], dtype=float)
+    ranks.Allreduce(MPI.IN_PLACE, there, MPI.MAX)
+    return there[0]
+
+
+def everywhere(ranks, here):
+    """Whether something holds on every rank."""
+    return largest(ranks, not here) == 0.0
 
 
 class Exchange:
@@ -62,12 +77,8 @@ class Exchange:
             parts.insert(0, self._all[rank - 1, edge : 2 * edge].reshape(HALO, self.width))
         if rank < self.ranks.size - 1:
             parts.append(self._all[rank + 1, :edge].reshape(HALO, self.width))
-        outside = self.far.outside(self._all[:, 2 * edge + 1 :], rank)
+        outside = self.far.outside(self._all[:, 2 * edge + 1 :])
         return np.concatenate(parts), self._all[-1, 2 * edge], outside
-
-    def same(self, here):
-        """Whether something holds on every rank."""
-        return bool(here) if self.ranks.size == 1 else self.ranks.allreduce(bool(here), min)
 
     def whole(self, record):
         """A named tuple of arrays at the nodes of the window, of others in it too, with the whole arrays."""

@@ -22,7 +22,7 @@ from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import events, step_limits
 from ehlpetsc.nonlinear.defaults import DEFAULTS, PRECONDITIONER
-from ehlpetsc.nonlinear.exchange import Exchange
+from ehlpetsc.nonlinear.exchange import Exchange, everywhere, largest
 from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
@@ -73,7 +73,7 @@ class NewtonSolver:
         self.exchange = Exchange(self.problem, cuts, comm.tompi4py(), self.unknowns)
         self.near_field = case.mesh.near_field
         self._create_bounds()
-        self.jacobian = self.place = self.watch = None
+        self.jacobian = self.place = self.rows = self.watch = None
         self.limited, self._made = False, [self.x, self.f, self.lower, self.upper, self.all, self.to_all]
         weakref.finalize(self, _destroy_all, self._made)
         self._create_snes()
@@ -164,15 +164,18 @@ class NewtonSolver:
             x[-1] = h00
 
     def _function(self, snes, x, f):
-        f.array[:] = self._evaluation(x).residual
+        f.array[:] = self._evaluated(x).residual
 
     def _evaluation(self, x):
-        """Residual and derivatives at x; SNES asks two or three times at the same place."""
-        here = x.array_r
-        if self.place is None or not self.exchange.same(np.array_equal(here, self.place)):
-            self.place = here.copy()
-            with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
-                self.evaluation = self._evaluate(self.place)
+        """Residual and derivatives at x, where the function was asked for last more often than not."""
+        if not everywhere(self.exchange.ranks, np.array_equal(x.array_r, self.place)):
+            self._evaluated(x)
+        return self.evaluation
+
+    def _evaluated(self, x):
+        self.place = x.array_r.copy()
+        with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
+            self.evaluation = self._evaluate(self.place)
         return self.evaluation
 
     def _evaluate(self, vector):
@@ -204,9 +207,9 @@ class NewtonSolver:
             change = step_limits.mixed_change(now, step, model.stiffness)
         else:
             change = step_limits.largest_change(now, step, model.bound, -np.inf if dry else 0.0)
-        largest = self.comm.tompi4py().allreduce(change, max)
-        if largest > step_limits.STEP_LIMIT:
-            y.scale(step_limits.STEP_LIMIT / largest)
+        change = largest(self.exchange.ranks, change)
+        if change > step_limits.STEP_LIMIT:
+            y.scale(step_limits.STEP_LIMIT / change)
         step = pairs(y.array, self.local)
         if model.is_mixed:
             step_limits.cross_gently(now, step, model.stiffness, OPENED * self.problem.film_scale)
@@ -222,8 +225,10 @@ class NewtonSolver:
 
     def residual(self):
         """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
-        self.snes.computeFunction(self.x, self.f)
-        return self.gather(self.f)
+        if self.rows is None:
+            self.f.array[:] = self._evaluation(self.x).residual
+            self.rows = self.gather(self.f)
+        return self.rows
 
     def mass_imbalance(self):
         """F of the last solution at every node, shape (nx,)."""
@@ -249,7 +254,7 @@ class NewtonSolver:
         ------
         SolveFailed
         """
-        self.inputs, self.place = inputs, None
+        self.inputs, self.place, self.rows = inputs, None, None
         self.scatter(q, w, h00)
         usual = self.snes.max_it, self.snes.atol
         try:
@@ -281,7 +286,7 @@ class NewtonSolver:
 
         Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
         """
-        evaluation = self._evaluation(self.x)
+        evaluation = self._evaluated(self.x)
         oil, film = evaluation.relations.oil, evaluation.relations.film
         mine = reynolds_rounding(evaluation.reynolds_derivatives, oil, film, self.problem.own.start)
         return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))

@@ -20,6 +20,7 @@ from ehlpetsc.discretisation.contact_model import Relations, full_of_oil
 from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import step_limits
+from ehlpetsc.nonlinear.exchange import largest
 from ehlpetsc.nonlinear.newton import OPENED, NewtonSolver
 from ehlpetsc.nonlinear.operators.three_field_operator import (
     UNKNOWNS,
@@ -94,7 +95,7 @@ class VariationalInequalitySolver(NewtonSolver):
         return np.maximum(nodes[:, 0], 0.0) + nodes[:, 2]
 
     def _function(self, snes, x, f):
-        evaluation, p = self._evaluation(x), self.problem
+        evaluation, p = self._evaluated(x), self.problem
         film = evaluation.relations.film[p.own]
         put_rows(f.array, p, evaluation.residual, (film - self.model.boundary_film) / p.film_scale)
 
@@ -102,9 +103,9 @@ class VariationalInequalitySolver(NewtonSolver):
         if self.watch:
             self.watch()
         now, step = triples(x.array_r, self.local), triples(y.array, self.local)
-        largest = self.comm.tompi4py().allreduce(largest_change(now, step), max)
-        if largest > step_limits.STEP_LIMIT:
-            y.scale(step_limits.STEP_LIMIT / largest)
+        change = largest(self.exchange.ranks, largest_change(now, step))
+        if change > step_limits.STEP_LIMIT:
+            y.scale(step_limits.STEP_LIMIT / change)
         cross_gently(now, step, self.model.boundary_film, OPENED * self.problem.film_scale)
         return True
 

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
+
 THIN = 1e-3  # of the expected film, least divisor of films: on a coarse mesh the smooth one may touch too
 AGE = 0.03  # nodes off a whole number that a level one step younger makes up for
 
@@ -23,6 +25,7 @@ class Level(NamedTuple):
     w: np.ndarray
 
 
+@compiled
 def carried(share, nodes):
     """Move what the roughness has changed of the smooth solution along by `nodes` nodes.
 
@@ -30,11 +33,20 @@ def carried(share, nodes):
     asperities, two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's
     method iterations.
     """
-    from scipy.ndimage import shift  # 14 MB that a smooth contact does not need
-
-    moved = shift(share, nodes, order=3, mode="nearest")
-    one, other = neighbours(share, nodes)
-    return np.clip(moved, np.minimum(one, other), np.maximum(one, other))
+    whole, last, moved = int(np.floor(nodes)), len(share) - 1, np.empty_like(share)
+    t = 1.0 - (nodes - whole)
+    for i in range(len(share)):
+        k = i - whole - 1
+        a, b = share[min(max(k - 1, 0), last)], share[min(max(k, 0), last)]
+        c, d = share[min(max(k + 1, 0), last)], share[min(max(k + 2, 0), last)]
+        value = (
+            -t * (t - 1.0) * (t - 2.0) / 6.0 * a
+            + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * b
+            - (t + 1.0) * t * (t - 2.0) / 2.0 * c
+            + (t + 1.0) * t * (t - 1.0) / 6.0 * d
+        )
+        moved[i] = min(max(value, min(b, c)), max(b, c))
+    return moved
 
 
 def neighbours(v, nodes):

@@ -51,7 +51,7 @@ def test_parts_of_the_mesh_have_the_rows_of_the_whole(cuts):
     far = [FarPressures(part, cuts, k) for k, part in enumerate(parts)]
     told = np.array([one.tell(p[d.first : d.last]) for one, d in zip(far, parts, strict=True)])
     for k, d in enumerate(parts):
-        mine, whole_load = d.rows(g[d.window], p[d.window], 0.3, far[k].outside(told, k))
+        mine, whole_load = d.rows(g[d.window], p[d.window], 0.3, far[k].outside(told))
         np.testing.assert_allclose(mine, rows[d.first : d.last], rtol=0, atol=1e-11)
         assert whole_load == pytest.approx(load, rel=1e-13)
 

@@ -35,7 +35,7 @@ MAY_IMPORT = {
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
-    "mpi4py": {"run"},
+    "mpi4py": {"run", "nonlinear"},
     "matplotlib": {"plot", "post", "study", "api"},
     "numba": {"compiled"},
 }

@@ -12,6 +12,7 @@ and h00. The columns of G are solved for with every matrix; w obeys a small syst
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgetrf, dgetrs
 
+from ehlpetsc.nonlinear.exchange import everywhere
 from ehlpetsc.nonlinear.preconditioner.substitution import (
     is_close,
     solve_scattered,
@@ -59,7 +60,7 @@ class SpikeLU:
 
         Other arguments as of :meth:`.banded_jacobian.BandedJacobian.fill`.
         """
-        if not anew and self.ranks.allreduce(self._still_good(entries, dropped), min):
+        if not anew and everywhere(self.ranks, self._still_good(entries, dropped)):
             return
         self.factored = dropped, entries.reynolds_derivatives
         e = self.band
