@@ -5,11 +5,39 @@ a whole, so that linear rows stay satisfied; at cavities and in dry contacts sin
 step is what is taken off: the new values are `now - step`, both of shape (nodes, 2).
 """
 
+import numpy as np
+
 from ehlpetsc.compiled import compiled
 
 STEP_LIMIT = 0.3  # largest pressure change of one Newton step, in p0
 REFILLED = 1e-9  # pressure in p0 that a cavity, or a gap, gets in the iteration that closes it
 OIL_KEPT = 0.2  # of the oil in a cavity that one iteration must leave
+
+
+def change(model, dry, now, step):
+    """Largest change of pressure that a step makes, by the contact model.
+
+    Parameters
+    ----------
+    model : contact_model.DirectContact or MixedContact
+    dry : bool
+    now, step : ndarray, shape (nodes, 2)
+    """
+    if model.yields:
+        return yielding_change(now, step, model.stiffness, model.yield_pressure)
+    if model.is_mixed:
+        return mixed_change(now, step, model.stiffness)
+    return largest_change(now, step, model.bound, -np.inf if dry else 0.0)
+
+
+def keep(model, dry, now, step, opened):
+    """Change single entries of a step in place, by the contact model; `opened` as of :func:`cross_gently`."""
+    if model.is_mixed:
+        cross_gently(now, step, model.stiffness, opened)
+        if model.yields:
+            yield_gently(now, step, model.stiffness, model.yield_pressure)
+    else:
+        (let_overlaps_touch if dry else keep_oil)(now, step, model.bound)
 
 
 @compiled

@@ -95,7 +95,8 @@ class VariationalInequalitySolver(NewtonSolver):
         return np.maximum(nodes[:, 0], 0.0) + nodes[:, 2]
 
     def _function(self, snes, x, f):
-        evaluation, p = self._evaluated(x), self.problem
+        evaluation, p = self._evaluation(x) if self.begins else self._evaluated(x), self.problem
+        self.begins = False
         film = evaluation.relations.film[p.own]
         put_rows(f.array, p, evaluation.residual, (film - self.model.boundary_film) / p.film_scale)
 

@@ -1,0 +1,76 @@
+"""PETSc's SNES as this program makes it: its options obeyed or refused, and nothing left behind."""
+
+import weakref
+
+from petsc4py import PETSc
+
+from ehlpetsc.errors import UsageError
+from ehlpetsc.nonlinear.defaults import DEFAULTS, PRECONDITIONER
+from ehlpetsc.nonlinear.refusals import refusal
+
+REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
+
+
+def owned(owner, *objects):
+    """A list of PETSc's objects, destroyed with their owner or before Python ends, the last one first.
+
+    Left to PETSc's own end they would call Python objects that are gone by then.
+    """
+    made = list(objects)
+    weakref.finalize(owner, _destroy, made)
+    return made
+
+
+def _destroy(made):
+    while made:
+        made.pop().destroy()
+
+
+def create(comm, kind, f, function, pre_check):
+    """A SNES of a type, unless the user's ``-snes_type`` says another.
+
+    Parameters
+    ----------
+    comm : petsc4py.PETSc.Comm
+    kind : str
+    f : petsc4py.PETSc.Vec
+        For residuals.
+    function, pre_check : bound method
+        Residual, and what is done to Newton's step; they do not keep their object alive.
+
+    Raises
+    ------
+    UsageError
+        PETSc refuses an option, or the type cannot be.
+    """
+    snes = PETSc.SNES().create(comm)
+    try:
+        snes.setType(kind)
+        snes.setFunction(weakly(function), f)
+        snes.setFromOptions()
+        if snes.getType() == "vinewtonssls":
+            raise UsageError(
+                "-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
+                "allowed: vinewtonrsls, and types without bounds where nothing touches"
+            )
+    except (PETSc.Error, UsageError) as error:
+        snes.destroy()
+        if isinstance(error, PETSc.Error):
+            raise_refusal(error)
+        raise
+    snes.setLineSearchPreCheck(weakly(pre_check))
+    return snes
+
+
+def raise_refusal(error):
+    """What PETSc raises over an option that the user gave is the user's to mend."""
+    told = refusal(error, DEFAULTS | PRECONDITIONER)
+    if told is None:
+        raise error
+    raise UsageError(told) from None
+
+
+def weakly(method):
+    """A bound method for PETSc to call, by which it does not keep the object alive."""
+    method = weakref.WeakMethod(method)
+    return lambda *arguments: method()(*arguments)
