@@ -16,11 +16,13 @@ tell.
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.deflection import HALO, Outside
 
 TOLERANCE = 1e-11  # of the kernel
 SLOWEST, FASTEST = 0.7, 20.0  # rates: over the whole mesh, over the halo
 TERMS = range(16, 65, 4)
+LEFT_OVER = -40.0  # logarithm of a share that is next to nothing
 SAMPLES = 600  # of the kernel that the fit is made on, at distances in geometric progression
 
 
@@ -71,19 +73,12 @@ class FarPressures:
     """
 
     def __init__(self, deflection, cuts, part):
-        self.deflection, d = deflection, deflection
-        self.part, parts, local = part, len(cuts) - 1, d.last - d.first
-        self.rates, weights = exponentials(d.curvature, HALO + 1)
-        self.terms = len(self.rates)
+        self.deflection = d = deflection
+        self.part = part
+        self.rates, self.weights = exponentials(d.curvature, HALO + 1)
+        self.terms, self.decay = len(self.rates), np.exp(-self.rates)
         self.told = 4 * self.terms + 3
-        falling = np.exp(-np.outer(self.rates, np.arange(local)))
-        sides = [part > 0, part < parts - 1]  # is there anything to the left, to the right
-        received = [weights * falling.T, weights * falling.T[::-1]]
-        self._received = [rows.copy() if there else None for rows, there in zip(received, sides, strict=True)]
-        inner = falling[:, : local - HALO]
-        telling = [inner, inner[:, ::-1]]
-        self._telling = [rows.copy() if there else None for rows, there in zip(telling, sides, strict=True)]
-        self._outer = falling[:, :HALO]
+        self.on_left, self.on_right = part > 0, part < len(cuts) - 2  # is there another part
         self._fade = np.exp(-self.rates * HALO)
         self._shares = self._shares_of(cuts, part)
 
@@ -103,14 +98,14 @@ class FarPressures:
 
     def tell(self, pressure):
         """What this part tells of its own pressures, shape (told,)."""
-        told, to_left, to_right = np.zeros(self.told), *self._telling
+        told, outer = np.zeros(self.told), np.zeros(self.terms)
         moments = told[: 4 * self.terms].reshape(4, self.terms)
-        if to_right is not None:
-            moments[0] = to_right @ pressure[:-HALO]
-            moments[2] = self._fade * moments[0] + self._outer @ pressure[: -HALO - 1 : -1]
-        if to_left is not None:
-            moments[1] = to_left @ pressure[HALO:]
-            moments[3] = self._fade * moments[1] + self._outer @ pressure[:HALO]
+        for k, there, towards in ((0, self.on_right, pressure[::-1]), (1, self.on_left, pressure)):
+            if there:
+                add_moments(towards[HALO:], self.decay, moments[k])
+                outer[:] = 0.0
+                add_moments(towards[:HALO], self.decay, outer)
+                moments[k + 2] = self._fade * moments[k] + outer
         told[-3:] = self.deflection.sums(pressure)
         return told
 
@@ -126,9 +121,56 @@ class FarPressures:
         deflection.Outside
         """
         moments = (told[:, :-3].reshape(-1, 4, self.terms) * self._shares).sum(axis=0)
-        curvature = 0.0
-        for k, received in enumerate(self._received):
-            if received is not None:
-                curvature = curvature + received @ (moments[k] + moments[k + 2])
+        moments = self.weights * (moments[:2] + moments[2:])
+        curvature = np.zeros(self.deflection.last - self.deflection.first)
+        for there, moment, rows in (
+            (self.on_left, moments[0], curvature),
+            (self.on_right, moments[1], curvature[::-1]),
+        ):
+            if there:
+                add_terms(moment, self.decay, rows)
         sums = told[:, -3:]
         return Outside(curvature, sums.sum(axis=0) - sums[self.part])
+
+
+@compiled(fastmath={"contract"})
+def add_moments(pressure, decay, moments):
+    """Add to the moments, shape (terms,), sums over pressures times ``decay**distance``, the first at 0.
+
+    Four nodes at once, since each product waits for the one before; none beyond which nothing is left.
+    """
+    for m in range(len(decay)):
+        d = decay[m]
+        d4 = d**4
+        reach = min(len(pressure), int(LEFT_OVER / np.log(d)) + 1)
+        blocks = reach // 4
+        a0 = a1 = a2 = a3 = 0.0
+        for j in range(reach - 1, 4 * blocks - 1, -1):
+            a0 = a0 * d + pressure[j]
+        for b in range(blocks - 1, -1, -1):
+            j = 4 * b
+            a0 = a0 * d4 + pressure[j]
+            a1 = a1 * d4 + pressure[j + 1]
+            a2 = a2 * d4 + pressure[j + 2]
+            a3 = a3 * d4 + pressure[j + 3]
+        moments[m] += a0 + d * (a1 + d * (a2 + d * a3))
+
+
+@compiled(fastmath={"contract"})
+def add_terms(moments, decay, rows):
+    """Add to the rows the sums of exponentials ``moments * decay**distance``, as :func:`add_moments` does."""
+    for m in range(len(decay)):
+        d, s = decay[m], moments[m]
+        d2, d4 = d * d, d**4
+        reach = min(len(rows), int(LEFT_OVER / np.log(d)) + 1)
+        blocks = reach // 4
+        for b in range(blocks):
+            i = 4 * b
+            rows[i] += s
+            rows[i + 1] += s * d
+            rows[i + 2] += s * d2
+            rows[i + 3] += s * d2 * d
+            s *= d4
+        for i in range(4 * blocks, reach):
+            rows[i] += s
+            s *= d
