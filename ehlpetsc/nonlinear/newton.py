@@ -294,8 +294,8 @@ class NewtonSolver:
     def _solution(self, snes):
         reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
         if reason <= 0:
-            if not self.touched:
-                # a failed factorisation stays failed in PETSc's solver objects
+            if not (self.without_bound and reason == PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN):
+                # a failed factorisation stays failed in PETSc's solver objects; a film that touched does not
                 self._renew()
             raise SolveFailed(snes_objects.REASONS.get(reason, str(reason)), iterations)
         q, w, h00 = self.gather(self.x)

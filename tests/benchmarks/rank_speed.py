@@ -1,0 +1,173 @@
+"""One contact on several ranks: ``python3 tests/benchmarks/rank_speed.py [--meshes 200] [--ranks 1 2 4]``.
+
+The measured surfaces where both fill the contact's front half, the mesh as fine as asked for. The same steps
+on each number of ranks, in turns, `--repeats` times; of each
+
+* milliseconds of an iteration of SNES, and of the whole step with its predictor and observables, medians;
+* how many times as fast the first number of ranks asked for is than this;
+* Newton and Krylov iterations: the same on any number of ranks;
+* with ``--count``: collectives an iteration, and bytes that a rank sends in them;
+* the largest memory that a rank has used.
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+
+from scenes import ROOT
+
+ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+STEPS = 16
+FAST = 8.0  # nominal steps in one on the way
+
+
+def measured(points, ranks, count):
+    """Figures of one process group."""
+    command = [
+        "mpirun",
+        "-n",
+        str(ranks),
+        "--oversubscribe",
+        sys.executable,
+        __file__,
+        "--inside",
+        str(points),
+    ]
+    if count:
+        command.append("--count")
+    environment = os.environ | ENVIRONMENT
+    if ranks > (os.cpu_count() or 1):
+        environment["OMPI_MCA_mpi_yield_when_idle"] = "1"
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def inside(points, count):
+    """Run on every rank; the first one prints the figures."""
+    import resource
+
+    from mpi4py import MPI
+
+    from ehlpetsc.case.loading import load
+    from ehlpetsc.run.simulation import Simulation
+
+    comm = MPI.COMM_WORLD
+    mesh = (f"mesh.points_per_half_width={points}", "mesh.inlet=-1.5", "mesh.outlet=1.3")
+    simulation = Simulation(load(ROOT / "cases" / "table1_rough.toml", mesh), comm)
+    simulation.options.__enter__()  # for good: parts of steps are solved as well
+    simulation.advance()
+    step, solver = simulation.scales.dt, simulation.march.solver
+    for _ in range(int(1.8 * points / (0.5 * FAST))):
+        simulation.advance(FAST * step)
+    for _ in range(4):
+        simulation.advance(step)
+    traffic = counted(solver) if count else None
+    spent, solve = [0.0], solver.solve
+
+    def timed(*arguments, **named):
+        comm.Barrier()
+        begun = time.perf_counter()
+        try:
+            return solve(*arguments, **named)
+        finally:
+            spent[0] += time.perf_counter() - begun
+
+    solver.solve = timed
+    krylov, apply = [0], solver.factors.lu.solve
+
+    def applied(*arguments):
+        krylov[0] += 1
+        return apply(*arguments)
+
+    solver.factors.lu.solve = applied
+    comm.Barrier()
+    begun, newton = time.perf_counter(), 0
+    for _ in range(STEPS):
+        simulation.advance(step)
+        newton += simulation.solution.newton
+    comm.Barrier()
+    whole = time.perf_counter() - begun
+    memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, MPI.MAX)
+    figures = {
+        "nodes": solver.n,
+        "snes": 1e3 * spent[0] / newton,
+        "step": 1e3 * whole / newton,
+        "newton": newton,
+        "krylov": krylov[0],
+        "memory": memory,
+    }
+    if count:
+        figures |= {"collectives": traffic[0] / newton, "bytes": traffic[1] / newton}
+    if comm.rank == 0:
+        print(json.dumps(figures), flush=True)
+
+
+def counted(solver):
+    """Counts the program's own collectives; PETSc's reductions, of some numbers each, come on top."""
+    traffic, ranks = [0, 0], solver.exchange.ranks
+
+    class Counting:
+        """A communicator that counts."""
+
+        def __getattr__(self, name):
+            return getattr(ranks, name)
+
+        def Allgather(self, mine, everyone):
+            traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + mine.nbytes
+            ranks.Allgather(mine, everyone)
+
+        def Allreduce(self, mine, numbers, operation):
+            traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + numbers.nbytes
+            ranks.Allreduce(mine, numbers, operation)
+
+    solver.exchange.ranks = solver.factors.lu.ranks = Counting()
+    return traffic
+
+
+def main():
+    """Measure and tell."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--meshes", type=int, nargs="+", default=[200, 800, 1600])
+    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2])
+    parser.add_argument("--repeats", type=int, default=7)
+    parser.add_argument("--count", action="store_true", help="count collectives and bytes")
+    parser.add_argument("--inside", type=int, help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.inside:
+        inside(arguments.inside, arguments.count)
+        return
+    for points in arguments.meshes:
+        taken = {ranks: [] for ranks in arguments.ranks}
+        for _ in range(arguments.repeats):
+            for ranks, figures in taken.items():
+                figures.append(measured(points, ranks, arguments.count))
+        tell(points, taken)
+
+
+def tell(points, taken):
+    """One line for each number of ranks."""
+    base = None
+    for ranks, figures in taken.items():
+        median = {name: statistics.median(f[name] for f in figures) for name in figures[0]}
+        base = base or [f["snes"] for f in figures]
+        ratio = statistics.median(b / f["snes"] for b, f in zip(base, figures, strict=True))
+        more = (
+            f"; {median['collectives']:.1f} collectives, {median['bytes']:.0f} bytes"
+            if "bytes" in median
+            else ""
+        )
+        print(
+            f"a/{points}, {median['nodes']:.0f} nodes, {ranks} ranks: "
+            f"SNES {median['snes']:.2f} ms an iteration, step {median['step']:.2f} ms; "
+            f"{ratio:.2f} times as fast; {median['newton']:.0f} Newton and {median['krylov']:.0f} Krylov "
+            f"iterations; {median['memory']:.0f} MB{more}",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()
