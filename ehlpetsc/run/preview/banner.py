@@ -4,7 +4,7 @@ from ehlpetsc import __version__
 from ehlpetsc.run.preview.forecast import steps
 from ehlpetsc.run.preview.surfaces import surface_lines
 
-WORTH_TWO_RANKS = 2000  # nodes: 801 took two ranks as long as one, 3,201 0.8 to 0.9 of it
+WORTH_TWO_RANKS = 2000  # nodes: 561 take two ranks half as long again as one, 2,241 as long
 
 
 def banner(case, scales, rough, ranks):
