@@ -15,7 +15,7 @@ import time
 
 import numpy as np
 from petsc4py import PETSc
-from scenes import rough, scene
+from scenes import rough, scene, timed
 from scipy.linalg import lapack
 
 from ehlpetsc.nonlinear.operators.jacobian_operator import NearFieldMatrix
@@ -59,21 +59,6 @@ def lapack_solve(band, width, right):
     factors, pivots, info = lapack.dgbtrf(band, width, width)
     assert info == 0
     return lapack.dgbtrs(factors, width, width, right, pivots)
-
-
-def timed(solver):
-    """Wall seconds that the solver has spent from now on, in a list."""
-    spent, solve = [0.0], solver.solve
-
-    def within(*arguments, **named):
-        begun = time.perf_counter()
-        try:
-            return solve(*arguments, **named)
-        finally:
-            spent[0] += time.perf_counter() - begun
-
-    solver.solve = within
-    return spent
 
 
 def against_lapack(points, made, what):

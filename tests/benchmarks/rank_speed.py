@@ -18,7 +18,7 @@ import subprocess
 import sys
 import time
 
-from scenes import ROOT
+from scenes import ROOT, timed
 
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 STEPS = 16
@@ -66,17 +66,7 @@ def inside(points, count):
     for _ in range(4):
         simulation.advance(step)
     traffic = counted(solver) if count else None
-    spent, solve = [0.0], solver.solve
-
-    def timed(*arguments, **named):
-        comm.Barrier()
-        begun = time.perf_counter()
-        try:
-            return solve(*arguments, **named)
-        finally:
-            spent[0] += time.perf_counter() - begun
-
-    solver.solve = timed
+    spent = timed(solver, comm.Barrier)
     krylov, apply = [0], solver.factors.lu.solve
 
     def applied(*arguments):
