@@ -37,7 +37,7 @@ from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.interleaving import firsts, seconds
 from ehlpetsc.errors import SolveFailed
-from ehlpetsc.nonlinear.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
+from ehlpetsc.nonlinear.systems.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
 REACH, STEADY_REACH = 0.6, 4.0

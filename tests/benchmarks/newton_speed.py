@@ -34,19 +34,19 @@ def cpu(call, repeats):
     return statistics.median(times)
 
 
-def near_field(solver, near):
-    """Rows, columns and values of the solver's last Jacobian with the deflection of so many nodes."""
-    matrix = PETSc.Mat().createAIJ((solver.x.getSizes(),) * 2, comm=solver.comm)
-    given = solver.jacobian.relations, solver.jacobian.reynolds_derivatives
-    NearFieldMatrix(solver.problem, near, matrix).fill(*given)
+def near_field(system, near):
+    """Rows, columns and values of the last Jacobian with the deflection of so many nodes."""
+    matrix = PETSc.Mat().createAIJ((system.x.getSizes(),) * 2, comm=system.comm)
+    given = system.jacobian.relations, system.jacobian.reynolds_derivatives
+    NearFieldMatrix(system.problem, near, matrix).fill(*given)
     pointers, columns, values = matrix.getValuesCSR()
     return np.repeat(np.arange(len(pointers) - 1), np.diff(pointers)), columns, values
 
 
-def banded(solver):
+def banded(system):
     """The near field's matrix without the load row, in LAPACK's banded storage."""
-    n = 2 * solver.n
-    rows, columns, values = near_field(solver, HALF_BAND)
+    n = 2 * system.n
+    rows, columns, values = near_field(system, HALF_BAND)
     inside = (rows < n) & (columns < n)
     rows, columns, values = rows[inside], columns[inside], values[inside]
     width = int(np.abs(rows - columns).max())
@@ -63,7 +63,8 @@ def lapack_solve(band, width, right):
 
 def against_lapack(points, made, what):
     """Ratio 1."""
-    band, width = banded(made.solver)
+    system = made.solver.system
+    band, width = banded(system)
     right = np.ones((band.shape[1], 2), order="F")  # residual and the column of h00
     spent, ratios, ours = timed(made.solver), [], []
     for _ in range(PAIRS):
@@ -72,7 +73,7 @@ def against_lapack(points, made, what):
         ours.append(1e3 * spent[0] / newton)
         ratios.append(ours[-1] / (1e3 * cpu(lambda: lapack_solve(band, width, right), 3)))
     print(
-        f"1. a/{points}, {made.solver.n} nodes, {what}: SNES {statistics.median(ours):.2f} ms an iteration, "
+        f"1. a/{points}, {system.n} nodes, {what}: SNES {statistics.median(ours):.2f} ms an iteration, "
         f"over LAPACK's banded solve (half band {width}) {statistics.median(ratios):.2f} "
         f"({min(ratios):.2f} to {max(ratios):.2f})",
         flush=True,
@@ -89,8 +90,9 @@ def in_contact(points):
 def against_dense(points=200):
     """Ratio 2: both take as many iterations."""
     made = rough(points)
-    n = 2 * made.solver.n + 1
-    matrix, (rows, columns, values) = np.zeros((n, n)), near_field(made.solver, made.solver.n - 1)
+    system = made.solver.system
+    n = 2 * system.n + 1
+    matrix, (rows, columns, values) = np.zeros((n, n)), near_field(system, system.n - 1)
     matrix[rows, columns] = values
     steps, dense = [], []
     for _ in range(5):
@@ -111,7 +113,7 @@ def exponent(meshes):
     for points in meshes:
         made = rough(points, -1.4)
         times = [made.advance(4)[1] / 4 for _ in range(5)]
-        nodes.append(made.solver.n)
+        nodes.append(made.solver.system.n)
         seconds.append(statistics.median(times))
         print(f"3. a/{points}: {nodes[-1]} nodes, {1e3 * seconds[-1]:.1f} ms a step", flush=True)
     slope = np.polyfit(np.log(nodes), np.log(seconds), 1)[0]

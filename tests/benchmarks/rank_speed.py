@@ -67,13 +67,13 @@ def inside(points, count):
         simulation.advance(step)
     traffic = counted(solver) if count else None
     spent = timed(solver, comm.Barrier)
-    krylov, apply = [0], solver.factors.lu.solve
+    krylov, apply = [0], solver.system.factors.lu.solve
 
     def applied(*arguments):
         krylov[0] += 1
         return apply(*arguments)
 
-    solver.factors.lu.solve = applied
+    solver.system.factors.lu.solve = applied
     comm.Barrier()
     begun, newton = time.perf_counter(), 0
     for _ in range(STEPS):
@@ -83,7 +83,7 @@ def inside(points, count):
     whole = time.perf_counter() - begun
     memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, MPI.MAX)
     figures = {
-        "nodes": solver.n,
+        "nodes": solver.system.n,
         "snes": 1e3 * spent[0] / newton,
         "step": 1e3 * whole / newton,
         "newton": newton,
@@ -98,7 +98,7 @@ def inside(points, count):
 
 def counted(solver):
     """Counts the program's own collectives; PETSc's reductions, of some numbers each, come on top."""
-    traffic, ranks = [0, 0], solver.exchange.ranks
+    traffic, ranks = [0, 0], solver.system.exchange.ranks
 
     class Counting:
         """A communicator that counts."""
@@ -114,7 +114,7 @@ def counted(solver):
             traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + numbers.nbytes
             ranks.Allreduce(mine, numbers, operation)
 
-    solver.exchange.ranks = solver.factors.lu.ranks = Counting()
+    solver.system.exchange.ranks = solver.system.factors.lu.ranks = Counting()
     return traffic
 
 

@@ -26,7 +26,7 @@ HEAVY = (
     "ehlpetsc.__main__",
     "ehlpetsc.case.loading",
     "ehlpetsc.discretisation.ehl_problem",
-    "ehlpetsc.nonlinear.step_limits",
+    "ehlpetsc.nonlinear.systems.step_limits",
     "ehlpetsc.physics.traction",
     "ehlpetsc.results.reader",
     "ehlpetsc.results.writer",

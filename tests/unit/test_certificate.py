@@ -83,8 +83,8 @@ def test_tolerances_that_are_no_numbers_pass_nothing(solved):
 def test_a_solver_that_takes_its_guess_for_the_solution_gets_nowhere(solved, monkeypatch):
     def solve(q, w, h00, inputs, max_it=None):
         solver = simulation.march.solver
-        solver.inputs, solver.place, solver.tolerance = inputs, None, 1e-7
-        solver.scatter(q, w, h00)
+        solver.tolerance = 1e-7
+        solver.system.begin(q, w, h00, inputs)
         return q, w, h00, 0
 
     simulation = ehlpetsc.Simulation(solved.case)

@@ -16,6 +16,7 @@ from ehlpetsc.discretisation.interleaving import firsts, second_of, seconds
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK, NearFieldMatrix
+from ehlpetsc.nonlinear.systems.two_fields import TwoFields
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -37,14 +38,15 @@ SCENES = {
 @dataclass
 class Scene:
     solver: NewtonSolver
+    system: TwoFields
     state: np.ndarray  # interleaved
     inputs: object
     touching: list
 
     def residual(self, state):
-        n = self.solver.n
+        n = self.system.n
         parts = firsts(state, n).copy(), seconds(state, n).copy(), state[-1]
-        return self.solver.problem.evaluate(*parts, self.inputs).residual.copy()
+        return self.system.problem.evaluate(*parts, self.inputs).residual.copy()
 
 
 def scene(name):
@@ -53,21 +55,24 @@ def scene(name):
     case = load(CASES / file, MESH + extra)
     scales = Scales.of(case)
     film = expected_film(case, scales)
-    solver = NewtonSolver(case, scales, film, PETSc.COMM_SELF)
-    rng, n, problem = np.random.default_rng(2), scales.nx, solver.problem
+    system = TwoFields(case, scales, film, PETSc.COMM_SELF)
+    solver = NewtonSolver(system)
+    rng, n, problem = np.random.default_rng(2), scales.nx, system.problem
     q = np.sqrt(np.maximum(1.05 - scales.x**2, 0.01)) * rng.uniform(0.5, 1.2, n)
     w = film * rng.uniform(0.3, 3.0, n)
     if not problem.dry:
         q[scales.x > 1.02] = rng.uniform(-0.8, -0.1, (scales.x > 1.02).sum())
     # two nodes side by side without any film are a kink: the limiter of the upwind flux
     touching = ALONE if solver.bound == 0.0 and not problem.dry else [*ALONE, BESIDE]
-    w[touching] = -0.4 / solver.model.stiffness if solver.model.is_mixed else solver.bound
+    w[touching] = -0.4 / system.model.stiffness if system.model.is_mixed else solver.bound
     history = None
     if not problem.dry:
         m = problem.content(q, w)
         history = FilmHistory(*(m * rng.uniform(0.6, 1.6, n) + 1e-6 for _ in range(2)), 0.01, 0.012)
     state = np.append(np.stack([q, w], axis=1).ravel(), H00)
-    return Scene(solver, state, problem.inputs(1e-5 * rng.standard_normal(n), history), sorted(touching))
+    return Scene(
+        solver, system, state, problem.inputs(1e-5 * rng.standard_normal(n), history), sorted(touching)
+    )
 
 
 def differences(at, direction, step):
@@ -77,12 +82,11 @@ def differences(at, direction, step):
 
 
 def linearised(at):
-    """The solver with its Jacobian at the state, as SNES asks for it."""
-    solver = at.solver
-    solver.inputs, solver.place = at.inputs, None
-    solver.x.array[:] = at.state
-    solver.snes.computeJacobian(solver.x, solver.operator, solver.preconditioned)
-    return solver
+    """The system with its Jacobian at the state, as SNES asks for it."""
+    system, n = at.system, at.system.n
+    system.begin(firsts(at.state, n), seconds(at.state, n), at.state[-1], at.inputs)
+    at.solver.snes.computeJacobian(system.x, system.operator, system.preconditioned)
+    return system
 
 
 def columns_of(matrix, size):
@@ -100,11 +104,11 @@ def columns_of(matrix, size):
 @pytest.mark.parametrize("name", SCENES)
 def test_every_column_is_the_difference_of_residuals(name):
     at = scene(name)
-    solver, size = linearised(at), len(at.state)
-    np.testing.assert_array_equal(np.flatnonzero(solver.jacobian.relations.touching), at.touching)
-    found = columns_of(solver.operator, size)
+    system, size = linearised(at), len(at.state)
+    np.testing.assert_array_equal(np.flatnonzero(system.jacobian.relations.touching), at.touching)
+    found = columns_of(system.operator, size)
     for column in range(size):
-        scale = max(abs(at.state[column]), 1e-2 * solver.problem.film_scale)
+        scale = max(abs(at.state[column]), 1e-2 * system.problem.film_scale)
         unit = np.zeros(size)
         unit[column] = 1.0
         expected = differences(at, unit, 1e-5 * scale)
@@ -116,11 +120,11 @@ def test_every_column_is_the_difference_of_residuals(name):
 def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
     """What other preconditioners get: with a near field as wide as the mesh, the Jacobian and its leaks."""
     at = scene(name)
-    solver, size = linearised(at), len(at.state)
-    problem, jacobian = solver.problem, solver.jacobian
+    system, size = linearised(at), len(at.state)
+    problem, jacobian = system.problem, system.jacobian
     matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)
     NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.relations, jacobian.reynolds_derivatives)
-    assembled, whole = columns_of(matrix, size), columns_of(solver.operator, size)
+    assembled, whole = columns_of(matrix, size), columns_of(system.operator, size)
     leaks = np.diag(assembled - whole)
     np.testing.assert_allclose(assembled - np.diag(leaks), whole, rtol=1e-9, atol=1e-12 * np.abs(whole).max())
     blind = jacobian.relations.p_q == 0.0
@@ -133,10 +137,10 @@ def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
 def test_a_restricted_operator_is_the_block_of_the_whole(name):
     """What SNESVI keeps of the system."""
     at = scene(name)
-    solver, size = linearised(at), len(at.state)
+    system, size = linearised(at), len(at.state)
     kept = np.setdiff1d(np.arange(size), second_of(np.array(at.touching))).astype(np.int32)
-    block = solver.operator.createSubMatrix(PETSc.IS().createGeneral(kept, comm=PETSc.COMM_SELF))
-    whole = columns_of(solver.operator, size)
+    block = system.operator.createSubMatrix(PETSc.IS().createGeneral(kept, comm=PETSc.COMM_SELF))
+    whole = columns_of(system.operator, size)
     np.testing.assert_allclose(columns_of(block, len(kept)), whole[np.ix_(kept, kept)], rtol=1e-12)
     context = block.getPythonContext()
     np.testing.assert_array_equal(context.dropped, at.touching)

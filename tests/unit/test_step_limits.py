@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.nonlinear.step_limits import OIL_KEPT, REFILLED, keep_oil, largest_change, let_overlaps_touch
+from ehlpetsc.nonlinear.systems.step_limits import (
+    OIL_KEPT,
+    REFILLED,
+    keep_oil,
+    largest_change,
+    let_overlaps_touch,
+)
 
 
 def pairs(*values):

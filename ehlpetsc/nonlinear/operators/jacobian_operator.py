@@ -20,6 +20,7 @@ from ehlpetsc.discretisation.interleaving import (
     seconds_of_rows,
 )
 from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.operators.python_matrix import Restrictable
 
 LEAK = 1e-3  # of dp/dq at cavitated nodes, in preconditioners alone: a pivot that is never zero
 
@@ -58,7 +59,7 @@ class BandSystem:
         out[count:] = approach  # on the last rank
 
 
-class JacobianOperator(BandSystem):
+class JacobianOperator(BandSystem, Restrictable):
     """Context of PETSc's Python matrix.
 
     Parameters
@@ -75,6 +76,7 @@ class JacobianOperator(BandSystem):
     """
 
     def __init__(self, problem, exchange, factors):
+        super().__init__(RestrictedOperator)
         self.problem, self.exchange, self.factors = problem, exchange, factors
         self.kept = np.arange(count(problem.local))
         self.dropped = np.arange(0)
@@ -110,16 +112,6 @@ class JacobianOperator(BandSystem):
         """PETSc's product."""
         with events.PRODUCT:
             out.array[:] = self.times(v.array_r)
-
-    def createSubMatrix(self, mat, rows, columns, out=None):
-        """What SNESVI keeps of the system: the same operator, other unknowns zero."""
-        from petsc4py import PETSc
-
-        restricted = RestrictedOperator(self, rows, mat)
-        sizes = (rows.getLocalSize(), rows.getSize())
-        made = PETSc.Mat().createPython((sizes, sizes), restricted, comm=mat.comm)
-        made.setUp()
-        return made
 
 
 class RestrictedOperator(BandSystem):

@@ -1,11 +1,11 @@
 """The Jacobian of mixed contact on three unknowns a node (q, h, p_c), whole and as SNESVI restricts it."""
 
 import numpy as np
-from petsc4py import PETSc
 
 from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.operators.jacobian_operator import BandSystem
+from ehlpetsc.nonlinear.operators.python_matrix import Restrictable
 
 UNKNOWNS = 3  # of a node
 
@@ -20,7 +20,7 @@ def triples(vector, nodes):
     return vector[: three(nodes)].reshape(nodes, UNKNOWNS)
 
 
-class ThreeFieldOperator:
+class ThreeFieldOperator(Restrictable):
     """The whole Jacobian; context of PETSc's Python matrix.
 
     Parameters
@@ -31,6 +31,7 @@ class ThreeFieldOperator:
     """
 
     def __init__(self, problem, exchange, factors):
+        super().__init__(RestrictedThreeFields)
         self.problem, self.exchange, self.factors = problem, exchange, factors
 
     def linearise(self, evaluation):
@@ -53,14 +54,6 @@ class ThreeFieldOperator:
         with events.PRODUCT:
             rows, film = self.rows(v.array_r)
             put_rows(out.array, p, rows, film[p.own] / p.film_scale)
-
-    def createSubMatrix(self, mat, rows, columns, out=None):
-        """What SNESVI keeps of the system."""
-        restricted = RestrictedThreeFields(self, rows, mat)
-        sizes = (rows.getLocalSize(), rows.getSize())
-        made = PETSc.Mat().createPython((sizes, sizes), restricted, comm=mat.comm)
-        made.setUp()
-        return made
 
 
 def put_rows(out, problem, pairs, gap):

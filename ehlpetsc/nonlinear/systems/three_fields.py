@@ -13,78 +13,67 @@ Unknowns (q_0, h_0, p_c0, q_1, ..., h00), rows (deflection, Reynolds, gap) in th
 """
 
 import numpy as np
-from petsc4py import PETSc
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact_model import Relations, full_of_oil
 from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear import step_limits
-from ehlpetsc.nonlinear.exchange import largest
-from ehlpetsc.nonlinear.newton import OPENED, NewtonSolver
-from ehlpetsc.nonlinear.operators.three_field_operator import (
-    UNKNOWNS,
-    ThreeFieldOperator,
-    put_rows,
-    three,
-    triples,
-)
-from ehlpetsc.nonlinear.preconditioner import FarFieldBand
-from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
+from ehlpetsc.nonlinear.operators.three_field_operator import UNKNOWNS, ThreeFieldOperator, put_rows, triples
+from ehlpetsc.nonlinear.systems import step_limits
+from ehlpetsc.nonlinear.systems.two_fields import OPENED, TwoFields
 
 
-class VariationalInequalitySolver(NewtonSolver):
-    """Newton's method with active sets on three unknowns a node; speaks in those of the contact model."""
+class ThreeFields(TwoFields):
+    """Triples (q, h, p_c) at every node; guess, solution and residual are in the contact model's pairs."""
 
     unknowns = UNKNOWNS
 
-    def _create_vectors(self, _):
-        super()._create_vectors(three)
+    def _put_bounds(self, lower):
+        triples(lower, self.local)[:, 2] = 0.0
 
-    def _create_bounds(self):
-        self.lower, self.upper = self.x.duplicate(), self.x.duplicate()
-        self.lower.set(PETSc.NINFINITY)
-        self.upper.set(PETSc.INFINITY)
-        triples(self.lower.array, self.local)[:, 2] = 0.0
+    def create_matrices(self, with_band):
+        """As of `TwoFields`.
 
-    def _create_matrices(self):
-        sizes, pc = (self.x.getSizes(),) * 2, self.snes.ksp.pc
-        if not (pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)):
-            self.snes.destroy()
+        Raises
+        ------
+        UsageError
+            The user asks for another preconditioner.
+        """
+        if not with_band:
             raise UsageError(
                 "-snes_type vinewtonrsls in mixed contact has the preconditioner of this program alone; "
                 "leave -pc_type out"
             )
-        self.factors, self.assembled = Factors(self.problem, self.comm.tompi4py()), None
-        self.jacobian = ThreeFieldOperator(self.problem, self.exchange, self.factors)
-        self.operator = PETSc.Mat().createPython(sizes, self.jacobian, comm=self.comm)
-        self.operator.setUp()
-        self.preconditioned = self.operator
+        super().create_matrices(with_band)
 
-    def gather(self, v):
-        """The whole solution in the unknowns of the contact model."""
-        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        whole = self.all.array_r
+    def _jacobian(self):
+        return ThreeFieldOperator(self.problem, self.exchange, self.factors)
+
+    def _put_unknowns(self, x, q, w):
+        rows = triples(x, self.local)
+        rows[:, 0], rows[:, 1] = q, self.model.relations(q, w).film
+        rows[:, 2] = self.model.contact_pressure(w)
+
+    def solution(self):
+        """As of `TwoFields`, in the unknowns of the contact model."""
+        whole = self._whole(self.x)
         q, h, p_c = triples(whole, self.n).T.copy()
-        return q, self.model.second_unknown(h, p_c), whole[three(self.n)]
-
-    def scatter(self, q, w, h00):
-        """Fill the local part of the unknowns from those of the contact model."""
-        mine, rows = slice(self.first, self.first + self.local), triples(self.x.array, self.local)
-        rows[:, 0], rows[:, 1] = q[mine], self.model.relations(q, w).film[mine]
-        rows[:, 2] = self.model.contact_pressure(w)[mine]
-        if self.problem.load_is_local:
-            self.x.array[-1] = h00
+        return q, self.model.second_unknown(h, p_c), whole[-1]
 
     def residual(self):
-        """Rows of the last solution in the unknowns of the contact model, as of `NewtonSolver`."""
-        rows = self._evaluation(self.x).residual
+        """As of `TwoFields`; the gap's rows are left out."""
+        rows = self.evaluation(self.x).residual
         parts = firsts(rows, self.local).copy(), seconds(rows, self.local).copy(), rows[count(self.local) :]
         deflection, imbalance, load = zip(*self.comm.tompi4py().allgather(parts), strict=True)
         return np.concatenate(deflection), np.concatenate(imbalance), float(np.concatenate(load)[0])
 
-    def _evaluate(self, vector):
-        nodes, h00, outside = self.exchange(vector, self._pressure)
+    def put_rows(self, evaluation, out):
+        """As of `TwoFields`, the film over the boundary film beside them."""
+        p = self.problem
+        film = evaluation.relations.film[p.own]
+        put_rows(out, p, evaluation.residual, (film - self.model.boundary_film) / p.film_scale)
+
+    def _evaluated(self, nodes, h00, outside):
         q, h, p_c = np.ascontiguousarray(nodes.T)
         none, one, touching = np.zeros_like(q), np.ones_like(q), p_c > 0.0
         pressure = np.maximum(q, 0.0) + p_c
@@ -94,21 +83,12 @@ class VariationalInequalitySolver(NewtonSolver):
     def _pressure(self, nodes):
         return np.maximum(nodes[:, 0], 0.0) + nodes[:, 2]
 
-    def _function(self, snes, x, f):
-        evaluation, p = self._evaluation(x) if self.begins else self._evaluated(x), self.problem
-        self.begins = False
-        film = evaluation.relations.film[p.own]
-        put_rows(f.array, p, evaluation.residual, (film - self.model.boundary_film) / p.film_scale)
-
-    def _limit_step(self, x, y):
-        if self.watch:
-            self.watch()
-        now, step = triples(x.array_r, self.local), triples(y.array, self.local)
-        change = largest(self.exchange.ranks, largest_change(now, step))
-        if change > step_limits.STEP_LIMIT:
-            y.scale(step_limits.STEP_LIMIT / change)
-        cross_gently(now, step, self.model.boundary_film, OPENED * self.problem.film_scale)
-        return True
+    def limit_step(self, x, y):
+        """As of `TwoFields`."""
+        now = triples(x.array_r, self.local)
+        self._shorten(largest_change(now, triples(y.array, self.local)), y)
+        opened = OPENED * self.problem.film_scale
+        cross_gently(now, triples(y.array, self.local), self.model.boundary_film, opened)
 
 
 @compiled

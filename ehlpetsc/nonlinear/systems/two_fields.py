@@ -1,0 +1,224 @@
+"""The equations of one scene as PETSc sees them: two unknowns a node, vectors, matrices, bounds, step limits.
+
+Each rank holds the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), the last one on the last rank,
+and works out its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`); what it needs of other ranks comes by
+:mod:`ehlpetsc.nonlinear.exchange`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.operators`), so
+that Newton converges as with the full matrix; the preconditioner of this program takes what it needs from it,
+others (``-pc_type lu`` ...) get the near field assembled.
+"""
+
+import numpy as np
+from petsc4py import PETSc
+
+from ehlpetsc.discretisation.deflection import HALO
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
+from ehlpetsc.discretisation.interleaving import firsts, pairs, seconds
+from ehlpetsc.errors import UsageError
+from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.exchange import Exchange, everywhere, largest
+from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
+from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
+from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
+from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
+from ehlpetsc.nonlinear.snes import owned
+from ehlpetsc.nonlinear.systems import step_limits
+
+ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
+ZERO_TOLERANCE = 1e-8  # of PETSc: how near to its bound an unknown is taken to be on it
+OPENED = 1e-3  # of the expected film: what solids that part get in that iteration
+
+
+class TwoFields:
+    """Pairs (q, w) at every node, w bounded below in direct contact.
+
+    Parameters
+    ----------
+    case, scales, film_scale
+        As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
+    comm : petsc4py.PETSc.Comm
+
+    Attributes
+    ----------
+    x, f : petsc4py.PETSc.Vec
+        Unknowns and rows.
+    lower, upper : petsc4py.PETSc.Vec
+        Bounds of the unknowns.
+    operator, preconditioned : petsc4py.PETSc.Mat
+        The Jacobian, and what preconditioners get of it; there from :meth:`create_matrices` on.
+
+    Raises
+    ------
+    UsageError
+        More ranks than the mesh can be cut for.
+    """
+
+    unknowns = 2  # of a node
+
+    def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
+        n, rank = scales.nx, comm.rank
+        cuts = first_nodes(n, comm.size)
+        first, last = cuts[rank], cuts[rank + 1]
+        self.n, self.local, self.comm = n, last - first, comm
+        self.near_field = case.mesh.near_field
+        self.problem = EHLProblem(case, scales, film_scale, first, last)
+        self.model = self.problem.model
+        self.exchange = Exchange(self.problem, cuts, comm.tompi4py(), self.unknowns)
+        self._create_vectors()
+        self.inputs = self.place = self.rows = self.operator = None
+
+    def _create_vectors(self):
+        sizes = (self.unknowns * self.local + self.problem.load_is_local, self.unknowns * self.n + 1)
+        self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
+        self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
+        self.lower.set(PETSc.NINFINITY)
+        self.upper.set(PETSc.INFINITY)
+        self._put_bounds(self.lower.array)
+        self.to_all, self.all = PETSc.Scatter.toAll(self.x)
+        self._made = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
+
+    def _put_bounds(self, lower):
+        if not self.model.is_mixed:
+            seconds(lower, self.local)[:] = self.model.bound
+
+    def create_matrices(self, with_band):
+        """Make the operator, and what preconditioners get.
+
+        Parameters
+        ----------
+        with_band : bool
+            Whether that is the operator itself, which has all that the band of
+            :mod:`ehlpetsc.nonlinear.preconditioner` needs; else it is an assembled near field.
+        """
+        sizes = self.x.getSizes()
+        self.factors = Factors(self.problem, self.comm.tompi4py()) if with_band else None
+        self.jacobian = self._jacobian()
+        self.operator = python_matrix(self.jacobian, sizes, self.comm)
+        self.assembled, self.preconditioned = None, self.operator
+        self._made.append(self.operator)
+        if not with_band:
+            self.preconditioned = PETSc.Mat().createAIJ((sizes, sizes), comm=self.comm)
+            self.assembled = NearFieldMatrix(self.problem, self.near_field, self.preconditioned)
+            self._made.append(self.preconditioned)
+
+    def _jacobian(self):
+        return JacobianOperator(self.problem, self.exchange, self.factors)
+
+    def give_bounds(self, snes):
+        """Let a SNES hold the unknowns to their bounds, and count as on them what it counts so."""
+        snes.setVariableBounds(self.lower, self.upper)
+        self.model.near = PETSc.Options().getReal("snes_vi_zero_tolerance", ZERO_TOLERANCE)
+
+    def begin(self, q, w, h00, inputs):
+        """Take a first guess, of the whole mesh, and the inputs of a time step.
+
+        Parameters
+        ----------
+        q, w : ndarray, shape (nx,)
+        h00 : float
+        inputs : ehl_problem.StepInputs
+        """
+        self.inputs, self.place, self.rows = inputs, None, None
+        mine = slice(self.problem.first, self.problem.last)
+        self._put_unknowns(self.x.array, q[mine], w[mine])
+        if self.problem.load_is_local:
+            self.x.array[-1] = h00
+
+    def _put_unknowns(self, x, q, w):
+        """Fill in the unknowns of the local nodes."""
+        firsts(x, self.local)[:], seconds(x, self.local)[:] = q, w
+
+    def solution(self):
+        """The whole solution on every rank: q, w (shape (nx,)) and h00."""
+        return self._pairs_of(self.x)
+
+    def _whole(self, v):
+        """All of a vector, on every rank."""
+        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
+        return self.all.array_r
+
+    def _pairs_of(self, v):
+        whole = self._whole(v)
+        return firsts(whole, self.n).copy(), seconds(whole, self.n).copy(), whole[-1]
+
+    def residual(self):
+        """Rows of the solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
+        if self.rows is None:
+            self.f.array[:] = self.evaluation(self.x).residual
+            self.rows = self._pairs_of(self.f)
+        return self.rows
+
+    def put_rows(self, evaluation, out):
+        """Fill in the local rows that PETSc sees."""
+        out[:] = evaluation.residual
+
+    def evaluation(self, x):
+        """Residual and derivatives at x, where they were asked for last more often than not."""
+        if not everywhere(self.exchange.ranks, np.array_equal(x.array_r, self.place)):
+            self.evaluate(x)
+        return self._evaluation
+
+    def evaluate(self, x):
+        """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`."""
+        self.place = x.array_r.copy()
+        with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
+            nodes, h00, outside = self.exchange(self.place, self._pressure)
+            self._evaluation = self._evaluated(nodes, h00, outside)
+        return self._evaluation
+
+    def _evaluated(self, nodes, h00, outside):
+        q, w = np.ascontiguousarray(nodes.T)
+        return self.problem.evaluate(q, w, h00, self.inputs, outside)
+
+    def _pressure(self, nodes):
+        return self.model.relations(nodes[:, 0], nodes[:, 1]).pressure
+
+    def linearise(self, x):
+        """Set the matrices for x."""
+        self.jacobian.linearise(self.evaluation(x))
+        if self.assembled:
+            with events.ASSEMBLY:
+                whole = self.exchange.whole(self.jacobian.relations)
+                self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
+
+    def limit_step(self, x, y):
+        """Shorten a step y, which is to be taken off x, and keep single entries to what they may do."""
+        now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
+        model, dry = self.model, self.problem.dry
+        self._shorten(step_limits.change(model, dry, now, step), y)
+        step = pairs(y.array, self.local)
+        step_limits.keep(model, dry, now, step, OPENED * self.problem.film_scale)
+
+    def _shorten(self, change, y):
+        change = largest(self.exchange.ranks, change)
+        if change > step_limits.STEP_LIMIT:
+            y.scale(step_limits.STEP_LIMIT / change)
+
+    def touches(self, x, y):
+        """Whether a film of this rank's comes to its bound by the step y."""
+        film = seconds(x.array_r, self.local) - seconds(y.array_r, self.local)
+        return film.min() <= self.model.bound + self.model.near
+
+    def rounding(self):
+        """What rounding of the unknowns leaves of the residual at x: nothing less can be asked.
+
+        Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
+        """
+        evaluation = self.evaluate(self.x)
+        oil, film = evaluation.relations.oil, evaluation.relations.film
+        mine = reynolds_rounding(evaluation.reynolds_derivatives, oil, film, self.problem.own.start)
+        return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
+
+
+def first_nodes(n, ranks):
+    """First nodes of all ranks, and n.
+
+    Raises
+    ------
+    UsageError
+        A part must be as wide as what its neighbours know of it.
+    """
+    most = max(n // (HALO + GROUP), 1)
+    if ranks > most:
+        raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {most}")
+    return [n * k // ranks // GROUP * GROUP for k in range(ranks)] + [n]
