@@ -24,6 +24,7 @@ from ehlpetsc.analysis.contact_statistics import both_fill
 from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.output_guard import check_place
 from ehlpetsc.results.series_index import differences, open_all
 
 RESAMPLES = 2000
@@ -202,7 +203,9 @@ def main(argv=None):
     output = chosen.output or Path(f"{stem}.ensemble.csv")
     try:
         with contextlib.ExitStack() as stack:
-            rows = table(ensembles(open_all(chosen.results, stack)), chosen.resamples, chosen.seed)
+            results = open_all(chosen.results, stack)
+            check_place(output, [*map(Path, chosen.results), *(r.path for r in results)], "-o")
+            rows = table(ensembles(results), chosen.resamples, chosen.seed)
         write(rows, output)
     except (OutputError, tomllib.TOMLDecodeError) as error:
         print(f"ehlpetsc.analysis.ensemble: {error}", file=sys.stderr)

@@ -5,7 +5,8 @@ Pressure and film of one frame, by default that with most contacts; of several f
 instant of each in one picture. Or a map of pressure over place and time, contacts per millisecond, a movie;
 of a series its collisions, film and pressure at contact points against the swept value, its Stribeck curve;
 of one result oil trapped between two contacts, or all of it as one HTML page. The ending of the file given by
--o chooses the format (png, svg, pdf; of a movie gif, mp4, webm).
+-o chooses the format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). What is read is never
+written over.
 
 Exit status: 0 drawn, 2 bad input.
 """
@@ -21,10 +22,12 @@ import numpy as np
 from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
+from ehlpetsc.results.output_guard import check_place
 from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
+PAGES = (".html", ".htm")
 WITHOUT_FRAMES = ("contacts", "stribeck", "ensemble")  # kinds that need the figures of the steps alone
 
 
@@ -81,6 +84,8 @@ def draw(results, kind, options, output):
 
         if len(results) > 1:
             raise OutputError(f"{len(results)} results; allowed: --report of one")
+        if output.suffix.lower() not in PAGES:
+            raise OutputError(f"{output}: allowed for a page: {', '.join(PAGES)}")
         save_report(results[0], output)
     else:
         FIGURES.get(kind, draw_frame)(results, options).savefig(output, dpi=DPI)
@@ -96,7 +101,9 @@ def main(arguments=None):
     )
     try:
         with contextlib.ExitStack() as stack:
-            draw(in_order(open_all(options.results, stack)), kind, options, output)
+            results = in_order(open_all(options.results, stack))
+            check_place(output, [*map(Path, options.results), *(r.path for r in results)], "-o")
+            draw(results, kind, options, output)
     except (OutputError, ValueError, OSError) as error:
         print(f"ehlpetsc.plot: {error}", file=sys.stderr)
         return 2

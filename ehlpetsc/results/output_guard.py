@@ -11,7 +11,7 @@ from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_result
 
 
-def check_place(path, inputs):
+def check_place(path, inputs, option="-ehl_output"):
     """Refuse an output that is an input, or no plain file.
 
     Parameters
@@ -19,6 +19,8 @@ def check_place(path, inputs):
     path : Path
     inputs : iterable of Path
         Files that the run reads.
+    option : str
+        That names the output, for what is said.
 
     Raises
     ------
@@ -26,11 +28,11 @@ def check_place(path, inputs):
     """
     if path.exists() and not path.is_file():
         kind = "a folder" if path.is_dir() else "a device or pipe"
-        raise OutputError(f"{path}: {kind}, not a file to write a result to; give another -ehl_output")
+        raise OutputError(f"{path}: {kind}, not a file to write a result to; give another {option}")
     for read in inputs:
         with contextlib.suppress(OSError):
             if path.exists() and read.exists() and path.samefile(read):
-                raise OutputError(f"{path}: is read by this run ({read}); give another -ehl_output")
+                raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
 
 
 def check_replaceable(path, restart, case_text):

@@ -58,12 +58,12 @@ def parse_command_line(arguments):
     command.overrides = earlier + sets
     command.explain, command.ranks = "--explain" in rest, "--ranks" in rest
     rest = [word for word in rest if word not in ("--explain", "--ranks")]
-    names = [word for word in rest if word.endswith(".toml")] or [word for word in rest[:1] if word[0] != "-"]
-    if len(names) > 1:
-        raise UsageError(f"one case file at a time, not {' and '.join(names)}: {usage()}")
-    if names:
-        command.case = names[0]
-        rest.remove(names[0])
+    places = [at for at, word in enumerate(rest) if word.endswith(".toml") and not _is_value(rest, at)]
+    places = places or [at for at, word in enumerate(rest[:1]) if word[0] != "-"]
+    if len(places) > 1:
+        raise UsageError(f"one case file at a time, not {' and '.join(rest[at] for at in places)}: {usage()}")
+    if places:
+        command.case = rest.pop(places[0])
     elif not {"-help", "--help", "-h"} & set(rest):
         raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
     for word, name in itertools.pairwise(rest):
@@ -71,6 +71,11 @@ def parse_command_line(arguments):
             raise UsageError(f"-options_file {name}: no such file")
     command.petsc = ["-help" if word in ("--help", "-h") else word for word in rest]
     return command
+
+
+def _is_value(words, at):
+    """Whether a word is the file that an option of this program's own names."""
+    return at > 0 and words[at - 1].lstrip("-") in ("ehl_output", "ehl_restart")
 
 
 def _without_sets(words):

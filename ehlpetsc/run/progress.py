@@ -9,7 +9,7 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
-SURE = 1.0  # s before time to go is told: the first steps wait for the compiler, and are smooth
+SURE = 1.0  # s behind the first step, which waits for the compiler, before time to go is told
 
 _COLUMNS = {name: figure.progress for name, figure in STEP_SCALARS.items() if figure.progress}
 _REMAINING = "{:>9s}"
@@ -52,7 +52,7 @@ class Progress:
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
         self._bar = on_terminal(self._stream) or in_notebook()
-        self._marks = [(clock.monotonic(), begin)]  # wall clock and time of the run, now and then
+        self._marks = []  # wall clock and time of the run, from the first step on, now and then
         self._shown = None
         self._pending = None
 
@@ -94,7 +94,7 @@ class Progress:
 
     def _left(self, now, time):
         """Time to go, by the rate since half of the wall clock time ago; "?" before there is one to tell."""
-        if now - self._marks[-1][0] > SECONDS_BETWEEN_BARS:
+        if not self._marks or now - self._marks[-1][0] > SECONDS_BETWEEN_BARS:
             self._marks.append((now, time))
         begun = self._marks[0][0]
         since = next(mark for mark in reversed(self._marks) if mark[0] <= begun + 0.5 * (now - begun))

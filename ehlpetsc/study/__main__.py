@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from ehlpetsc import environment
-from ehlpetsc.errors import CaseError
+from ehlpetsc.errors import CaseError, OutputError
 
 SWEPT = {  # lists of values: type, default, what they are
     "--meshes": (int, [50, 100, 200, 400], "points per half width"),
@@ -68,11 +68,25 @@ def main(argv):
         return random_cases(chosen)
     if not chosen.case:
         parser.error("which case? CASE.toml, --extremes or --random N")
-    return (contact if chosen.contact else accuracy)(chosen)
+    try:
+        return (contact if chosen.contact else accuracy)(chosen)
+    except CaseError as error:
+        print("\n".join(error.faults), file=sys.stderr)
+    except OutputError as error:
+        print(f"ehlpetsc.study: {error}", file=sys.stderr)
+    return 2
 
 
 def say(text):
     print(text, flush=True)
+
+
+def keep_inputs(case, *outputs):
+    """Refuse an output that the case is read from."""
+    from ehlpetsc.results.output_guard import check_place, inputs_of
+
+    for path in outputs:
+        check_place(Path(path), inputs_of(case), "-o")
 
 
 def extremes(chosen):
@@ -95,9 +109,11 @@ def random_cases(chosen):
 
 def contact(chosen):
     """How much contact there is."""
+    from ehlpetsc.case.loading import load
     from ehlpetsc.study.contact import settings, table
 
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
+    keep_inputs(load(chosen.case, chosen.set), f"{stem}.csv")
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
     with tempfile.TemporaryDirectory() as folder:
         table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say, chosen.damage)
@@ -113,11 +129,8 @@ def accuracy(chosen):
 
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:
-        try:
-            study = Study(chosen.case, chosen.set, folder, chosen.limit, chosen.damage)
-        except CaseError as error:
-            print("\n".join(error.faults), file=sys.stderr)
-            return 2
+        study = Study(chosen.case, chosen.set, folder, chosen.limit, chosen.damage)
+        keep_inputs(study.case, f"{stem}.csv", f"{stem}.png")
         references, runs = plan(study.case, chosen.meshes, chosen.courant, chosen.ranks)
         rows = study.table(references, runs, f"{stem}.csv", say)
     draw(rows, f"{stem}.png", study.case.title)

@@ -84,7 +84,7 @@ def test_an_input_is_never_an_output(tmp_path, words):
     (tmp_path / "case.toml").write_text(case)
     (tmp_path / "alicona_meander_profile.csv").write_text(profile)
     os.link(tmp_path / "case.toml", tmp_path / "link.h5")
-    for name in ("link.h5", "alicona_meander_profile.csv"):
+    for name in ("case.toml", "link.h5", "alicona_meander_profile.csv"):
         refused = run("case.toml", "-ehl_output", name, *words, cwd=tmp_path)
         assert refused.returncode == 2 and f"{name}: is read by this run" in refused.stderr
     assert (tmp_path / "case.toml").read_text() == case

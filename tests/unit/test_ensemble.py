@@ -144,3 +144,10 @@ def test_what_is_no_result_is_refused(tmp_path, capsys):
     (tmp_path / "x.series.json").write_text("[]")
     assert ensemble.main([str(tmp_path / "x.series.json")]) == 2
     assert "not the index of a series" in capsys.readouterr().err
+
+
+def test_what_is_read_is_never_written_over(tmp_path, capsys):
+    path = make_result(tmp_path / "one.h5")
+    before = path.read_bytes()
+    assert ensemble.main([str(path), "-o", str(path)]) == 2
+    assert "one.h5: is read by this run" in capsys.readouterr().err and path.read_bytes() == before

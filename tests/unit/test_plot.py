@@ -220,6 +220,7 @@ def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
         (["--step", -1], "--step -1; allowed: 0 to 40"),
         (["--time", 1], "--time 1; allowed: 0 to 4e-05 s"),
         (["--movie", "-o", "movie.avi"], "allowed for a movie: .gif, .mp4, .webm"),
+        (["--report", "-o", "page.csv"], "page.csv: allowed for a page: .html, .htm"),
         (["--stribeck"], "needs a series over motion.entrainment_speed"),
         (["-o", "/no/where.png"], "No such file or directory"),
         (["-o", "picture.xyz"], "xyz"),
@@ -229,6 +230,18 @@ def test_faults_are_told_in_words(result, options, message, capsys):
     assert draw(result, *options) == 2
     fault = capsys.readouterr().err
     assert fault.startswith("ehlpetsc.plot: ") and message in fault
+
+
+@pytest.mark.parametrize(
+    "name, kind", [("one.png", []), ("one.html", ["--report"]), ("one.gif", ["--movie"])]
+)
+def test_what_is_read_is_never_drawn_over(tmp_path, result, name, kind, capsys):
+    path = result.rename(tmp_path / name)
+    before = path.read_bytes()
+    (tmp_path / "link.gif").symlink_to(path)
+    for place in (path, tmp_path / "link.gif") if kind == ["--movie"] else (path,):
+        assert draw(path, *kind, "-o", place) == 2
+        assert "is read by this run" in capsys.readouterr().err and path.read_bytes() == before
 
 
 def test_what_cannot_be_drawn_is_told(tmp_path, capsys):

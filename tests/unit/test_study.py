@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
+from ehlpetsc.study.__main__ import main as study
 from ehlpetsc.study.accuracy import picture
 from ehlpetsc.study.accuracy.errors import MEASURES, Figures, errors, uncertainty
 from ehlpetsc.study.accuracy.plan import MESH, STEP, plan
@@ -29,6 +30,20 @@ def table_1(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(TABLE_1)
     return path
+
+
+@pytest.mark.parametrize("words", [[], ["--contact"]])
+def test_a_table_is_never_written_over_what_the_case_is_read_from(tmp_path, words, capsys):
+    profile = tmp_path / "gear.csv"
+    profile.write_text("".join(f"{0.5e-6 * k},{1e-7 * (k % 7)}\n" for k in range(4000)))
+    case = tmp_path / "case.toml"
+    case.write_text(TABLE_1 + '\n[surface.fast]\nfile = "gear.csv"\n')
+    before = profile.read_bytes()
+    assert study([str(case), *words, "-o", str(tmp_path / "gear")]) == 2
+    assert "gear.csv: is read by this run" in capsys.readouterr().err
+    assert profile.read_bytes() == before
+    assert study([str(tmp_path / "none.toml"), *words]) == 2
+    assert "none.toml" in capsys.readouterr().err
 
 
 def test_errors_are_relative_to_the_reference():
