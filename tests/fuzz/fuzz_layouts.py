@@ -102,10 +102,8 @@ def headed(rng, path, table):
     lines, further = [], []
     for name in shuffled(rng, table):
         value = table[name]
-        if not isinstance(value, dict) or rng.random() < 0.3:
-            lines.append(f"{key(rng, name)} = {inline(rng, value)}{remark(rng)}")
-        elif rng.random() < 0.5:
-            lines += dotted(rng, key(rng, name), value)
+        if not isinstance(value, dict) or rng.random() < 0.65:
+            lines += assigned(rng, key(rng, name), value, whole=0.46)
         else:
             further.append(headed(rng, f"{path}.{key(rng, name)}", value))
     head = [f"[{path}]"] if lines or not further or rng.random() < 0.5 else []
@@ -118,10 +116,15 @@ def dotted(rng, path, table):
         return [f"{path} = {{}}"]
     lines = []
     for name in shuffled(rng, table):
-        value, inner = table[name], f"{path}.{key(rng, name)}"
-        whole = not isinstance(value, dict) or rng.random() < 0.4
-        lines += [f"{inner} = {inline(rng, value)}{remark(rng)}"] if whole else dotted(rng, inner, value)
+        lines += assigned(rng, f"{path}.{key(rng, name)}", table[name], whole=0.4)
     return lines
+
+
+def assigned(rng, path, value, whole):
+    """A value behind its key; a table in one line, with the likelihood given, else as keys with dots."""
+    if not isinstance(value, dict) or rng.random() < whole:
+        return [f"{path} = {inline(rng, value)}{remark(rng)}"]
+    return dotted(rng, path, value)
 
 
 def inline(rng, value):

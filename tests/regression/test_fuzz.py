@@ -9,11 +9,11 @@ pytestmark = pytest.mark.slow
 
 
 def test_nonsense_ends_in_words(tmp_path):
-    numbers = ["--cases", "60", "--results", "12", "--restarts", "24", "--options", "4"]
+    numbers = ["--cases", "60", "--results", "12", "--restarts", "24", "--options", "4", "--layouts", "30"]
     words = [PYTHON, ROOT / "tests" / "fuzz" / "all.py", "--seed", "3", *numbers]
     done = subprocess.run(words, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     counted = {kind: told for kind, _, told in (line.partition(": ") for line in done.stdout.splitlines())}
-    assert list(counted) == ["cases", "results", "options", "restarts"]
+    assert list(counted) == ["cases", "results", "options", "restarts", "layouts"]
     assert all("refused " in counted[kind] for kind in ("cases", "results", "restarts"))
     assert list(tmp_path.iterdir()) == []
