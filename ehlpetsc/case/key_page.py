@@ -4,6 +4,7 @@ import json
 
 from ehlpetsc.case.faults import allowed
 from ehlpetsc.case.loading import Case
+from ehlpetsc.case.tables.equations import EQUATIONS, SYMBOLS
 from ehlpetsc.case.tables.surface import SYNTHETIC
 from ehlpetsc.case.tables.table import Table
 from ehlpetsc.errors import UsageError
@@ -81,8 +82,12 @@ def _default(field):
     return "left out" if field.default is None else json.dumps(field.default)
 
 
+def _equation(model, field):
+    return EQUATIONS.get(f"{model.__name__}.{field.alias}", "")
+
+
 def keys(table=None):
-    """Every key with what it takes and its default, a line each.
+    """Every key with what it takes and its default, a line each; below it the equation in which it stands.
 
     Parameters
     ----------
@@ -103,20 +108,29 @@ def keys(table=None):
     lines = []
     for name, model in found.items():
         lines += [f"[{name}]" if name else "above all tables"]
-        lines += [f"  {f.alias}: {allowed(f)}; default: {_default(f)}" for f in _keys(model)]
+        for field in _keys(model):
+            lines.append(f"  {field.alias}: {allowed(field)}; default: {_default(field)}")
+            lines += [f"      {_equation(model, field)}"] if _equation(model, field) else []
     return "\n".join(lines)
 
 
 def page():
     """The same as a page of Markdown."""
-    parts = [PAGE]
+    parts = [PAGE, SYMBOLS]
     for name, model in tables().items():
         heading = f"`[{name}]`" if name else "Above all tables"
-        parts.append(f"\n## {heading}\n\n| key | takes | default |\n|---|---|---|\n")
+        equations = any(_equation(model, field) for field in _keys(model))
+        head = ["key", "takes", "default", *["equation"] * equations]
+        parts.append(f"\n## {heading}\n\n{_row(head)}{'|---' * len(head)}|\n")
         for field in _keys(model):
-            takes = allowed(field).replace("|", r"\|")
-            parts.append(f"| `{field.alias}` | {takes} | {_default(field)} |\n")
+            cells = [f"`{field.alias}`", allowed(field), _default(field)]
+            cells += [_equation(model, field)] * equations
+            parts.append(_row([cell.replace("|", r"\|").replace("*", r"\*") for cell in cells]))
     return "".join(parts)
+
+
+def _row(cells):
+    return "| " + " | ".join(cells) + " |\n"
 
 
 def template():

@@ -5,11 +5,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import UsageError
+from ehlpetsc.case.tables.equations import EQUATIONS
+from ehlpetsc.errors import CaseError, UsageError
+from ehlpetsc.physics.rheology import density
 
 ROOT = Path(__file__).parents[2]
 
@@ -28,13 +31,32 @@ def test_every_key_of_the_cases_here_is_listed():
 
 def test_a_table_alone_has_units_bounds_and_defaults():
     told = key_page.keys("motion").splitlines()
-    assert told[0] == "[motion]" and len(told) == 3
+    assert told[0] == "[motion]" and len(told) == 5
     assert told[1].startswith("  entrainment_speed: a number >= 1e-09 and <= 1000 [m/s] (mean of both")
-    assert told[2].endswith("default: 0.0")
+    assert told[2] == "      u = (u1 + u2)/2"
+    assert told[3].endswith("default: 0.0")
     assert "[surface.fast.synthetic (ridge)]" in key_page.keys("surface.fast")
     assert "[surface.slow]" in key_page.keys("surface")
     with pytest.raises(UsageError, match="--keys fluids: no such table; allowed: contact, fluid"):
         key_page.keys("fluids")
+
+
+def test_equations_are_those_of_keys():
+    models = {model.__name__: model for model in key_page.tables().values()}
+    for name, equation in EQUATIONS.items():
+        model, key = name.split(".")
+        assert key in [field.alias for field in models[model].__fields__.values()], name
+        assert equation in key_page.keys(), name
+
+
+def test_the_density_of_textbooks_is_explained_where_its_constants_are_refused(tmp_path):
+    """1 + 0.6e-9 p/(1 + 1.7e-9 p) is the program's law with the sum of both as gamma."""
+    case = ROOT / "cases" / "table1_smooth.toml"
+    with pytest.raises(CaseError, match=r"1 \+ 0.6e-9 p/\(1 \+ 1.7e-9 p\) of textbooks is gamma = 2.3e-9"):
+        load(case, ["fluid.gamma=0.6e-9", "fluid.lambda=1.7e-9"])
+    fluid = load(case, ["fluid.gamma=2.3e-9", "fluid.lambda=1.7e-9"]).fluid
+    p = np.linspace(0.0, 3e9, 7)
+    np.testing.assert_allclose(density(p, fluid)[0], 1 + 0.6e-9 * p / (1 + 1.7e-9 * p), rtol=1e-14)
 
 
 def test_the_template_is_a_case_and_its_comments_are_keys(tmp_path):

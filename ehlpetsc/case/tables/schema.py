@@ -16,6 +16,9 @@ DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_]+)+$"  # a key below a table
 MAX_MEMBERS = 10_000  # of a series
 MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
 
+# the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
+TEXTBOOKS = "the density 1 + 0.6e-9 p/(1 + 1.7e-9 p) of textbooks is"
+
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
 Pressure = confloat(ge=1e6, le=1e18)
@@ -80,9 +83,14 @@ class Fluid(Table):
     roelands_z: float | None = Field(None, ge=1e-3, le=2, description="Roelands law, exponent z")
     roelands_pressure: float | None = Field(None, ge=1e6, le=1e10, unit="Pa", description="Roelands law, pr")
     density: Literal["dowson-higginson", "incompressible"] = Field(..., description="density law")
-    gamma: float | None = Field(None, ge=0, le=1e-6, unit="1/Pa", description="Dowson-Higginson density")
+    gamma: float | None = Field(None, ge=0, le=1e-6, unit="1/Pa", description=f"{TEXTBOOKS} gamma = 2.3e-9")
     lambda_: float | None = Field(
-        None, alias="lambda", ge=0, le=1e-6, unit="1/Pa", description="Dowson-Higginson density, below gamma"
+        None,
+        alias="lambda",
+        ge=0,
+        le=1e-6,
+        unit="1/Pa",
+        description=f"below gamma; {TEXTBOOKS} gamma = 2.3e-9 and lambda = 1.7e-9",
     )
     eyring_stress: float | None = Field(None, ge=1e3, le=1e12, unit="Pa", description="left out: Newtonian")
     inlet_film: float | None = Field(
