@@ -140,8 +140,16 @@ def test_the_run_time_expected_goes_with_the_speed_of_the_machine(monkeypatch):
     found = []
     for seconds in (0.01, 0.02):
         monkeypatch.setattr(forecast, "probe", lambda seconds=seconds: seconds)
-        found.append(forecast.run_time(c, scales, None) - forecast.BEGIN)
+        found.append(forecast.run_time(c, scales, None))
     assert found[1] == pytest.approx(2.0 * found[0])
+
+
+def test_all_passes_are_expected(monkeypatch):
+    monkeypatch.setattr(forecast, "probe", lambda: 0.02)
+    one, five = (case.load(CASES / "running_in.toml", [f"time.passes={passes}"]) for passes in (1, 5))
+    times = [forecast.work_time(c, Scales.of(c), None) for c in (one, five)]
+    assert times[1] == pytest.approx(5.0 * times[0])
+    assert " for each of 5 passes" in explain(five)
 
 
 @pytest.mark.parametrize(

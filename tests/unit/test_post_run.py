@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from post_result_file import Scene, write
 
 from ehlpetsc.post import dang_van
@@ -33,6 +34,22 @@ def scene():
 def coarse_pictures(monkeypatch):
     """To draw fine ones takes longer than all else here."""
     monkeypatch.setattr(gallery, "DPI", 20)
+
+
+@pytest.fixture
+def legends(monkeypatch):
+    """Legends of all pictures saved, each held to stand beside its axes, where no curve runs."""
+    seen, save = [], Figure.savefig
+
+    def saved(figure, *arguments, **named):
+        save(figure, *arguments, **named)
+        for axes in figure.axes:
+            if axes.get_legend() and axes.has_data():
+                seen.append(axes.get_legend())
+                assert not axes.get_window_extent().overlaps(axes.get_legend().get_window_extent())
+
+    monkeypatch.setattr(Figure, "savefig", saved)
+    return seen
 
 
 @pytest.fixture
@@ -266,7 +283,7 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_pictures_of_two_ratios(scene, tmp_path, capsys):
+def test_pictures_of_two_ratios(scene, tmp_path, legends, capsys):
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
         for r in (0.5, 0.7)
@@ -285,19 +302,21 @@ def test_pictures_of_two_ratios(scene, tmp_path, capsys):
         "compared.exceedance_z0.1",
     ):
         assert {f"{stem}.png", f"{stem}.svg"} <= drawn
+    assert len(legends) == 12  # distributions of two results and at two depths, two histories; PNG and SVG
     assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
     said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
 
 
 @pytest.mark.slow
-def test_passes_of_one_surface(tmp_path, capsys):
+def test_passes_of_one_surface(tmp_path, legends, capsys):
     """The slow surface is one; that it meets is another in each pass."""
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
     scenes[1].profiles["slow"] = scenes[0].profiles["slow"]
     paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.0, 0.1))) for k, scene in enumerate(scenes)]
     assert main([*paths, "--passes", "slow", "--pictures", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "passes.damage_slow.png").is_file()
+    assert len(legends) == 4  # of two axes, as PNG and as SVG
     results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
     s, damages = same_points(results, "slow")
     assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20

@@ -36,7 +36,7 @@ def passes_picture(results, surface):
         f"{scatter:.2g} of its mean",
         fontsize=9,
     )
-    top.legend(fontsize=8, frameon=False)
+    plots.legend_beside(top)
     share = np.arange(1, x.size + 1) / x.size
     with np.errstate(divide="ignore"):
         for row in damages[:, worst]:
@@ -47,5 +47,5 @@ def passes_picture(results, surface):
     bottom.set_xlabel("passes")
     bottom.set_ylabel("share of points failed")
     bottom.grid(color="0.92")
-    bottom.legend(fontsize=8, frameon=False)
+    plots.legend_beside(bottom)
     return figure

@@ -138,7 +138,12 @@ def finish_exceedance(axes, title):
     axes.set_ylabel("share of asperities above D")
     axes.grid(color="0.92", which="both")
     axes.set_title(title, fontsize=9)
-    axes.legend(fontsize=8, frameon=False)
+    legend_beside(axes)
+
+
+def legend_beside(axes):
+    """A legend to the right of the axes, where no curve runs."""
+    axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.01, 0.5))
 
 
 def stress_field(axes, x, z, values, label):
@@ -187,7 +192,7 @@ def history(axes, time, values, channel):
         axes.vlines(time[j], *sorted((counted[i], counted[j])), color="#cc3311", lw=0.8)
         axes.hlines(counted[i], *sorted((time[i], time[j])), color="#cc3311", lw=0.5, ls=":")
     axes.set_ylabel("stress [GPa]")
-    axes.legend(fontsize=8, frameon=False, ncol=3, loc="lower left")
+    legend_beside(axes)
     return cycles
 
 

@@ -9,11 +9,13 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.preview.forecast import (
     FULL_FILM,
+    begin_time,
     dowson_higginson,
     file_size,
     lambda_ratio,
     run_time,
     steps,
+    work_time,
 )
 from ehlpetsc.run.preview.surfaces import height_lines, surface_lines
 from ehlpetsc.run.preview.warnings import warnings
@@ -101,11 +103,13 @@ def _motion(case, s):
 
 
 def _size(case, s, rough):
-    seconds = run_time(case, s, rough)
+    seconds, passes = run_time(case, s, rough), case.time.passes if case.time else 1
+    each = f" for each of {passes} passes" if passes > 1 else ""
     return [
         f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
         f"{2 * s.nx + 1} unknowns",
-        f"Expected run time on one rank: {_duration(seconds)}; result file: {_bytes(file_size(case, s))}",
+        f"Expected run time on one rank: {_duration(seconds)}; "
+        f"result file: {_bytes(file_size(case, s))}{each}",
     ]
 
 
@@ -116,10 +120,10 @@ def _series(case):
         f"{key} = {', '.join(map(str, values))}"
         for key, values in zip(keys_of(series), zip(*combinations(series), strict=True), strict=True)
     )
-    seconds = size = 0.0
+    seconds, size = begin_time(), 0.0
     for _, member in members(case):
         scales = Scales.of(member)
-        seconds += run_time(member, scales, Roughness.of(member, scales))
+        seconds += work_time(member, scales, Roughness.of(member, scales))
         size += file_size(member, scales)
     return [
         f"A series: {shown}; below, the base case.",

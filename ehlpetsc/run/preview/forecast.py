@@ -20,7 +20,7 @@ SMOOTH, FILM, MIXED = (
     4.5,
 )  # iterations a step: before roughness comes, under it, in mixed lubrication
 PROBE = 3000  # operations of the probe
-BEGIN = 1.0  # s for imports and compiled loops from their cache
+BEGIN = 70.0  # times of `probe` for imports and compiled loops from their cache
 FULL_FILM = 3.0  # lambda ratio from which on they do not
 STEADY = 20  # iterations of a steady solution
 
@@ -46,9 +46,19 @@ def lambda_ratio(case, s, rough):
 
 
 def run_time(case, s, rough):
-    """Expected wall clock time on one rank of this machine, as busy as it is now [s]."""
-    solves = steps(s) if case.time else 1
-    return BEGIN + (iterations(case, s, rough) + solves) * (ITERATION + NODE * s.nx) * probe()
+    """Expected wall clock time on one rank of this machine, as busy as it is now [s]; of all passes."""
+    return begin_time() + work_time(case, s, rough)
+
+
+def begin_time():
+    """Of it what comes before the first iteration; a series has it once [s]."""
+    return BEGIN * probe()
+
+
+def work_time(case, s, rough):
+    """Of it what the iterations take [s]."""
+    solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
+    return passes * (iterations(case, s, rough) + solves) * (ITERATION + NODE * s.nx) * probe()
 
 
 def iterations(case, s, rough):
@@ -90,7 +100,7 @@ def steps(s):
 
 
 def file_size(case, s):
-    """Expected size of the result file [bytes]: whole chunks; flags of contact pack to nothing."""
+    """Expected size of a pass's result file [bytes]: whole chunks; flags of contact pack to nothing."""
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
     frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.nx * value))
