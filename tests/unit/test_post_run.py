@@ -316,7 +316,7 @@ def test_passes_of_one_surface(tmp_path, legends, capsys):
     paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.0, 0.1))) for k, scene in enumerate(scenes)]
     assert main([*paths, "--passes", "slow", "--pictures", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "passes.damage_slow.png").is_file()
-    assert len(legends) == 4  # of two axes, as PNG and as SVG
+    assert len(legends) == 12  # of distributions, histories and the two axes of the passes; PNG and SVG
     results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
     s, damages = same_points(results, "slow")
     assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20
