@@ -92,6 +92,8 @@ class Result:
         for steps in (self.step, self.steps("step")) if "step" in self.figures else ():
             if not (np.diff(steps) > 0).all():
                 raise OutputError(f"{path}: damaged, its numbers of steps do not increase")
+        if "step" in self.figures and not np.isin(self.step, self.steps("step")).all():
+            raise OutputError(f"{path}: damaged, a frame is of a step that it does not have")
 
     def __enter__(self):
         return self

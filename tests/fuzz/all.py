@@ -58,6 +58,7 @@ def fuzz(seed, show=False, keep=None, **numbers):
                 if show or word in BAD:
                     print(f"{kind} {number}: {word}: {what}", flush=True)
                 if word in BAD and keep:
+                    Path(keep).mkdir(parents=True, exist_ok=True)
                     draw.keep(Path(keep) / f"{kind}_{seed}_{number}")
         told = ", ".join(f"{word} {counts[word]}" for word in (*WORDS.values(), *BAD) if counts[word])
         print(f"{kind}: {told}", flush=True)

@@ -117,6 +117,22 @@ def test_a_damaged_field_is_named_and_never_read_as_numbers(tmp_path):
         assert result.frame("film_thickness", 1)[3] == 1.03
 
 
+@pytest.mark.parametrize(
+    "name, values, fault",
+    [
+        ("steps/step", [0, 1, 5], "a frame is of a step that it does not have"),
+        ("steps/step", [0, 2, 1], "its numbers of steps do not increase"),
+        ("time", [0.0, 2.0, 1.0], "its times do not increase"),
+    ],
+)
+def test_numbers_that_contradict_each_other_are_told(tmp_path, name, values, fault):
+    path = written(tmp_path / "r.h5", range(3))
+    with h5py.File(path, "r+") as file:
+        file[name][:] = values
+    with pytest.raises(OutputError, match=f"r.h5: damaged, {fault}"):
+        read_result(path)
+
+
 def test_provenance_is_complete(tmp_path):
     path = written(tmp_path / "r.h5", range(3), scalars_attrs={"versions": {"petsc": "3.18.5"}})
     with read_result(path) as r:
