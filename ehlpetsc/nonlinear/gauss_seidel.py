@@ -37,6 +37,7 @@ from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.interleaving import firsts, seconds
 from ehlpetsc.errors import SolveFailed
+from ehlpetsc.nonlinear.defaults import ATOL
 from ehlpetsc.nonlinear.systems.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
@@ -135,7 +136,7 @@ class GaussSeidelSolver:
     def __init__(self, case, scales, film_scale):
         self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
         self.bound, self.deflection = self.problem.model.bound, self.problem.deflection
-        self.tolerance = PETSc.Options().getReal("snes_atol", 1e-7)
+        self.tolerance = PETSc.Options().getReal("snes_atol", float(ATOL["direct"]))
         curvature, near = self.deflection.curvature, min(NEAR, scales.nx - 1)
         self.kernel = np.concatenate([curvature[near:0:-1], curvature[: near + 1]])
         distant = curvature.copy()

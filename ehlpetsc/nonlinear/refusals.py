@@ -7,7 +7,7 @@ from petsc4py import PETSc
 from ehlpetsc.errors import UsageError
 
 MOST = 512  # options that PETSc's table holds
-LOOSER = {"snes_atol": 1e-7, "snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
+LOOSER = {"snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
 DIFFERENCES = "PETSc's differences would stand in for the Jacobian, a product here; leave it out"
 REFUSED = {"snes_mf": DIFFERENCES, "snes_mf_operator": DIFFERENCES}
 NUMERIC, NO_NUMBERS = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
@@ -15,17 +15,17 @@ NUMERIC, NO_NUMBERS = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
 NO_CAUSE = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
 
 
-def refusal(error, defaults):
+def refusal(error, own):
     """What PETSc says when it refuses an option, after the options that it can mean; None if there are none.
 
     Parameters
     ----------
     error : petsc4py.PETSc.Error
-    defaults : dict of str to str
+    own : set of (str, str)
         The program's own options.
     """
     reason = sentence(error)
-    given = {n: v for n, v in PETSc.Options().getAll().items() if n not in defaults or defaults[n] != v}
+    given = {n: v for n, v in PETSc.Options().getAll().items() if (n, v) not in own}
     can = {n: v for n, v in given.items() if not (n.startswith("ehl_") or any(map(n.__contains__, NO_CAUSE)))}
     named = {n: v for n, v in can.items() if n in reason or v and v in reason}
     told = [f"-{name} {value or ''}".strip() for name, value in (named if len(named) == 1 else can).items()]
@@ -76,10 +76,16 @@ def _check_class(path):
         raise UsageError(f"-pc_python_type {path}: has no method apply(pc, x, y), as a preconditioner has")
 
 
-def looser():
-    """One line for every tolerance in PETSc's table that is looser than the program's own."""
+def looser(atol):
+    """One line for every tolerance in PETSc's table that is looser than the program's own.
+
+    Parameters
+    ----------
+    atol : float
+        The program's own ``-snes_atol``.
+    """
     table, lines = PETSc.Options().getAll(), []
-    for name, own in LOOSER.items():
+    for name, own in {"snes_atol": atol, **LOOSER}.items():
         value = _number(table.get(name, own))
         if value is not None and value > own:
             lines.append(f"-{name} {value:g} is looser than the program's {own:g}: results are less certain")

@@ -5,7 +5,7 @@ import weakref
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.defaults import DEFAULTS, PRECONDITIONER
+from ehlpetsc.nonlinear.defaults import OWN
 from ehlpetsc.nonlinear.refusals import refusal
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
@@ -64,7 +64,7 @@ def create(comm, kind, f, function, pre_check):
 
 def raise_refusal(error):
     """What PETSc raises over an option that the user gave is the user's to mend."""
-    told = refusal(error, DEFAULTS | PRECONDITIONER)
+    told = refusal(error, OWN)
     if told is None:
         raise error
     raise UsageError(told) from None

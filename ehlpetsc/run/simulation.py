@@ -87,7 +87,8 @@ class Simulation:
                 [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
             )
         self.comm = comm or MPI.COMM_SELF
-        self.options = RunOptions(case.petsc, {name: _text(v) for name, v in (options or {}).items()})
+        given = {name: _text(v) for name, v in (options or {}).items()}
+        self.options = RunOptions(case.contact.model, case.petsc, given)
         self.scales = Scales.of(case)
         self.pass_number = pass_number or (after.pass_number + 1 if after else 1)
         self.bodies = Bodies.at_rest(self.scales)

@@ -22,10 +22,12 @@ class Scene:
         File in cases/.
     *overrides : str
         ``table.key=value``.
+    **options
+        PETSc's.
     """
 
-    def __init__(self, name, *overrides):
-        self.simulation = Simulation(load(CASES / name, overrides))
+    def __init__(self, name, *overrides, **options):
+        self.simulation = Simulation(load(CASES / name, overrides), options=options)
         self.scales, self.march = self.simulation.scales, self.simulation.march
         self.x, self.solver, self.problem = self.scales.x, self.march.solver, self.march.problem
         self.centre = int(np.argmin(np.abs(self.x)))

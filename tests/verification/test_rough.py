@@ -14,7 +14,7 @@ TOLERANCE = 1e-7  # of the residual
 
 @pytest.fixture(scope="module")
 def states():
-    scene = Scene("table1_rough.toml", *SHORT).start()
+    scene = Scene("table1_rough.toml", *SHORT, snes_atol=TOLERANCE).start()
     levels = [scene.state, *(state.solution for state in scene.simulation)]
     found = list(itertools.pairwise(levels))
     return scene, found
@@ -33,6 +33,16 @@ def test_flow_out_of_contact_nodes_is_not_negative(states):
         touching = state.h == 0.0
         assert state.imbalance[touching].min(initial=0.0) >= -TOLERANCE
         assert np.linalg.norm(state.imbalance[~touching]) <= TOLERANCE
+
+
+def test_what_the_default_tolerance_leaves(states):
+    """Pressures to 1e-5 p0 and films to 1e-5 of the expected one, at every node and step; the same contacts."""
+    tight, found = states
+    for (_, state), looser in zip(found, Scene("table1_rough.toml", *SHORT).start().simulation, strict=True):
+        state_by_default = looser.solution
+        np.testing.assert_array_equal(state_by_default.h == 0.0, state.h == 0.0)
+        np.testing.assert_allclose(state_by_default.p, state.p, rtol=0, atol=1e-5)
+        np.testing.assert_allclose(state_by_default.h, state.h, rtol=0, atol=1e-5 * tight.problem.film_scale)
 
 
 def test_solids_in_contact_do_not_pull(states):

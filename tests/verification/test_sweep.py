@@ -29,7 +29,8 @@ CONTACTS = {974: [303, 304], 1113: [], 1252: [303]}
 def simulations(name, *overrides):
     """One scene by Newton's method and by sweeps."""
     case = load(CASES / name, overrides)
-    return [Simulation(case, options={"ehl_scheme": scheme}) for scheme in ("newton", "sweep")]
+    schemes = ("newton", "sweep")
+    return [Simulation(case, options={"ehl_scheme": scheme, "snes_atol": 1e-7}) for scheme in schemes]
 
 
 @pytest.fixture(scope="module")
