@@ -24,7 +24,8 @@ BEGIN = 2.5  # half widths travelled before
 NEAR = "-ehl_set mesh.near_field=8"  # what is best without the far field in the preconditioner
 ONE_RANK = (
     "",
-    "-snes_atol 1e-5",
+    "-snes_atol 1e-3",
+    "-snes_atol 1e-7",
     "-snes_atol 1e-10",
     "-ksp_rtol 1e-2",
     "-ksp_rtol 1e-8",

@@ -18,7 +18,7 @@ SMOOTH, FILM, MIXED = (
     1.6,
     2.5,
     4.5,
-)  # iterations a step: before roughness comes, under it, in mixed lubrication
+)  # iterations a step: before roughness comes, under it, with solids touching
 PROBE = 3000  # operations of the probe
 BEGIN = 70.0  # times of `probe` for imports and compiled loops from their cache
 FULL_FILM = 3.0  # lambda ratio from which on they do not
