@@ -36,7 +36,7 @@ def test_flow_out_of_contact_nodes_is_not_negative(states):
 
 
 def test_what_the_default_tolerance_leaves(states):
-    """Pressures to 1e-5 p0 and films to 1e-5 of the expected one, at every node and step; the same contacts."""
+    """Pressures to 1e-5 p0, films to 1e-5 of the expected one, at every node and step; the same contacts."""
     tight, found = states
     for (_, state), looser in zip(found, Scene("table1_rough.toml", *SHORT).start().simulation, strict=True):
         state_by_default = looser.solution

@@ -14,11 +14,8 @@ from ehlpetsc.surfaces.arrival import arrival
 # of one Newton iteration on one rank, in times of `probe`: as such and for each node, measured side by side
 # with it on 141 to 2661 nodes; a step takes that of its iterations and one more
 ITERATION, NODE = 0.105, 6.7e-5
-SMOOTH, FILM, MIXED = (
-    1.6,
-    2.5,
-    4.5,
-)  # iterations a step: before roughness comes, under it, with solids touching
+# iterations a step: before roughness comes, under it, in mixed lubrication
+SMOOTH, FILM, MIXED = 1.6, 2.5, 4.5
 PROBE = 3000  # operations of the probe
 BEGIN = 70.0  # times of `probe` for imports and compiled loops from their cache
 FULL_FILM = 3.0  # lambda ratio from which on they do not
