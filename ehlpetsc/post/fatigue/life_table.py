@@ -4,6 +4,7 @@ ln(1/N) over ln(dsv^2) by cubic Hermite interpolation between 4,096 values with 
 in logarithms (the power laws of the two curves' ends) outside. Relative error of 1/N below 1e-9, as tested.
 """
 
+from functools import lru_cache
 from math import exp, log
 
 import numpy as np
@@ -30,8 +31,12 @@ def curve_table(start, stop, value_and_slope):
     return table
 
 
+@lru_cache(maxsize=8)
 def life_table(material, strain="direct"):
-    """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: what that becomes before eq. (13)."""
+    """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: what that becomes before eq. (13).
+
+    All histories of one material read the same table.
+    """
     modulus, hardening, exponent, strength, ductility, b, c = material.constants()
     rule = rule_of(strain)
 

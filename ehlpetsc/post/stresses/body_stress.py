@@ -8,7 +8,7 @@ body's points from the nodes, one offset a frame: their spectra are polynomials 
 Chebyshev points, so that an offset costs a sum of a few tables.
 """
 
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from scipy import fft
@@ -135,11 +135,17 @@ class BodyStress:
         return pairs.reshape(-1, *pairs.shape[2:])[: len(weights)]
 
 
+@lru_cache(maxsize=8)
+def _at_depth(nx, depth):
+    """Stresses of one depth: to prepare them takes longer than a history."""
+    return BodyStress(nx, np.array([depth]))
+
+
 def history_at(loads, surface, s, depth, quantum=0.0):
     """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
     motion = passage(np.array([s]), loads.x, loads.dx, loads.time, loads.speeds[surface])
     enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1
-    stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
+    stress = _at_depth(loads.x.size, depth / loads.dx)
     values = np.zeros((3, max(leave - enter, 0) + 2))
     for begin in range(enter, leave, BATCH):
         frames = np.arange(begin, min(begin + BATCH, leave))
