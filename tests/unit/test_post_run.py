@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -17,7 +18,7 @@ from ehlpetsc.post.command import main
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.outputs.passes_file import same_points
 from ehlpetsc.post.outputs.post_result import PostResult
-from ehlpetsc.post.pictures import gallery
+from ehlpetsc.post.pictures import criteria, gallery, passes
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 
@@ -30,10 +31,33 @@ def scene():
     return Scene(per_width=40, ratio=0.5, travel=9.0)
 
 
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    """To draw fine ones takes longer than all else here."""
-    monkeypatch.setattr(gallery, "DPI", 20)
+class Sketch(Figure):
+    """A figure without layout and exact bounds, which take longer to find than all else here."""
+
+    def __init__(self, layout, **keys):
+        super().__init__(**keys)
+
+    def draw_without_rendering(self):
+        pass
+
+    def get_tightbbox(self):
+        return self.bbox_inches
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse_pictures():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gallery, "DPI", 20)
+        yield
+
+
+@contextmanager
+def sketched():
+    """Pictures of which no more is asked than that they are drawn."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (gallery, criteria, passes):
+            patch.setattr(module, "Figure", Sketch)
+        yield
 
 
 @pytest.fixture
@@ -303,8 +327,9 @@ def test_pictures_of_two_ratios(scene, tmp_path, legends, capsys):
     ):
         assert {f"{stem}.png", f"{stem}.svg"} <= drawn
     assert len(legends) == 12  # distributions of two results and at two depths, two histories; PNG and SVG
-    assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
-    said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
+    with sketched():
+        assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
+        said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
 
 
@@ -347,7 +372,8 @@ def judged(scene, tmp_path_factory):
     residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
     path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
     argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt", "--within", "0.05"]
-    assert main([*argv, "--pictures", str(folder)]) == 0
+    with sketched():
+        assert main([*argv, "--pictures", str(folder)]) == 0
     assert (folder / "a.criteria_slow.png").is_file()
     return folder / "a.post.h5"
 
