@@ -3,6 +3,7 @@
 import json
 import platform
 import subprocess
+from functools import cache
 from pathlib import Path
 
 import h5py
@@ -23,6 +24,7 @@ def versions(more):
     return ", ".join(f"{name} {version}" for name, version in (ours | more).items())
 
 
+@cache
 def git_commit():
     """Commit of the checkout the package runs from, ``-dirty`` if changed; empty if it is none."""
     top = Path(__file__).resolve().parents[2]

@@ -1,5 +1,10 @@
 """Result files with made-up but plausible values, for tests of what reads them."""
 
+import shutil
+import tempfile
+from functools import cache
+from pathlib import Path
+
 import h5py
 import numpy as np
 
@@ -16,6 +21,7 @@ viscosity = {viscosity}
 entrainment_speed = {speed}
 """
 BOUNDARY_FILM = 10e-9
+FOLDER = tempfile.TemporaryDirectory()
 DIRECT = (*of_every_case(FIELDS), "void_fraction")  # what a direct contact stores
 
 
@@ -39,8 +45,19 @@ def fields_at(x, time, viscosity):
     }, contact
 
 
-def make_result(
-    path,
+def make_result(path, **choices):
+    """Copy the result that `made` finds for these choices.
+
+    Returns
+    -------
+    path
+    """
+    shutil.copyfile(made(**choices), path)
+    return path
+
+
+@cache
+def made(
     *,
     nodes=161,
     steps=41,
@@ -56,10 +73,9 @@ def make_result(
 ):
     """Write a result over 40 us; `factor` scales its pressure, `rough` gives both surfaces a profile.
 
-    Returns
-    -------
-    path
+    The same choices are written once: many tests ask for them.
     """
+    path = Path(tempfile.mkdtemp(dir=FOLDER.name), "made.h5")
     x = np.linspace(-2.5, 1.5, nodes)
     s = np.linspace(-1.0, 0.0, 50) * A
     attrs = dict(

@@ -91,7 +91,7 @@ def test_nan_on_one_side_is_a_difference(tmp_path, result, capsys):
 
 
 def test_missing_field_and_unlike_end_are_differences(tmp_path, result, capsys):
-    other = make_result(tmp_path / "two.h5", fields=["pressure"], status="not converged")
+    other = make_result(tmp_path / "two.h5", fields=("pressure",), status="not converged")
     status, text, _ = run(capsys, result, other)
     assert status == 1
     assert f"film_thickness is stored in {result} alone" in text

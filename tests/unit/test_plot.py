@@ -138,7 +138,7 @@ def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
 
 
 def test_a_steady_result_without_contacts_is_drawn(tmp_path, drawn):
-    fields = ["pressure", "film_thickness"]
+    fields = ("pressure", "film_thickness")
     path = make_result(tmp_path / "one.h5", steps=1, fields=fields)
     assert draw(path) == 0
     (figure,) = drawn
@@ -250,7 +250,7 @@ def test_what_cannot_be_drawn_is_told(tmp_path, capsys):
     assert "more than one stored frame" in capsys.readouterr().err
     assert draw(steady, "--contacts") == 2
     assert "no contacts per millisecond" in capsys.readouterr().err
-    assert draw(make_result(tmp_path / "two.h5", fields=["pressure"])) == 2
+    assert draw(make_result(tmp_path / "two.h5", fields=("pressure",))) == 2
     assert "does not store film_thickness" in capsys.readouterr().err
 
 
