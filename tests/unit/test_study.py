@@ -184,11 +184,11 @@ def test_labels_of_an_axis_do_not_overlap(tmp_path, monkeypatch):
     monkeypatch.setattr(
         Figure, "savefig", lambda figure, *_, **__: drawn.append(figure) or figure.draw_without_rendering()
     )
-    names = ("h_min", "damage")  # a panel of each, as wide as those of more
+    names = ("h_min", "damage")  # their panels are as wide as those of more
     for low, high in ((10.0, 25.0), (10.0, 95.0), (3.0, 2500.0), (31.0, 37.0)):
         rows = [("reference", "", 9 * high), ("", "as it is", low)]
         rows += [("mesh", k, cost) for k, cost in enumerate(np.geomspace(low, high, 4))]
-        errors = dict.fromkeys(names, 1e-3) | {"converged": "yes"}
+        errors = dict.fromkeys(MEASURES, np.nan) | dict.fromkeys(names, 1e-3) | {"converged": "yes"}
         table = [dict(varied=v, value=k, wall_s=c, newton=100 * c, **errors) for v, k, c in rows]
         picture.draw(table, tmp_path / "p.png", "title")
         assert drawn[-1].axes
