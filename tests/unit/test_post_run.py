@@ -32,13 +32,11 @@ def scene():
 
 
 class Sketch(Figure):
-    """A figure without layout and exact bounds, which take longer to find than all else here."""
-
-    def __init__(self, layout, **keys):
-        super().__init__(**keys)
+    """A figure laid out only where a legend is to be placed: that takes longer than all else here."""
 
     def draw_without_rendering(self):
-        pass
+        if any(axes.get_legend() for axes in self.axes):
+            super().draw_without_rendering()
 
     def get_tightbbox(self):
         return self.bbox_inches
@@ -57,6 +55,12 @@ def sketched():
     with pytest.MonkeyPatch.context() as patch:
         for module in (gallery, criteria, passes):
             patch.setattr(module, "Figure", Sketch)
+        yield
+
+
+@pytest.fixture
+def sketches():
+    with sketched():
         yield
 
 
@@ -307,7 +311,7 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_pictures_of_two_ratios(scene, tmp_path, legends, capsys):
+def test_pictures_of_two_ratios(sketches, scene, tmp_path, legends, capsys):
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
         for r in (0.5, 0.7)
@@ -327,14 +331,13 @@ def test_pictures_of_two_ratios(scene, tmp_path, legends, capsys):
     ):
         assert {f"{stem}.png", f"{stem}.svg"} <= drawn
     assert len(legends) == 12  # distributions of two results and at two depths, two histories; PNG and SVG
-    with sketched():
-        assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
-        said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
+    assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
+    said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
 
 
 @pytest.mark.slow
-def test_passes_of_one_surface(tmp_path, legends, capsys):
+def test_passes_of_one_surface(sketches, tmp_path, legends, capsys):
     """The slow surface is one; that it meets is another in each pass."""
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
     scenes[1].profiles["slow"] = scenes[0].profiles["slow"]
