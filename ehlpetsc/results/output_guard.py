@@ -2,13 +2,18 @@
 
 import contextlib
 import fcntl
+import json
 import os
 import socket
 from pathlib import Path
 
+import h5py
+
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_result
+
+WAYS = "give another -ehl_output, or -ehl_overwrite to lose it"
 
 
 def check_place(path, inputs, option="-ehl_output"):
@@ -49,8 +54,7 @@ def check_replaceable(path, restart, case_text):
     OutputError
         With the options to choose from.
     """
-    ways = "give another -ehl_output, or -ehl_overwrite to lose it"
-    waiting = restart.exists() and f"go on with -ehl_restart {restart}, {ways}"
+    waiting = restart.exists() and f"go on with -ehl_restart {restart}, {WAYS}"
     if not path.exists():
         if waiting:
             raise OutputError(f"{restart}: a restart file waits there; {waiting}")
@@ -59,11 +63,40 @@ def check_replaceable(path, restart, case_text):
         with open_result(path) as file:
             status, case = plain(file.attrs.get("status")), plain(file.attrs.get("case"))
     except OutputError:
-        raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {ways}") from None
+        raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {WAYS}") from None
     if status != "done":
-        raise OutputError(f"{path}: holds a run that is {status}, not done; {waiting or ways}")
+        raise OutputError(f"{path}: holds a run that is {status}, not done; {waiting or WAYS}")
     if case != case_text:
-        raise OutputError(f"{path}: holds the result of another case, or of other -ehl_set; {ways}")
+        raise OutputError(f"{path}: holds the result of another case, or of other -ehl_set; {WAYS}")
+
+
+def check_index(path, rows, files=()):
+    """Refuse to replace what is no index, and results' places where there is what the index does not name.
+
+    A result that the index names is ours, however damaged; so is what begins as a result does.
+
+    Parameters
+    ----------
+    path : Path
+        The index.
+    rows : str
+        What it calls its list: "members" or "passes".
+    files : iterable of Path
+        Results to be.
+
+    Raises
+    ------
+    OutputError
+    """
+    known = set()
+    if path.exists():
+        try:
+            known = {row["file"] for row in json.loads(path.read_text())[rows]}
+        except (OSError, ValueError, KeyError, TypeError):
+            raise OutputError(f"{path}: stands there and is not an index of ehlpetsc; {WAYS}") from None
+    for file in files:
+        if file.is_file() and file.stat().st_size and file.name not in known and not h5py.is_hdf5(file):
+            raise OutputError(f"{file}: stands there and is not a result of ehlpetsc; {WAYS}")
 
 
 class Lock:

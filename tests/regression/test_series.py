@@ -96,6 +96,30 @@ def test_a_rerun_does_only_what_is_missing(finished):
     assert other.returncode == 0 and "3 of them to compute" in other.stdout
 
 
+@pytest.mark.parametrize(
+    "name, what", [("out.series.json", "an index"), ("out_viscosity_0.006.h5", "a result")]
+)
+def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
+    (tmp_path / name).write_text("mine")
+    refused = series(tmp_path, ranks=1)
+    assert refused.returncode == 2 and refused.stderr == (
+        f"ehlpetsc: {name}: stands there and is not {what} of ehlpetsc; "
+        "give another -ehl_output, or -ehl_overwrite to lose it\n"
+    )
+    assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
+
+
+@pytest.mark.slow
+def test_a_damaged_member_is_computed_again(tmp_path):
+    assert series(tmp_path, ranks=1, values=VALUES[:2]).returncode == 0
+    member = tmp_path / "out_viscosity_0.006.h5"
+    sound = read_result(member).steps("h_min")
+    member.write_bytes(b"damaged" + member.read_bytes()[7:])  # also what makes it a file of HDF5
+    again = series(tmp_path, ranks=1, values=VALUES[:2])
+    assert again.returncode == 0 and "2 members, 1 of them to compute" in again.stdout
+    assert (read_result(member).steps("h_min") == sound).all()
+
+
 def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
     done = series(tmp_path, key="petsc.snes_max_it", values=("1", "30", "0"))
     assert done.returncode == 3

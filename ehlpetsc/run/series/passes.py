@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.results.output_guard import check_place, inputs_of
+from ehlpetsc.results.output_guard import check_index, check_place, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
 from ehlpetsc.results.whole_file import write_whole
@@ -55,6 +55,8 @@ class Passes:
         OutputError
         """
         on_root(self.comm, lambda: check_place(self.index, inputs_of(self.case)))
+        if not overwrite:
+            on_root(self.comm, lambda: check_index(self.index, "passes"))
         first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
         if first > 1:
             self.rows = self.comm.bcast(on_root(self.comm, self._rows_before, first))

@@ -17,7 +17,7 @@ from ehlpetsc.case.loading import members
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.output_guard import Lock
+from ehlpetsc.results.output_guard import Lock, check_index
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.whole_file import write_whole
 from ehlpetsc.run.preview.warnings import warnings
@@ -96,8 +96,11 @@ class Series:
         if min(len(files), len({repr(setting) for setting in settings})) < len(self.members):
             raise UsageError("series.values: two values have the same name; allowed: values that differ")
         ranks = ranks_per_member(options, world.size)
+        overwrite = options.getBool("ehl_overwrite", False)
+        if not overwrite:
+            on_root(world, lambda: check_index(self.index, "members", [m.output for m in self.members]))
         foreign = world.bcast([m.output for m in self.members if m.is_foreign()] if world.rank == 0 else None)
-        if foreign and not options.getBool("ehl_overwrite", False):
+        if foreign and not overwrite:
             raise OutputError(
                 f"{', '.join(map(str, foreign))}: the result of another case, or of other -ehl_set; "
                 "give another -ehl_output, or -ehl_overwrite to lose it"
