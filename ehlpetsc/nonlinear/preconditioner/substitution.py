@@ -65,29 +65,28 @@ def solve_scattered(factors, pivots, places, kept, b, y):
 
 
 @compiled
-def tips(y, ends, places, dense, out):
+def tips(y, shown, places, dense, out):
     """Fill in what the small system needs of local solutions.
 
     Parameters
     ----------
     y : ndarray, shape (solutions, order)
-    ends : ndarray of int, shape (2, size)
-        Places of the outer groups.
+    shown : ndarray of int
+        Places of the unknowns that other ranks take.
     places : ndarray of int
         Of the local unknowns, two a node.
     dense : ndarray, shape (3, nodes)
         Dense rows under the first unknowns.
-    out : ndarray, shape (solutions, 2 size + 3)
+    out : ndarray, shape (solutions, shown + 3)
     """
-    size = ends.shape[1]
     for r in range(len(y)):
-        for j in range(size):
-            out[r, j], out[r, size + j] = y[r, ends[0, j]], y[r, ends[1, j]]
+        for j in range(len(shown)):
+            out[r, j] = y[r, shown[j]]
         for k in range(len(dense)):
             total = 0.0
             for node in range(dense.shape[1]):
                 total += dense[k, node] * y[r, places[2 * node]]
-            out[r, 2 * size + k] = total
+            out[r, len(shown) + k] = total
 
 
 @compiled
