@@ -31,19 +31,15 @@ def observe(case, scales, rq, problem, state, depths, started):
     fields : dict of str to ndarray, shape (nx,)
     in_contact : ndarray of bool, shape (nx,)
     """
-    s, p, model = scales, problem, problem.model
-    pressure = model.relations(state.q, state.w).pressure * s.p0
+    s, model = scales, problem.model
     touching = model.in_contact(state.w, state.imbalance)
-    thickness = s.h * (state.h if model.is_mixed else np.where(touching, model.bound, state.h))
-    solids = model.contact_pressure(state.w) * s.p0
-    # direct contact does not tell the solids' pressure from the oil's: there they carry what there is
-    oil, carried = (pressure - solids, solids) if model.is_mixed else (pressure, pressure)
-    void = np.zeros_like(pressure) if p.dry else np.maximum(-state.q, 0.0)
-    # the shear of a film that rounding left would be anything: there the solids rub
-    rubbing = touching if model.is_mixed else state.h <= model.bound + model.near
-    fast, slow = shear_stresses(case, s, oil, carried, thickness, void, rubbing)
-    load, friction = s.dx * pressure.sum(), s.dx * slow.sum()
-    film = mean_film(s, state.h)
+    fields = _fields(case, s, problem, state, touching)
+    pressure, thickness = fields["pressure"], fields["film_thickness"]
+    load, friction, film = (
+        s.dx * pressure.sum(),
+        s.dx * fields["shear_stress_slow"].sum(),
+        mean_film(s, state.h),
+    )
     figures = {
         "dt": state.dt or 0.0,
         "newton": state.newton,
@@ -53,7 +49,7 @@ def observe(case, scales, rq, problem, state, depths, started):
         "contacts": int(touching.sum()),
         "load": load,
         "load_error": abs(load / s.load - 1.0),
-        "mass_error": mass_error(p, state),
+        "mass_error": mass_error(problem, state),
         "approach": state.h00 * s.h,
         "friction": friction,
         "friction_coefficient": friction / load,
@@ -61,7 +57,30 @@ def observe(case, scales, rq, problem, state, depths, started):
         "lambda_ratio": film / rq if rq else np.nan,
         "wall": clock.monotonic() - started,
     }
-    fields = {
+    if not problem.dry:
+        figures |= _of_oil(fields, touching, model)
+    if model.is_mixed:
+        figures |= _of_solids(fields, touching, s, state.h < case.output.thin_film * model.boundary_film)
+    if model.yields:
+        volumes = [one.volume for one in state.sets]
+        figures |= {"yielding": int(np.count_nonzero(state.depth)), "set_volume": sum(volumes)}
+        fields |= dict(zip(("set_fast", "set_slow"), depths, strict=True))
+    return figures, fields, touching
+
+
+def _fields(case, s, problem, state, touching):
+    """Fields in SI units, but for the permanent sets."""
+    model = problem.model
+    pressure = model.relations(state.q, state.w).pressure * s.p0
+    thickness = s.h * (state.h if model.is_mixed else np.where(touching, model.bound, state.h))
+    solids = model.contact_pressure(state.w) * s.p0
+    # direct contact does not tell the solids' pressure from the oil's: there they carry what there is
+    oil, carried = (pressure - solids, solids) if model.is_mixed else (pressure, pressure)
+    void = np.zeros_like(pressure) if problem.dry else np.maximum(-state.q, 0.0)
+    # the shear of a film that rounding left would be anything: there the solids rub
+    rubbing = touching if model.is_mixed else state.h <= model.bound + model.near
+    fast, slow = shear_stresses(case, s, oil, carried, thickness, void, rubbing)
+    return {
         "pressure": pressure,
         "contact_pressure": solids,
         "film_thickness": thickness,
@@ -70,24 +89,25 @@ def observe(case, scales, rq, problem, state, depths, started):
         "shear_stress_slow": slow,
         "in_contact": touching,
     }
-    if not p.dry:
-        figures |= {
-            "oil_pressure": (oil if model.is_mixed else np.where(touching, 0.0, pressure)).max(),
-            "molecular_films": int((~touching & (thickness < MOLECULES)).sum()),
-        }
-    if model.yields:
-        volumes = [one.volume for one in state.sets]
-        figures |= {"yielding": int(np.count_nonzero(state.depth)), "set_volume": sum(volumes)}
-        fields |= dict(zip(("set_fast", "set_slow"), depths, strict=True))
-    if model.is_mixed:
-        thin = state.h < case.output.thin_film * model.boundary_film
-        figures |= {
-            "contact_share": s.dx * solids.sum() / load,
-            "contact_length": s.dx * touching.sum(),
-            "thin_length": s.dx * thin.sum(),
-            "thin_share": s.dx * pressure[thin].sum() / load,
-        }
-    return figures, fields, touching
+
+
+def _of_oil(fields, touching, model):
+    """Its largest pressure, and films of molecules."""
+    pressure = fields["pressure"]
+    oil = pressure - fields["contact_pressure"] if model.is_mixed else np.where(touching, 0.0, pressure)
+    molecular = ~touching & (fields["film_thickness"] < MOLECULES)
+    return {"oil_pressure": oil.max(), "molecular_films": int(molecular.sum())}
+
+
+def _of_solids(fields, touching, s, thin):
+    """What the solids of mixed contact carry, and where films are thin."""
+    load = s.dx * fields["pressure"].sum()
+    return {
+        "contact_share": s.dx * fields["contact_pressure"].sum() / load,
+        "contact_length": s.dx * touching.sum(),
+        "thin_length": s.dx * thin.sum(),
+        "thin_share": s.dx * fields["pressure"][thin].sum() / load,
+    }
 
 
 def mean_film(scales, h):
