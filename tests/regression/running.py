@@ -38,7 +38,8 @@ SCRIPT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",  # the cores may be fewer than the ranks, and not ours alone
 }
 BARE = {"PATH": "/usr/bin:/bin", "HOME": "/", "TERM": "dumb"}
-PREPARED = Prepared(PYTHON, BARE | SCRIPT)
+ALONE = {"OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}  # one rank: Open MPI looks for no way to others
+PREPARED = Prepared(PYTHON, BARE | SCRIPT | ALONE)
 MPIRUNS_COMMENT = re.compile(  # what run_mpi.sh leaves out too
     r"^-{70,}\nprterun detected that one or more processes.*?^-{70,}\n"
     r"|^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH.*?\n",
