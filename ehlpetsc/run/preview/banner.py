@@ -40,6 +40,6 @@ def _ranks_for_nothing(scales, ranks):
     if ranks == 1 or scales.nx >= WORTH_TWO_RANKS:
         return []
     return [
-        f"note: one rank would be about as quick: at {scales.nx} nodes exchanging vectors costs what more "
-        "cores save; the members of a series gain from ranks at any size"
+        f"note: one rank is quicker: at {scales.nx} nodes ranks wait for each other longer than they save; "
+        "the members of a series gain from ranks at any size"
     ]
