@@ -1,7 +1,7 @@
-"""SPIKE's reduced system: the few unknowns by which the ranks' parts of a band and its border are coupled.
+"""SPIKE's reduced system: the few unknowns w by which the ranks' parts of a band and its border are coupled.
 
 In the order of the cuts it is banded, but for three rows and columns of the border; its cost grows as the
-number of ranks. Every rank holds it.
+number of ranks. Every rank factors it, and keeps of the inverse the rows of those w that it needs.
 """
 
 import numpy as np
@@ -11,31 +11,35 @@ BORDER = 3  # far deflection of the first and of the last node, h00
 
 
 class ReducedSystem:
-    """Where w stands, its matrix and solutions.
+    """Where w stands, and what a rank needs of its solutions.
 
     Parameters
     ----------
     left, right : int
         Unknowns beside a cut that the other side takes: of the last group before it, of the first one behind.
-    ranks : int
+    rank, ranks : int
     end_scale : float
         What h00 counts in the end nodes' deflection rows, negative.
 
     Attributes
     ----------
-    of_rank : list of (columns, own, shown)
-        For each rank: places in w that its columns G belong to; places of its own unknowns; and which of its
-        tips, right + left beside its cuts, these are.
+    widest : int
+        Most columns G of a rank.
     """
 
-    def __init__(self, left, right, ranks, end_scale):
+    def __init__(self, left, right, rank, ranks, end_scale):
         self.left, self.right, self.last, self.end_scale = left, right, ranks - 1, end_scale
         self.cut = left + right
         self.inner = self.cut * self.last
         self.below, self.above = self.cut + left - 1, self.cut + right - 1
-        self.of_rank = [self._places(rank) for rank in range(ranks)]
+        self.of_rank = [self._places(one) for one in range(ranks)]
+        self.widest = max(len(columns) for columns, _, _ in self.of_rank)
+        wanted = np.append(self.of_rank[rank][0], self.inner + BORDER - 1)
+        self.wanted = np.zeros((self.inner + BORDER, len(wanted)), order="F")
+        self.wanted[wanted, np.arange(len(wanted))] = 1.0
 
     def _places(self, rank):
+        """In w of a rank's columns G and of its own unknowns; which of its tips beside the cuts these are."""
         before, behind = self.cut * (rank - 1), self.cut * rank
         columns = [
             [self.inner] if rank == 0 else before + np.arange(self.left),
@@ -45,14 +49,43 @@ class ReducedSystem:
         own = before + self.left + np.arange(self.cut)[shown]
         return np.concatenate(columns).astype(int), own, shown
 
-    def factor(self, tips):
-        """Factor, from the tips of every rank's G.
+    def rows_of_inverse(self, tips):
+        """What the w of this rank's columns, and h00, take of every rank's tips.
 
         Parameters
         ----------
         tips : ndarray, shape (ranks, columns, left + right + BORDER)
-            Rows of a rank with fewer columns than others are not looked at.
+            Of every rank's G; rows of a rank with fewer columns than others are not looked at.
+
+        Returns
+        -------
+        ndarray, shape (columns + 1, ranks (left + right + BORDER))
         """
+        band, beyond, border = self._matrix(tips)
+        inner = self.inner
+        of_cuts, of_border = self.wanted[:inner], self.wanted[inner:]
+        if inner:
+            lu, pivots, singular = dgbtrf(band, self.below, self.above, overwrite_ab=True)
+            if singular:
+                never_zero(lu[self.below + self.above])
+            solved = dgbtrs(lu, self.below, self.above, beyond, pivots)[0]
+            of_border = of_border - solved.T @ of_cuts
+            border[:, inner:] -= border[:, :inner] @ solved
+        schur, order, singular = dgetrf(border[:, inner:], overwrite_a=False)
+        if singular:
+            never_zero(np.einsum("ii->i", schur))
+        of_border = dgetrs(schur, order, of_border, trans=1)[0]
+        if inner:
+            right = of_cuts - border[:, :inner].T @ of_border
+            of_cuts = dgbtrs(lu, self.below, self.above, right, pivots, trans=1)[0]
+        rows = np.zeros((self.wanted.shape[1], len(self.of_rank), self.cut + BORDER))
+        rows[:, :, self.cut :] = of_border.T[:, None]
+        for rank, (_, own, shown) in enumerate(self.of_rank):
+            rows[:, rank, shown] = of_cuts[own].T
+        return rows.reshape(len(rows), -1)
+
+    def _matrix(self, tips):
+        """The band with room for its factors, what the border adds to its rows, and the border's rows."""
         inner, diagonal = self.inner, self.below + self.above
         band = np.zeros((diagonal + self.below + 1, inner), order="F")
         band[diagonal] = 1.0
@@ -66,38 +99,7 @@ class ReducedSystem:
             places = columns[inside]
             band[diagonal + own[:, None] - places, places] += rows[shown][:, inside]
             beyond[own[:, None], columns[~inside] - inner] += rows[shown][:, ~inside]
-        self.dense = border[:, :inner]
-        if inner:
-            self.band, self.band_pivots, singular = dgbtrf(band, self.below, self.above, overwrite_ab=True)
-            if singular:
-                never_zero(self.band[diagonal])
-        self.beyond = self._of_cuts(beyond)
-        schur = np.asfortranarray(border[:, inner:] - self.dense @ self.beyond)
-        self.schur, self.pivots, singular = dgetrf(schur, overwrite_a=True)
-        if singular:
-            never_zero(np.einsum("ii->i", self.schur))
-
-    def _of_cuts(self, right):
-        """Solution of the banded part alone."""
-        if not self.inner:
-            return right
-        return dgbtrs(self.band, self.below, self.above, right, self.band_pivots)[0]
-
-    def solve(self, tips):
-        """The unknowns w.
-
-        Parameters
-        ----------
-        tips : ndarray, shape (ranks, left + right + BORDER)
-            Of every rank's own solution.
-        """
-        inner = np.zeros(self.inner)
-        for (_, own, shown), part in zip(self.of_rank, tips, strict=True):
-            inner[own] = part[shown]
-        inner = self._of_cuts(inner)
-        border = tips[:, self.cut :].sum(axis=0) - self.dense @ inner
-        border = dgetrs(self.schur, self.pivots, border)[0]
-        return np.concatenate([inner - self.beyond @ border, border])
+        return band, beyond, border
 
 
 def never_zero(diagonal):

@@ -41,11 +41,9 @@ class SpikeLU:
     def __init__(self, band, end_scale, ranks):
         self.band, self.ranks = band, ranks
         left, right = band.beside
-        self.reduced = ReducedSystem(len(left), len(right), ranks.size, end_scale)
-        self.columns = self.reduced.of_rank[ranks.rank][0]
+        self.reduced = ReducedSystem(len(left), len(right), ranks.rank, ranks.size, end_scale)
         self.shown = np.concatenate([band.groups_at_ends[0][right], band.groups_at_ends[1][left]])
-        widest = max(len(columns) for columns, _, _ in self.reduced.of_rank)
-        self.tips_of_g = np.zeros((widest, len(self.shown) + BORDER))
+        self.tips_of_g = np.zeros((self.reduced.widest, len(self.shown) + BORDER))
         self.y, self.tips = np.zeros((1, band.order)), np.zeros((1, len(self.shown) + BORDER))
 
     def factor(self, entries, dropped, anew=True):
@@ -63,7 +61,7 @@ class SpikeLU:
             never_zero(self.lu[2 * e.half])
         g = self._columns(left, right)
         tips(g, self.shown, e.place, e.dense, self.tips_of_g[: len(g)])
-        self.reduced.factor(self._everyone(self.tips_of_g))
+        self.coupling = self.reduced.rows_of_inverse(self._everyone(self.tips_of_g))
         self.spread = g[:, e.place]
 
     def _columns(self, left, right):
@@ -114,7 +112,7 @@ class SpikeLU:
         solve_scattered(self.lu.T, self.pivots, e.place, kept, b, y)
         tips(y, self.shown, e.place, e.dense, mine)
         mine[0, -1] -= load
-        w = self.reduced.solve(self._everyone(mine[0]))
+        w = self.coupling @ self._everyone(mine[0]).ravel()
         solution = np.empty(len(e.place))
-        without(y[0], e.place, w[self.columns], self.spread, solution)
+        without(y[0], e.place, w[:-1], self.spread, solution)
         return solution, w[-1]
