@@ -152,6 +152,8 @@ def told_apart(results):
 
 
 def _shown(value):
+    if value is None:  # a key that this case leaves out
+        return "default"
     return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 

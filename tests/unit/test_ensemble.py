@@ -2,6 +2,7 @@
 
 import csv
 import json
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -119,6 +120,9 @@ def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
     results = opened(made(tmp_path, (5.0, 1.0), [1, 2]))
     assert told_apart(results)[2] == "entrainment_speed = 1, seed = 1"
     assert told_apart(results[:1] * 2) is None
+    texts = ("", '[contact]\nmodel = "mixed"')
+    cases = [SimpleNamespace(attrs={"case": text}) for text in texts]
+    assert told_apart(cases) == ["model = default", "model = mixed"]
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])
