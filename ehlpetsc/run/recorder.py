@@ -113,12 +113,11 @@ class Recorder:
             What to know about it, one line each.
         """
         simulation, model = self.simulation, self.simulation.march.problem.model
-        solution, smooth, count, totals, bodies, notes = checkpoint.load(
-            path, simulation.case, simulation.scales, model
-        )
-        simulation.resume(solution, smooth, bodies)
-        self.totals = Totals(totals)
-        self._open(solution.step, count)
+        found, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
+        solution = found.state
+        simulation.resume(solution, found.smooth, found.bodies)
+        self.totals = Totals(found.totals)
+        self._open(solution.step, found.contact_count)
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
 
     def take(self, state):
@@ -178,18 +177,16 @@ class Recorder:
     def _save(self):
         self._writer.flush()
         simulation = self.simulation
-        checkpoint.save(
-            self.restart,
+        march = simulation.march
+        now = checkpoint.Checkpoint(
             simulation.solution,
-            simulation.march.smooth,
+            march.smooth,
             self._writer.contact_count,
             self.totals.values,
-            simulation.case,
-            simulation.scales,
-            simulation.march.problem.model,
             simulation.bodies,
             simulation.pass_number,
         )
+        checkpoint.save(self.restart, now, simulation.case, simulation.scales, march.problem.model)
 
     def _close(self, status):
         simulation = self.simulation

@@ -31,7 +31,8 @@ class Scene:
     def save(self, path, state, smooth):
         count = np.arange(self.scales.nx) % 4
         bodies = Bodies.at_rest(self.scales)
-        checkpoint.save(path, state, smooth, count, TOTALS, self.case, self.scales, self.model, bodies, 1)
+        kept = checkpoint.Checkpoint(state, smooth, count, TOTALS, bodies)
+        checkpoint.save(path, kept, self.case, self.scales, self.model)
 
     def load(self, path):
         return checkpoint.load(path, self.case, self.scales, self.model)
@@ -64,9 +65,10 @@ def test_the_same_case_gets_back_what_was_saved(tmp_path, model):
     scene = Scene(f"contact.model='{model}'")
     state, smooth = state_of(scene, model == "mixed")
     scene.save(tmp_path / "f.restart.h5", state, smooth)
-    found, found_smooth, count, totals, bodies, notes = scene.load(tmp_path / "f.restart.h5")
-    assert notes == [] and totals == TOTALS
-    np.testing.assert_array_equal(count, np.arange(scene.scales.nx) % 4)
+    loaded, notes = scene.load(tmp_path / "f.restart.h5")
+    found, found_smooth, bodies = loaded.state, loaded.smooth, loaded.bodies
+    assert notes == [] and loaded.totals == TOTALS
+    np.testing.assert_array_equal(loaded.contact_count, np.arange(scene.scales.nx) % 4)
     for name in ("q", "w", "m", "m_older"):
         np.testing.assert_allclose(getattr(found, name), getattr(state, name), rtol=1e-14, atol=1e-18)
     assert bodies.travelled == found.travelled and bodies.entrances == Bodies.at_rest(scene.scales).entrances
@@ -85,7 +87,8 @@ def test_under_another_load_the_state_is_that_of_the_new_contact(tmp_path, chang
     scene, other = Scene(), Scene(*change)
     state, smooth = state_of(scene)
     scene.save(tmp_path / "f.restart.h5", state, smooth)
-    found, found_smooth, _, _, bodies, notes = other.load(tmp_path / "f.restart.h5")
+    loaded, notes = other.load(tmp_path / "f.restart.h5")
+    found, found_smooth, bodies = loaded.state, loaded.smooth, loaded.bodies
     x = scene.scales.x
     for (q, w), (q0, w0) in (((found.q, found.w), (state.q, state.w)), (found_smooth, smooth)):
         np.testing.assert_array_equal(np.maximum(q, 0.0), np.maximum(q0, 0.0))
@@ -109,12 +112,14 @@ def test_a_run_may_go_on_with_solids_that_carry_and_back(tmp_path):
     direct, mixed = Scene(), Scene("contact.model='mixed'", "contact.boundary_film=20e-9")
     state, smooth = state_of(mixed, mixed=True)
     mixed.save(tmp_path / "m.restart.h5", state, smooth)
-    found, *_, notes = direct.load(tmp_path / "m.restart.h5")
+    loaded, notes = direct.load(tmp_path / "m.restart.h5")
+    found = loaded.state
     assert "contact.model was mixed, is left out" in notes
     np.testing.assert_allclose(direct.physical(found.q, found.w)[3], mixed.physical(state.q, state.w)[3])
     state, smooth = state_of(direct)
     direct.save(tmp_path / "d.restart.h5", state, smooth)
-    found, *_, notes = mixed.load(tmp_path / "d.restart.h5")
+    loaded, notes = mixed.load(tmp_path / "d.restart.h5")
+    found = loaded.state
     film = mixed.physical(found.q, found.w)[3]
     np.testing.assert_allclose(film, np.maximum(direct.physical(state.q, state.w)[3], 20e-9), rtol=1e-12)
     assert "contact.boundary_film was left out, is 2e-08" in notes
@@ -124,7 +129,7 @@ def test_every_other_key_may_change_and_is_told_but_what_is_no_physics(tmp_path)
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
     changed = ("fluid.viscosity=0.004", "time.courant=0.25", "title='x'", "output.every=7")
-    *_, notes = Scene(*changed).load(tmp_path / "f.restart.h5")
+    _, notes = Scene(*changed).load(tmp_path / "f.restart.h5")
     assert notes == ["fluid.viscosity was 0.002, is 0.004", "time.courant was 0.5, is 0.25"]
 
 

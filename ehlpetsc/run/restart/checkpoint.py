@@ -1,6 +1,7 @@
 """A run's state into a restart file and back, checked against the case that it is to go on with."""
 
 import tomllib
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,30 +19,49 @@ NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may 
 MESH = 1e-9  # of the domain: how far nodes may have moved in x/a
 
 
-def save(path, state, smooth, contact_count, totals, case, scales, model, bodies, pass_number):
-    """Write the restart file of a run.
+@dataclass(frozen=True)
+class Checkpoint:
+    """What a run goes on from.
 
-    Parameters
+    Attributes
     ----------
-    path : path-like
     state : time_stepping.State
+        Its `m` is None where the contact has another size than when it was saved: that of the state is meant.
     smooth : pair of ndarray
         Steady q and w that the predictor starts from.
     contact_count : ndarray of int, shape (nx,)
     totals : dict of str to number
         Of all steps so far, for the summary.
+    bodies : surfaces.roughness.Bodies
+        As they were at the begin of the run when it was saved; as they are, when it is loaded.
+    pass_number : int
+    """
+
+    state: State
+    smooth: tuple
+    contact_count: np.ndarray
+    totals: dict
+    bodies: Bodies
+    pass_number: int = 1
+
+
+def save(path, checkpoint, case, scales, model):
+    """Write the restart file of a run.
+
+    Parameters
+    ----------
+    path : path-like
+    checkpoint : Checkpoint
     case, scales, model
         Of the run; the contact model.
-    bodies : surfaces.roughness.Bodies
-        As they were at the begin of the run.
-    pass_number : int
 
     Raises
     ------
     OutputError
     """
-    arrays = {"x": scales.x * scales.a, "contact_count": contact_count}
-    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *smooth)
+    state, bodies = checkpoint.state, checkpoint.bodies
+    arrays = {"x": scales.x * scales.a, "contact_count": checkpoint.contact_count}
+    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *checkpoint.smooth)
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     if state.earlier:
         ways, q, w = (np.array(part) for part in zip(*state.earlier, strict=True))
@@ -54,25 +74,21 @@ def save(path, state, smooth, contact_count, totals, case, scales, model, bodies
     numbers["set_spacing"] = state.sets[0].spacing if state.sets else 0.0
     attributes = {name: float(value) for name, value in numbers.items()}
     attributes |= {"retries": int(state.retries), "step": int(state.step), "case": case.text}
-    attributes["pass_number"] = pass_number
+    attributes["pass_number"] = checkpoint.pass_number
     for side, one in zip(SIDES, state.sets or (None, None), strict=True):
         attributes[f"set_first_{side}"] = one.first if one else 0
         if one:
             arrays[f"set_{side}"] = one.depth
-    save_restart(path, arrays, attributes | {TOTAL + name: value for name, value in totals.items()})
+    totals = {TOTAL + name: value for name, value in checkpoint.totals.items()}
+    save_restart(path, arrays, attributes | totals)
 
 
 def load(path, case, scales, model):
-    """State of a restart file, checked against the case.
+    """What a restart file holds, checked against the case.
 
     Returns
     -------
-    state : time_stepping.State
-        `m` is None where the contact has another size: that of the state is meant.
-    smooth : pair of ndarray
-    contact_count : ndarray
-    totals : dict
-    bodies : surfaces.roughness.Bodies
+    checkpoint : Checkpoint
     notes : list of str
         Keys of the case that are not what they were, one line each.
 
@@ -115,7 +131,8 @@ def load(path, case, scales, model):
     )
     totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
     notes = changes(earlier, tomllib.loads(case.text))
-    return state, _unknowns(model, arrays, "smooth_"), arrays["contact_count"], totals, bodies, notes
+    smooth, number = _unknowns(model, arrays, "smooth_"), _pass_number(attributes)
+    return Checkpoint(state, smooth, arrays["contact_count"], totals, bodies, number), notes
 
 
 def _fields(model, name, q, w):
@@ -140,7 +157,10 @@ def _sets(arrays, attributes):
 
 def pass_of(path):
     """Number of the pass that a restart file belongs to; for the errors see :func:`load`."""
-    _, attributes = load_restart(path)
+    return _pass_number(load_restart(path)[1])
+
+
+def _pass_number(attributes):
     return int(attributes.get("pass_number", 1))
 
 
