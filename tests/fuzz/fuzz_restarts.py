@@ -54,13 +54,11 @@ class Draw:
     def _load(self, path):
         simulation = Simulation(self.case)
         model = simulation.march.problem.model
-        state, smooth, count, totals, bodies, _ = checkpoint.load(path, self.case, simulation.scales, model)
-        parts = (state.q, state.w, state.h00, state.m, state.time, *smooth, count, state.travelled)
-        return (
-            simulation,
-            (state, smooth, bodies),
-            repr([np.asarray(p).tobytes() for p in parts]) + repr(totals),
-        )
+        found, _ = checkpoint.load(path, self.case, simulation.scales, model)
+        state = found.state
+        parts = (state.q, state.w, state.h00, state.m, state.time, *found.smooth, found.contact_count)
+        content = [np.asarray(part).tobytes() for part in (*parts, state.travelled)]
+        return simulation, (state, found.smooth, found.bodies), repr(content) + repr(found.totals)
 
     def _go_on(self, forged):
         """Load it and take a step, as a run does."""
