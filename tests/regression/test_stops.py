@@ -148,13 +148,16 @@ def test_a_restart_file_of_another_mesh_is_refused(stopped, tmp_path, more, mess
     assert list(tmp_path.iterdir()) == []
 
 
-SMOOTH = [ROOT / "cases" / "table1_smooth.toml", *settings(*SHORT[:3], "mesh.outlet=1.5")]
+SMOOTH = [
+    ROOT / "cases" / "table1_smooth.toml",
+    *settings("mesh.inlet=-1.5", "mesh.outlet=1.5", "mesh.points_per_half_width=30"),
+]
 
 
 @pytest.mark.slow
 def test_after_a_jump_of_the_load_the_film_becomes_that_of_the_new_load(tmp_path):
     """Twice the load, half the radius or a softer solid, at once; the film of before leaves."""
-    moving = [*SMOOTH, *settings("time.courant=1.0", "time.travel=0.5")]
+    moving = [*SMOOTH, *settings("time.courant=2.0", "time.travel=0.8")]
     assert run(*moving, "-ehl_output", "r.h5", cwd=tmp_path, tampered=("SIGTERM", 0, 10)).returncode == 4
     jumps = ["contact.load=1054e3", "contact.radius=0.0095", "contact.youngs_modulus=[100e9, 207e9]"]
     for name, jump in zip("abc", jumps, strict=True):
