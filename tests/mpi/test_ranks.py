@@ -20,6 +20,7 @@ SHORT = [
     "mesh.outlet=1.3",
     "mesh.points_per_half_width=40",
     "time.travel=0.7",
+    "time.courant=1.0",
     "fluid.viscosity=0.001",
 ]
 
