@@ -12,12 +12,13 @@ from ehlpetsc.stepping.certificate import find_fault
 CASES = Path(__file__).parents[2] / "cases"
 MESH = {"mesh.points_per_half_width": 30, "mesh.inlet": -1.5, "mesh.outlet": 1.3}
 CLOSED = 20  # a node that is put into contact
+TIGHT = {"snes_atol": "1e-7"}
 
 
 @pytest.fixture(scope="module", params=["direct", "mixed"])
 def solved(request):
     case = ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": request.param})
-    simulation = ehlpetsc.Simulation(case)
+    simulation = ehlpetsc.Simulation(case, options=TIGHT)
     simulation.advance()
     return simulation
 
@@ -35,6 +36,15 @@ def fault(simulation, change=lambda q, w, rows: None, h00=None, tolerance=None):
 def test_a_solution_is_one(solved):
     assert solved.march.solver.tolerance == pytest.approx(1e-7)
     assert fault(solved) is None
+
+
+@pytest.mark.parametrize("model, tolerance", [("direct", 1e-5), ("mixed", 1e-7)])
+def test_mixed_contact_is_solved_to_less_by_default(model, tolerance):
+    simulation = ehlpetsc.Simulation(
+        ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": model})
+    )
+    simulation.advance()
+    assert simulation.march.solver.tolerance == pytest.approx(tolerance)
 
 
 def put(which, node, value):
@@ -62,7 +72,7 @@ def test_every_part_is_held_against_its_bound(solved, change, words):
 
 def test_solids_must_carry_where_they_touch():
     case = ehlpetsc.load(CASES / "table1_smooth.toml", MESH)
-    simulation = ehlpetsc.Simulation(case)
+    simulation = ehlpetsc.Simulation(case, options=TIGHT)
     simulation.advance()
 
     def touching(imbalance):
