@@ -5,7 +5,7 @@ import ctypes
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.refusals import check_options, sentence
+from ehlpetsc.nonlinear.refusals import check_options, looser, sentence
 
 DEFAULTS = {
     "snes_linesearch_type": "basic",
@@ -72,6 +72,10 @@ class RunOptions:
         self._depth -= 1
         if self._depth == 0:
             self._leave(PETSc.Options())
+
+    def looser(self):
+        """One line for every tolerance of the user's that is looser than the program's own."""
+        return looser(float(self._defaults["snes_atol"]))
 
     def _enter(self, table):
         there = table.getAll()

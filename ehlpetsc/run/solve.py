@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
-from ehlpetsc.nonlinear.defaults import ATOL, unread
-from ehlpetsc.nonlinear.refusals import looser
+from ehlpetsc.nonlinear.defaults import unread
 from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.run.recorder import Recorder
 
@@ -133,7 +132,7 @@ class Run:
             self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._say(*(f"restart: {note}" for note in notes))
-            self._looser = looser(float(ATOL[self.simulation.case.contact.model]))
+            self._looser = self.simulation.options.looser()
             return record(self.simulation, self.recorder, self.stop, self.out if self.root else None)
 
     def _report(self, outcome):
