@@ -11,7 +11,7 @@ import h5py
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import plain
-from ehlpetsc.results.hdf5.opening import open_result
+from ehlpetsc.results.hdf5.opening import open_for_reading, open_result
 
 WAYS = "give another -ehl_output, or -ehl_overwrite to lose it"
 
@@ -73,7 +73,7 @@ def check_replaceable(path, restart, case_text):
 def check_index(path, rows, files=()):
     """Refuse to replace what is no index, and results' places where there is what the index does not name.
 
-    A result that the index names is ours, however damaged; so is what begins as a result does.
+    A result that the index names is ours, however damaged; so is a file of HDF5 that cannot be opened.
 
     Parameters
     ----------
@@ -95,8 +95,17 @@ def check_index(path, rows, files=()):
         except (OSError, ValueError, KeyError, TypeError):
             raise OutputError(f"{path}: stands there and is not an index of ehlpetsc; {WAYS}") from None
     for file in files:
-        if file.is_file() and file.stat().st_size and file.name not in known and not h5py.is_hdf5(file):
+        if file.is_file() and file.stat().st_size and file.name not in known and not _is_ours(file):
             raise OutputError(f"{file}: stands there and is not a result of ehlpetsc; {WAYS}")
+
+
+def _is_ours(path):
+    """Whether a file is a result, or one of HDF5 so damaged that nobody can tell."""
+    try:
+        with open_for_reading(path) as file:
+            return "format_version" in file.attrs
+    except OutputError:
+        return h5py.is_hdf5(path)
 
 
 class Lock:

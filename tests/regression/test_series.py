@@ -2,6 +2,7 @@
 
 import json
 
+import h5py
 import pytest
 from running import ROOT, SHORT, run, settings, summary
 
@@ -107,6 +108,16 @@ def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
         "give another -ehl_output, or -ehl_overwrite to lose it\n"
     )
     assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
+
+
+def test_another_file_of_hdf5_in_a_members_place_is_refused_and_left(tmp_path):
+    place = tmp_path / "out_viscosity_0.006.h5"
+    with h5py.File(place, "w") as file:
+        file["mine"] = [1.0, 2.0]
+    before = place.read_bytes()
+    refused = series(tmp_path, ranks=1)
+    assert refused.returncode == 2 and f"{place.name}: stands there and is not a result" in refused.stderr
+    assert place.read_bytes() == before
 
 
 @pytest.mark.slow
