@@ -1,10 +1,8 @@
 """The command, its result file, its faults, and going on after an interruption."""
 
 import os
-import re
 import subprocess
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -19,7 +17,7 @@ from ehlpetsc.post.command import main
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.outputs.passes_file import same_points
 from ehlpetsc.post.outputs.post_result import PostResult
-from ehlpetsc.post.pictures import criteria, gallery, passes
+from ehlpetsc.post.pictures import gallery
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 
@@ -32,53 +30,10 @@ def scene():
     return Scene(per_width=40, ratio=0.5, travel=9.0)
 
 
-class Sketch(Figure):
-    """A figure laid out and rendered only where it shows something new: that takes longer than all else here.
-
-    That is where a legend is to be placed, or of its kind the first.
-    """
-
-    rendered = set()
-
-    @property
-    def has_legend(self):
-        return any(axes.get_legend() for axes in self.axes)
-
-    def draw_without_rendering(self):
-        if self.has_legend:
-            super().draw_without_rendering()
-
-    def savefig(self, name, **named):
-        kind = re.sub(r"^(0\.\d|[01a])\.", "", Path(name).name)  # without the name of the result
-        if self.has_legend or kind not in self.rendered:
-            self.rendered.add(kind)
-            super().savefig(name, **named)
-        else:
-            Path(name).touch()
-
-    def get_tightbbox(self):
-        return self.bbox_inches
-
-
 @pytest.fixture(scope="module", autouse=True)
 def coarse_pictures():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(gallery, "DPI", 20)
-        yield
-
-
-@contextmanager
-def sketched():
-    """Pictures of which no more is asked than that they are drawn."""
-    with pytest.MonkeyPatch.context() as patch:
-        for module in (gallery, criteria, passes):
-            patch.setattr(module, "Figure", Sketch)
-        yield
-
-
-@pytest.fixture
-def sketches():
-    with sketched():
         yield
 
 
@@ -329,7 +284,7 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_pictures_of_two_ratios(sketches, tmp_path, legends, capsys, monkeypatch):
+def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
         for r in (0.5, 0.7)
@@ -356,7 +311,7 @@ def test_pictures_of_two_ratios(sketches, tmp_path, legends, capsys, monkeypatch
 
 
 @pytest.mark.slow
-def test_passes_of_one_surface(sketches, tmp_path, legends, capsys):
+def test_passes_of_one_surface(tmp_path, legends, capsys):
     """The slow surface is one; that it meets is another in each pass."""
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
     scenes[1].profiles["slow"] = scenes[0].profiles["slow"]
@@ -394,8 +349,7 @@ def judged(scene, tmp_path_factory):
     residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
     path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
     argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt", "--within", "0.05"]
-    with sketched():
-        assert main([*argv, "--pictures", str(folder)]) == 0
+    assert main([*argv, "--pictures", str(folder)]) == 0
     assert (folder / "a.criteria_slow.png").is_file()
     return folder / "a.post.h5"
 
