@@ -38,15 +38,15 @@ SCENES = {
 @dataclass
 class Scene:
     solver: NewtonSolver
-    system: TwoFields
     state: np.ndarray  # interleaved
     inputs: object
     touching: list
 
     def residual(self, state):
-        n = self.system.n
+        system = self.solver.system
+        n = system.n
         parts = firsts(state, n).copy(), seconds(state, n).copy(), state[-1]
-        return self.system.problem.evaluate(*parts, self.inputs).residual.copy()
+        return system.problem.evaluate(*parts, self.inputs).residual.copy()
 
 
 def scene(name):
@@ -70,9 +70,7 @@ def scene(name):
         m = problem.content(q, w)
         history = FilmHistory(*(m * rng.uniform(0.6, 1.6, n) + 1e-6 for _ in range(2)), 0.01, 0.012)
     state = np.append(np.stack([q, w], axis=1).ravel(), H00)
-    return Scene(
-        solver, system, state, problem.inputs(1e-5 * rng.standard_normal(n), history), sorted(touching)
-    )
+    return Scene(solver, state, problem.inputs(1e-5 * rng.standard_normal(n), history), sorted(touching))
 
 
 def differences(at, direction, step):
@@ -83,7 +81,7 @@ def differences(at, direction, step):
 
 def linearised(at):
     """The system with its Jacobian at the state, as SNES asks for it."""
-    system, n = at.system, at.system.n
+    system, n = at.solver.system, at.solver.system.n
     system.begin(firsts(at.state, n), seconds(at.state, n), at.state[-1], at.inputs)
     at.solver.snes.computeJacobian(system.x, system.operator, system.preconditioned)
     return system
