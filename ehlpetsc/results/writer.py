@@ -18,7 +18,7 @@ from ehlpetsc.quantities import STEP_SCALARS, of_every_case
 from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.hdf5.batch import Batch
 from ehlpetsc.results.hdf5.continuation import copy_up_to
-from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, lay_out, room
+from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, last_row, lay_out, room
 from ehlpetsc.results.hdf5.opening import FORMAT_VERSION
 from ehlpetsc.results.provenance import git_commit, versions
 from ehlpetsc.results.whole_file import plain_reason, replacing
@@ -62,6 +62,11 @@ class ResultWriter:
     contact_count : ndarray, shape (nx,), optional
         Steps in contact up to `resume_step`; needed if the file has gone beyond it.
 
+    Attributes
+    ----------
+    written : (int, float) or None
+        The last step that the file holds whole, and its time [s]; None: it holds none yet.
+
     Raises
     ------
     OutputError
@@ -87,7 +92,7 @@ class ResultWriter:
         self.path = None if path is None else Path(path)
         self.every = every
         self.contact_count = np.zeros(len(x), dtype="i8")
-        self.last_step = resume_step
+        self.written = None
         if contact_count is not None:
             self.contact_count[:] = contact_count
         beside = contextlib.nullcontext() if path is None else replacing(self.path)
@@ -102,7 +107,7 @@ class ResultWriter:
                     self.contact_count[:] = copy_up_to(self._file, self.path, resume_step, contact_count)
                 self._file.swmr_mode = True
                 self._file.flush()
-        self._written_step = resume_step
+        self._last = self.written = last_row(self._file)
         self._batch, self._flushed = Batch(self._file, len(x)), clock.monotonic()
 
     def append(self, step, time, fields, scalars, in_contact, frame=None):
@@ -132,7 +137,7 @@ class ResultWriter:
         self._batch.hold_step(step, time, scalars)
         if step % self.every == 0 if frame is None else frame:
             self._batch.hold_frame(step, time, fields, in_contact)
-        self.last_step = step
+        self._last = (step, time)
         if self._batch.full or clock.monotonic() - self._flushed > FLUSH_SECONDS:
             self.flush()
 
@@ -141,7 +146,7 @@ class ResultWriter:
         self._check_still_there()
         with self._plain_faults("not written on"), room(self._file, self._batch.size):
             self._batch.write(self.contact_count)
-        self._written_step, self._flushed = self.last_step, clock.monotonic()
+        self.written, self._flushed = self._last, clock.monotonic()
 
     def put_set(self, side, depth):
         """Note the permanent set [m] of a surface, "fast" or "slow", at the points s of its profile."""
@@ -187,10 +192,15 @@ class ResultWriter:
             self._close_after_a_fault()
             raise
         except (OSError, RuntimeError) as error:
-            whole = getattr(self, "_written_step", None)
             self._close_after_a_fault()
-            kept = "" if whole is None else f"; the file is whole up to step {whole}"
+            kept = f"; {self._kept()}" if hasattr(self, "_batch") else ""
             raise OutputError(f"{self.path}: result file {what}, {plain_reason(error)}{kept}") from error
+
+    def _kept(self):
+        if self.written is None:
+            return "no step is in it yet"
+        step, time = self.written
+        return f"the file is whole up to step {step} ({1e6 * time:.4f} us)"
 
     def _close_after_a_fault(self):
         with contextlib.suppress(Exception):  # the fault at hand is the one to tell

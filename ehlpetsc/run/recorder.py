@@ -1,5 +1,6 @@
 """What is kept of a run: result file, restart file, totals. Rank 0 alone writes files."""
 
+import contextlib
 import time as clock
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from ehlpetsc.results.whole_file import remove_left
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.limits import limits
 from ehlpetsc.run.restart import checkpoint
+from ehlpetsc.run.restart.way_on import way_on
 from ehlpetsc.run.stored_surfaces import permanent_sets, profiles
 from ehlpetsc.stepping.step_control import on_level
 
@@ -62,7 +64,7 @@ class Recorder:
         self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
         self.totals, self.limits = Totals(), []
         self._writer, self._opened, self._lock = None, False, None
-        self._saved = clock.monotonic()
+        self._saved, self._stored = clock.monotonic(), None
 
     def __enter__(self):
         return self
@@ -118,6 +120,7 @@ class Recorder:
         simulation.resume(solution, found.smooth, found.bodies)
         self.totals = Totals(found.totals)
         self._open(solution.step, found.contact_count)
+        self._note_stored()
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
 
     def take(self, state):
@@ -130,8 +133,9 @@ class Recorder:
         if not self._opened:
             self._open()
         with events.OUTPUT:
-            on_root(self.comm, self._append, state)
+            on_root(self.comm, self._keeping, self._append, state)
         self.totals.add(state.figures)
+        self._note_stored()
         due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
         if state.step and self.comm.bcast(due):
             self.checkpoint()
@@ -141,7 +145,7 @@ class Recorder:
         """Write the restart file, where there is one."""
         if self.restart is None:
             return
-        on_root(self.comm, self._save)
+        on_root(self.comm, self._keeping, self._save)
 
     def close(self, status):
         """Write what is left and note how the run ended.
@@ -151,7 +155,7 @@ class Recorder:
         status : errors.ExitStatus
         """
         if self._opened:
-            on_root(self.comm, self._close, status)
+            on_root(self.comm, self._keeping, self._close, status)
 
     def image(self):
         """The bytes of a result in memory, on every rank."""
@@ -174,19 +178,36 @@ class Recorder:
         frame = every == 1 or steady or on_level(state.time, scales.dt, every)
         self._writer.append(state.step, state.time, state.fields, state.figures, state.in_contact, frame)
 
+    def _keeping(self, action, *arguments):
+        """Do what writes; where it cannot, save the last state stored, if that goes, and tell the way on."""
+        try:
+            action(*arguments)
+        except OutputError as error:
+            step = self._stored and self._stored.state.step
+            with contextlib.suppress(OutputError):
+                if self._stored:
+                    self._save_restart(self._stored)
+            raise OutputError(f"{error}; {way_on(self.restart, self.simulation.case, step)}") from error
+
+    def _note_stored(self):
+        """Remember a state to go on from that the result file on rank 0 holds with all before it."""
+        state, known = self.simulation.solution, self._writer and self.restart and self.simulation.case.time
+        if known and self._writer.written == (state.step, state.time):
+            self._stored = self._now()
+
+    def _now(self):
+        count, totals = self._writer.contact_count.copy(), dict(self.totals.values)
+        return checkpoint.Checkpoint.of(self.simulation, count, totals)
+
     def _save(self):
         self._writer.flush()
+        self._note_stored()
+        self._save_restart(self._now())
+
+    def _save_restart(self, state):
         simulation = self.simulation
-        march = simulation.march
-        now = checkpoint.Checkpoint(
-            simulation.solution,
-            march.smooth,
-            self._writer.contact_count,
-            self.totals.values,
-            simulation.bodies,
-            simulation.pass_number,
-        )
-        checkpoint.save(self.restart, now, simulation.case, simulation.scales, march.problem.model)
+        model = simulation.march.problem.model
+        checkpoint.save(self.restart, state, simulation.case, simulation.scales, model)
 
     def _close(self, status):
         simulation = self.simulation

@@ -1,6 +1,7 @@
 """Accidents, stops and restarts: what is left is whole, and going on equals an uninterrupted run."""
 
 import json
+import re
 import signal
 import subprocess
 
@@ -219,15 +220,27 @@ def test_a_finished_run_has_nothing_left_to_do(whole, stopped, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_full_disk_is_told_and_leaves_a_whole_file(tmp_path):
-    limited = ["prlimit", "--fsize=9000000", *command(*CASE, *settings("mesh.points_per_half_width=400"))]
-    done = subprocess.run(
-        limited, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=120
+def test_a_full_disk_is_told_and_loses_nothing_that_was_stored(tmp_path):
+    scene = [*CASE, *settings("mesh.points_per_half_width=70")]
+    limited = ["prlimit", "--fsize=5000000", *command(*scene, *settings("time.travel=100"))]
+    pipes = {"capture_output": True, "text": True, "timeout": 120}
+    full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
+    assert full.returncode == 2
+    step, time = re.search(r"whole up to step (\d+) \((\S+) us\)", full.stderr).groups()
+    assert full.stderr == (
+        f"ehlpetsc: table1_rough.h5: result file not written on, File too large; the file is whole up to "
+        f"step {step} ({time} us); once this is mended, go on with "
+        f"-ehl_restart table1_rough.restart.h5 (step {step})\n"
     )
-    assert done.returncode == 2
-    assert "table1_rough.h5: result file not written on, File too large; the file is whole up" in done.stderr
-    told = int(done.stderr.split("up to step ")[1].split()[0].rstrip(";"))
-    assert last_step(tmp_path / "table1_rough.h5") == (told, "stopped")
+    with read_result(tmp_path / "table1_rough.h5") as result:
+        np.testing.assert_array_equal(result.steps("step"), range(int(step) + 1))
+        assert len(result.time) == int(step) + 1 and result.attrs["status"] == "stopped"
+        assert np.isfinite(result["pressure"][:]).all()
+        assert float(time) == pytest.approx(1e6 * result.time[-1], abs=1e-4)
+    going_on = [*settings(f"time.travel={(int(step) + 2) / 140}"), "-ehl_restart", "table1_rough.restart.h5"]
+    done = run(*scene, *going_on, cwd=tmp_path)
+    assert done.returncode == 0 and f"restart: table1_rough.restart.h5, step {step}, {time} us" in done.stdout
+    assert last_step(tmp_path / "table1_rough.h5") == (int(step) + 2, "done")
 
 
 def test_the_script_hands_sigterm_on(tmp_path):

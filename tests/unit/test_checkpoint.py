@@ -13,6 +13,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart import checkpoint
+from ehlpetsc.run.restart.way_on import way_on
 from ehlpetsc.stepping.predictor import Level
 from ehlpetsc.stepping.time_stepping import State
 from ehlpetsc.surfaces.roughness import Bodies
@@ -227,3 +228,25 @@ def test_every_byte_is_looked_at(tmp_path):
         path.write_bytes(whole[:length])
         with pytest.raises(OutputError, match="checksum|not a restart file"):
             scene.load(path)
+
+
+@pytest.mark.parametrize(
+    "stored, other, there",
+    [
+        (3, [], True),
+        (7, [], True),
+        (2, [], False),
+        (None, [], False),
+        (3, ["motion.slide_roll_ratio=0"], False),
+    ],
+)
+def test_only_a_restart_file_that_fits_the_result_is_named_as_the_way_on(tmp_path, stored, other, there):
+    """Of the same case, and of a step that the result holds: an older run may have left another."""
+    path = tmp_path / "f.restart.h5"
+    scene = Scene()
+    scene.save(path, *state_of(scene))
+    told = way_on(path, Scene(*other).case, stored)
+    assert told.endswith(f"go on with -ehl_restart {path} (step 3)") == there
+    assert told.startswith("there is no restart file of it") != there
+    path.unlink()
+    assert way_on(path, scene.case, stored).endswith("run it anew with -ehl_overwrite")

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -341,7 +342,9 @@ def test_full_disk_is_named_and_the_file_stays_whole(tmp_path, limit):
         with pytest.raises(OutputError, match="File too large; the file is whole up to step") as fault:
             put(writer, range(20_000))
         writer.close("stopped")
-    last = int(str(fault.value).split()[-1])
+    last, time = re.search(r"up to step (\d+) \((\S+) us\)$", str(fault.value)).groups()
+    last = int(last)
+    assert float(time) == pytest.approx(0.1 * last)
     with h5py.File(tmp_path / "r.h5", "r"):
         pass  # closed cleanly
     with read_result(tmp_path / "r.h5") as result:
@@ -349,6 +352,16 @@ def test_full_disk_is_named_and_the_file_stays_whole(tmp_path, limit):
         np.testing.assert_array_equal(result.step, range(last + 1))
         np.testing.assert_array_equal(result.steps("newton"), range(last + 1))
         assert result.frame("pressure", -1)[1] == pytest.approx(last + 0.01)
+
+
+def test_a_disk_full_before_the_first_flush_leaves_a_file_without_steps(tmp_path):
+    writer = make_writer(tmp_path / "r.h5")
+    put(writer, range(3))
+    told = "not written on, File too large; no step is in it yet$"
+    with file_size_limit(100_000), pytest.raises(OutputError, match=told):
+        writer.flush()
+    with read_result(tmp_path / "r.h5") as result:
+        assert len(result.time) == len(result.steps("step")) == 0
 
 
 @pytest.mark.parametrize(

@@ -62,6 +62,12 @@ def dataset_names(file):
     return names
 
 
+def last_row(file):
+    """Number and time [s] of the last step that a file holds; None: it holds none."""
+    steps, times = file["steps/step"], file["steps/time"]
+    return (int(steps[-1]), float(times[-1])) if len(times) else None
+
+
 def create(path):
     """Create an HDF5 file for writing, None: in memory; OSError if the disk has no room for an empty one."""
     if path is None:

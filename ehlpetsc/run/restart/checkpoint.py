@@ -44,6 +44,12 @@ class Checkpoint:
     bodies: Bodies
     pass_number: int = 1
 
+    @classmethod
+    def of(cls, simulation, contact_count, totals):
+        """That of a `run.simulation.Simulation` at its last state."""
+        march, number = simulation.march, simulation.pass_number
+        return cls(simulation.solution, march.smooth, contact_count, totals, simulation.bodies, number)
+
 
 def save(path, checkpoint, case, scales, model):
     """Write the restart file of a run.

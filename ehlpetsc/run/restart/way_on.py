@@ -1,0 +1,29 @@
+"""What a run whose files could not be written says: from where it can be gone on with."""
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.restart_file import load_restart
+
+
+def way_on(restart, case, step):
+    """How to go on, once what was in the way is mended.
+
+    Parameters
+    ----------
+    restart : Path
+        Restart file of the run; whether it is there, and whose, is looked at.
+    case : case.loading.Case
+    step : int or None
+        The last step that the result file holds whole; None: it holds none.
+
+    Returns
+    -------
+    str
+        The end of a sentence.
+    """
+    try:
+        attributes = load_restart(restart)[1]
+        if step is not None and attributes["case"] == case.text and attributes["step"] <= step:
+            return f"once this is mended, go on with -ehl_restart {restart} (step {attributes['step']})"
+    except (OutputError, KeyError):
+        pass  # none, an older one that is damaged, or another program's
+    return "there is no restart file of it: once this is mended, run it anew with -ehl_overwrite"
