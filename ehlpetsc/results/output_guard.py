@@ -13,6 +13,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading, open_result
 
+WAIT = "wait for it, or give another -ehl_output"
 WAYS = "give another -ehl_output, or -ehl_overwrite to lose it"
 
 
@@ -117,10 +118,20 @@ class Lock:
     ----------
     path : Path
         The output.
+    way : str
+        What to do where another process has it.
     """
 
-    def __init__(self, path):
+    def __init__(self, path, way=WAIT):
         self._output, self._path, self._file = path, path.with_name(path.name + ".lock"), None
+        self._way = way
+
+    def __enter__(self):
+        self.take()
+        return self
+
+    def __exit__(self, *_):
+        self.give_back()
 
     def take(self):
         """Take it; OutputError names who has it."""
@@ -144,9 +155,7 @@ class Lock:
             file.seek(0)
             whose = file.read().strip() or "another process"
             file.close()
-            raise OutputError(
-                f"{self._output}: is being written by {whose}; wait for it, or give another -ehl_output"
-            ) from None
+            raise OutputError(f"{self._output}: is being written by {whose}; {self._way}") from None
         except OSError:
             pass  # a file system without locks
         return file

@@ -1,15 +1,21 @@
 """Passes of two bodies over each other: files, index, restart in the middle of one, refusals."""
 
+import errno
 import json
+import os
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 from running import ROOT, run, settings
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError, ExitStatus
+from ehlpetsc.errors import CaseError, ExitStatus, OutputError
+from ehlpetsc.post.outputs.passes_index import note_damage
+from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.series.passes import Passes
 from ehlpetsc.run.simulation import Simulation
 
 CASES = ROOT / "cases"
@@ -43,6 +49,35 @@ def test_a_result_a_pass_and_an_index(tmp_path):
             assert row["fast"]["deepest"] == result["surface/fast/set"][:].max()
     assert volumes[0] == pytest.approx(rows[0]["set_volume"], rel=1e-12)  # the second begins with the first's
     assert "pass 2 of 2" in done.stdout and "passes: running_in.passes.json" in done.stdout
+
+
+def test_the_index_is_kept_for_one_run(tmp_path):
+    """A second run of passes, or post-processing that would write into it, is told of the first."""
+    with Lock(tmp_path / "running_in.passes.json"):
+        for words in ([], ["-ehl_overwrite"], ["-ehl_restart", "running_in.pass2.restart.h5"]):
+            second = run(CASE, *settings(*SHORT), *words, cwd=tmp_path)
+            assert second.returncode == 2
+            (told,) = second.stderr.splitlines()
+            assert told.startswith("ehlpetsc: running_in.passes.json: is being written by process ")
+            assert f"{os.getpid()} on " in told
+        assert [path.name for path in tmp_path.iterdir()] == ["running_in.passes.json.lock"]
+        with pytest.raises(OutputError, match=f"written by process {os.getpid()} on .*; wait for it$"):
+            note_damage(tmp_path / "running_in.passes.json")
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_index_that_cannot_be_written_ends_the_run_in_words(tmp_path, monkeypatch):
+    def full(path, content):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("ehlpetsc.run.series.passes.write_whole", full)
+    case = load(CASE, [*SHORT, "time.travel=0.05"])
+    told = "r.passes.json: index not written, No space left on device; r.pass1.h5 is whole"
+    with pytest.raises(OutputError, match=told):
+        Passes(MPI.COMM_SELF, case, tmp_path / "r.h5").run()
+    assert [path.name for path in tmp_path.iterdir()] == ["r.pass1.h5"]
+    with read_result(tmp_path / "r.pass1.h5") as result:
+        assert result.attrs["status"] == "done"
 
 
 def passes(case, path=None, stop=None):

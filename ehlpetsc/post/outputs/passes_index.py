@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import damage
 from ehlpetsc.results.series_index import read_index
@@ -30,14 +31,16 @@ def note_damage(index):
     Raises
     ------
     OutputError
+        Among others, a run or another command is writing it.
     """
     index = Path(index)
-    content, found = read_index(index), []
-    for row in content["passes"]:
-        with read_result(index.with_name(row["file"])) as result:
-            known = damage(result)
-        if known is not None:
-            row["damage"] = known
-            found.append((row["pass"], known))
-    write_whole(index, json.dumps(content, indent=1).encode())
+    with Lock(index, "wait for it"):
+        content, found = read_index(index), []
+        for row in content["passes"]:
+            with read_result(index.with_name(row["file"])) as result:
+                known = damage(result)
+            if known is not None:
+                row["damage"] = known
+                found.append((row["pass"], known))
+        write_whole(index, json.dumps(content, indent=1).encode())
     return found

@@ -7,8 +7,8 @@ each has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json
 import json
 from pathlib import Path
 
-from ehlpetsc.errors import ExitStatus
-from ehlpetsc.results.output_guard import check_index, check_place, inputs_of
+from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.results.output_guard import Lock, check_index, check_place, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
 from ehlpetsc.results.whole_file import write_whole
@@ -55,6 +55,14 @@ class Passes:
         OutputError
         """
         on_root(self.comm, lambda: check_place(self.index, inputs_of(self.case)))
+        lock = Lock(self.index)
+        on_root(self.comm, lock.take)
+        try:
+            return self._run(restart, overwrite)
+        finally:
+            lock.give_back()
+
+    def _run(self, restart, overwrite):
         if not overwrite:
             on_root(self.comm, lambda: check_index(self.index, "passes"))
         first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
@@ -68,7 +76,7 @@ class Passes:
             status, restart = outcome.status, None
             if status is not ExitStatus.DONE:
                 return status
-            self._note(number, simulation)
+            on_root(self.comm, self._note, number, simulation)
         self._tell_end()
         return status
 
@@ -81,8 +89,6 @@ class Passes:
             return []
 
     def _note(self, number, simulation):
-        if self.comm.rank != 0:
-            return
         with read_result(self.file(number)) as result:
             found = pass_figures(result, filled_from(simulation))
         row = {"pass": number, "file": self.file(number).name} | found
@@ -90,7 +96,11 @@ class Passes:
         row["added"] = row.get("set_volume", 0.0) - before
         self.rows.append(row)
         text = json.dumps({"title": self.case.title, "case": self.case.text, "passes": self.rows}, indent=1)
-        write_whole(self.index, text.encode())
+        try:
+            write_whole(self.index, text.encode())
+        except OSError as error:
+            whole = f"{self.file(number).name} is whole"
+            raise OutputError(f"{self.index}: index not written, {error.strerror}; {whole}") from error
         self._say(line(row))
 
     def _tell_end(self):
