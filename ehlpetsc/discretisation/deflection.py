@@ -21,6 +21,7 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation import elasticity
+from ehlpetsc.discretisation.curvature_product import CurvatureProduct
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 HALO = 8  # nodes beside its own that a part of the mesh knows; the widest stencil that is taken exactly
@@ -73,8 +74,7 @@ class Deflection:
         self.curvature = elasticity.curvature_kernel(n)
         self.stretch, self.end_scale = np.pi / dx, 1.0 / dx
         self.ends = [end for end in (0, n - 1) if first <= end < last]
-        near = self.curvature[: self.window.stop - self.window.start]
-        self._curvature_product = elasticity.SymmetricToeplitz(near, self.own.start, self.own.stop)
+        self._curvature_product = CurvatureProduct(self.curvature[: self.window.stop - self.window.start])
         logarithm = self._logarithm()
         mine = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
         self._under_sums = np.stack([*mine, np.full(last - first, dx)])
@@ -107,7 +107,7 @@ class Deflection:
         rows : ndarray, shape (last - first,)
         load : float
         """
-        rows, sums = self._curvature_product(pressure), self.sums(pressure[self.own])
+        rows, sums = self._curvature_product(pressure)[self.own], self.sums(pressure[self.own])
         if outside is not None:
             rows += outside.curvature
             sums = sums + outside.sums

@@ -63,19 +63,15 @@ class SymmetricToeplitz:
     ----------
     kernel : ndarray, shape (n,)
         Value at distance 0 .. n-1 nodes.
-    first, last : int, optional
-        Rows wanted, all by default; fewer take shorter transforms.
     """
 
-    def __init__(self, kernel, first=0, last=None):
-        n = len(kernel)
-        self.count = (n if last is None else last) - first
-        self.length = fast_length(n + self.count - 1)
+    def __init__(self, kernel):
+        self.count = n = len(kernel)
+        self.length = fast_length(2 * n - 1)
         circulant = np.zeros(self.length)
-        distance = np.arange(first - n + 1, first + self.count)
-        circulant[distance - first] = kernel[np.abs(distance)]
+        circulant[:n], circulant[self.length - n + 1 :] = kernel, kernel[:0:-1]
         self.spectrum = rfft(circulant)
 
     def __call__(self, p):
-        """Return the wanted rows of the product with `p` (n,)."""
+        """Return the product with `p` (n,)."""
         return irfft(self.spectrum * rfft(p, self.length), self.length)[: self.count]

@@ -1,7 +1,7 @@
 r"""What far pressures do to a part of the mesh, told by moments of them.
 
-The kernel of the differential deflection falls as :math:`1/k^2`, which is a Laplace transform: from `HALO`
-nodes on it is a sum of M exponentials to 1e-11 of its value, 24 to 36 of them for 300 to 13,000 nodes,
+From `HALO` nodes on the kernel of the differential deflection is a sum of M exponentials
+(:mod:`.curvature_product`), 24 to 36 of them for 300 to 13,000 nodes,
 
 .. math:: f_{H+1+d}=\sum_mw_me^{-\lambda_md},\quad d\ge0,
 
@@ -17,41 +17,10 @@ tell.
 import numpy as np
 
 from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.curvature_product import exponentials
 from ehlpetsc.discretisation.deflection import HALO, Outside
 
-TOLERANCE = 1e-11  # of the kernel
-SLOWEST, FASTEST = 0.7, 20.0  # rates: over the whole mesh, over the halo
-TERMS = range(16, 65, 4)
 LEFT_OVER = -40.0  # logarithm of a share that is next to nothing
-SAMPLES = 600  # of the kernel that the fit is made on, at distances in geometric progression
-
-
-def exponentials(kernel, nearest):
-    """Rates and weights for a kernel from a distance on.
-
-    Parameters
-    ----------
-    kernel : ndarray, shape (n,)
-    nearest : int
-        First distance that counts.
-
-    Returns
-    -------
-    rates, weights : ndarray, shape (terms,)
-        ``kernel[nearest + d]`` is ``weights @ exp(-rates * d)`` to `TOLERANCE` with as few terms as possible,
-        or as nearly as rounding allows.
-    """
-    far, best = kernel[nearest:], (np.inf,)
-    some = np.unique(np.geomspace(1, len(far), SAMPLES).astype(int)) - 1
-    for terms in TERMS:
-        rates = np.geomspace(SLOWEST / len(far), FASTEST / HALO, terms)
-        basis = np.exp(-np.outer(some, rates)) / far[some, None]
-        weights = np.linalg.lstsq(basis, np.ones(len(some)), rcond=1e-15)[0]
-        error = np.abs(basis @ weights - 1.0).max()
-        best = min(best, (error, rates, weights), key=lambda fit: fit[0])
-        if error < TOLERANCE:
-            break
-    return best[1:]
 
 
 class FarPressures:

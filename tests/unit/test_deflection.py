@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.deflection import HALO, Deflection
+from ehlpetsc.discretisation.deflection import Deflection
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.elasticity import curvature_kernel
-from ehlpetsc.discretisation.far_pressures import TOLERANCE, FarPressures, exponentials
+from ehlpetsc.discretisation.far_pressures import FarPressures
 from ehlpetsc.discretisation.interleaving import firsts
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -54,15 +53,6 @@ def test_parts_of_the_mesh_have_the_rows_of_the_whole(cuts):
         mine, whole_load = d.rows(g[d.window], p[d.window], 0.3, far[k].outside(told))
         np.testing.assert_allclose(mine, rows[d.first : d.last], rtol=0, atol=1e-11)
         assert whole_load == pytest.approx(load, rel=1e-13)
-
-
-@pytest.mark.parametrize("n, terms", [(301, 24), (801, 28), (3201, 32), (12801, 36)])
-def test_the_far_kernel_is_a_sum_of_exponentials(n, terms):
-    kernel = curvature_kernel(n)
-    rates, weights = exponentials(kernel, HALO + 1)
-    by_terms = np.exp(-np.outer(np.arange(n - HALO - 1), rates)) @ weights
-    assert len(rates) == terms
-    np.testing.assert_allclose(by_terms, kernel[HALO + 1 :], rtol=TOLERANCE, atol=0)
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
