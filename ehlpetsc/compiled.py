@@ -6,6 +6,8 @@ to the same bit.
 
 import os
 
+import numpy as np
+
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output
 try:
     import numba
@@ -13,6 +15,8 @@ try:
     COMPILED = True
 except ImportError:
     COMPILED = False
+# what indices are that cannot be negative, over which numba takes half the time
+unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
 
 
 def compiled(function=None, **options):

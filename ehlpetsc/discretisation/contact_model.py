@@ -132,10 +132,10 @@ class DirectContact:
     def relations(self, q, w):
         """See :class:`Relations`."""
         if self.dry:
-            pressure, p_q = q, np.ones_like(q)
+            pressure, p_q = q, np.ones(len(q))
         else:
             pressure, p_q = np.maximum(q, 0.0), full_of_oil(q) * 1.0
-        return Relations(q, pressure, w, p_q, np.zeros_like(w), np.ones_like(w), w <= self.bound)
+        return Relations(q, pressure, w, p_q, np.zeros(len(w)), np.ones(len(w)), w <= self.bound)
 
     def in_contact(self, w, imbalance):
         """Nodes that a solution leaves out of Reynolds' equation: at the bound, or near it with F > 0."""

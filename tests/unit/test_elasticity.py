@@ -28,9 +28,7 @@ def test_product_by_blocks(nodes):
     np.testing.assert_allclose([first, product(p)], [expected, expected], rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize(
-    "n, nearest, terms", [(301, 9, 24), (12801, 9, 36), (801, 33, 22), (12801, 33, 32)]
-)
+@pytest.mark.parametrize("n, nearest, terms", [(301, 9, 24), (12801, 9, 36), (801, 33, 22), (12801, 33, 32)])
 def test_the_far_kernel_is_a_sum_of_exponentials(n, nearest, terms):
     kernel = curvature_kernel(n)
     rates, weights = exponentials(kernel, nearest)

@@ -28,12 +28,14 @@ class ReducedSystem:
     """
 
     def __init__(self, left, right, rank, ranks, end_scale):
-        self.left, self.right, self.last, self.end_scale = left, right, ranks - 1, end_scale
+        self.left, self.right, self.last = left, right, ranks - 1
         self.cut = left + right
         self.inner = self.cut * self.last
         self.below, self.above = self.cut + left - 1, self.cut + right - 1
         self.of_rank = [self._places(one) for one in range(ranks)]
         self.widest = max(len(columns) for columns, _, _ in self.of_rank)
+        self._without_tips(end_scale)
+        self._entries_of_tips()
         wanted = np.append(self.of_rank[rank][0], self.inner + BORDER - 1)
         self.wanted = np.zeros((self.inner + BORDER, len(wanted)), order="F")
         self.wanted[wanted, np.arange(len(wanted))] = 1.0
@@ -80,26 +82,49 @@ class ReducedSystem:
             of_cuts = dgbtrs(lu, self.below, self.above, right, pivots, trans=1)[0]
         rows = np.zeros((self.wanted.shape[1], len(self.of_rank), self.cut + BORDER))
         rows[:, :, self.cut :] = of_border.T[:, None]
-        for rank, (_, own, shown) in enumerate(self.of_rank):
-            rows[:, rank, shown] = of_cuts[own].T
+        rank, tip = self._beside_cuts
+        rows[:, rank, tip] = of_cuts.T
         return rows.reshape(len(rows), -1)
+
+    def _without_tips(self, end_scale):
+        """What no state changes: the band with room for its factors, its columns beyond, the border."""
+        inner, diagonal = self.inner, self.below + self.above
+        self._band = np.zeros((inner, diagonal + self.below + 1)).T
+        self._band[diagonal] = 1.0
+        self._beyond, self._border = np.zeros((BORDER, inner)).T, np.zeros((BORDER, inner + BORDER))
+        self._border[0, inner] = self._border[1, inner + 1] = 1.0
+        self._border[:2, -1] = -end_scale
+
+    def _entries_of_tips(self):
+        """Where tips of all ranks' G stand in band, columns beyond and border."""
+        inner, of_border, entries, beside = self.inner, np.arange(BORDER), [], []
+        for rank, (columns, own, shown) in enumerate(self.of_rank):
+            tip = np.arange(self.cut)[shown]
+            beside.append([np.full(len(tip), rank), tip])
+            tip, row = np.append(tip, self.cut + of_border), np.append(own, inner + of_border)
+            of_g, tip = (part.ravel() for part in np.meshgrid(np.arange(len(columns)), tip, indexing="ij"))
+            entries.append([np.full(len(tip), rank), of_g, tip, np.tile(row, len(columns)), columns[of_g]])
+        self._beside_cuts, entries = np.concatenate(beside, axis=1), np.concatenate(entries, axis=1)
+
+        def part(some):
+            return tuple(entries[:3, some]), entries[3, some], entries[4, some]
+
+        of_cuts, of_inner = entries[3] < inner, entries[4] < inner
+        tips, row, column = part(of_cuts & of_inner)
+        self._in_band = tips, (self.below + self.above + row - column, column)
+        tips, row, column = part(of_cuts & ~of_inner)
+        self._in_beyond = tips, (row, column - inner)
+        tips, row, column = part(~of_cuts)
+        self._in_border = tips, (row - inner, column)
 
     def _matrix(self, tips):
         """The band with room for its factors, what the border adds to its rows, and the border's rows."""
-        inner, diagonal = self.inner, self.below + self.above
-        band = np.zeros((diagonal + self.below + 1, inner), order="F")
-        band[diagonal] = 1.0
-        beyond, border = np.zeros((inner, BORDER), order="F"), np.zeros((BORDER, inner + BORDER))
-        border[0, inner] = border[1, inner + 1] = 1.0
-        border[:2, -1] = -self.end_scale
-        for (columns, own, shown), theirs in zip(self.of_rank, tips, strict=True):
-            rows = theirs[: len(columns)].T
-            border[:, columns] += rows[self.cut :]
-            inside = columns < inner
-            places = columns[inside]
-            band[diagonal + own[:, None] - places, places] += rows[shown][:, inside]
-            beyond[own[:, None], columns[~inside] - inner] += rows[shown][:, ~inside]
-        return band, beyond, border
+        parts = self._band.copy(order="F"), self._beyond.copy(order="F"), self._border.copy()
+        for part, (given, there) in zip(
+            parts, (self._in_band, self._in_beyond, self._in_border), strict=True
+        ):
+            part[there] += tips[given]
+        return parts
 
 
 def never_zero(diagonal):

@@ -1,7 +1,7 @@
 r"""LU of the band of :mod:`.banded_jacobian`, split between ranks.
 
-Each rank factors the part A of its own groups with LAPACK. What couples the parts, and what borders the band,
-enters through few unknowns w (Polizzi & Sameh 2006: SPIKE),
+Each rank factors the part A of its own groups (:mod:`.block_lu`). What couples the parts, and what borders
+the band, enters through few unknowns w (Polizzi & Sameh 2006: SPIKE),
 
 .. math:: y = A^{-1}b - G\,w,
 
@@ -11,17 +11,11 @@ their deflection, and h00. The columns of G are solved for with every matrix; w 
 """
 
 import numpy as np
-from scipy.linalg.lapack import dgbtrf
 
 from ehlpetsc.nonlinear.exchange import everywhere
-from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem, never_zero
-from ehlpetsc.nonlinear.preconditioner.substitution import (
-    is_close,
-    solve_scattered,
-    substitute,
-    tips,
-    without,
-)
+from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, RIGHT, SIZE, BlockLU
+from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
+from ehlpetsc.nonlinear.preconditioner.spike_loops import is_close, scatter, tips, without
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
 
@@ -40,9 +34,10 @@ class SpikeLU:
 
     def __init__(self, band, end_scale, ranks):
         self.band, self.ranks = band, ranks
-        left, right = band.beside
-        self.reduced = ReducedSystem(len(left), len(right), ranks.rank, ranks.size, end_scale)
-        self.shown = np.concatenate([band.groups_at_ends[0][right], band.groups_at_ends[1][left]])
+        self.lu = BlockLU(band.groups)
+        self.reduced = ReducedSystem(LEFT, RIGHT, ranks.rank, ranks.size, end_scale)
+        first, last = band.at_ends
+        self.shown = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], last[FROM_LEFT:]])
         self.tips_of_g = np.zeros((self.reduced.widest, len(self.shown) + BORDER))
         self.y, self.tips = np.zeros((1, band.order)), np.zeros((1, len(self.shown) + BORDER))
 
@@ -55,11 +50,9 @@ class SpikeLU:
             return
         self.factored = dropped, entries.reynolds_derivatives
         e = self.band
-        matrix, left, right = e.fill(entries, dropped)
-        self.lu, self.pivots, singular = dgbtrf(matrix, e.half, e.half, overwrite_ab=True)
-        if singular:
-            never_zero(self.lu[2 * e.half])
-        g = self._columns(left, right)
+        rows = e.fill(entries, dropped)
+        self.lu.factor(rows)
+        g = self._columns(rows[0, :, :LEFT], rows[-1, :, LEFT + SIZE :])
         tips(g, self.shown, e.place, e.dense, self.tips_of_g[: len(g)])
         self.coupling = self.reduced.rows_of_inverse(self._everyone(self.tips_of_g))
         self.spread = g[:, e.place]
@@ -67,18 +60,16 @@ class SpikeLU:
     def _columns(self, left, right):
         """G of this rank, from what its outer groups take from their neighbours, or from the mesh's ends."""
         e = self.band
-        first, last = e.groups_at_ends
+        first, last = e.at_ends
         if self.ranks.rank == 0:
             left = (first == e.place[0])[:, None]
         if self.ranks.rank == self.ranks.size - 1:
             right = (last == e.place[-2])[:, None]
-        parts = []
-        for columns, group in ((left, first), (right, last)):
-            part = np.zeros((columns.shape[1], e.order))
-            part[:, group] = columns.T
-            substitute(self.lu.T, self.pivots, part, group.min())
-            parts.append(part)
-        return np.concatenate(parts)
+        g = np.zeros((left.shape[1] + right.shape[1], e.groups, SIZE))
+        g[: left.shape[1], 0], g[left.shape[1] :, -1] = left.T, right.T
+        for k, column in enumerate(g):
+            self.lu.solve(column, 0 if k < left.shape[1] else e.groups - 1)
+        return g.reshape(len(g), -1)
 
     def _still_good(self, entries, dropped):
         """Whether this rank's factors are nearly those of the given state."""
@@ -109,7 +100,8 @@ class SpikeLU:
             Right-hand side of the load's row, where it is local.
         """
         e, y, mine = self.band, self.y, self.tips
-        solve_scattered(self.lu.T, self.pivots, e.place, kept, b, y)
+        scatter(e.place, kept, b, y)
+        self.lu.solve(y.reshape(e.groups, SIZE))
         tips(y, self.shown, e.place, e.dense, mine)
         mine[0, -1] -= load
         w = self.coupling @ self._everyone(mine[0]).ravel()

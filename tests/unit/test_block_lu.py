@@ -1,0 +1,65 @@
+"""LU of a block tridiagonal matrix against numpy's dense solve."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import FILMS
+from ehlpetsc.nonlinear.preconditioner.block_lu import (
+    FROM_LEFT,
+    FROM_RIGHT,
+    LEFT,
+    RIGHT,
+    SIZE,
+    WIDTH,
+    BlockLU,
+)
+from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS
+
+
+def dense(rows):
+    groups = len(rows)
+    matrix = np.zeros((groups * SIZE, (groups + 2) * SIZE))
+    for i, row in enumerate(rows):
+        here, before, behind = (np.arange(SIZE) + (i + k) * SIZE for k in (1, 0, 2))
+        at = np.concatenate([before[FROM_LEFT:], here, behind[FROM_RIGHT : FROM_RIGHT + RIGHT]])
+        matrix[i * SIZE : (i + 1) * SIZE, at] = row
+    return matrix[:, SIZE:-SIZE]
+
+
+def test_the_compiled_sizes_are_those_of_a_group():
+    assert SIZE == TERMS + 2 * GROUP
+    assert LEFT == TERMS + GROUP + 2  # sums, pressures and, upwind, two films
+    assert RIGHT == TERMS + GROUP + 1
+    assert len(FILMS) == GROUP
+
+
+@pytest.mark.parametrize("groups", [1, 2, 30])
+@pytest.mark.parametrize("sparse", [False, True])
+def test_it_solves(groups, sparse):
+    """Without dominance of the diagonal, so that rows are exchanged; `sparse`: with zeros there too."""
+    rng = np.random.default_rng(groups)
+    rows = rng.standard_normal((groups, SIZE, WIDTH))
+    if sparse:
+        rows[rng.random(rows.shape) < 0.6] = 0.0
+        rows[:, np.arange(SIZE), LEFT + (np.arange(SIZE) + 1) % SIZE] = 3.0
+    lu, matrix = BlockLU(groups), dense(rows)
+    lu.factor(rng.standard_normal(rows.shape))  # what it leaves must not matter
+    lu.factor(rows)
+    for first in {0, groups // 2, groups - 1}:
+        b = rng.standard_normal((groups, SIZE))
+        b[:first] = 0.0
+        expected = np.linalg.solve(matrix, b.ravel())
+        lu.solve(b, first)
+        np.testing.assert_allclose(b.ravel(), expected, rtol=0, atol=1e-8 * np.abs(expected).max())
+
+
+def test_singular_blocks_leave_finite_solutions():
+    """A node whose rows know nothing of it: the preconditioner may be off, not infinite."""
+    rows = np.random.default_rng(3).standard_normal((4, SIZE, WIDTH))
+    rows[2, 5] = 0.0
+    rows[1, :, LEFT + 4] = 0.0
+    rows[0, :, LEFT + SIZE + 4 - FROM_RIGHT] = rows[2, :, 4 - FROM_LEFT] = 0.0
+    lu, b = BlockLU(4), np.ones((4, SIZE))
+    lu.factor(rows)
+    lu.solve(b)
+    assert np.isfinite(b).all()
