@@ -222,7 +222,10 @@ def test_a_finished_run_has_nothing_left_to_do(whole, stopped, tmp_path):
 @pytest.mark.slow
 def test_a_full_disk_is_told_and_loses_nothing_that_was_stored(tmp_path):
     scene = [*CASE, *settings("mesh.points_per_half_width=70")]
-    limited = ["prlimit", "--fsize=5000000", *command(*scene, *settings("time.travel=100"))]
+    often = settings(
+        "time.travel=100", "output.checkpoint=0.002"
+    )  # stored before the disk is full, however quick
+    limited = ["prlimit", "--fsize=5000000", *command(*scene, *often)]
     pipes = {"capture_output": True, "text": True, "timeout": 120}
     full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
     assert full.returncode == 2
