@@ -32,13 +32,12 @@ operations; the loops are compiled. Ranks do not share a sweep: each does the wh
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.interleaving import firsts, seconds
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear.defaults import ATOL
-from ehlpetsc.nonlinear.systems.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
+from ehlpetsc.nonlinear.sweeps import DeflectionForm, Linearised, sweep
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
 REACH, STEADY_REACH = 0.6, 4.0
@@ -48,71 +47,6 @@ OPEN, LOW = 3.0, 0.1  # gaps wider than so many expected films, at pressures bel
 IN_OPEN_GAP, IN_FILM = 1.85, 1.3  # over-relaxation there, and in the film of a time step
 APPROACH = 0.2  # of the change of h00 that the missing load asks for
 STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
-
-
-@compiled(fastmath=True)
-def sweep(q, h, p, q_then, h_then, imbalance, derivatives, bend, kernel, stretch, bound, relaxation):
-    r"""Update every pair once, in the direction of flow, in place.
-
-    Parameters
-    ----------
-    q, h, p : ndarray, shape (n,)
-        Newest values; the first and the last h, and the first q, are left alone.
-    q_then, h_then : ndarray, shape (n,)
-        State at the last evaluation.
-    imbalance, derivatives : ndarray, shape (n,), (n, 8)
-        Reynolds rows there and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
-    bend : ndarray, shape (n,)
-        What gap and distant pressures contribute to E.
-    kernel : ndarray, shape (2 near + 1,)
-        Curvature kernel at -near .. near nodes.
-    stretch : float
-        :math:`\pi/\Delta x`, of the second difference of h.
-    bound : float
-        Least film.
-    relaxation : ndarray, shape (n,)
-    """
-    n, near = len(q), len(kernel) // 2
-    c, d = kernel[near], 2.0 * stretch
-    for i in range(1, n):
-        a, b = derivatives[i, 4], derivatives[i, 5]
-        r = a * q_then[i] + b * h_then[i] - imbalance[i]
-        for k in range(4):
-            j = i + k - 2
-            if k != 2 and 0 <= j < n:
-                by_q, by_h = derivatives[i, 2 * k], derivatives[i, 2 * k + 1]
-                r -= by_q * (q[j] - q_then[j]) + by_h * (h[j] - h_then[j])
-        if i == n - 1:
-            q[i] = limited((r - b * h[i]) / a, q_then[i])
-            p[i] = max(q[i], 0.0)
-            break
-        low, high = max(i - near, 0), min(i + near + 1, n)
-        e = bend[i] + stretch * (h[i - 1] + h[i + 1]) + c * p[i]
-        for j in range(low, high):
-            e -= kernel[j - i + near] * p[j]
-        if q_then[i] > 0.0:
-            determinant = a * d - b * c
-            new_q, new_h = (r * d - b * e) / determinant, (a * e - c * r) / determinant
-        else:
-            new_h = e / d
-            new_q = (r - b * new_h) / a
-        if new_h < bound:
-            new_h = bound
-            new_q = max((e - d * bound) / c, REFILLED)
-        else:
-            new_q = q[i] + relaxation[i] * (new_q - q[i])
-            new_h = max(h[i] + relaxation[i] * (new_h - h[i]), bound)
-        q[i] = limited(new_q, q_then[i])
-        h[i] = new_h
-        p[i] = max(q[i], 0.0)
-
-
-@compiled
-def limited(q, then):
-    """A pair's new q, kept to where the coefficients of the last evaluation hold."""
-    if then > 0.0:
-        return min(max(q, -REFILLED, then - STEP_LIMIT), then + STEP_LIMIT)
-    return min(max(q, OIL_KEPT * (1.0 + then) - 1.0), REFILLED)
 
 
 class GaussSeidelSolver:
@@ -212,10 +146,10 @@ class GaussSeidelSolver:
         bend[1:-1] += stretch * (shape[:-2] - 2.0 * shape[1:-1] + shape[2:])
         relaxation = np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM)
         relaxation[q <= 0.0] = 1.0
-        then = q.copy(), h.copy()
+        then = Linearised(q.copy(), h.copy(), self.imbalance, self.derivatives)
+        deflection = DeflectionForm(-bend, self.kernel, stretch)
         q[0] -= self.imbalance[0] / self.derivatives[0, 4]
         p[0] = max(q[0], 0.0)
-        coefficients = self.imbalance, self.derivatives, -bend, self.kernel, stretch, self.bound, relaxation
         for _ in range(sweeps):
-            sweep(q, h, p, *then, *coefficients)
+            sweep(q, h, p, then, deflection, self.bound, relaxation)
         self.sweeps += sweeps

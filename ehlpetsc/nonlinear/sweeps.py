@@ -1,0 +1,102 @@
+"""One sweep of :mod:`.gauss_seidel` over the nodes, compiled: each pair follows the newest values of all others."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.nonlinear.systems.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
+
+
+class Linearised(NamedTuple):
+    """Reynolds' rows at the state of the last evaluation.
+
+    Attributes
+    ----------
+    q, h : ndarray, shape (n,)
+        That state.
+    imbalance, derivatives : ndarray, shape (n,), (n, 8)
+        Rows, and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
+    """
+
+    q: np.ndarray
+    h: np.ndarray
+    imbalance: np.ndarray
+    derivatives: np.ndarray
+
+
+class DeflectionForm(NamedTuple):
+    r"""The deflection rows inside the mesh.
+
+    Attributes
+    ----------
+    bend : ndarray, shape (n,)
+        What gap and distant pressures contribute to E.
+    kernel : ndarray, shape (2 near + 1,)
+        Curvature kernel at -near .. near nodes.
+    stretch : float
+        :math:`\pi/\Delta x`, of the second difference of h.
+    """
+
+    bend: np.ndarray
+    kernel: np.ndarray
+    stretch: float
+
+
+@compiled(fastmath=True)
+def sweep(q, h, p, then, deflection, bound, relaxation):
+    """Update every pair once, in the direction of flow, in place.
+
+    Parameters
+    ----------
+    q, h, p : ndarray, shape (n,)
+        Newest values; the first and the last h, and the first q, are left alone.
+    then : Linearised
+    deflection : DeflectionForm
+    bound : float
+        Least film.
+    relaxation : ndarray, shape (n,)
+    """
+    q_then, h_then, imbalance, derivatives = then
+    bend, kernel, stretch = deflection
+    n, near = len(q), len(kernel) // 2
+    c, d = kernel[near], 2.0 * stretch
+    for i in range(1, n):
+        a, b = derivatives[i, 4], derivatives[i, 5]
+        r = a * q_then[i] + b * h_then[i] - imbalance[i]
+        for k in range(4):
+            j = i + k - 2
+            if k != 2 and 0 <= j < n:
+                by_q, by_h = derivatives[i, 2 * k], derivatives[i, 2 * k + 1]
+                r -= by_q * (q[j] - q_then[j]) + by_h * (h[j] - h_then[j])
+        if i == n - 1:
+            q[i] = limited((r - b * h[i]) / a, q_then[i])
+            p[i] = max(q[i], 0.0)
+            break
+        low, high = max(i - near, 0), min(i + near + 1, n)
+        e = bend[i] + stretch * (h[i - 1] + h[i + 1]) + c * p[i]
+        for j in range(low, high):
+            e -= kernel[j - i + near] * p[j]
+        if q_then[i] > 0.0:
+            determinant = a * d - b * c
+            new_q, new_h = (r * d - b * e) / determinant, (a * e - c * r) / determinant
+        else:
+            new_h = e / d
+            new_q = (r - b * new_h) / a
+        if new_h < bound:
+            new_h = bound
+            new_q = max((e - d * bound) / c, REFILLED)
+        else:
+            new_q = q[i] + relaxation[i] * (new_q - q[i])
+            new_h = max(h[i] + relaxation[i] * (new_h - h[i]), bound)
+        q[i] = limited(new_q, q_then[i])
+        h[i] = new_h
+        p[i] = max(q[i], 0.0)
+
+
+@compiled
+def limited(q, then):
+    """A pair's new q, kept to where the coefficients of the last evaluation hold."""
+    if then > 0.0:
+        return min(max(q, -REFILLED, then - STEP_LIMIT), then + STEP_LIMIT)
+    return min(max(q, OIL_KEPT * (1.0 + then) - 1.0), REFILLED)
