@@ -1,4 +1,4 @@
-"""One sweep of :mod:`.gauss_seidel` over the nodes, compiled: each pair follows the newest values of all others."""
+"""One sweep of :mod:`.gauss_seidel`, compiled: each pair takes the newest values of all others."""
 
 from typing import NamedTuple
 
