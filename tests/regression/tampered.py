@@ -1,11 +1,12 @@
 """The program with an accident at one step of one rank: ``tampered.py ACCIDENT RANK STEP arguments``.
 
-ACCIDENT is "raise", an error in the code, "late", the end of the time limit, or the name of a signal that the
-rank gets during the step.
+ACCIDENT is "raise", an error in the code, "late", the end of the time limit, "lost", the folder "out" removed
+with all that is in it, or the name of a signal that the rank gets during the step.
 """
 
 import math
 import os
+import shutil
 import signal
 import sys
 from types import SimpleNamespace
@@ -29,6 +30,9 @@ def tamper(accident, rank, step):
                 raise ValueError("an accident")
             if accident == "late":
                 stop.clock = SimpleNamespace(monotonic=lambda: math.inf)
+                return advance(self)
+            if accident == "lost":
+                shutil.rmtree("out")
                 return advance(self)
             os.kill(os.getpid(), getattr(signal, accident))
         return advance(self)

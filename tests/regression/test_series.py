@@ -140,6 +140,17 @@ def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
     assert done.stdout.strip().splitlines()[-1].startswith("ehlpetsc: not converged steps=")
 
 
+def test_a_series_whose_folder_is_lost_ends_on_every_rank(tmp_path):
+    """The first rank alone writes the index: where it cannot, the others must not wait for it for ever."""
+    (tmp_path / "out").mkdir()
+    done = series(tmp_path, "-ehl_output", "out/out.h5", tampered=("lost", 0, 5))
+    assert done.returncode == 2
+    assert "ehlpetsc: out/out.series.json: index file not written, No such file or directory" in done.stderr
+    assert "result file removed or replaced by others during the run" in done.stderr
+    assert "Traceback" not in done.stderr and "index:" not in done.stdout
+    assert done.stdout.strip().splitlines()[-1].startswith("ehlpetsc: bad input steps=")
+
+
 @pytest.mark.slow
 def test_a_stopped_series_goes_on_where_it_was(tmp_path, finished):
     stopped = series(tmp_path, tampered=("SIGUSR1", 0, 10))  # in the first rank's first member

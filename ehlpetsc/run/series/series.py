@@ -112,14 +112,13 @@ class Series:
         missing = [n for n, state in enumerate(self.states) if state != "done"]
         missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
         self.queue = WorkQueue(world, ranks, missing, self._take)
-        self.failures = {}
+        self.failures, self.unwritten = {}, None
         self._announce(ranks, len(missing))
 
     def run(self):
         """Run what is missing. Returns the exit status."""
-        begun = clock.monotonic()
-        self._write_index()
-        report = None
+        begun, report = clock.monotonic(), None
+        on_root(self.world, self._write_index)
         while True:
             number = self.queue.next(report, self.stop(self.queue.group))
             if number is None:
@@ -150,7 +149,7 @@ class Series:
         self.states[number] = status.words
         if failure:
             self.failures[number] = failure
-        self._write_index()
+        self._keep_index()
 
     def _announce(self, ranks, missing):
         if self.world.rank:
@@ -169,9 +168,15 @@ class Series:
             print(f"warning: {of}{line}")
         sys.stdout.flush()
 
+    def _keep_index(self):
+        """Write the index in mid-run, where an error of the first rank alone would let the others wait."""
+        try:
+            self._write_index()
+            self.unwritten = None
+        except OutputError as error:
+            self.unwritten = error
+
     def _write_index(self):
-        if self.world.rank:
-            return
         entries = [
             {"value": m.value, "file": m.output.name, "state": state}
             for m, state in zip(self.members, self.states, strict=True)
@@ -191,15 +196,19 @@ class Series:
         """Say how it ended, on the first rank. Returns the exit status."""
         for number, failure in sorted(self.failures.items()):
             print(f"ehlpetsc: {self.members[number].name}: {self.states[number]}: {failure}", file=sys.stderr)
+        self._keep_index()
+        if self.unwritten:
+            print(f"ehlpetsc: {self.unwritten}", file=sys.stderr)
         sys.stderr.flush()
-        self._write_index()
         if any(state in ("waiting", "stopped") for state in self.states):
             status = ExitStatus.STOPPED
             print("ehlpetsc: stopped; the same command computes what is missing")
         else:
             faults = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
-            status = next((s for s in faults if s.words in self.states), ExitStatus.DONE)
-        print(f"index: {self.index}")
+            otherwise = ExitStatus.BAD_INPUT if self.unwritten else ExitStatus.DONE
+            status = next((s for s in faults if s.words in self.states), otherwise)
+        if not self.unwritten:
+            print(f"index: {self.index}")
         totals = Totals.of_series(m.totals() for m in self.members)
         print(summary_line(status, totals, wall), flush=True)
         return status
