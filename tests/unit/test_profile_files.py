@@ -91,6 +91,40 @@ def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
     assert notes == ("6 missing heights filled or, at the ends, cut off; longest gap 4 um",)
 
 
+def test_lines_that_a_measurement_leaves_out_are_missing_heights(tmp_path):
+    """The spline would bridge them without a word, and the spacing told would be a mean."""
+    x = np.arange(400) * 1e-6
+    z = 1e-7 * np.sin(x / 3e-5)
+    path = tmp_path / "p.csv"
+
+    def write(left_out):
+        kept = np.setdiff1d(np.arange(400), left_out)
+        path.write_text("".join(f"{x[k]:.7e};{z[k]:.12e}\n" for k in kept))
+
+    write([50, 51, 52, 200])
+    told = "4 heights missing, the longest gap 4e-06 m behind x = 4.9e-05; write fill_gaps = 4e-06"
+    with pytest.raises(ProfileError, match=told):
+        read_profile(path)
+    X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
+    np.testing.assert_allclose(X, x, atol=1e-15)
+    np.testing.assert_allclose(filled, z, atol=1e-12)
+    assert notes == ("4 missing heights filled or, at the ends, cut off; longest gap 4 um",)
+    write(np.arange(60, 399))
+    told = "points 1e-06 m apart, and none for 0.00034 m behind x = 5.9e-05; allowed: no more than half"
+    with pytest.raises(ProfileError, match=told):
+        read_profile(path, Layout(fill_gaps=1.0))
+
+
+@pytest.mark.parametrize("x", [np.r_[0, 100:120, 220], np.cumsum(1.0 + np.arange(400) % 3)])
+def test_points_at_uneven_places_are_no_gaps(tmp_path, x):
+    """A shape made by hand, and one whose spacing varies all along."""
+    path = tmp_path / "p.csv"
+    path.write_text("".join(f"{1e-6 * place:.7e};{1e-7 * np.sin(place):.9e}\n" for place in x))
+    X, _, notes = read_profile(path)
+    np.testing.assert_allclose(X, 1e-6 * (x - x[0]), atol=1e-15)
+    assert notes == ()
+
+
 REFUSED = {
     "several columns": (lines("1;{0};{1}\n"), {}, "3 columns; write columns = \\[1, 2\\]"),
     "heights alone": (lines("{1}\n"), {}, "heights alone: write spacing"),

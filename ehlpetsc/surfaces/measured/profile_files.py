@@ -10,6 +10,8 @@ from ehlpetsc.errors import ProfileError
 from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
+MANY = 50  # points: fewer are a shape made by hand, between whose points there is nothing to miss
+EQUAL, MOST = 0.02, 0.9  # how far equal spacings differ, and how many must be equal where lines are missing
 FARTHEST = 1e6  # m: beyond it squares and cubes of a spline overflow
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
@@ -175,9 +177,31 @@ def checked(x, z, layout):
         )
     if (step < 0).any():
         raise ProfileError(f"x falls after x = {x[(step < 0).argmax()]:g}; allowed: x increasing, or falling")
+    x, z = _with_missing_lines(x, z)
     if np.isnan(z).any():
         x, z = _filled(x, z, layout.fill_gaps, notes)
     return x - x[0], z, notes
+
+
+def _with_missing_lines(x, z):
+    """The points with a nan for each that an otherwise equally spaced file leaves out."""
+    step = np.diff(x)
+    usual = np.median(step)
+    equal, wide = np.abs(step - usual) <= EQUAL * usual, step > 1.5 * usual
+    if x.size < MANY or not wide.any() or not (equal | wide).all() or equal.mean() < MOST:
+        return x, z
+    counts = np.rint(step / usual)
+    if counts.sum() > 2 * x.size:
+        worst = x[step.argmax()]
+        raise ProfileError(
+            f"points {usual:.3g} m apart, and none for {step.max():.3g} m behind x = {worst:g}; "
+            "allowed: no more than half of the points missing"
+        )
+    places = np.concatenate([[0.0], np.cumsum(counts)])
+    number = np.arange(int(places[-1]) + 1)
+    heights = np.full(number.size, np.nan)
+    heights[places.astype(int)] = z
+    return np.interp(number, places, x), heights
 
 
 def _filled(x, z, longest, notes):
