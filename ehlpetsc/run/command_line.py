@@ -40,7 +40,8 @@ def parse_command_line(arguments):
     """Take the command line apart.
 
     The case file is the one word that ends in .toml, else the first word. -ehl_set is taken out, here and
-    from PETSC_OPTIONS, because PETSc's table keeps only the last option of a name.
+    from PETSC_OPTIONS, because PETSc's table keeps only the last option of a name. Two dashes before a name
+    are as good as one: PETSc would take it for another option, which nobody reads.
 
     Raises
     ------
@@ -53,8 +54,9 @@ def parse_command_line(arguments):
         environment, earlier = _without_sets(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
     except ValueError as error:
         raise UsageError(f"PETSC_OPTIONS: {error}") from None
-    if earlier:
-        os.environ["PETSC_OPTIONS"] = shlex.join(environment)
+    single = [_with_one_dash(word) for word in environment]
+    if earlier or single != environment:
+        os.environ["PETSC_OPTIONS"] = shlex.join(single)
     command.overrides = earlier + sets
     command.explain, command.ranks = "--explain" in rest, "--ranks" in rest
     rest = [word for word in rest if word not in ("--explain", "--ranks")]
@@ -67,10 +69,14 @@ def parse_command_line(arguments):
     elif not {"-help", "--help", "-h"} & set(rest):
         raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
     for word, name in itertools.pairwise(rest):
-        if word == "-options_file" and not Path(name).is_file():
+        if _with_one_dash(word) == "-options_file" and not Path(name).is_file():
             raise UsageError(f"-options_file {name}: no such file")
-    command.petsc = ["-help" if word in ("--help", "-h") else word for word in rest]
+    command.petsc = ["-help" if word == "-h" else _with_one_dash(word) for word in rest]
     return command
+
+
+def _with_one_dash(word):
+    return word[1:] if word.startswith("--") and word[2:3].isalpha() else word
 
 
 def _is_value(words, at):

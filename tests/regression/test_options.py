@@ -1,5 +1,6 @@
 """The command line: where options come from, what is refused, what -help and -options_left say."""
 
+import os
 import re
 import subprocess
 
@@ -79,6 +80,23 @@ def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
         assert len(result.x) == 81
         assert result.attrs["title"] == "two words"
         assert "viscosity = 0.01 " in result.attrs["case"]
+
+
+def test_two_dashes_are_as_good_as_one(monkeypatch):
+    """PETSc would put --ehl_output aside under another name, and the result go elsewhere without a word."""
+    monkeypatch.setenv("PETSC_OPTIONS", "--ksp_rtol 1e-3 -snes_rtol 1e-4")
+    command = parse_command_line(["x.toml", "--ehl_output", "a--b.h5", "--ehl_overwrite", "--help", "--1"])
+    assert command.petsc == ["-ehl_output", "a--b.h5", "-ehl_overwrite", "-help", "--1"]
+    assert os.environ["PETSC_OPTIONS"] == "-ksp_rtol 1e-3 -snes_rtol 1e-4"
+    with pytest.raises(UsageError, match="-options_file none: no such file"):
+        parse_command_line(["x.toml", "--options_file", "none"])
+
+
+def test_a_result_goes_where_two_dashes_say(case, tmp_path):
+    done = run(case, "--ehl_output", "a.h5", "--ehl_overwite", cwd=tmp_path)
+    assert done.returncode == 2 and done.stderr.startswith("-ehl_overwite: unknown option; did you mean")
+    done = run(case, "--ehl_output", "a.h5", cwd=tmp_path)
+    assert done.returncode == 0 and (tmp_path / "a.h5").exists()
 
 
 def test_misspelt_own_options_are_refused_all_at_once(case, tmp_path):
