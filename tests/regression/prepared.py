@@ -23,14 +23,24 @@ HEAVY = (
     "scipy.fft",
     "scipy.interpolate",
     "scipy.linalg",
+    "scipy.ndimage",
     "ehlpetsc.__main__",
     "ehlpetsc.case.loading",
     "ehlpetsc.discretisation.ehl_problem",
+    "ehlpetsc.nonlinear.options",
     "ehlpetsc.nonlinear.systems.step_limits",
-    "ehlpetsc.physics.traction",
+    "ehlpetsc.results.output_guard",
     "ehlpetsc.results.reader",
+    "ehlpetsc.results.restart_file",
     "ehlpetsc.results.writer",
+    "ehlpetsc.run.accepted_state",
+    "ehlpetsc.run.command_line",
+    "ehlpetsc.run.preview.banner",
     "ehlpetsc.run.preview.explain",
+    "ehlpetsc.run.restart.rescaling",
+    "ehlpetsc.run.series.member",
+    "ehlpetsc.stepping.observables",
+    "ehlpetsc.stepping.predictor",
     "ehlpetsc.stepping.steady_start",
     "ehlpetsc.surfaces.permanent_set",
     "ehlpetsc.surfaces.roughness",
@@ -57,13 +67,23 @@ def load_compiled():
     """Have the compiled loops ready: to load them takes as long as all else that a short run does."""
     from ehlpetsc.case.loading import load
     from ehlpetsc.discretisation.ehl_problem import EHLProblem
+    from ehlpetsc.discretisation.finite_volumes import extrapolated, reynolds_rounding
+    from ehlpetsc.nonlinear.systems import step_limits
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.stepping.predictor import carried
 
     case = load(HERE.parents[2] / "cases" / "table1_smooth.toml", ["mesh.points_per_half_width=20"])
     scales = Scales.of(case)
     problem, one = EHLProblem(case, scales, 1.0, 0, scales.nx), np.ones(scales.nx)
     found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
     problem.product(found.relations, found.reynolds_derivatives, one, one, 0.0)
+    reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
+    extrapolated(one, one, 1.0)
+    carried(one, 1.0)
+    step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
+    now.flags.writeable = False  # as PETSc gives it
+    step_limits.change(problem.model, False, now, step)
+    step_limits.keep(problem.model, False, now, step, None)
 
 
 def load_libraries():

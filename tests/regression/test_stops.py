@@ -40,14 +40,6 @@ def last_step(path):
         return int(result.steps("step")[-1]), result.attrs["status"]
 
 
-def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
-    done = run(*CASE, cwd=tmp_path, ranks=2, tampered=("raise", 1, 5))
-    assert done.returncode == 1
-    assert "ValueError: an accident" in done.stderr
-    assert done.stderr.count("Traceback") == 1
-    assert "tampered.py" in done.stderr
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name, ranks", [("SIGTERM", 2), ("SIGUSR1", 0), ("SIGINT", 0)])
 def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(whole, tmp_path, name, ranks):
@@ -68,6 +60,14 @@ def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(whole
         assert result.attrs["ranks"] == (3 if ranks else 1)
         (earlier,) = json.loads(result.attrs["history"])
         assert earlier["ranks"] == max(ranks, 1) and earlier["up_to_step"] == 20
+
+
+def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
+    done = run(*CASE, cwd=tmp_path, ranks=2, tampered=("raise", 1, 5))
+    assert done.returncode == 1
+    assert "ValueError: an accident" in done.stderr
+    assert done.stderr.count("Traceback") == 1
+    assert "tampered.py" in done.stderr
 
 
 @pytest.mark.slow

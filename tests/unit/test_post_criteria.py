@@ -210,14 +210,14 @@ def test_dang_van_under_hertz_uses_the_limit_up_where_the_standard_says():
 def test_smallest_ball():
     rng = np.random.default_rng(0)
     for count in (1, 2, 3, 4, 50, 1000):
-        points = rng.normal(size=(3, count))
+        points = rng.normal(size=(3, 2 * count))[:, :count]  # part of a work array, as in histories
         centre, radius = smallest_ball(points)
         away = np.linalg.norm(points - centre[:, None], axis=0)
         assert away.max() == pytest.approx(radius, rel=1e-8, abs=1e-12)
         for step in 1e-3 * rng.normal(size=(30, 3)):  # no centre near by does better
             moved = np.linalg.norm(points - (centre + step)[:, None], axis=0).max()
             assert moved >= radius - 1e-12
-    line = np.outer([1.0, 2.0, 2.0], np.linspace(-1, 2, 31))
+    line = np.outer([1.0, 2.0, 2.0], np.linspace(-1, 5, 61))[:, :31]
     centre, radius = smallest_ball(line)
     assert radius == pytest.approx(4.5) and centre == pytest.approx([0.5, 1, 1])
 

@@ -32,8 +32,10 @@ def scene():
 
 @pytest.fixture(scope="module", autouse=True)
 def coarse_pictures():
+    """Of one format, but where a test asks for both."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(gallery, "DPI", 20)
+        patch.setattr(gallery, "FORMATS", ("png",))
         yield
 
 
@@ -95,22 +97,15 @@ def test_result_has_the_fixed_names(result, scene, capsys):
 
 
 @pytest.mark.slow
-def test_imports_no_petsc_mpi_or_solver(result):
+def test_imports_no_petsc_mpi_or_solver_and_without_pictures_no_matplotlib(result):
     code = (
-        "import sys; from ehlpetsc.post.command import main; import ehlpetsc.post.pictures.gallery; "
-        f"assert main([{str(result)!r}]) == 0; bad = [m for m in {FORBIDDEN!r} if m in sys.modules]; "
+        f"import sys; from ehlpetsc.post.command import main; assert main([{str(result)!r}]) == 0; "
+        "assert 'matplotlib' not in sys.modules; import ehlpetsc.post.pictures.gallery; "
+        f"bad = [m for m in {FORBIDDEN!r} if m in sys.modules]; "
         "may = ('ehlpetsc.post', 'ehlpetsc.results', 'ehlpetsc.physics', 'ehlpetsc.errors', "
         "'ehlpetsc.compiled', 'ehlpetsc.environment'); "
         "own = [m for m in sys.modules if m.startswith('ehlpetsc.') and not m.startswith(may)]; "
         "assert not bad and not own, (bad, own)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
-
-
-def test_without_pictures_no_matplotlib(result):
-    code = (
-        "import sys; from ehlpetsc.post.command import main; "
-        f"assert main([{str(result)!r}]) == 0; assert 'matplotlib' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
 
@@ -285,10 +280,14 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
 
 @pytest.mark.slow
 def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
+    """In both formats; of the second result those beside the first alone."""
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
         for r in (0.5, 0.7)
     ]
+    of_one = gallery._of_one
+    monkeypatch.setattr(gallery, "FORMATS", ("png", "svg"))
+    monkeypatch.setattr(gallery, "_of_one", lambda p, *rest: of_one(p, *rest) if p == str(paths[0]) else [])
     assert main([*map(str, paths), "--pictures", str(tmp_path / "out")]) == 0
     drawn = {path.name for path in (tmp_path / "out").iterdir()}
     for stem in (
@@ -303,7 +302,7 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
         "compared.exceedance_z0.1",
     ):
         assert {f"{stem}.png", f"{stem}.svg"} <= drawn
-    assert len(legends) == 12  # distributions of two results and at two depths, two histories; PNG and SVG
+    assert len(legends) == 8  # distributions of one result and of both at two depths, a history; PNG and SVG
     monkeypatch.setattr(gallery, "_save", lambda figure, stem: [])
     assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
     said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
@@ -311,14 +310,15 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-def test_passes_of_one_surface(tmp_path, legends, capsys):
-    """The slow surface is one; that it meets is another in each pass."""
+def test_passes_of_one_surface(tmp_path, legends, capsys, monkeypatch):
+    """The slow surface is one; that it meets is another in each pass. Drawn are the passes alone."""
+    monkeypatch.setattr(gallery, "_of_one", lambda *_: [])
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
     scenes[1].profiles["slow"] = scenes[0].profiles["slow"]
     paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.0, 0.1))) for k, scene in enumerate(scenes)]
     assert main([*paths, "--passes", "slow", "--pictures", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "passes.damage_slow.png").is_file()
-    assert len(legends) == 12  # of distributions, histories and the two axes of the passes; PNG and SVG
+    assert len(legends) == 2  # one of each of its axes
     results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
     s, damages = same_points(results, "slow")
     assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20
@@ -349,7 +349,7 @@ def judged(scene, tmp_path_factory):
     residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
     path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
     argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt", "--within", "0.05"]
-    assert main([*argv, "--pictures", str(folder)]) == 0
+    assert main([*argv, "--surface", "slow", "--pictures", str(folder)]) == 0
     assert (folder / "a.criteria_slow.png").is_file()
     return folder / "a.post.h5"
 
@@ -357,7 +357,7 @@ def judged(scene, tmp_path_factory):
 @pytest.mark.slow
 def test_criteria_stand_beside_the_papers_damage(judged, scene, tmp_path):
     plain = write(tmp_path / "a.h5", scene, depths=(0.0, 0.5))
-    run(Job(str(plain), str(tmp_path / "plain.h5")))
+    run(Job(str(plain), str(tmp_path / "plain.h5"), surfaces=("slow",)))
     with h5py.File(judged) as file, h5py.File(tmp_path / "plain.h5") as other:
         np.testing.assert_array_equal(file["damage/slow"], other["damage/slow"])  # the paper's stays
         assert "criteria" not in other

@@ -4,14 +4,14 @@ A ridge of 0.1 um, 0.8 half widths wide, on the slower surface enters a film of 
 it fills the contact. Compared are successive refinements by two, at the nodes of the coarsest mesh within
 -1 <= x/a <= 0.5, which leaves out the rupture of the film near x = 1.15 a; norm: root mean square.
 
-Found, fitted over four refinements:
+Found, fitted over three refinements:
 
 =====  =====  ========
 over   film   pressure
 =====  =====  ========
-space  1.991  2.028
-time   1.954  1.957
-both   1.975  2.136
+space  1.985  2.030
+time   1.934  1.942
+both   1.959  2.106
 =====  =====  ========
 """
 
@@ -67,9 +67,9 @@ def orders(solutions):
 @pytest.mark.parametrize(
     "refinements",
     [
-        pytest.param([(n, 80) for n in (16, 32, 64, 128, 256)], id="space"),
-        pytest.param([(32, n) for n in (40, 80, 160, 320, 640)], id="time"),
-        pytest.param([(n, 5 * n // 2) for n in (8, 16, 32, 64, 128)], id="both"),
+        pytest.param([(n, 80) for n in (16, 32, 64, 128)], id="space"),
+        pytest.param([(32, n) for n in (40, 80, 160, 320)], id="time"),
+        pytest.param([(n, 5 * n // 2) for n in (8, 16, 32, 64)], id="both"),
     ],
 )
 def test_second_order(refinements):

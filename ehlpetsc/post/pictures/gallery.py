@@ -20,6 +20,7 @@ from ehlpetsc.post.stresses.half_plane import stress
 
 STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # without the salt, no two SVG files would be the same
 DPI = 160
+FORMATS = ("png", "svg")
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
 TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
@@ -29,13 +30,13 @@ LAYER = 0.2  # half widths of depth in a picture of several results: damage unde
 
 
 def _save(figure, stem):
-    """Write both formats, under one layout that is found once: it takes longer than to draw."""
+    """Write all formats, under one layout that is found once: it takes longer than to draw."""
     figure.set_dpi(DPI)
-    figure.draw_without_rendering()
+    figure.get_layout_engine().execute(figure)
     figure.set_layout_engine(None)
     around = figure.get_tightbbox().padded(matplotlib.rcParams["savefig.pad_inches"])
     names = []
-    for kind in ("png", "svg"):
+    for kind in FORMATS:
         names.append(f"{stem}.{kind}")
         metadata = {"Date": None} if kind == "svg" else None
         figure.savefig(names[-1], dpi=DPI, bbox_inches=around, metadata=metadata)
@@ -65,22 +66,27 @@ def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
     results = [PostResult(output) for output in outputs]
     for path, output, result in zip(inputs, outputs, results, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
-        for surface in result.surfaces:
-            if result.complete[surface].any():
-                names += _save(damage_picture(result, surface), f"{stem}.damage_{surface}")
-        for surface in result.surfaces:
-            if result.criteria and result.complete[surface].any():
-                names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
-        if result.height.size:
-            names += _save(depth_picture(result), f"{stem}.exceedance")
-        names += _save(field_picture(path, result, frame), f"{stem}.stress")
-        names += _save(history_picture(path, result, point), f"{stem}.history")
+        names += _of_one(path, result, stem, point, frame)
     if passes:
         beside = Path(folder or Path(outputs[0]).parent)
         names += _save(passes_picture(results, passes), beside / f"passes.damage_{passes}")
     elif len(results) > 1:
         names += _compared(sorted(results, key=lambda r: r.ratio), Path(folder or Path(outputs[0]).parent))
     return names
+
+
+def _of_one(path, result, stem, point, frame):
+    names = []
+    for surface in result.surfaces:
+        if result.complete[surface].any():
+            names += _save(damage_picture(result, surface), f"{stem}.damage_{surface}")
+    for surface in result.surfaces:
+        if result.criteria and result.complete[surface].any():
+            names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
+    if result.height.size:
+        names += _save(depth_picture(result), f"{stem}.exceedance")
+    names += _save(field_picture(path, result, frame), f"{stem}.stress")
+    return names + _save(history_picture(path, result, point), f"{stem}.history")
 
 
 def _compared(results, folder):
