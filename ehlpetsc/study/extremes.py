@@ -29,7 +29,7 @@ HEAD = (
 )
 COARSE = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
-SWIFT = ("time.courant=1.0",)  # of lines without a time step of their own: half the steps
+SWIFT = ("time.courant=1.0",)  # of lines without a time step of their own, and of runs before: fewer steps
 
 
 def lines(short=False, far=False, model=None):
@@ -61,7 +61,7 @@ def _shortened(line):
     brief = BRIEF if "time.travel" in keys else ()
     brief += SWIFT if brief and "time.courant" not in keys else ()
     coarse = () if "mesh.points_per_half_width" in keys else COARSE
-    before = line.before and (*line.before, *coarse)  # the mesh of both runs is one
+    before = line.before and (*line.before, *coarse, *SWIFT)  # the mesh of both runs is one
     return replace(line, overrides=(*line.overrides, *coarse, *brief), before=before)
 
 

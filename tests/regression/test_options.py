@@ -66,7 +66,6 @@ def test_an_options_file_counts_where_it_stands(case, tmp_path):
     assert (tmp_path / "other.h5").exists()
 
 
-@pytest.mark.slow
 def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
     monkeypatch.setenv("PETSC_OPTIONS", "-ehl_set a.b=1 -snes_monitor -ehl_set 'title=two words'")
     command = parse_command_line(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
@@ -74,7 +73,7 @@ def test_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
     assert command.petsc == ["-ksp_view"]
     assert command.case == "x.toml"
     words = settings(*MESH, "title=two words", "fluid.viscosity=0.01")
-    done = run(ROOT / "cases/table1_smooth.toml", *words, cwd=tmp_path, ranks=2)
+    done = run(ROOT / "cases/table1_smooth.toml", *words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     with read_result(tmp_path / "table1_smooth.h5") as result:
         assert len(result.x) == 81

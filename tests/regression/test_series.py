@@ -102,7 +102,7 @@ def test_a_rerun_does_only_what_is_missing(finished):
 )
 def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
     (tmp_path / name).write_text("mine")
-    refused = series(tmp_path, ranks=1)
+    refused = series(tmp_path, ranks=0)
     assert refused.returncode == 2 and refused.stderr == (
         f"ehlpetsc: {name}: stands there and is not {what} of ehlpetsc; "
         "give another -ehl_output, or -ehl_overwrite to lose it\n"
@@ -115,18 +115,18 @@ def test_another_file_of_hdf5_in_a_members_place_is_refused_and_left(tmp_path):
     with h5py.File(place, "w") as file:
         file["mine"] = [1.0, 2.0]
     before = place.read_bytes()
-    refused = series(tmp_path, ranks=1)
+    refused = series(tmp_path, ranks=0)
     assert refused.returncode == 2 and f"{place.name}: stands there and is not a result" in refused.stderr
     assert place.read_bytes() == before
 
 
 @pytest.mark.slow
 def test_a_damaged_member_is_computed_again(tmp_path):
-    assert series(tmp_path, ranks=1, values=VALUES[:2]).returncode == 0
+    assert series(tmp_path, ranks=0, values=VALUES[:2]).returncode == 0
     member = tmp_path / "out_viscosity_0.006.h5"
     sound = read_result(member).steps("h_min")
     member.write_bytes(b"damaged" + member.read_bytes()[7:])  # also what makes it a file of HDF5
-    again = series(tmp_path, ranks=1, values=VALUES[:2])
+    again = series(tmp_path, ranks=0, values=VALUES[:2])
     assert again.returncode == 0 and "2 members, 1 of them to compute" in again.stdout
     assert (read_result(member).steps("h_min") == sound).all()
 
