@@ -207,17 +207,29 @@ worthwhile_ranks() {
     [ "$told" = 2 ] && echo 2 || echo 1
 }
 
+# mpirun loses what comes before its ranks are there; the run takes the same request twice as one
+ask_until_heard() {
+    trap '' INT TERM HUP USR1
+    exec >/dev/null 2>&1
+    while kill -USR1 "$1"; do sleep 2; done
+}
+
+stopped_early() {
+    say "stopped before the run had begun; nothing to go on with"
+    exit 4
+}
+
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it hands on, and they stop after the step in hand.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
-    local status=0 comments killed=""
+    local status=0 comments asked="" killed=""
     more_ranks_than_cores "$ranks"
     exec {comments}> >(without_mpiruns_comment >&2)
     local filter=$!
     setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null 2>&$comments &
     local job=$!
     exec {comments}>&-
-    trap 'kill -USR1 $job 2>/dev/null; trap "killed=143; kill -TERM $job" INT TERM' INT TERM HUP USR1
+    trap 'asked=1; ask_until_heard $job & trap "killed=143; kill -TERM $job" INT TERM' INT TERM HUP USR1
     wait $job || status=$?
     while kill -0 $job 2>/dev/null; do # a signal ends wait, not mpirun
         status=0
@@ -225,6 +237,8 @@ run_case() {
     done
     wait $filter || true
     status=${killed:-$status} # Open MPI 5 ends with 1 when it is killed
+    # of SIGUSR1 only mpirun and a Python die that have hardly begun: the run takes it as a request
+    if [ -n "$asked" ] && [ $status = 138 ]; then stopped_early; fi
     [ $status -lt 129 ] || say "a rank was ended by signal $((status - 128))"
     exit $status
 }
@@ -310,6 +324,7 @@ case ${1-} in
         run_tests "${@:2}"
         ;;
     *)
+        trap stopped_early INT TERM HUP USR1
         prepare "$run_modules" "$drawing"
         [ -n "$ranks" ] || ranks=$(worthwhile_ranks "$@")
         run_case "$@"

@@ -9,7 +9,7 @@ from ehlpetsc import streams
 from ehlpetsc.errors import ExitStatus
 
 QUIET = ("-no_signal_handler",)  # PETSc would end the process with a report of its own
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)  # until the run itself takes them
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1)  # until the run takes them
 
 
 def main(argv):
@@ -111,6 +111,7 @@ def guarded(argv):
             mpi = sys.modules["mpi4py.MPI"]
             if mpi.COMM_WORLD.size > 1:
                 mpi.COMM_WORLD.Abort(status)
+    signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # said again by run_mpi.sh, it would end Python as it ends
     sys.stdout.flush()
     sys.stderr.flush()
     return status
@@ -143,7 +144,10 @@ def stops_raise():
 def ended(error, asked):
     """Say what has ended a command from inside; returns its status."""
     if asked():  # an import may have made another error of it
-        print("ehlpetsc: stopped before the run had begun; nothing to go on with", file=sys.stderr)
+        from ehlpetsc.environment import first_rank
+
+        if first_rank():
+            print("ehlpetsc: stopped before the run had begun; nothing to go on with", file=sys.stderr)
         return ExitStatus.STOPPED
     import traceback
 

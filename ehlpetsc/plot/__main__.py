@@ -104,7 +104,11 @@ def main(arguments=None):
             results = in_order(open_all(options.results, stack))
             check_place(output, [*map(Path, options.results), *(r.path for r in results)], "-o")
             draw(results, kind, options, output)
-    except (OutputError, ValueError, OSError) as error:
+    except OSError as error:
+        told = f"{error.filename}: not written, {error.strerror}" if error.filename else error
+        print(f"ehlpetsc.plot: {told}", file=sys.stderr)
+        return 2
+    except (OutputError, ValueError) as error:
         print(f"ehlpetsc.plot: {error}", file=sys.stderr)
         return 2
     print(output)

@@ -32,13 +32,21 @@ def check_place(path, inputs, option="-ehl_output"):
     ------
     OutputError
     """
-    if path.exists() and not path.is_file():
+    if stands(path) and not path.is_file():
         kind = "a folder" if path.is_dir() else "a device or pipe"
         raise OutputError(f"{path}: {kind}, not a file to write a result to; give another {option}")
     for read in inputs:
         with contextlib.suppress(OSError):
             if path.exists() and read.exists() and path.samefile(read):
                 raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
+
+
+def stands(path):
+    """Whether there is something of that name; OutputError where nobody may tell, in a folder of others."""
+    try:
+        return path.exists()
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
 
 
 def check_replaceable(path, restart, case_text):
@@ -90,7 +98,7 @@ def check_index(path, rows, files=()):
     OutputError
     """
     known = set()
-    if path.exists():
+    if stands(path):
         try:
             known = {row["file"] for row in json.loads(path.read_text())[rows]}
         except (OSError, ValueError, KeyError, TypeError):

@@ -59,9 +59,9 @@ def load_restart(path):
         Missing, damaged, no restart file, or of another version.
     """
     path = Path(path)
-    if not path.is_file():
-        raise OutputError(f"{path}: no such file")
     try:
+        if not path.is_file():
+            raise OutputError(f"{path}: no such file")
         whole = path.read_bytes()
     except OSError as error:
         raise OutputError(f"{path}: not read, {error.strerror}") from error

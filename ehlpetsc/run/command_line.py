@@ -4,7 +4,6 @@ import itertools
 import os
 import shlex
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from ehlpetsc.environment import program
 from ehlpetsc.errors import UsageError
@@ -69,7 +68,7 @@ def parse_command_line(arguments):
     elif not {"-help", "--help", "-h"} & set(rest):
         raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
     for word, name in itertools.pairwise(rest):
-        if _with_one_dash(word) == "-options_file" and not Path(name).is_file():
+        if _with_one_dash(word) == "-options_file" and not os.path.isfile(name):
             raise UsageError(f"-options_file {name}: no such file")
     command.petsc = ["-help" if word == "-h" else _with_one_dash(word) for word in rest]
     return command

@@ -7,6 +7,7 @@ at the edge of the ranges; with ``--far`` of forty far beyond them; with ``--mod
 """
 
 import argparse
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -62,18 +63,21 @@ def main(argv):
     if missing:
         print(environment.advice(missing, argv), file=sys.stderr)
         return 2
-    if chosen.extremes:
-        return extremes(chosen)
-    if chosen.random:
-        return random_cases(chosen)
-    if not chosen.case:
+    if not (chosen.extremes or chosen.random or chosen.case):
         parser.error("which case? CASE.toml, --extremes or --random N")
     try:
+        if chosen.extremes:
+            return extremes(chosen)
+        if chosen.random:
+            return random_cases(chosen)
         return (contact if chosen.contact else accuracy)(chosen)
     except CaseError as error:
         print("\n".join(error.faults), file=sys.stderr)
     except OutputError as error:
         print(f"ehlpetsc.study: {error}", file=sys.stderr)
+    except OSError as error:
+        told = f"{error.filename}: not written, {error.strerror}" if error.filename else error
+        print(f"ehlpetsc.study: {told}", file=sys.stderr)
     return 2
 
 
@@ -81,12 +85,14 @@ def say(text):
     print(text, flush=True)
 
 
-def keep_inputs(case, *outputs):
-    """Refuse an output that the case is read from."""
+def check_outputs(case, *outputs):
+    """Refuse an output that the case is read from or that cannot be written, before anything is run."""
     from ehlpetsc.results.output_guard import check_place, inputs_of
 
     for path in outputs:
         check_place(Path(path), inputs_of(case), "-o")
+        if not os.access(Path(path).parent, os.W_OK):
+            raise OutputError(f"{path}: its folder cannot be written to; give another -o")
 
 
 def extremes(chosen):
@@ -113,7 +119,7 @@ def contact(chosen):
     from ehlpetsc.study.contact import settings, table
 
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
-    keep_inputs(load(chosen.case, chosen.set), f"{stem}.csv")
+    check_outputs(load(chosen.case, chosen.set), f"{stem}.csv")
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
     with tempfile.TemporaryDirectory() as folder:
         table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say, chosen.damage)
@@ -130,7 +136,7 @@ def accuracy(chosen):
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:
         study = Study(chosen.case, chosen.set, folder, chosen.limit, chosen.damage)
-        keep_inputs(study.case, f"{stem}.csv", f"{stem}.png")
+        check_outputs(study.case, f"{stem}.csv", f"{stem}.png")
         references, runs = plan(study.case, chosen.meshes, chosen.courant, chosen.ranks)
         rows = study.table(references, runs, f"{stem}.csv", say)
     draw(rows, f"{stem}.png", study.case.title)

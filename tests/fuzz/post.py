@@ -119,6 +119,7 @@ def run(spoil, number, seed, pictures, keep, show):
             if show or word in BAD:
                 print(f"{k}: {what}: {word} {status}: {said.strip()[:2000]}", flush=True)
             if word in BAD and keep:
+                Path(keep).mkdir(parents=True, exist_ok=True)
                 path.rename(Path(keep) / f"{type(spoil).__name__}_{seed}_{k}.h5")
     return counts
 

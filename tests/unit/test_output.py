@@ -1,6 +1,7 @@
 """Result and restart files: what is in them, and that a fault leaves them whole."""
 
 import contextlib
+import errno
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -16,6 +18,7 @@ import pytest
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, STORED
+from ehlpetsc.results.output_guard import check_index, check_place
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import ResultWriter
@@ -393,6 +396,24 @@ def without_rows(path):
     with h5py.File(path, "r+") as file:
         del file["pressure"]
         file["pressure"] = 1.0
+
+
+@pytest.mark.parametrize(
+    "act, told",
+    [
+        (lambda path: check_place(path, []), "cannot be looked at"),
+        (lambda path: check_index(path, "members"), "cannot be looked at"),
+        (read_result, "not read"),
+        (load_restart, "not read"),
+    ],
+)
+def test_a_folder_of_others_is_told_in_words(tmp_path, monkeypatch, act, told):
+    def forbidden(self, **_):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
+
+    monkeypatch.setattr(Path, "stat", forbidden)
+    with pytest.raises(OutputError, match=f"r.h5: {told}, Permission denied$"):
+        act(tmp_path / "r.h5")
 
 
 def test_restart_gives_back_what_was_saved(tmp_path):

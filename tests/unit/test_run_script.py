@@ -100,15 +100,34 @@ def test_a_signal_is_handed_on_to_every_rank_and_the_status_is_theirs(script, tm
     assert done.stderr == ""
 
 
+NOT_BEGUN = "run_mpi.sh: stopped before the run had begun; nothing to go on with\n"
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_before_the_run_has_begun(script, tmp_path, name):
+    """To the script while it looks for what there is, and to ranks that do not listen yet."""
+    for wait in (False, True):
+        program = "import pathlib, time\npathlib.Path('ready0').touch()\ntime.sleep(30)\n"
+        done = signalled(script, tmp_path, 1, [name], "case.toml", program=program, wait=wait)
+        assert (done.returncode, done.stdout, done.stderr) == (4, "", NOT_BEGUN)
+
+
+def test_a_signal_that_mpirun_loses_is_said_again(script, tmp_path):
+    """It loses those that come before its ranks are there; here a rank that takes the second one alone."""
+    program = WAITING.replace("while not MPI.COMM_WORLD.allreduce(len(told))", "while len(told) < 2")
+    done = signalled(script, tmp_path, 1, ["SIGTERM"], "case.toml", program=program)
+    assert (done.returncode, done.stdout, done.stderr) == (4, "RANK 0 TOLD\n", "")
+
+
 def test_a_second_signal_ends_ranks_that_do_not_listen(script, tmp_path):
     done = signalled(script, tmp_path, 2, ["SIGTERM", "SIGTERM"], "deaf")
     assert done.returncode == 143
     assert done.stderr.endswith("run_mpi.sh: a rank was ended by signal 15\n")
 
 
-def signalled(script, tmp_path, ranks, names, *arguments):
-    """Run the script, send it signals once all ranks are there, and wait for its end."""
-    (tmp_path / "ehlpetsc" / "__main__.py").write_text(WAITING)
+def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=True):
+    """Run the script, send it signals, once all ranks are there or at once, and wait for its end."""
+    (tmp_path / "ehlpetsc" / "__main__.py").write_text(program)
     command = [tmp_path / "run_mpi.sh", "-n", str(ranks), *arguments]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     folder = tmp_path / "elsewhere"
@@ -119,7 +138,7 @@ def signalled(script, tmp_path, ranks, names, *arguments):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a shell's job
         **pipes,
     ) as job:
-        for _ in range(600):
+        for _ in range(600 if wait else 1):
             if len(list(folder.glob("ready*"))) == ranks:
                 break
             time.sleep(0.1)

@@ -33,6 +33,22 @@ def table_1(tmp_path):
 
 
 @pytest.mark.parametrize("words", [[], ["--contact"]])
+def test_a_folder_that_cannot_be_written_is_told_before_anything_is_run(table_1, words, capsys, monkeypatch):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    assert study([str(table_1), *words, "-o", "somewhere"]) == ExitStatus.BAD_INPUT
+    said = capsys.readouterr()
+    assert said.err == "ehlpetsc.study: somewhere.csv: its folder cannot be written to; give another -o\n"
+    assert said.out == ""
+
+
+@pytest.mark.parametrize("words", [["--extremes"], ["--random", "2"]])
+def test_a_table_that_cannot_be_written_ends_in_words(tmp_path, words, capsys):
+    stem = tmp_path / "none" / "table"
+    assert study([*words, "-o", str(stem)]) == ExitStatus.BAD_INPUT
+    assert capsys.readouterr().err == f"ehlpetsc.study: {stem}.csv: not written, No such file or directory\n"
+
+
+@pytest.mark.parametrize("words", [[], ["--contact"]])
 def test_a_table_is_never_written_over_what_the_case_is_read_from(tmp_path, words, capsys):
     profile = tmp_path / "gear.csv"
     profile.write_text("".join(f"{0.5e-6 * k},{1e-7 * (k % 7)}\n" for k in range(4000)))

@@ -27,10 +27,12 @@ def open_for_reading(path, **options):
     OutputError
         No such file, or not one HDF5 can read.
     """
-    if not Path(path).is_file():
-        raise OutputError(f"{path}: no such file")
     try:
+        if not Path(path).is_file():
+            raise OutputError(f"{path}: no such file")
         return h5py.File(path, "r", swmr=_marked_as_being_written(path), **options)
+    except PermissionError as fault:
+        raise OutputError(f"{path}: not read, {fault.strerror}") from fault
     except (OSError, ValueError, RuntimeError) as fault:
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
