@@ -207,6 +207,12 @@ worthwhile_ranks() {
     [ "$told" = 2 ] && echo 2 || echo 1
 }
 
+# mpirun ends a run whose reader has gone, as `head -1` does
+outliving_its_reader() {
+    trap '' INT TERM HUP USR1 PIPE
+    cat 2>/dev/null || { say "standard output is lost (Broken pipe); going on without it"; exec cat >/dev/null; }
+}
+
 # mpirun loses what comes before its ranks are there; the run takes the same request twice as one
 ask_until_heard() {
     trap '' INT TERM HUP USR1
@@ -222,8 +228,12 @@ stopped_early() {
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it hands on, and they stop after the step in hand.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
-    local status=0 comments asked="" killed=""
+    local status=0 comments copier="" asked="" killed=""
     more_ranks_than_cores "$ranks"
+    if [ -p /dev/stdout ]; then
+        exec > >(outliving_its_reader)
+        copier=$!
+    fi
     exec {comments}> >(without_mpiruns_comment >&2)
     local filter=$!
     setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null 2>&$comments &
@@ -235,7 +245,8 @@ run_case() {
         status=0
         wait $job || status=$?
     done
-    wait $filter || true
+    exec >&-
+    wait $filter $copier || true
     status=${killed:-$status} # Open MPI 5 ends with 1 when it is killed
     # of SIGUSR1 only mpirun and a Python die that have hardly begun: the run takes it as a request
     if [ -n "$asked" ] && [ $status = 138 ]; then stopped_early; fi

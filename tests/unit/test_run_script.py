@@ -78,6 +78,18 @@ def test_the_exit_status_is_that_of_the_run_without_comment(script, status):
     assert done.stderr == ""
 
 
+def test_a_reader_that_goes_does_not_end_the_run(script, tmp_path):
+    """As `| head -1`: mpirun would end the ranks, with a status of its own."""
+    talk = "for k in range(20000):\n    print(f'line {k}', flush=True)\nopen('end', 'w').close()\n"
+    (tmp_path / "ehlpetsc" / "__main__.py").write_text(talk)
+    line = f"set -o pipefail; {tmp_path}/run_mpi.sh -n 1 case.toml | head -1"
+    pipes = {"cwd": tmp_path, "env": {"PATH": "/usr/bin:/bin"}, "capture_output": True, "text": True}
+    done = subprocess.run(["bash", "-c", line], timeout=60, **pipes)
+    assert (done.returncode, done.stdout) == (0, "line 0\n")
+    assert done.stderr == "run_mpi.sh: standard output is lost (Broken pipe); going on without it\n"
+    assert (tmp_path / "end").exists()
+
+
 WAITING = """\
 import os, pathlib, signal, sys, time
 from mpi4py import MPI
