@@ -1,6 +1,7 @@
 """run_mpi.sh: what it refuses, what it hands on, and how, with a stand-in for mpirun's program."""
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -138,7 +139,7 @@ def test_a_second_signal_ends_ranks_that_do_not_listen(script, tmp_path):
 
 
 def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=True):
-    """Run the script, send it signals, once all ranks are there or at once, and wait for its end."""
+    """Run the script and send it signals, once all ranks are there or as soon as it listens."""
     (tmp_path / "ehlpetsc" / "__main__.py").write_text(program)
     command = [tmp_path / "run_mpi.sh", "-n", str(ranks), *arguments]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
@@ -150,8 +151,8 @@ def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a shell's job
         **pipes,
     ) as job:
-        for _ in range(600 if wait else 1):
-            if len(list(folder.glob("ready*"))) == ranks:
+        for _ in range(600):
+            if len(list(folder.glob("ready*"))) == ranks if wait else catches(job.pid, signal.SIGUSR1):
                 break
             time.sleep(0.1)
         for name in names:
@@ -159,6 +160,12 @@ def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=
             time.sleep(1)
         stdout, stderr = job.communicate(timeout=60)
     return subprocess.CompletedProcess(command, job.returncode, stdout, stderr)
+
+
+def catches(pid, number):
+    """Whether a process has said what a signal is to do."""
+    status = Path(f"/proc/{pid}/status").read_text()
+    return int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16) >> (number - 1) & 1
 
 
 def test_leftovers_of_another_python_do_not_matter(script):
