@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 from ehlpetsc import environment
-from ehlpetsc.errors import CaseError, OutputError
+from ehlpetsc.errors import CaseError, ExitStatus, NotConverged, OutputError, PostError
 
 SWEPT = {  # lists of values: type, default, what they are
     "--meshes": (int, [50, 100, 200, 400], "points per half width"),
@@ -73,8 +73,11 @@ def main(argv):
         return (contact if chosen.contact else accuracy)(chosen)
     except CaseError as error:
         print("\n".join(error.faults), file=sys.stderr)
-    except OutputError as error:
+    except (OutputError, PostError) as error:
         print(f"ehlpetsc.study: {error}", file=sys.stderr)
+    except NotConverged as error:
+        print(f"ehlpetsc.study: {error}", file=sys.stderr)
+        return ExitStatus.NOT_CONVERGED
     except OSError as error:
         told = f"{error.filename}: not written, {error.strerror}" if error.filename else error
         print(f"ehlpetsc.study: {told}", file=sys.stderr)

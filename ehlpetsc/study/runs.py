@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import OutputError
+from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
@@ -115,11 +115,18 @@ def greatest_damage(path, surface, depths=()):
     Returns
     -------
     ndarray, shape (ndepths,)
+
+    Raises
+    ------
+    PostError
+        As of `ehlpetsc.post`: the travel is too short for one passage, for example.
     """
     output = Path(path).with_suffix(".post.h5")
     words = [sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", surface]
     words += ["--depths", *map(str, depths)] if depths else []
-    subprocess.run(words, check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if done.returncode:
+        raise PostError(f"no damage: {last_words(done.stderr)}")
     with h5py.File(output) as file:
         greatest = np.nanmax(file[f"damage/{surface}"][()], axis=1)
     output.unlink()

@@ -2,6 +2,7 @@
 
 import random
 
+import h5py
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -17,7 +18,7 @@ from ehlpetsc.study.draws import draw
 from ehlpetsc.study.extremes import lines
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
 from ehlpetsc.study.reasons import why as reason_of
-from ehlpetsc.study.runs import TIMED_OUT, Outcome, last_words
+from ehlpetsc.study.runs import TIMED_OUT, Outcome, greatest_damage, last_words
 
 
 def figures(error, contact=0.0):
@@ -111,6 +112,27 @@ def test_last_words_are_the_solvers():
     printed = f"a\nehlpetsc: not converged: {words}\nresult: f.h5\nehlpetsc: not converged steps=2\n"
     assert last_words(printed) == words
     assert last_words("") == ""
+
+
+def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, monkeypatch):
+    """A travel too short for a passage, say: post-processing says why."""
+    result = tmp_path / "run.h5"
+    with h5py.File(result, "w") as file:
+        file["x"] = [0.0]
+    monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: Outcome(0, "", result=result))
+    monkeypatch.setattr(
+        "ehlpetsc.study.accuracy.table.figures", lambda path, damage: greatest_damage(path, "slow")
+    )
+    assert study([str(table_1), "--damage", "-o", str(tmp_path / "table")]) == ExitStatus.BAD_INPUT
+    (told,) = capsys.readouterr().err.splitlines()
+    assert told.startswith("ehlpetsc.study: no damage: ") and "run.h5" in told
+
+
+def test_a_reference_that_does_not_converge_ends_in_words(table_1, tmp_path, capsys, monkeypatch):
+    failed = Outcome(ExitStatus.NOT_CONVERGED, "step 3: no")
+    monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: failed)
+    assert study([str(table_1), "-o", str(tmp_path / "table")]) == ExitStatus.NOT_CONVERGED
+    assert capsys.readouterr().err == "ehlpetsc.study: the reference did not converge: step 3: no\n"
 
 
 def test_reasons_are_told_in_words(table_1):

@@ -9,7 +9,7 @@ import csv
 from pathlib import Path
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import ExitStatus
+from ehlpetsc.errors import ExitStatus, NotConverged
 from ehlpetsc.study.accuracy.errors import MEASURES, NOTHING, errors, figures, uncertainty
 from ehlpetsc.study.accuracy.plan import ATOL, MESH, NEAR, RTOL, STEP
 from ehlpetsc.study.runs import run
@@ -84,7 +84,7 @@ class Study:
         """Run all; rows by the names of `HEAD`, the reference with its estimated error first."""
         finest = [self.run(setting, -number) for number, setting in enumerate(references, 1)]
         if finest[0][1] is None:
-            raise RuntimeError(f"the reference did not converge: {finest[0][0].words}")
+            raise NotConverged(f"the reference did not converge: {finest[0][0].words}")
         true = finest[0][1]
         rows = [row(references[0], finest[0][0], uncertainty(*(f for _, f in finest)))]
         say(text(dict(zip(HEAD, HEAD, strict=True))))
