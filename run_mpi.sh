@@ -183,21 +183,27 @@ quietly() {
     return $status
 }
 
-# What Open MPI 5 cannot be kept from saying when a run ends with a status of its own, which the run has explained
+# What Open MPI 5 cannot be kept from saying when a run ends with a status of its own, which the run has explained, or
+# of the request to stop, which this script explains
 without_mpiruns_comment() {
     trap '' INT TERM HUP USR1
     exec awk '
         function flush_held() { printf "%s", held; held = ""; fflush() }
+        function comment() { # its lines are broken anywhere
+            gsub(/[ \n]+/, " ", text)
+            return text ~ /prterun detected that one or more processes exited with non-zero status/ ||
+                text ~ /prterun noticed that process rank .* exited on signal 10 /
+        }
         /^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
         /^-+$/ && length($0) > 70 {
             if (held == "") { held = $0 "\n"; next }
-            if (comment) held = ""; else held = held $0 "\n"
-            comment = 0; flush_held(); next
+            text = held
+            if (comment()) held = ""; else held = held $0 "\n"
+            flush_held(); next
         }
         held == "" { print; fflush(); next }
-        /^prterun detected that one or more processes exited with non-zero status/ { comment = 1 }
         { held = held $0 "\n" }
-        END { if (!comment) flush_held() }'
+        END { text = held; if (!comment()) flush_held() }'
 }
 
 # One rank where two would be no quicker, which the program knows of its cases; faults are told by the run
