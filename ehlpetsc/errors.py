@@ -1,4 +1,4 @@
-"""Every exception of the package, and the exit statuses of its commands.
+"""Every exception of the package, the exit statuses of its commands, and a failed write in words.
 
 An error that a user can mend says in its text what is wrong, where, and what is allowed or to be tried.
 """
@@ -19,6 +19,23 @@ class ExitStatus(IntEnum):
     def words(self):
         """As in summaries, result files and indices of series: ``not converged``."""
         return self.name.lower().replace("_", " ")
+
+
+def not_written(error, path=None):
+    """An OSError of writing in words: which file was not written, and why.
+
+    Parameters
+    ----------
+    error : OSError
+    path : path-like, optional
+        The file; by default that which the error names, if it does.
+
+    Returns
+    -------
+    str
+    """
+    path = path or error.filename
+    return f"{path}: not written, {error.strerror or error}" if path else str(error)
 
 
 class CaseError(Exception):

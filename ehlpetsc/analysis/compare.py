@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS
@@ -221,7 +222,7 @@ def _tolerance(text):
 def main(arguments=None):
     """Run the command; returns its exit status."""
     about = "Compare two result files field by field."
-    parser = argparse.ArgumentParser(prog=program("ehlpetsc.compare"), description=about)
+    parser = CommandParser(prog=program("ehlpetsc.compare"), description=about)
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")

@@ -8,7 +8,6 @@ cases are the same but for seeds make one ensemble; several, as of a grid over s
 by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
 """
 
-import argparse
 import contextlib
 import csv
 import json
@@ -21,8 +20,9 @@ import h5py
 import numpy as np
 
 from ehlpetsc.analysis.contact_statistics import both_fill
+from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.errors import ExitStatus, OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.output_guard import check_place
 from ehlpetsc.results.series_index import differences, open_all
@@ -172,7 +172,7 @@ def write(rows, path):
                 writer.writeheader()
                 writer.writerows(rows)
     except OSError as error:
-        raise OutputError(f"{path}: not written, {error.strerror}") from None
+        raise OutputError(not_written(error, path)) from None
 
 
 def text(rows):
@@ -188,7 +188,7 @@ def text(rows):
 
 def arguments(argv):
     """The command line."""
-    parser = argparse.ArgumentParser(prog=program("ehlpetsc.analysis.ensemble"), description=__doc__)
+    parser = CommandParser(prog=program("ehlpetsc.analysis.ensemble"), description=__doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
     parser.add_argument("--resamples", type=int, default=RESAMPLES, help=f"of the bootstrap [{RESAMPLES}]")

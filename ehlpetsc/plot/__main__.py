@@ -11,7 +11,6 @@ written over.
 Exit status: 0 drawn, 2 bad input.
 """
 
-import argparse
 import contextlib
 import re
 import sys
@@ -19,8 +18,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
-from ehlpetsc.errors import OutputError
+from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.output_guard import check_place
 from ehlpetsc.results.series_index import in_order, open_all
@@ -48,7 +48,7 @@ def _check(results, kind, options):
 
 def _parser():
     about = "Draw results, or a series by its index."
-    parser = argparse.ArgumentParser(prog=program("ehlpetsc.plot"), description=about)
+    parser = CommandParser(prog=program("ehlpetsc.plot"), description=about)
     parser.add_argument("results", nargs="+", metavar="RESULT.h5")
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()
@@ -105,8 +105,7 @@ def main(arguments=None):
             check_place(output, [*map(Path, options.results), *(r.path for r in results)], "-o")
             draw(results, kind, options, output)
     except OSError as error:
-        told = f"{error.filename}: not written, {error.strerror}" if error.filename else error
-        print(f"ehlpetsc.plot: {told}", file=sys.stderr)
+        print(f"ehlpetsc.plot: {not_written(error)}", file=sys.stderr)
         return 2
     except (OutputError, ValueError) as error:
         print(f"ehlpetsc.plot: {error}", file=sys.stderr)

@@ -3,6 +3,7 @@
 import argparse
 import math
 
+from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError
 from ehlpetsc.post.criteria import CRITERIA
@@ -25,7 +26,7 @@ def _jobs(text):
 
 def arguments(argv=None):
     """Parse the command line."""
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog=program("ehlpetsc.post"),
         description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
         "from result files. Material and depths come from the case text in the file, section [post].",

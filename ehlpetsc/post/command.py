@@ -7,11 +7,11 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.compiled import COMPILED
-from ehlpetsc.errors import ExitStatus, OutputError, PostError
+from ehlpetsc.errors import ExitStatus, OutputError, PostError, not_written
 from ehlpetsc.post.arguments import arguments
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import Counting
-from ehlpetsc.post.inputs.loads import SURFACES
+from ehlpetsc.post.inputs.loads import SURFACES, check_readable
 from ehlpetsc.post.outputs.passes_file import store_passes
 from ehlpetsc.post.outputs.passes_index import note_damage
 from ehlpetsc.post.outputs.post_result import PostResult
@@ -57,6 +57,7 @@ def _output(path, chosen):
 
 def _process(path, chosen):
     output = _output(path, chosen)
+    check_readable(path)
     check_output(output, chosen.results)
     surfaces = SURFACES if chosen.surface == "both" else (chosen.surface,)
     counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress, chosen.strain)
@@ -145,7 +146,7 @@ def _status(work, path, output):
         sys.stdout = None
         return ExitStatus.STOPPED
     except OSError as fault:
-        say(f"{output}: not written, {fault.strerror or fault}; nothing is left of it")
+        say(f"{not_written(fault, output)}; nothing is left of it")
         return ExitStatus.BAD_INPUT
     except KeyboardInterrupt:
         say("interrupted; the same command goes on from the finished depths")

@@ -1,6 +1,5 @@
 """Results that belong together: the members of a series opened, and sorted by their swept value."""
 
-import argparse
 import contextlib
 import json
 import sys
@@ -9,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 
@@ -51,7 +51,7 @@ def command(name, about, report, arguments):
     int
         Exit status: 0 done, 2 bad input.
     """
-    parser = argparse.ArgumentParser(prog=f"python3 -m {name}", description=about)
+    parser = CommandParser(prog=f"python3 -m {name}", description=about)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     try:
         with contextlib.ExitStack() as stack:

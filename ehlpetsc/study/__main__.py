@@ -13,7 +13,8 @@ import tempfile
 from pathlib import Path
 
 from ehlpetsc import environment
-from ehlpetsc.errors import CaseError, ExitStatus, NotConverged, OutputError, PostError
+from ehlpetsc.command_parser import CommandParser
+from ehlpetsc.errors import CaseError, ExitStatus, NotConverged, OutputError, PostError, not_written
 
 SWEPT = {  # lists of values: type, default, what they are
     "--meshes": (int, [50, 100, 200, 400], "points per half width"),
@@ -32,7 +33,7 @@ SWITCHES = {
 
 def arguments():
     """The command line."""
-    parser = argparse.ArgumentParser(
+    parser = CommandParser(
         prog=environment.program("ehlpetsc.study"),
         description=__doc__.partition(":")[0] + ".\n" + __doc__.partition("\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -79,8 +80,7 @@ def main(argv):
         print(f"ehlpetsc.study: {error}", file=sys.stderr)
         return ExitStatus.NOT_CONVERGED
     except OSError as error:
-        told = f"{error.filename}: not written, {error.strerror}" if error.filename else error
-        print(f"ehlpetsc.study: {told}", file=sys.stderr)
+        print(f"ehlpetsc.study: {not_written(error)}", file=sys.stderr)
     return 2
 
 
@@ -120,9 +120,13 @@ def contact(chosen):
     """How much contact there is."""
     from ehlpetsc.case.loading import load
     from ehlpetsc.study.contact import settings, table
+    from ehlpetsc.study.runs import check_damage
 
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
-    check_outputs(load(chosen.case, chosen.set), f"{stem}.csv")
+    case = load(chosen.case, chosen.set)
+    check_outputs(case, f"{stem}.csv")
+    if chosen.damage:
+        check_damage(case, "fast", min(chosen.meshes))
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
     with tempfile.TemporaryDirectory() as folder:
         table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say, chosen.damage)
@@ -133,14 +137,17 @@ def contact(chosen):
 def accuracy(chosen):
     """Error against run time."""
     from ehlpetsc.study.accuracy.picture import draw
-    from ehlpetsc.study.accuracy.plan import plan
+    from ehlpetsc.study.accuracy.plan import MESH, plan
     from ehlpetsc.study.accuracy.table import Study
+    from ehlpetsc.study.runs import check_damage
 
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:
         study = Study(chosen.case, chosen.set, folder, chosen.limit, chosen.damage)
         check_outputs(study.case, f"{stem}.csv", f"{stem}.png")
         references, runs = plan(study.case, chosen.meshes, chosen.courant, chosen.ranks)
+        if chosen.damage:
+            check_damage(study.case, "slow", min(setting.values[MESH] for setting in (*references, *runs)))
         rows = study.table(references, runs, f"{stem}.csv", say)
     draw(rows, f"{stem}.png", study.case.title)
     say(f"{stem}.csv, {stem}.png")

@@ -1,5 +1,6 @@
 """One run of a case as its own process, with a time limit: figures, exit status, last words."""
 
+import math
 import os
 import resource
 import signal
@@ -15,6 +16,7 @@ import numpy as np
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.physics.rheology import viscosity
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 
@@ -107,6 +109,37 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
     if output.exists():
         _read_figures(output, load(case, overrides), outcome)
     return outcome
+
+
+def check_damage(case, surface, mesh):
+    """Refuse damage before anything is run where no point of a surface would pass the whole mesh.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    surface : str
+        "fast" or "slow".
+    mesh : int
+        Points per half width of the coarsest run, whose mesh may be half a spacing wider than the case's.
+
+    Raises
+    ------
+    PostError
+    """
+    if not case.time:
+        raise PostError("--damage: the case is steady; damage takes a [time] section, with time.travel")
+    scales = Scales.of(case)
+    speed = abs(scales.u1 if surface == "fast" else scales.u2)
+    if not speed:
+        raise PostError(f"--damage: the {surface} surface stands still, and none of its points has a passage")
+    width = case.mesh.outlet - case.mesh.inlet
+    needed = (width + 1.0 / mesh) * scales.u_max / speed
+    if case.time.travel < needed:
+        raise PostError(
+            f"--damage: within a travel of {case.time.travel:g} a no point of the {surface} surface passes "
+            f"the whole mesh, {width:g} a wide; allowed: time.travel = {math.ceil(100.0 * needed) / 100.0:g} "
+            "or more"
+        )
 
 
 def greatest_damage(path, surface, depths=()):

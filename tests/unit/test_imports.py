@@ -12,6 +12,7 @@ GROUND = {
     "quantities",
     "compiled",
     "environment",
+    "command_parser",
     "streams",
 }  # every room may stand on these; they import nothing of ours
 MAY_IMPORT = {

@@ -1,5 +1,6 @@
 """The command, its result file, its faults, and going on after an interruption."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import pytest
 from matplotlib.figure import Figure
 from post_result_file import Scene, write
 
+from ehlpetsc.errors import ExitStatus
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
@@ -103,7 +105,7 @@ def test_imports_no_petsc_mpi_or_solver_and_without_pictures_no_matplotlib(resul
         "assert 'matplotlib' not in sys.modules; import ehlpetsc.post.pictures.gallery; "
         f"bad = [m for m in {FORBIDDEN!r} if m in sys.modules]; "
         "may = ('ehlpetsc.post', 'ehlpetsc.results', 'ehlpetsc.physics', 'ehlpetsc.errors', "
-        "'ehlpetsc.compiled', 'ehlpetsc.environment'); "
+        "'ehlpetsc.compiled', 'ehlpetsc.environment', 'ehlpetsc.command_parser'); "
         "own = [m for m in sys.modules if m.startswith('ehlpetsc.') and not m.startswith(may)]; "
         "assert not bad and not own, (bad, own)"
     )
@@ -228,6 +230,17 @@ def test_not_a_result(tmp_path, capsys):
     with h5py.File(tmp_path / "c.h5", "w") as file:
         file["x"] = [1.0]
     assert "not a result file of ehlpetsc" in fault(capsys, tmp_path / "c.h5")
+
+
+def test_a_file_in_a_folder_of_others_is_not_read(tmp_path, capsys, monkeypatch):
+    """No word of the output, which was never come to."""
+
+    def forbidden(self, **_):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
+
+    monkeypatch.setattr(Path, "stat", forbidden)
+    assert main([str(tmp_path / "a.h5")]) == ExitStatus.BAD_INPUT
+    assert capsys.readouterr().err == f"ehlpetsc.post: {tmp_path}/a.h5: not read, Permission denied\n"
 
 
 def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):

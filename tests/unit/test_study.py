@@ -8,7 +8,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import ExitStatus
+from ehlpetsc.errors import ExitStatus, PostError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.post.stresses.body_points import body_points, passage
 from ehlpetsc.study.__main__ import main as study
 from ehlpetsc.study.accuracy import picture
 from ehlpetsc.study.accuracy.errors import MEASURES, Figures, errors, uncertainty
@@ -18,7 +20,7 @@ from ehlpetsc.study.draws import draw
 from ehlpetsc.study.extremes import lines
 from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
 from ehlpetsc.study.reasons import why as reason_of
-from ehlpetsc.study.runs import TIMED_OUT, Outcome, greatest_damage, last_words
+from ehlpetsc.study.runs import TIMED_OUT, Outcome, check_damage, greatest_damage, last_words
 
 
 def figures(error, contact=0.0):
@@ -114,8 +116,49 @@ def test_last_words_are_the_solvers():
     assert last_words("") == ""
 
 
+@pytest.mark.parametrize("words", [[], ["--contact"]])
+def test_a_travel_too_short_for_damage_is_refused_before_anything_is_run(table_1, words, capsys, monkeypatch):
+    for place in ("accuracy.table", "contact"):
+        monkeypatch.setattr(f"ehlpetsc.study.{place}.run", lambda *_, **__: pytest.fail("it ran"))
+    short = ["--damage", "--set", "mesh.inlet=-1.2", "--set", "mesh.outlet=1.3", "--set", "time.travel=1.0"]
+    short += ["--set", "motion.slide_roll_ratio=0.25"]
+    assert study([str(table_1), *words, *short]) == ExitStatus.BAD_INPUT
+    surface, needed = ("fast", "2.52") if words else ("slow", "3.24")  # (2.5 + 1/50), over 0.875/1.125
+    assert capsys.readouterr().err == (
+        f"ehlpetsc.study: --damage: within a travel of 1 a no point of the {surface} surface passes the "
+        f"whole mesh, 2.5 a wide; allowed: time.travel = {needed} or more\n"
+    )
+
+
+def test_damage_takes_time_and_a_surface_that_moves(table_1):
+    with pytest.raises(PostError, match="the case is steady"):
+        check_damage(load(table_1), "slow", 100)
+    with pytest.raises(PostError, match="the slow surface stands still"):
+        check_damage(load(table_1, ["time.travel=9.0", "motion.slide_roll_ratio=2.0"]), "slow", 100)
+
+
+@pytest.mark.parametrize("mesh", [13, 50, 200])
+@pytest.mark.parametrize("ratio", [0.0, 0.25, -1.0, 3.0])
+def test_the_least_travel_for_damage_lets_a_point_pass(table_1, mesh, ratio):
+    """As post-processing has it, which counts from the frame at time 0; a tenth less lets none."""
+    for share, passes in ((1.0, True), (0.9, False)):
+        width, slow = 2.53, abs(1.0 - ratio / 2.0)
+        travel = share * (width + 1.0 / mesh) * max(slow, abs(1.0 + ratio / 2.0)) / slow + 1e-9
+        chosen = ["mesh.inlet=-1.2", "mesh.outlet=1.33", f"mesh.points_per_half_width={mesh}"]
+        case = load(table_1, [*chosen, f"motion.slide_roll_ratio={ratio}", f"time.travel={travel}"])
+        scales = Scales.of(case)
+        x, time = scales.x * scales.a, np.array([0.0, scales.duration])
+        s = body_points(x, scales.dx, time, [scales.u1, scales.u2])
+        assert passage(s, x, scales.dx, time, scales.u2).complete.any() == passes
+        if passes:
+            check_damage(case, "slow", mesh)
+        else:
+            with pytest.raises(PostError, match="more"):
+                check_damage(case, "slow", mesh)
+
+
 def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, monkeypatch):
-    """A travel too short for a passage, say: post-processing says why."""
+    """A file that is damaged, say: post-processing says why."""
     result = tmp_path / "run.h5"
     with h5py.File(result, "w") as file:
         file["x"] = [0.0]
@@ -123,7 +166,8 @@ def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, 
     monkeypatch.setattr(
         "ehlpetsc.study.accuracy.table.figures", lambda path, damage: greatest_damage(path, "slow")
     )
-    assert study([str(table_1), "--damage", "-o", str(tmp_path / "table")]) == ExitStatus.BAD_INPUT
+    command = [str(table_1), "--set", "time.travel=9.0", "--damage", "-o", str(tmp_path / "table")]
+    assert study(command) == ExitStatus.BAD_INPUT
     (told,) = capsys.readouterr().err.splitlines()
     assert told.startswith("ehlpetsc.study: no damage: ") and "run.h5" in told
 

@@ -215,6 +215,11 @@ class Loads:
         return values[rows].astype(float) if (number[rows] == self.step).all() else None
 
 
+def check_readable(path):
+    """Refuse a file that cannot be read, before its output is looked at; PostError says why."""
+    _open(path).close()
+
+
 def _open(path):
     try:
         with reading("the file"):
