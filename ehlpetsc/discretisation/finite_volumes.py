@@ -13,10 +13,11 @@ Newton's method cycles, and which asperities two nodes wide reach.
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import compiled, unsigned
 from ehlpetsc.physics.rheology import mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
+ONE = unsigned(1)
 OWN = 4  # place of q_i in a row, before h_i
 # What faces need of the nodes on both sides, rows of one array (a tuple of arrays costs ten times the loop):
 P, DP = 0, 1  # pressure in p0, dp/dq
@@ -70,7 +71,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip):
     -------
     tuple of 7 floats
     """
-    right, behind = left + 1, max(left - 1, 0)
+    right, behind = left + ONE, left - ONE if left > 0 else left
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
@@ -113,8 +114,9 @@ def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
     derivatives : ndarray, shape (cells, 8)
         With respect to q and h of the nodes i-2 .. i+1.
     """
-    inflow = flux_through(at, first - 1, *law)
-    for i in range(len(imbalance)):
+    first = unsigned(first)  # numba takes longer over indices that may be negative
+    inflow = flux_through(at, first - ONE, *law)
+    for i in range(unsigned(len(imbalance))):
         node, row = first + i, derivatives[i]
         outflow = flux_through(at, node, *law)
         stored, by_m, _ = positive_extrapolation(at[M, node], then[i], k)

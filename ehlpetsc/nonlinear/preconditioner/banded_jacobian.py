@@ -12,7 +12,7 @@ import numpy as np
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.nonlinear.operators.jacobian_operator import leaks
-from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, SIZE, WIDTH
+from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
 
 FILMS = np.array([1, 0, SIZE - 2, SIZE - 1])  # places in a group of its nodes' films
@@ -31,11 +31,11 @@ class BandedJacobian:
     Attributes
     ----------
     groups, order : int
-        Local groups and unknowns.
+        Local groups, and the room that their unknowns take.
     place : ndarray, shape (2 nodes,)
         Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
-    at_ends : ndarray, shape (2, SIZE)
-        Numbers of the unknowns of the first and of the last group.
+    at_ends : ndarray, shape (2, LINE)
+        Numbers of the unknowns of the first and of the last group, and of the room behind them.
     entries : node_variables.BandEntries or None
         Of the state last filled in.
     dense : ndarray, shape (3, nodes)
@@ -48,11 +48,11 @@ class BandedJacobian:
         self.nodes = np.arange(problem.first, problem.last)
         self.rates, self.weights = exponentials(problem.deflection.curvature, 1.0 / problem.dx)
         self.groups = -(-len(self.nodes) // GROUP)
-        self.order = self.groups * SIZE
+        self.order = self.groups * LINE
         self.place = np.stack([self._pressure(self.nodes), self._film(self.nodes)], axis=1).ravel()
-        self.at_ends = np.stack([np.arange(SIZE), np.arange(self.order - SIZE, self.order)])
+        self.at_ends = np.stack([np.arange(LINE), np.arange(self.order - LINE, self.order)])
         self.values = np.zeros(self.order * WIDTH + 1)  # the last one: what stands nowhere
-        self.rows = self.values[:-1].reshape(self.groups, SIZE, WIDTH)
+        self.columns = self.values[:-1].reshape(self.groups, WIDTH, LINE)
         self._recurrences()
         self._spare()
         self._under_films()
@@ -69,22 +69,24 @@ class BandedJacobian:
 
     def _sums(self, group):
         """Numbers of the sums of groups, one row each."""
-        return np.asarray(group)[:, None] * SIZE + FIRST_SUM + np.arange(TERMS)
+        return np.asarray(group)[:, None] * LINE + FIRST_SUM + np.arange(TERMS)
 
     def _pressure(self, node):
         """Number of q of a node."""
-        return self._group(node) * SIZE + FIRST_PRESSURE + self._in_group(node)
+        return self._group(node) * LINE + FIRST_PRESSURE + self._in_group(node)
 
     def _film(self, node):
         """Number of h of a node."""
-        return self._group(node) * SIZE + FILMS[self._in_group(node)]
+        return self._group(node) * LINE + FILMS[self._in_group(node)]
 
     def _at(self, row, column):
         """Place of an entry among `values`; the last one where it stands nowhere."""
-        towards, c = column // SIZE - row // SIZE, column % SIZE
-        beside = np.abs(towards) <= 1
-        starts = np.choose(np.where(beside, towards + 1, 1), [-FROM_LEFT, LEFT, LEFT + SIZE - FROM_RIGHT])
-        return np.where(beside, row * WIDTH + starts + c, self.values.size - 1)
+        (group, r), (other, c) = np.divmod(row, LINE), np.divmod(column, LINE)
+        beside = np.abs(other - group) <= 1
+        starts = np.choose(
+            np.where(beside, other - group + 1, 1), [-FROM_LEFT, LEFT, LEFT + SIZE - FROM_RIGHT]
+        )
+        return np.where(beside, (group * WIDTH + starts + c) * LINE + r, self.values.size - 1)
 
     def _recurrences(self):
         p, sums = self.problem, self._sums(np.arange(self.groups)).T
@@ -94,11 +96,11 @@ class BandedJacobian:
             for towards, at_end in ((-1, ends[0]), (1, ends[1])):
                 inner = row[1:] if towards < 0 else row[:-1]
                 outer = row[0] if towards < 0 else row[-1]
-                self.values[self._at(inner, inner + towards * SIZE)] = -1.0
+                self.values[self._at(inner, inner + towards * LINE)] = -1.0
                 if at_end:  # no pressure beyond: the sum falls on as the exponential does
                     self.values[self._at(outer, outer)] -= np.exp(-rate)
                 else:
-                    self.values[self._at(outer, outer + towards * SIZE)] = -1.0
+                    self.values[self._at(outer, outer + towards * LINE)] = -1.0
 
     def _spare(self):
         """Unknowns of a last group that is not full: zero."""
@@ -187,7 +189,7 @@ class BandedJacobian:
 
         Returns
         -------
-        ndarray, shape (groups, SIZE, WIDTH)
+        ndarray, shape (groups, WIDTH, LINE)
             As :class:`.block_lu.BlockLU` takes them.
         """
         self._fill_deflection(entries)
@@ -197,7 +199,7 @@ class BandedJacobian:
             derivatives[dropped] = 0.0
             derivatives[dropped, OWN + 1] = 1.0
         self.values[self.reynolds_place] = derivatives
-        return self.rows
+        return self.columns
 
     def _fill_deflection(self, entries):
         """Refill what a change of contact or cavity touches."""

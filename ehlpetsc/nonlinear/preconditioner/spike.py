@@ -13,7 +13,7 @@ their deflection, and h00. The columns of G are solved for with every matrix; w 
 import numpy as np
 
 from ehlpetsc.nonlinear.exchange import everywhere
-from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, RIGHT, SIZE, BlockLU
+from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, RIGHT, SIZE, BlockLU
 from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
 from ehlpetsc.nonlinear.preconditioner.spike_loops import is_close, scatter, tips, without
 
@@ -37,7 +37,7 @@ class SpikeLU:
         self.lu = BlockLU(band.groups)
         self.reduced = ReducedSystem(LEFT, RIGHT, ranks.rank, ranks.size, end_scale)
         first, last = band.at_ends
-        self.shown = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], last[FROM_LEFT:]])
+        self.shown = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], last[FROM_LEFT:SIZE]])
         self.tips_of_g = np.zeros((self.reduced.widest, len(self.shown) + BORDER))
         self.y, self.tips = np.zeros((1, band.order)), np.zeros((1, len(self.shown) + BORDER))
 
@@ -50,9 +50,9 @@ class SpikeLU:
             return
         self.factored = dropped, entries.reynolds_derivatives
         e = self.band
-        rows = e.fill(entries, dropped)
-        self.lu.factor(rows)
-        g = self._columns(rows[0, :, :LEFT], rows[-1, :, LEFT + SIZE :])
+        columns = e.fill(entries, dropped)
+        self.lu.factor(columns)
+        g = self._columns(columns[0, :LEFT], columns[-1, LEFT + SIZE :])
         tips(g, self.shown, e.place, e.dense, self.tips_of_g[: len(g)])
         self.coupling = self.reduced.rows_of_inverse(self._everyone(self.tips_of_g))
         self.spread = g[:, e.place]
@@ -62,13 +62,13 @@ class SpikeLU:
         e = self.band
         first, last = e.at_ends
         if self.ranks.rank == 0:
-            left = (first == e.place[0])[:, None]
+            left = (first == e.place[0])[None]
         if self.ranks.rank == self.ranks.size - 1:
-            right = (last == e.place[-2])[:, None]
-        g = np.zeros((left.shape[1] + right.shape[1], e.groups, SIZE))
-        g[: left.shape[1], 0], g[left.shape[1] :, -1] = left.T, right.T
+            right = (last == e.place[-2])[None]
+        g = np.zeros((len(left) + len(right), e.groups, LINE))
+        g[: len(left), 0], g[len(left) :, -1] = left, right
         for k, column in enumerate(g):
-            self.lu.solve(column, 0 if k < left.shape[1] else e.groups - 1)
+            self.lu.solve(column, 0 if k < len(left) else e.groups - 1)
         return g.reshape(len(g), -1)
 
     def _still_good(self, entries, dropped):
@@ -101,7 +101,7 @@ class SpikeLU:
         """
         e, y, mine = self.band, self.y, self.tips
         scatter(e.place, kept, b, y)
-        self.lu.solve(y.reshape(e.groups, SIZE))
+        self.lu.solve(y.reshape(e.groups, LINE))
         tips(y, self.shown, e.place, e.dense, mine)
         mine[0, -1] -= load
         w = self.coupling @ self._everyone(mine[0]).ravel()
