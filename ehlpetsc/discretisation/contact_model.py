@@ -20,6 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
+
 ROUNDING = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
 
 
@@ -93,24 +95,34 @@ class Relations(NamedTuple):
         """Derivative of the separation with respect to w."""
         return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
 
-    def changes(self, v_q, v_w):
+    def changes(self, nodes):
         """Changes of oil, pressure, film and separation with q and w.
 
         Parameters
         ----------
-        v_q, v_w : ndarray
-            At the nodes of the relations.
+        nodes : ndarray, shape (nodes, 2)
+            Changes of q and w at the nodes of the relations.
 
         Returns
         -------
         oil, pressure, film, separation : ndarray
         """
-        pressure, film = self.p_q * v_q + self.p_w * v_w, self.h_w * v_w
+        oil, pressure, film = elastic_changes(self.p_q, self.p_w, self.h_w, nodes)
         if self.plastic is None:
-            return v_q, pressure, film, film
-        y = self.plastic
-        oil = y.oil_q * v_q + y.oil_w * v_w
-        return oil, pressure, film, film - (y.depth_q * v_q + y.depth_w * v_w)
+            return oil, pressure, film, film
+        y, (v_q, v_w) = self.plastic, nodes.T
+        return y.oil_q * v_q + y.oil_w * v_w, pressure, film, film - (y.depth_q * v_q + y.depth_w * v_w)
+
+
+@compiled
+def elastic_changes(p_q, p_w, h_w, nodes):
+    """Changes of q, pressure and film, see :meth:`Relations.changes`."""
+    q, pressure, film = np.empty(len(nodes)), np.empty(len(nodes)), np.empty(len(nodes))
+    for i in range(len(nodes)):
+        q[i], w = nodes[i, 0], nodes[i, 1]
+        pressure[i] = p_q[i] * q[i] + p_w[i] * w
+        film[i] = h_w[i] * w
+    return q, pressure, film
 
 
 class DirectContact:

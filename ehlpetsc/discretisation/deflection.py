@@ -65,6 +65,8 @@ class Deflection:
         What the separation counts in an end node's row; h00 counts as much, negative.
     ends : list of int
         Local ones of the two end nodes.
+    under_sums : ndarray, shape (3, last - first)
+        What the local pressures count in :meth:`sums`.
     """
 
     def __init__(self, n, dx, first, last):
@@ -77,7 +79,7 @@ class Deflection:
         self._curvature_product = CurvatureProduct(self.curvature[: self.window.stop - self.window.start])
         logarithm = self._logarithm()
         mine = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
-        self._under_sums = np.stack([*mine, np.full(last - first, dx)])
+        self.under_sums = np.stack([*mine, np.full(last - first, dx)])
 
     def _logarithm(self):
         return elasticity.deflection_kernel(self.n) - np.log(self.dx)
@@ -89,7 +91,7 @@ class Deflection:
 
     def sums(self, pressure):
         """Over the local pressures, shape (last - first,): in both end nodes' rows, and in the load's."""
-        return self._under_sums @ pressure
+        return self.under_sums @ pressure
 
     def rows(self, separation, pressure, approach, outside=None):
         """The linear form in the local rows, and the load that the pressures carry.

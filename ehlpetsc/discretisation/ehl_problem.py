@@ -159,15 +159,15 @@ class EHLProblem:
             residual[-1] = load - 0.5 * np.pi * inputs.load
         return Evaluation(relations, residual, derivatives)
 
-    def product(self, relations, derivatives, v_q, v_w, v_h00, outside=None):
+    def product(self, relations, derivatives, nodes, v_h00, outside=None):
         """The whole Jacobian times a vector, in the local rows.
 
         Parameters
         ----------
         relations, derivatives
             Of the state, as in :class:`Evaluation`.
-        v_q, v_w : ndarray
-            At the nodes of the window.
+        nodes : ndarray, shape (window, 2)
+            q and w of the vector at the nodes of the window.
         v_h00 : float
         outside : deflection.Outside, optional
             Of the change of pressure.
@@ -177,7 +177,7 @@ class EHLProblem:
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        return self.changes_of_rows(relations.changes(v_q, v_w), derivatives, v_h00, outside)
+        return self.changes_of_rows(relations.changes(nodes), derivatives, v_h00, outside)
 
     def changes_of_rows(self, changes, derivatives, v_h00, outside=None):
         """As :meth:`product`, of changes of oil, pressure, film and separation."""

@@ -20,6 +20,7 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.curvature_product import exponentials
 from ehlpetsc.discretisation.deflection import HALO, Outside
 
+SUMS = 3  # of :meth:`.deflection.Deflection.sums`
 LEFT_OVER = -40.0  # logarithm of a share that is next to nothing
 
 
@@ -46,7 +47,7 @@ class FarPressures:
         self.part = part
         self.rates, self.weights = exponentials(d.curvature, HALO + 1)
         self.terms, self.decay = len(self.rates), np.exp(-self.rates)
-        self.told = 4 * self.terms + 3
+        self.told = 4 * self.terms + SUMS
         self.on_left, self.on_right = part > 0, part < len(cuts) - 2  # is there another part
         self._fade = np.exp(-self.rates * HALO)
         self._shares = self._shares_of(cuts, part)
@@ -65,18 +66,10 @@ class FarPressures:
                 shares[other, 1 if beside else 3] = np.exp(-self.rates * gap)
         return shares
 
-    def tell(self, pressure):
-        """What this part tells of its own pressures, shape (told,)."""
-        told, outer = np.zeros(self.told), np.zeros(self.terms)
-        moments = told[: 4 * self.terms].reshape(4, self.terms)
-        for k, there, towards in ((0, self.on_right, pressure[::-1]), (1, self.on_left, pressure)):
-            if there:
-                add_moments(towards[HALO:], self.decay, moments[k])
-                outer[:] = 0.0
-                add_moments(towards[:HALO], self.decay, outer)
-                moments[k + 2] = self._fade * moments[k] + outer
-        told[-3:] = self.deflection.sums(pressure)
-        return told
+    def tell(self, pressure, told):
+        """Fill in what this part tells of its own pressures, shape (told,)."""
+        sides = self.on_right, self.on_left
+        fill_in_told(pressure, sides, self.decay, self._fade, self.deflection.under_sums, told)
 
     def outside(self, told):
         """What all others do to this part.
@@ -89,17 +82,69 @@ class FarPressures:
         -------
         deflection.Outside
         """
-        moments = (told[:, :-3].reshape(-1, 4, self.terms) * self._shares).sum(axis=0)
-        moments = self.weights * (moments[:2] + moments[2:])
-        curvature = np.zeros(self.deflection.last - self.deflection.first)
-        for there, moment, rows in (
-            (self.on_left, moments[0], curvature),
-            (self.on_right, moments[1], curvature[::-1]),
-        ):
-            if there:
-                add_terms(moment, self.decay, rows)
-        sums = told[:, -3:]
-        return Outside(curvature, sums.sum(axis=0) - sums[self.part])
+        outside = Outside(np.empty(self.deflection.last - self.deflection.first), np.empty(SUMS))
+        sides = self.on_left, self.on_right
+        fill_in_outside(told, self.part, self._shares, sides, self.weights, self.decay, *outside)
+        return outside
+
+
+@compiled
+def fill_in_told(pressure, sides, decay, fade, under_sums, told):
+    """Fill in moments and sums, see :meth:`FarPressures.tell`.
+
+    Parameters
+    ----------
+    pressure : ndarray, shape (nodes,)
+    sides : pair of bool
+        Is there another part to the right, to the left.
+    decay, fade : ndarray, shape (terms,)
+        What is left of a moment a node and `HALO` nodes further.
+    under_sums : ndarray, shape (3, nodes)
+    told : ndarray, shape (4 terms + 3,)
+    """
+    terms = len(decay)
+    told[:] = 0.0
+    for k in range(2):
+        if sides[k]:
+            towards = pressure[::-1] if k == 0 else pressure[::1]
+            inner, all_of_it = told[k * terms : (k + 1) * terms], told[(k + 2) * terms : (k + 3) * terms]
+            add_moments(towards[HALO:], decay, inner)
+            add_moments(towards[:HALO], decay, all_of_it)
+            for m in range(terms):
+                all_of_it[m] += fade[m] * inner[m]
+    for k in range(len(under_sums)):
+        for node in range(len(pressure)):
+            told[4 * terms + k] += under_sums[k, node] * pressure[node]
+
+
+@compiled
+def fill_in_outside(told, part, shares, sides, weights, decay, curvature, sums):
+    """Fill in curvature and sums, see :meth:`FarPressures.outside`.
+
+    Parameters
+    ----------
+    told : ndarray, shape (parts, 4 terms + 3)
+    part : int
+    shares : ndarray, shape (parts, 4, terms)
+    sides : pair of bool
+        Is there another part to the left, to the right.
+    weights, decay : ndarray, shape (terms,)
+    curvature : ndarray, shape (nodes,)
+    sums : ndarray, shape (3,)
+    """
+    terms, moments = len(decay), np.empty(len(decay))
+    curvature[:], sums[:] = 0.0, 0.0
+    for k in range(2):
+        if sides[k]:
+            moments[:] = 0.0
+            for other in range(len(told)):
+                for m in range(terms):
+                    moments[m] += shares[other, k, m] * told[other, k * terms + m]
+                    moments[m] += shares[other, k + 2, m] * told[other, (k + 2) * terms + m]
+            add_terms(weights * moments, decay, curvature[::1] if k == 0 else curvature[::-1])
+    for other in range(len(told)):
+        if other != part:
+            sums += told[other, 4 * terms :]
 
 
 @compiled(fastmath={"contract"})

@@ -142,13 +142,22 @@ def reynolds_product(derivatives, v_q, v_h, first, out):
         Node of the first row.
     out : ndarray, shape (rows,)
     """
-    last = len(v_q) - 1
-    for row in range(len(derivatives)):
-        total = 0.0
-        for k in range(4):
-            node = min(max(first + row + k - 2, 0), last)
-            total += derivatives[row, 2 * k] * v_q[node] + derivatives[row, 2 * k + 1] * v_h[node]
-        out[row] = total
+    first, last = unsigned(first), unsigned(len(v_q) - 1)
+    for row in range(unsigned(len(derivatives))):
+        here = first + row
+        left = here - ONE if here > 0 else here
+        behind = left - ONE if left > 0 else left
+        right = here + ONE if here < last else here
+        out[row] = (
+            derivatives[row, 0] * v_q[behind]
+            + derivatives[row, 1] * v_h[behind]
+            + derivatives[row, 2] * v_q[left]
+            + derivatives[row, 3] * v_h[left]
+            + derivatives[row, 4] * v_q[here]
+            + derivatives[row, 5] * v_h[here]
+            + derivatives[row, 6] * v_q[right]
+            + derivatives[row, 7] * v_h[right]
+        )
 
 
 @compiled

@@ -70,7 +70,7 @@ class Exchange:
         mine, edge, rank = self._mine, self.edge, self.ranks.rank
         mine[:edge], mine[edge : 2 * edge] = nodes[:HALO].ravel(), nodes[-HALO:].ravel()
         mine[2 * edge] = vector[-1]  # h00 on the last rank
-        mine[2 * edge + 1 :] = self.far.tell(pressure(nodes))
+        self.far.tell(pressure(nodes), mine[2 * edge + 1 :])
         self.ranks.Allgather(mine, self._all)
         parts = [nodes]
         if rank > 0:

@@ -76,12 +76,12 @@ def load_compiled():
     scales = Scales.of(case)
     problem, one = EHLProblem(case, scales, 1.0, 0, scales.nx), np.ones(scales.nx)
     found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
-    problem.product(found.relations, found.reynolds_derivatives, one, one, 0.0)
+    step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
+    now.flags.writeable = False  # as PETSc gives it
+    problem.product(found.relations, found.reynolds_derivatives, now, 0.0)
     reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
     extrapolated(one, one, 1.0)
     carried(one, 1.0)
-    step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
-    now.flags.writeable = False  # as PETSc gives it
     step_limits.change(problem.model, False, now, step)
     step_limits.keep(problem.model, False, now, step, None)
 

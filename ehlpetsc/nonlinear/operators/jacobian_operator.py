@@ -101,8 +101,7 @@ class JacobianOperator(BandSystem, Restrictable):
     def times(self, v):
         """Product with the local part of a vector, of all ranks together."""
         nodes, h00, outside = self.exchange(v, self._pressure)
-        v_q, v_w = np.ascontiguousarray(nodes.T)
-        return self.problem.product(self.relations, self.reynolds_derivatives, v_q, v_w, h00, outside)
+        return self.problem.product(self.relations, self.reynolds_derivatives, nodes, h00, outside)
 
     def _pressure(self, nodes):
         own, r = self.problem.own, self.relations
