@@ -1,5 +1,7 @@
 """Result files for the tests of post-processing: Hertz pressure with ripples that travel with surfaces."""
 
+from functools import cached_property
+
 import h5py
 import numpy as np
 
@@ -32,7 +34,7 @@ def ground_profile(s, seed, correlation=12e-6, ra=0.1e-6):
 
 
 class Scene:
-    """Nodes, times, profiles and loads; `pressure(k)`, `shear(k)` of frame k.
+    """Nodes, times, profiles and loads; `pressure(k)` of frame k, `pressures` of all.
 
     The pressure is Hertz's, times 1 + ripple of both profiles where they are at that time.
     """
@@ -58,6 +60,11 @@ class Scene:
         )
         p = np.clip(self.hertz * (1 + self.ripple * height), 0, None)
         return p * LOAD / (p.sum() * self.dx)  # as a run balances it
+
+    @cached_property
+    def pressures(self):
+        """Pressure (frames, nodes): found once, as many files are written of one scene."""
+        return np.array([self.pressure(k) for k in range(self.time.size)])
 
 
 def write(
@@ -99,16 +106,10 @@ def write(
             status="done",
         )
         file["x"], file["time"], file["step"] = scene.x, scene.time[kept], kept
-        shape = (kept.size, scene.x.size)
-        sets = {
-            name: file.create_dataset(name, shape, dtype, maxshape=(None, shape[1]), chunks=(8, shape[1]))
-            for name in ("pressure", "shear_stress_slow", "shear_stress_fast")
-        }
-        for row, k in enumerate(kept):
-            p = scene.pressure(k)
-            sets["pressure"][row] = p
-            sets["shear_stress_slow"][row] = friction * p
-            sets["shear_stress_fast"][row] = -friction * p
+        p, nx = scene.pressures[kept], scene.x.size
+        loads = {"pressure": p, "shear_stress_slow": friction * p, "shear_stress_fast": -friction * p}
+        for name, values in loads.items():
+            file.create_dataset(name, data=values.astype(dtype), maxshape=(None, nx), chunks=(8, nx))
         for name, u in (("fast", scene.u1), ("slow", scene.u2)):
             file[f"surface/{name}/s"], file[f"surface/{name}/z"] = scene.profiles[name]
             file[f"surface/{name}"].attrs["speed"] = u

@@ -9,7 +9,7 @@ pytestmark = pytest.mark.slow
 
 
 def test_nonsense_ends_in_words(tmp_path):
-    numbers = ["--cases", "60", "--results", "12", "--restarts", "24", "--options", "4", "--layouts", "30"]
+    numbers = ["--cases", "40", "--results", "8", "--restarts", "16", "--options", "3", "--layouts", "20"]
     words = [PYTHON, ROOT / "tests" / "fuzz" / "all.py", "--seed", "3", *numbers]
     done = subprocess.run(words, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr

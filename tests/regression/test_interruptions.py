@@ -65,13 +65,14 @@ def test_signals_to_a_run_of_one_process(tmp_path, name):
 @pytest.mark.slow
 def test_a_step_that_lasts_is_not_waited_for(tmp_path):
     """mpirun kills a second after the signal: the state before the step in hand is saved by then."""
-    never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip"]
+    never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip", "-snes_monitor"]
     before = start(*LONG, cwd=tmp_path)
     wait_for(tmp_path / "r.h5", before)
     before.send_signal(signal.SIGTERM)
     ended(before)
     process = start(*LONG, "-ehl_restart", "r.restart.h5", *never, cwd=tmp_path)
-    time.sleep(6.0)
+    told = next(line for line in process.stdout if line.lstrip().startswith("30 SNES "))
+    assert told, process.stderr.read()
     asked = time.monotonic()
     process.send_signal(signal.SIGTERM)
     ended(process)

@@ -111,7 +111,7 @@ def test_the_commands_work_from_any_folder(environment, tmp_path):
 
     case = ROOT / "cases" / "ridge.toml"
     short = [
-        "mesh.points_per_half_width=25",
+        "mesh.points_per_half_width=16",
         "mesh.inlet=-1.5",
         "mesh.outlet=1.3",
         "time.travel=3.5",

@@ -202,7 +202,7 @@ def test_a_crash_in_reading_names_what_was_read(supervisor):
 
 
 def test_a_read_that_never_returns(supervisor, monkeypatch):
-    monkeypatch.setattr(supervised, "READ_SECONDS", 2)
+    monkeypatch.setattr(supervised, "READ_SECONDS", 1)
 
     def hang():
         with reading("dataset time"):

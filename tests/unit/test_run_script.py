@@ -27,6 +27,9 @@ sys.exit(int(os.environ.get("STATUS", "0")))
 """
 
 
+AT_ONCE = {"OMPI_MCA_odls_base_sigkill_timeout": "0"}  # where no rank is left for mpirun to wait for
+
+
 @pytest.fixture
 def script(tmp_path):
     """A copy of the script beside a stand-in for the package."""
@@ -74,7 +77,7 @@ def test_more_ranks_than_cores_run(script):
 
 @pytest.mark.parametrize("status", [1, 2, 3, 4])
 def test_the_exit_status_is_that_of_the_run_without_comment(script, status):
-    done = script("case.toml", STATUS=str(status))
+    done = script("case.toml", STATUS=str(status), **AT_ONCE)
     assert done.returncode == status
     assert done.stderr == ""
 
@@ -147,17 +150,17 @@ def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=
     with subprocess.Popen(
         command,
         cwd=folder,
-        env={"PATH": "/usr/bin:/bin"},
+        env={"PATH": "/usr/bin:/bin"} | (AT_ONCE if ranks == 1 else {}),
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a shell's job
         **pipes,
     ) as job:
-        for _ in range(600):
+        for _ in range(3000):
             if len(list(folder.glob("ready*"))) == ranks if wait else catches(job.pid, signal.SIGUSR1):
                 break
-            time.sleep(0.1)
-        for name in names:
+            time.sleep(0.02)
+        for number, name in enumerate(names):
+            time.sleep(1.0 if number else 0.0)
             job.send_signal(signal.Signals[name])
-            time.sleep(1)
         stdout, stderr = job.communicate(timeout=60)
     return subprocess.CompletedProcess(command, job.returncode, stdout, stderr)
 
