@@ -280,3 +280,8 @@ def test_labels_of_an_axis_do_not_overlap(tmp_path, monkeypatch):
             boxes = [label.get_window_extent() for label in shown]
             assert len(boxes) >= 2
             assert all(one.x1 < other.x0 for one, other in zip(boxes, boxes[1:], strict=False))
+            low, high = axes.get_ylim()
+            shown = [label for label in axes.get_yticklabels() if low <= label.get_position()[1] <= high]
+            boxes = [label.get_window_extent() for label in shown]
+            assert len(boxes) >= 2
+            assert all(one.y1 < other.y0 for one, other in zip(boxes, boxes[1:], strict=False))

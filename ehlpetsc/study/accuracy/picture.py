@@ -61,9 +61,10 @@ def _panel(axis, rows, measure, cost):
     axis.axhline(_shown(rows[0][measure]), color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
     axis.set_xscale("log")
     axis.set_yscale("log")
-    axis.xaxis.set_major_locator(FixedLocator(ticks(*axis.get_xlim())))
-    axis.xaxis.set_minor_locator(NullLocator())
-    axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    for line, limits in ((axis.xaxis, axis.get_xlim()), (axis.yaxis, axis.get_ylim())):
+        line.set_major_locator(FixedLocator(ticks(*limits)))
+        line.set_minor_locator(NullLocator())
+        line.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.grid(True, which="major", lw=0.3)
 
 
