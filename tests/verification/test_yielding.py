@@ -18,7 +18,7 @@ RIDGE = (
     "surface.slow.scale=6",
     "fluid.viscosity=0.002",
     "time.travel=3.5",
-    "time.courant=0.8",
+    "time.courant=1.2",
 )
 
 
