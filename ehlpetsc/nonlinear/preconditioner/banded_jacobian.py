@@ -14,6 +14,7 @@ from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.nonlinear.operators.jacobian_operator import leaks
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
+from ehlpetsc.nonlinear.preconditioner.loops import put
 
 FILMS = np.array([1, 0, SIZE - 2, SIZE - 1])  # places in a group of its nodes' films
 FIRST_SUM = 2
@@ -193,12 +194,7 @@ class BandedJacobian:
             As :class:`.block_lu.BlockLU` takes them.
         """
         self._fill_deflection(entries)
-        derivatives = entries.reynolds_derivatives
-        if len(dropped):
-            derivatives = derivatives.copy()
-            derivatives[dropped] = 0.0
-            derivatives[dropped, OWN + 1] = 1.0
-        self.values[self.reynolds_place] = derivatives
+        put(entries.reynolds_derivatives, self.reynolds_place, dropped, OWN + 1, self.values)
         return self.columns
 
     def _fill_deflection(self, entries):

@@ -14,8 +14,8 @@ import numpy as np
 
 from ehlpetsc.nonlinear.exchange import everywhere
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, RIGHT, SIZE, BlockLU
+from ehlpetsc.nonlinear.preconditioner.loops import is_close, scatter, tips, without
 from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
-from ehlpetsc.nonlinear.preconditioner.spike_loops import is_close, scatter, tips, without
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
 
@@ -55,7 +55,7 @@ class SpikeLU:
         g = self._columns(columns[0, :LEFT], columns[-1, LEFT + SIZE :])
         tips(g, self.shown, e.place, e.dense, self.tips_of_g[: len(g)])
         self.coupling = self.reduced.rows_of_inverse(self._everyone(self.tips_of_g))
-        self.spread = g[:, e.place]
+        self.g = g
 
     def _columns(self, left, right):
         """G of this rank, from what its outer groups take from their neighbours, or from the mesh's ends."""
@@ -106,5 +106,5 @@ class SpikeLU:
         mine[0, -1] -= load
         w = self.coupling @ self._everyone(mine[0]).ravel()
         solution = np.empty(len(e.place))
-        without(y[0], e.place, w[:-1], self.spread, solution)
+        without(y[0], e.place, w[:-1], self.g, solution)
         return solution, w[-1]

@@ -1,4 +1,4 @@
-"""Compiled loops of SPIKE over a rank's unknowns."""
+"""Compiled loops of the preconditioner over a rank's unknowns."""
 
 from ehlpetsc.compiled import compiled
 
@@ -38,14 +38,44 @@ def tips(y, shown, places, dense, out):
         out[r, len(shown)], out[r, len(shown) + 1], out[r, len(shown) + 2] = first, second, load
 
 
-@compiled
-def without(y, places, w, spread, out):
-    """Fill in the local unknowns of y at their places, less what the unknowns w add through `spread`."""
+@compiled(fastmath={"contract"})
+def without(y, places, w, g, out):
+    """Fill in the local unknowns of y at their places, less what the unknowns w add by g; changes y.
+
+    Parameters
+    ----------
+    y : ndarray, shape (order,)
+    places : ndarray of int
+    w : ndarray, shape (columns,)
+    g : ndarray, shape (columns, order)
+    out : ndarray
+    """
+    for k in range(len(w)):
+        for j in range(len(y)):
+            y[j] -= w[k] * g[k, j]
     for i in range(len(places)):
-        value = y[places[i]]
-        for k in range(len(w)):
-            value -= w[k] * spread[k, i]
-        out[i] = value
+        out[i] = y[places[i]]
+
+
+@compiled
+def put(entries, places, dropped, diagonal, values):
+    """Put rows of entries at their places among values; of a row dropped, a one on its diagonal alone.
+
+    Parameters
+    ----------
+    entries : ndarray, shape (rows, width)
+    places : ndarray of int, shape (rows, width)
+    dropped : ndarray of int
+    diagonal : int
+        Column of the entry on the diagonal.
+    values : ndarray
+    """
+    for i in range(entries.shape[0]):
+        for k in range(entries.shape[1]):
+            values[places[i, k]] = entries[i, k]
+    for i in dropped:
+        for k in range(entries.shape[1]):
+            values[places[i, k]] = 1.0 if k == diagonal else 0.0
 
 
 @compiled
