@@ -235,7 +235,7 @@ def main(arguments=None):
             print(_about(one), _about(other), sep="\n")
             print(table(differences, float(one.attrs["a"]), options.rtol, options.atol))
     except OutputError as error:
-        print(f"ehlpetsc.analysis.compare: {error}", file=sys.stderr)
+        print(f"ehlpetsc.compare: {error}", file=sys.stderr)
         return ExitStatus.BAD_INPUT
     faults += [d.name for d in differences if not d.same(options.rtol, options.atol)]
     allowed = f"(rtol {options.rtol:g}, atol {options.atol:g})"

@@ -100,7 +100,7 @@ def test_missing_field_and_unlike_end_are_differences(tmp_path, result, capsys):
 
 def test_bad_input_is_told_in_words(tmp_path, result, capsys):
     status, _, text = run(capsys, result, tmp_path / "no.h5")
-    assert (status, text) == (2, f"ehlpetsc.analysis.compare: {tmp_path / 'no.h5'}: no such file\n")
+    assert (status, text) == (2, f"ehlpetsc.compare: {tmp_path / 'no.h5'}: no such file\n")
     with pytest.raises(SystemExit) as stop:
         main([str(result), str(result), "--rtol", "-1"])
     assert stop.value.code == 2
