@@ -225,6 +225,7 @@ def test_a_solver_without_bounds_does_for_full_films_and_no_others(case, tmp_pat
     assert "not converged: steady start" in done.stderr
 
 
+@pytest.mark.slow
 def test_options_left_speaks_of_the_users_options_alone(case, tmp_path):
     words = ["-options_left", "-ehl_output", "f.h5", "-snes_monitr", "-ksp_rtol", "1e-7"]
     for ranks in (0, 2):

@@ -122,6 +122,7 @@ def layouts():
             yield 'title = "t"\n' + "".join([*top, *order])
 
 
+@pytest.mark.slow
 def test_what_is_stored_is_what_is_run_whatever_the_layout(tmp_path):
     path, count = tmp_path / "case.toml", 0
     for text in layouts():

@@ -146,7 +146,7 @@ def test_a_signal_while_everything_is_being_imported(number, result, tmp_path):
 
 @pytest.mark.slow
 def test_sigterm_at_work_and_going_on(scene, tmp_path):
-    depths = tuple(0.05 * k for k in range(16))
+    depths = tuple(0.05 * k for k in range(10))
     path, output = write(tmp_path / "run.h5", scene, depths=depths), tmp_path / "run.post.h5"
     process = subprocess.Popen([*COMMAND, path], cwd=ROOT, stderr=subprocess.PIPE, text=True)
     while not list(tmp_path.glob("run.post.h5.parts/*.npy")):

@@ -45,6 +45,7 @@ def assert_same(problem, newton, swept, rtol):
     np.testing.assert_allclose(np.maximum(swept[0], 0.0), np.maximum(newton[0], 0.0), rtol=rtol, atol=floor)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", CONTACTS)
 def test_same_film_pressure_and_contacts_as_newton(rough, step):
     found = []

@@ -131,6 +131,7 @@ def test_pressure_is_flat_over_the_width_that_the_load_asks_for(share, mesh):
     assert flat == pytest.approx(simulation.scales.load / bound, abs=3.0 * simulation.scales.dx)
 
 
+@pytest.mark.slow
 def test_pressure_converges_with_the_mesh_far_beyond_yield():
     """At p0 = 2 p_y, against the finest mesh: first order, for the edge falls to zero within a few nodes."""
     meshes, finest = (25, 50, 100, 200, 400, 800), 1600
