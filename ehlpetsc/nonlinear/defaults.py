@@ -26,8 +26,15 @@ DEFAULTS = {
 # below 1e-5; mixed contact promises the oil's balance to 1e-6, which is what 1e-7 gives.
 ATOL = {"direct": "1e-5", "mixed": "1e-7"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
+# PETSc's LU and ILU do not exchange rows, and pivots of the deflection's rows come out as zero by chance
+OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
 
-OWN = {*DEFAULTS.items(), *PRECONDITIONER.items(), *(("snes_atol", value) for value in ATOL.values())}
+OWN = {
+    *DEFAULTS.items(),
+    *PRECONDITIONER.items(),
+    *OTHERS.items(),
+    *(("snes_atol", value) for value in ATOL.values()),
+}
 
 READ_AT_THE_END = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
@@ -83,7 +90,7 @@ class RunOptions:
         self.users = set(wanted)
         check_options(wanted, len(self._defaults) + len(PRECONDITIONER))
         own = wanted.get("pc_type", PRECONDITIONER["pc_type"]) == PRECONDITIONER["pc_type"]
-        wanted = self._defaults | (PRECONDITIONER if own else {}) | wanted
+        wanted = self._defaults | (PRECONDITIONER if own else OTHERS) | wanted
         self.views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
         changed = [name for name in [*self._entered, *self.views] if name in there]

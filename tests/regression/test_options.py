@@ -179,6 +179,14 @@ def test_the_type_python_alone_is_the_programs_own_preconditioner(case, tmp_path
     assert {**own, "wall": 0} == {**told, "wall": 0}
 
 
+def test_a_pivot_of_petscs_lu_that_comes_out_as_zero_is_shifted_unless_the_user_says_not(case, tmp_path):
+    words = ["-pc_type", "lu", "-ehl_overwrite"]
+    words += [*settings("mesh.points_per_half_width=40", "mesh.inlet=-4.0", "mesh.near_field=7")]
+    done = run(case, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert run(case, *words, "-pc_factor_shift_type", "none", cwd=tmp_path).returncode == 3
+
+
 def test_more_options_than_petscs_table_holds_are_refused(case, tmp_path):
     with_petsc_table(case, "\n".join(f"option_{n} = 1" for n in range(520)))
     done = run(case, cwd=tmp_path)
