@@ -100,11 +100,9 @@ def damage_of_points(stress, lengths, nu, channels, options, constants, table, w
         for channel in channels:
             if channel == 3:
                 _fill_von_mises(history, nu, scalar)
-                n = find_cycles(scalar[: lengths[point]], options[0], stack, first, second, weight)
-            else:
-                n = find_cycles(history[channel], options[0], stack, first, second, weight)
-                if options[1]:
-                    scalar[: lengths[point]] = history[channel]
+            else:  # copied, so that counting is compiled once for all kinds of histories
+                scalar[: lengths[point]] = history[channel]
+            n = find_cycles(scalar[: lengths[point]], options[0], stack, first, second, weight)
             total, number, largest = _sum_cycles(
                 history, scalar, nu, n, first, second, weight, options, constants, table, equivalent
             )
