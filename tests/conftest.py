@@ -44,6 +44,17 @@ DEAREST = (  # files by the time they take, those of about five seconds and more
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
+TAKEN = signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGPIPE  # by commands, for good
+
+
+@pytest.fixture(autouse=True)
+def signals_as_before():
+    """A command called in a test keeps its hold on signals; processes of later tests would inherit it."""
+    before = {number: signal.getsignal(number) for number in TAKEN}
+    yield
+    for number, handler in before.items():
+        if signal.getsignal(number) is not handler:
+            signal.signal(number, handler)
 
 
 def pytest_collection_modifyitems(items):
