@@ -156,7 +156,8 @@ def test_all_passes_are_expected(monkeypatch):
     "name, overrides, ranks",
     [
         ("table1_rough.toml", (), 1),
-        ("table1_rough.toml", ("mesh.points_per_half_width=500",), 2),
+        ("table1_rough.toml", ("mesh.points_per_half_width=900",), 1),
+        ("table1_rough.toml", ("mesh.points_per_half_width=1000",), 2),
         ("fig4.toml", (), 2),
     ],
 )

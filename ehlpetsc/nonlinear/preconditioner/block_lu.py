@@ -4,7 +4,7 @@ r"""LU of a block tridiagonal matrix, with dense inverses of what is left of its
    y_i=S_i^{-1}(b_i-L_iy_{i-1}),\quad x_i=y_i-W_ix_{i+1}.
 
 Rows are exchanged within a block alone. L contains some of the unknowns of the group before, U some of the
-group behind. A solve is three products of small matrices with vectors in each group, a fifth of the time of
+group behind. A solve is three products of small matrices with vectors in each group, a sixth of the time of
 LAPACK's substitution in a band; the factors take half as long as LAPACK's.
 
 All matrices are kept by columns, each with room for `LINE` numbers, three vectors of the processor. Numba
