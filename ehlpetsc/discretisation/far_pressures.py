@@ -11,17 +11,16 @@ and all pressures to the left of a part's window enter its rows by M moments,
    A_m=\sum_{j<s}p_je^{-\lambda_m(s-1-j)},\quad s=first-H,
 
 those to the right by as many. Every part tells the moments of its own nodes; each adds up what the others
-tell.
+tell. Nodes are taken in blocks: most of it is one product of matrices.
 """
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.curvature_product import exponentials
+from ehlpetsc.discretisation.curvature_product import BLOCK, exponentials
 from ehlpetsc.discretisation.deflection import HALO, Outside
 
 SUMS = 3  # of :meth:`.deflection.Deflection.sums`
-LEFT_OVER = -40.0  # logarithm of a share that is next to nothing
 
 
 class FarPressures:
@@ -46,11 +45,16 @@ class FarPressures:
         self.deflection = d = deflection
         self.part = part
         self.rates, self.weights = exponentials(d.curvature, HALO + 1)
-        self.terms, self.decay = len(self.rates), np.exp(-self.rates)
+        self.terms, local = len(self.rates), d.last - d.first
         self.told = 4 * self.terms + SUMS
         self.on_left, self.on_right = part > 0, part < len(cuts) - 2  # is there another part
-        self._fade = np.exp(-self.rates * HALO)
+        self._others = np.arange(len(cuts) - 1) != part
         self._shares = self._shares_of(cuts, part)
+        self._of_node = np.exp(-self.rates * np.arange(BLOCK)[:, None])
+        self._by_term = self._of_node.T.copy()
+        self._over_halo, self._over_block = np.exp(-self.rates * HALO), np.exp(-self.rates * BLOCK)
+        blocks = -(-local // BLOCK)
+        self._pressures, self._moments = np.zeros((blocks, BLOCK)), np.empty((blocks, self.terms))
 
     def _shares_of(self, cuts, part):
         """By what the moments told by every part count here, shape (parts, 4, terms)."""
@@ -67,9 +71,21 @@ class FarPressures:
         return shares
 
     def tell(self, pressure, told):
-        """Fill in what this part tells of its own pressures, shape (told,)."""
-        sides = self.on_right, self.on_left
-        fill_in_told(pressure, sides, self.decay, self._fade, self.deflection.under_sums, told)
+        """Fill in `told`, shape (told,), by the local pressures."""
+        told[:] = 0.0
+        moments = told[: 4 * self.terms].reshape(4, self.terms)
+        if self.on_right:
+            self._fill_in(pressure[::-1], moments[0], moments[2])
+        if self.on_left:
+            self._fill_in(pressure, moments[1], moments[3])
+        told[4 * self.terms :] = self.deflection.sums(pressure)
+
+    def _fill_in(self, pressure, inner, whole):
+        """Moments at the first node of pressures without the `HALO` first ones, and of all."""
+        self._pressures.ravel()[: len(pressure) - HALO] = pressure[HALO:]
+        np.dot(self._pressures, self._of_node, out=self._moments)
+        add_up(self._moments, self._over_block, inner)
+        whole[:] = pressure[:HALO] @ self._of_node[:HALO] + self._over_halo * inner
 
     def outside(self, told):
         """What all others do to this part.
@@ -82,109 +98,37 @@ class FarPressures:
         -------
         deflection.Outside
         """
-        outside = Outside(np.empty(self.deflection.last - self.deflection.first), np.empty(SUMS))
-        sides = self.on_left, self.on_right
-        fill_in_outside(told, self.part, self._shares, sides, self.weights, self.decay, *outside)
-        return outside
+        terms, local = self.terms, self.deflection.last - self.deflection.first
+        moments = (self._shares * told[:, : 4 * terms].reshape(self._shares.shape)).sum(axis=0)
+        curvature = np.zeros(local)
+        if self.on_left:
+            curvature += self._sums(moments[0] + moments[2])[:local]
+        if self.on_right:
+            curvature += self._sums(moments[1] + moments[3])[local - 1 :: -1]
+        return Outside(curvature, self._others @ told[:, 4 * terms :])
+
+    def _sums(self, moments):
+        """Of exponentials, at nodes one after the other; with those that fill up the last block."""
+        fade(self.weights * moments, self._over_block, self._moments)
+        return np.dot(self._moments, self._by_term).ravel()
 
 
 @compiled
-def fill_in_told(pressure, sides, decay, fade, under_sums, told):
-    """Fill in moments and sums, see :meth:`FarPressures.tell`.
+def add_up(of_blocks, over_block, moments):
+    """Fill in the moments, shape (terms,), of all blocks by those of each, shape (blocks, terms).
 
-    Parameters
-    ----------
-    pressure : ndarray, shape (nodes,)
-    sides : pair of bool
-        Is there another part to the right, to the left.
-    decay, fade : ndarray, shape (terms,)
-        What is left of a moment a node and `HALO` nodes further.
-    under_sums : ndarray, shape (3, nodes)
-    told : ndarray, shape (4 terms + 3,)
+    `over_block` (terms,) is what is left of a moment a block further.
     """
-    terms = len(decay)
-    told[:] = 0.0
-    for k in range(2):
-        if sides[k]:
-            towards = pressure[::-1] if k == 0 else pressure[::1]
-            inner, all_of_it = told[k * terms : (k + 1) * terms], told[(k + 2) * terms : (k + 3) * terms]
-            add_moments(towards[HALO:], decay, inner)
-            add_moments(towards[:HALO], decay, all_of_it)
-            for m in range(terms):
-                all_of_it[m] += fade[m] * inner[m]
-    for k in range(len(under_sums)):
-        for node in range(len(pressure)):
-            told[4 * terms + k] += under_sums[k, node] * pressure[node]
+    moments[:] = 0.0
+    for b in range(len(of_blocks) - 1, -1, -1):
+        for m in range(len(moments)):
+            moments[m] = moments[m] * over_block[m] + of_blocks[b, m]
 
 
 @compiled
-def fill_in_outside(told, part, shares, sides, weights, decay, curvature, sums):
-    """Fill in curvature and sums, see :meth:`FarPressures.outside`.
-
-    Parameters
-    ----------
-    told : ndarray, shape (parts, 4 terms + 3)
-    part : int
-    shares : ndarray, shape (parts, 4, terms)
-    sides : pair of bool
-        Is there another part to the left, to the right.
-    weights, decay : ndarray, shape (terms,)
-    curvature : ndarray, shape (nodes,)
-    sums : ndarray, shape (3,)
-    """
-    terms, moments = len(decay), np.empty(len(decay))
-    curvature[:], sums[:] = 0.0, 0.0
-    for k in range(2):
-        if sides[k]:
-            moments[:] = 0.0
-            for other in range(len(told)):
-                for m in range(terms):
-                    moments[m] += shares[other, k, m] * told[other, k * terms + m]
-                    moments[m] += shares[other, k + 2, m] * told[other, (k + 2) * terms + m]
-            add_terms(weights * moments, decay, curvature[::1] if k == 0 else curvature[::-1])
-    for other in range(len(told)):
-        if other != part:
-            sums += told[other, 4 * terms :]
-
-
-@compiled(fastmath={"contract"})
-def add_moments(pressure, decay, moments):
-    """Add to the moments, shape (terms,), sums over pressures times ``decay**distance``, the first at 0.
-
-    Four nodes at once, since each product waits for the one before; none beyond which nothing is left.
-    """
-    for m in range(len(decay)):
-        d = decay[m]
-        d4 = d**4
-        reach = min(len(pressure), int(LEFT_OVER / np.log(d)) + 1)
-        blocks = reach // 4
-        a0 = a1 = a2 = a3 = 0.0
-        for j in range(reach - 1, 4 * blocks - 1, -1):
-            a0 = a0 * d + pressure[j]
-        for b in range(blocks - 1, -1, -1):
-            j = 4 * b
-            a0 = a0 * d4 + pressure[j]
-            a1 = a1 * d4 + pressure[j + 1]
-            a2 = a2 * d4 + pressure[j + 2]
-            a3 = a3 * d4 + pressure[j + 3]
-        moments[m] += a0 + d * (a1 + d * (a2 + d * a3))
-
-
-@compiled(fastmath={"contract"})
-def add_terms(moments, decay, rows):
-    """Add to the rows the sums of exponentials ``moments * decay**distance``, as :func:`add_moments` does."""
-    for m in range(len(decay)):
-        d, s = decay[m], moments[m]
-        d2, d4 = d * d, d**4
-        reach = min(len(rows), int(LEFT_OVER / np.log(d)) + 1)
-        blocks = reach // 4
-        for b in range(blocks):
-            i = 4 * b
-            rows[i] += s
-            rows[i + 1] += s * d
-            rows[i + 2] += s * d2
-            rows[i + 3] += s * d2 * d
-            s *= d4
-        for i in range(4 * blocks, reach):
-            rows[i] += s
-            s *= d
+def fade(moments, over_block, of_blocks):
+    """Fill in what is left of moments (terms,) at each block, shape (blocks, terms); changes `moments`."""
+    for b in range(len(of_blocks)):
+        for m in range(len(moments)):
+            of_blocks[b, m] = moments[m]
+            moments[m] *= over_block[m]
