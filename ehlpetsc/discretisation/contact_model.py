@@ -141,12 +141,13 @@ class DirectContact:
         self.thinnest = bound
         self.near = 0.0
 
+    def pressure(self, q, w):
+        """Total pressure in p0."""
+        return q if self.dry else np.maximum(q, 0.0)
+
     def relations(self, q, w):
         """See :class:`Relations`."""
-        if self.dry:
-            pressure, p_q = q, np.ones(len(q))
-        else:
-            pressure, p_q = np.maximum(q, 0.0), full_of_oil(q) * 1.0
+        pressure, p_q = self.pressure(q, w), np.ones(len(q)) if self.dry else full_of_oil(q) * 1.0
         return Relations(q, pressure, w, p_q, np.zeros(len(w)), np.ones(len(w)), w <= self.bound)
 
     def in_contact(self, w, imbalance):
@@ -183,10 +184,13 @@ class MixedContact:
         self.boundary_film, self.stiffness = boundary_film, stiffness
         self.thinnest = boundary_film
 
+    def pressure(self, q, w):
+        """Total pressure in p0."""
+        return self._elastic_pressure(q, w)
+
     def relations(self, q, w):
         """See :class:`Relations`."""
-        touching = w < 0.0
-        pressure = np.maximum(q, 0.0) + self._carried(w)
+        touching, pressure = w < 0.0, self._elastic_pressure(q, w)
         p_w = np.where(touching, -self.stiffness, 0.0)
         film = self.boundary_film + np.maximum(w, 0.0)
         return Relations(q, pressure, film, full_of_oil(q) * 1.0, p_w, np.where(touching, 0.0, 1.0), touching)
@@ -194,6 +198,9 @@ class MixedContact:
     def in_contact(self, w, imbalance):
         """Nodes whose solids carry, of a solution."""
         return w < 0.0
+
+    def _elastic_pressure(self, q, w):
+        return np.maximum(q, 0.0) + self._carried(w)
 
     def _carried(self, w):
         return self.stiffness * np.maximum(-w, 0.0)

@@ -50,6 +50,10 @@ class YieldingContact(MixedContact):
         finally:
             self.yield_pressure = limit
 
+    def pressure(self, q, w):
+        """Total pressure in p0, at most the yield pressure."""
+        return np.minimum(self._elastic_pressure(q, w), self.yield_pressure)
+
     def relations(self, q, w):
         """See :class:`.contact_model.Relations`."""
         elastic = super().relations(q, w)

@@ -171,7 +171,7 @@ class TwoFields:
         return self.problem.evaluate(q, w, h00, self.inputs, outside)
 
     def _pressure(self, nodes):
-        return self.model.relations(nodes[:, 0], nodes[:, 1]).pressure
+        return self.model.pressure(nodes[:, 0], nodes[:, 1])
 
     def linearise(self, x):
         """Set the matrices for x."""
