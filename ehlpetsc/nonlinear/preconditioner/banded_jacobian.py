@@ -9,12 +9,12 @@ its nodes; what its outer groups take of other ranks stands where a group before
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.nonlinear.operators.jacobian_operator import leaks
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
-from ehlpetsc.nonlinear.preconditioner.loops import put
 
 FILMS = np.array([1, 0, SIZE - 2, SIZE - 1])  # places in a group of its nodes' films
 FIRST_SUM = 2
@@ -218,3 +218,24 @@ class BandedJacobian:
             some = np.flatnonzero(film_changed[self.film_nodes])
             node = self.film_nodes[some]
             self.values[self.film_place[some]] = self.by_film[some] * film[node]
+
+
+@compiled
+def put(entries, places, dropped, diagonal, values):
+    """Put rows of entries at their places among values; of a row dropped, a one on its diagonal alone.
+
+    Parameters
+    ----------
+    entries : ndarray, shape (rows, width)
+    places : ndarray of int, shape (rows, width)
+    dropped : ndarray of int
+    diagonal : int
+        Column of the entry on the diagonal.
+    values : ndarray
+    """
+    for i in range(entries.shape[0]):
+        for k in range(entries.shape[1]):
+            values[places[i, k]] = entries[i, k]
+    for i in dropped:
+        for k in range(entries.shape[1]):
+            values[places[i, k]] = 1.0 if k == diagonal else 0.0

@@ -12,9 +12,9 @@ their deflection, and h00. The columns of G are solved for with every matrix; w 
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.nonlinear.exchange import everywhere
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, RIGHT, SIZE, BlockLU
-from ehlpetsc.nonlinear.preconditioner.loops import is_close, scatter, tips, without
 from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
@@ -105,6 +105,52 @@ class SpikeLU:
         tips(y, self.shown, e.place, e.dense, mine)
         mine[0, -1] -= load
         w = self.coupling @ self._everyone(mine[0]).ravel()
-        solution = np.empty(len(e.place))
-        without(y[0], e.place, w[:-1], self.g, solution)
-        return solution, w[-1]
+        return (y[0] - w[:-1] @ self.g).take(e.place), w[-1]
+
+
+@compiled
+def scatter(places, kept, b, y):
+    """Fill in y (1, order): zero but for what stands at some places, ``b[i]`` at ``places[kept[i]]``."""
+    y[:] = 0.0
+    for i in range(len(kept)):
+        y[0, places[kept[i]]] = b[i]
+
+
+@compiled
+def tips(y, shown, places, dense, out):
+    """Fill in what the small system needs of local solutions.
+
+    Parameters
+    ----------
+    y : ndarray, shape (solutions, order)
+    shown : ndarray of int
+        Places of the unknowns that other ranks take.
+    places : ndarray of int
+        Of the local unknowns, two a node.
+    dense : ndarray, shape (3, nodes)
+        Dense rows under the first unknowns.
+    out : ndarray, shape (solutions, shown + 3)
+    """
+    for r in range(len(y)):
+        for j in range(len(shown)):
+            out[r, j] = y[r, shown[j]]
+        first = second = load = 0.0
+        for node in range(dense.shape[1]):
+            pressure = y[r, places[2 * node]]
+            first += dense[0, node] * pressure
+            second += dense[1, node] * pressure
+            load += dense[2, node] * pressure
+        out[r, len(shown)], out[r, len(shown) + 1], out[r, len(shown) + 2] = first, second, load
+
+
+@compiled
+def is_close(derivatives, held, share):
+    """Whether no entry is off by more than a share of the largest one of its row."""
+    for i in range(len(held)):
+        largest = 0.0
+        for k in range(held.shape[1]):
+            largest = max(largest, abs(held[i, k]))
+        for k in range(held.shape[1]):
+            if not abs(derivatives[i, k] - held[i, k]) <= share * largest:
+                return False
+    return True
