@@ -4,7 +4,6 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from ehlpetsc.errors import PostError
@@ -14,6 +13,7 @@ from ehlpetsc.post.inputs.settings import parse_case, read_settings
 from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.pictures import plots
 from ehlpetsc.post.pictures.criteria import criteria_picture
+from ehlpetsc.post.pictures.distributions import depth_picture, ratio_picture
 from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
@@ -23,9 +23,6 @@ DPI = 160
 FORMATS = ("png", "svg")
 FIELD_DEPTH = 1.5  # half widths
 SECTION = 2.0  # half widths of profile shown, as in the paper
-TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
-    "telling", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
-)
 LAYER = 0.2  # half widths of depth in a picture of several results: damage under asperities ends above
 
 
@@ -153,39 +150,6 @@ def _aligned(result, surface, results):
     first_shown = max(first, last - SECTION * result.a) - 0.5 * (result.s[1] - result.s[0])
     result.complete[surface] &= (result.s >= first_shown) & (result.s <= last_shown)
     return result
-
-
-def _colours(count):
-    return [TELLING(k / max(count - 1, 1)) for k in range(count)]
-
-
-def depth_picture(result):
-    """Distributions of damage at the asperities of one surface, by depth (figure 10).
-
-    Bands: 90 % of the fits to asperities drawn anew; dashes: the fit of the largest likelihood.
-    """
-    figure = Figure(figsize=(6, 4), layout="constrained")
-    axes = figure.subplots()
-    for k, color in enumerate(_colours(len(result.z))):
-        plots.exceedance_curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
-        plots.sureness(axes, result.under[k], result.attrs["regression"], color)
-    plots.finish_exceedance(
-        axes, f"{result.height.size} asperities, {result.main} surface, slide/roll ratio {result.ratio:.3g}"
-    )
-    return figure
-
-
-def ratio_picture(results, z):
-    """Distributions at one depth, by slide/roll ratio (figures 11 and 12)."""
-    figure = Figure(figsize=(6, 4), layout="constrained")
-    axes = figure.subplots()
-    for result, color in zip(results, _colours(len(results)), strict=True):
-        k = int(np.argmin(np.abs(result.z - z)))
-        plots.exceedance_curve(
-            axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color
-        )
-    plots.finish_exceedance(axes, f"z/a = {z:g}, {results[0].main} surface")
-    return figure
 
 
 def field_picture(path, result, frame):

@@ -1,12 +1,10 @@
-"""Pictures of stresses, histories, damage and its distribution, each drawn into given axes."""
+"""Pictures of stresses, histories and damage, each drawn into given axes."""
 
 import numpy as np
-from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import MaxNLocator
 
 from ehlpetsc.post.fatigue.accumulate import CHANNELS
 from ehlpetsc.post.fatigue.cycles import rainflow
-from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
-from ehlpetsc.post.fatigue.weibull import LEVEL, WeibullLikelihood, weibull_bounds, weibull_likelihood
 from ehlpetsc.post.stresses.half_plane import von_mises
 
 DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
@@ -87,20 +85,6 @@ def utilisation_contours(figure, axes, result, surface, values, length):
     figure.colorbar(mesh, ax=axes, pad=0.01, ticks=ticks_within(levels))
 
 
-def sureness(axes, under, regression, color):
-    """Where the fitted share lies when asperities are drawn anew, and the fit of the largest likelihood."""
-    lives = log_life(under)
-    bounds, best = weibull_bounds(lives, regression), weibull_likelihood(lives)
-    if not (bounds.draws.size and np.isfinite(best.beta)):
-        return
-    damaged = under[under > 0]
-    values = np.logspace(np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5), 120)
-    drawn = [fitted_exceedance(values, WeibullLikelihood(*row)) for row in bounds.draws]
-    low, high = np.quantile(drawn, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
-    axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
-    axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
-
-
 def _depth_axis(z, gap):
     """Square root of depth, which opens up the layer near the surface, and ticks that do not crowd."""
     depth = np.sqrt(z)
@@ -110,35 +94,6 @@ def _depth_axis(z, gap):
         if not ticks or place - depth[ticks[-1]] >= gap:
             ticks.append(k)
     return depth, ticks
-
-
-def exceedance_curve(axes, under, fit, label, color):
-    """Share of asperities above a damage, with its Weibull fit."""
-    damaged = under[under > 0]
-    if not damaged.size:
-        axes.plot([], [], color=color, label=f"{label}: no damage")
-        return
-    falling, share = exceedance(under)
-    axes.plot(falling[falling > 0], share[falling > 0], ".", ms=3, color=color)
-    low, high = np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5)
-    values = np.logspace(low, max(high, low + 1), 300)
-    axes.plot(values, fitted_exceedance(values, fit), color=color, lw=1.2, label=label)
-
-
-def finish_exceedance(axes, title):
-    """Axes common to the distributions."""
-    axes.set_xscale("log")
-    low, high = np.log10(axes.get_xlim())
-    axes.set_xlim(10 ** np.floor(low), 10 ** np.ceil(high))
-    axes.xaxis.set_major_locator(LogLocator(10, numticks=12))
-    few = np.ceil(high) - np.floor(low) <= 3
-    axes.xaxis.set_minor_locator(LogLocator(10, subs=range(2, 10)) if few else NullLocator())
-    axes.set_ylim(0, 1)
-    axes.set_xlabel("damage D of one pass")
-    axes.set_ylabel("share of asperities above D")
-    axes.grid(color="0.92", which="both")
-    axes.set_title(title, fontsize=9)
-    legend_beside(axes)
 
 
 def legend_beside(axes):

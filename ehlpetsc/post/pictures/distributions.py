@@ -1,0 +1,88 @@
+"""Distributions of damage at the asperities: the share of them above a damage, with its Weibull fit."""
+
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
+
+from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
+from ehlpetsc.post.fatigue.weibull import LEVEL, WeibullLikelihood, weibull_bounds, weibull_likelihood
+from ehlpetsc.post.pictures.plots import legend_beside
+
+TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
+    "telling", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
+)
+
+
+def depth_picture(result):
+    """Distributions of damage at the asperities of one surface, by depth (figure 10).
+
+    Bands: 90 % of the fits to asperities drawn anew; dashes: the fit of the largest likelihood.
+    """
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    axes = figure.subplots()
+    for k, color in enumerate(_colours(len(result.z))):
+        _curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
+        _sureness(axes, result.under[k], result.attrs["regression"], color)
+    _finish(
+        axes, f"{result.height.size} asperities, {result.main} surface, slide/roll ratio {result.ratio:.3g}"
+    )
+    return figure
+
+
+def ratio_picture(results, z):
+    """Distributions at one depth, by slide/roll ratio (figures 11 and 12)."""
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    axes = figure.subplots()
+    for result, color in zip(results, _colours(len(results)), strict=True):
+        k = int(np.argmin(np.abs(result.z - z)))
+        _curve(axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color)
+    _finish(axes, f"z/a = {z:g}, {results[0].main} surface")
+    return figure
+
+
+def _colours(count):
+    return [TELLING(k / max(count - 1, 1)) for k in range(count)]
+
+
+def _curve(axes, under, fit, label, color):
+    """Share of asperities above a damage, with its Weibull fit."""
+    damaged = under[under > 0]
+    if not damaged.size:
+        axes.plot([], [], color=color, label=f"{label}: no damage")
+        return
+    falling, share = exceedance(under)
+    axes.plot(falling[falling > 0], share[falling > 0], ".", ms=3, color=color)
+    low, high = np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5)
+    values = np.logspace(low, max(high, low + 1), 300)
+    axes.plot(values, fitted_exceedance(values, fit), color=color, lw=1.2, label=label)
+
+
+def _sureness(axes, under, regression, color):
+    """Where the fitted share lies when asperities are drawn anew, and the fit of the largest likelihood."""
+    lives = log_life(under)
+    bounds, best = weibull_bounds(lives, regression), weibull_likelihood(lives)
+    if not (bounds.draws.size and np.isfinite(best.beta)):
+        return
+    damaged = under[under > 0]
+    values = np.logspace(np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5), 120)
+    drawn = [fitted_exceedance(values, WeibullLikelihood(*row)) for row in bounds.draws]
+    low, high = np.quantile(drawn, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
+    axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
+    axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
+
+
+def _finish(axes, title):
+    """Axes common to the distributions."""
+    axes.set_xscale("log")
+    low, high = np.log10(axes.get_xlim())
+    axes.set_xlim(10 ** np.floor(low), 10 ** np.ceil(high))
+    axes.xaxis.set_major_locator(LogLocator(10, numticks=12))
+    few = np.ceil(high) - np.floor(low) <= 3
+    axes.xaxis.set_minor_locator(LogLocator(10, subs=range(2, 10)) if few else NullLocator())
+    axes.set_ylim(0, 1)
+    axes.set_xlabel("damage D of one pass")
+    axes.set_ylabel("share of asperities above D")
+    axes.grid(color="0.92", which="both")
+    axes.set_title(title, fontsize=9)
+    legend_beside(axes)
