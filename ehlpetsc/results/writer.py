@@ -14,8 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.quantities import STEP_SCALARS, of_every_case
-from ehlpetsc.results.hdf5 import attributes
+from ehlpetsc.results.hdf5.attributes import change, put
 from ehlpetsc.results.hdf5.batch import Batch
 from ehlpetsc.results.hdf5.continuation import copy_up_to
 from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, last_row, lay_out, room
@@ -37,24 +36,13 @@ class ResultWriter:
     ----------
     path : str, path-like or None
         None: in memory, for :meth:`image`.
-    case_text, title : str
-        The case as run, and its title.
-    x : ndarray, shape (nx,)
-        Nodes [m].
-    scalars_attrs : dict
-        Root attributes: a, p0, h_scale, u1, u2, ranks, petsc_options ...; ``versions`` may be a dict of more
-        versions to name.
-    fields : list of str
-        Fields to store in a frame, keys of `ehlpetsc.quantities.FIELDS`.
+    layout : results.hdf5.datasets.Layout
+        What it stores.
+    attributes : dict
+        Root attributes: title and case (its text as run), a, p0, h_scale, u1, u2, ranks, petsc_options ...;
+        ``versions`` may be a dict of more versions to name.
     every : int
         Steps between stored frames.
-    precision : {"float64", "float32"}
-        Type of the stored fields.
-    profiles : dict
-        ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
-        fifth one tells whether there is room for a permanent set.
-    figures : list of str, optional
-        Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`; by default those that every case has.
     resume_step : int, optional
         Go on with the file at `path` after this step: what lies beyond is dropped. The file is copied, which
         also repairs one left by a killed run, and replaced when the copy is whole. Without a file at `path` a
@@ -73,42 +61,27 @@ class ResultWriter:
         The file cannot be written, or the one to resume does not fit the run.
     """
 
-    def __init__(
-        self,
-        path,
-        *,
-        case_text,
-        title,
-        x,
-        scalars_attrs,
-        fields,
-        every,
-        precision,
-        profiles,
-        figures=None,
-        resume_step=None,
-        contact_count=None,
-    ):
+    def __init__(self, path, layout, attributes, every=1, *, resume_step=None, contact_count=None):
         self.path = None if path is None else Path(path)
         self.every = every
-        self.contact_count = np.zeros(len(x), dtype="i8")
+        self.contact_count = np.zeros(len(layout.x), dtype="i8")
         self.written = None
         if contact_count is not None:
             self.contact_count[:] = contact_count
         beside = contextlib.nullcontext() if path is None else replacing(self.path)
         with self._plain_faults("not created"), beside as place:
             self._file = create(place)
-            with room(self._file, sum(8 * len(p[0]) * 3 for p in profiles.values() if p)):
-                self._root_attributes(case_text, title, dict(scalars_attrs))
-                lay_out(self._file, x, fields, figures or of_every_case(STEP_SCALARS), precision, profiles)
-                attributes.put(self._file, {"contents": " ".join(dataset_names(self._file))})
+            with room(self._file, sum(8 * len(p[0]) * 3 for p in layout.profiles.values() if p)):
+                self._root_attributes(attributes)
+                lay_out(self._file, layout)
+                put(self._file, {"contents": " ".join(dataset_names(self._file))})
             if place:
                 if resume_step is not None and self.path.exists():
                     self.contact_count[:] = copy_up_to(self._file, self.path, resume_step, contact_count)
                 self._file.swmr_mode = True
                 self._file.flush()
         self._last = self.written = last_row(self._file)
-        self._batch, self._flushed = Batch(self._file, len(x)), clock.monotonic()
+        self._batch, self._flushed = Batch(self._file, len(layout.x)), clock.monotonic()
 
     def append(self, step, time, fields, scalars, in_contact, frame=None):
         """Take an accepted time step.
@@ -206,17 +179,15 @@ class ResultWriter:
         with contextlib.suppress(Exception):  # the fault at hand is the one to tell
             close(self._file, "stopped")
 
-    def _root_attributes(self, case_text, title, more):
-        attrs = {
+    def _root_attributes(self, given):
+        own = {
             "format_version": FORMAT_VERSION,
-            "title": title,
-            "case": case_text,
-            "versions": versions(more.pop("versions", {})),
+            "versions": versions(given.get("versions", {})),
             "git_commit": git_commit(),
             "restarts": 0,
             "history": "[]",
             "status": "running",
             "limits": LIMITS_ROOM * " ",
         }
-        attributes.put(self._file, attrs | more)
-        attributes.change(self._file, "limits", "")
+        put(self._file, given | own)
+        change(self._file, "limits", "")

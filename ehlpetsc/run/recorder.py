@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.output_guard import Lock, check_place, check_replaceable, inputs_of
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.whole_file import remove_left
@@ -221,24 +222,23 @@ class Recorder:
         stored = of_case(FIELDS, case)
         attributes = {name: getattr(scales, name) for name in ("a", "p0", "u1", "u2")}
         attributes |= {
+            "title": case.title,
+            "case": case.text,
             "h_scale": scales.h,
             "ranks": self.comm.size,
             "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
             "versions": libraries(),
         }
-        self._writer = ResultWriter(
-            self.output,
-            case_text=case.text,
-            title=case.title,
+        layout = Layout(
             x=scales.x * scales.a,
-            scalars_attrs=attributes,
             fields=[name for name in case.output.fields if name in stored],
             figures=of_case(STEP_SCALARS, case),
-            every=case.output.every,
             precision=case.output.precision,
             profiles=profiles(self.simulation),
-            resume_step=step,
-            contact_count=count,
+        )
+        every = case.output.every
+        self._writer = ResultWriter(
+            self.output, layout, attributes, every, resume_step=step, contact_count=count
         )
 
 

@@ -9,7 +9,7 @@ SAME_PLACE = 1e-6  # mesh spacings: ways nearer than this differ by rounding
 
 
 def profiles(simulation):
-    """Both surfaces as `ehlpetsc.results.writer.ResultWriter` takes them.
+    """Both surfaces as `ehlpetsc.results.hdf5.datasets.Layout` has them.
 
     Parameters
     ----------

@@ -33,6 +33,7 @@ from post_result_file import CASE, LOAD, P0, A, Scene
 from sandbox import process
 
 from ehlpetsc.post import command, supervised
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
 
 LIMIT = 120  # s a case
@@ -53,18 +54,19 @@ def write_base(path):
         depths=[0.1],
         post="b = -0.09",
     )
-    attrs = dict(a=A, p0=P0, h_scale=A * A / 0.0191, u1=scene.u1, u2=scene.u2, ranks=1, petsc_options="-a 1")
-    writer = ResultWriter(
-        path,
-        case_text=case,
+    attrs = dict(
         title="fuzz",
-        x=scene.x,
-        scalars_attrs=attrs,
-        fields=FIELDS,
-        every=1,
-        precision="float64",
-        profiles={name: (*scene.profiles[name], u) for name, u in (("fast", scene.u1), ("slow", scene.u2))},
+        case=case,
+        a=A,
+        p0=P0,
+        h_scale=A * A / 0.0191,
+        u1=scene.u1,
+        u2=scene.u2,
+        ranks=1,
+        petsc_options="-a 1",
     )
+    profiles = {name: (*scene.profiles[name], u) for name, u in (("fast", scene.u1), ("slow", scene.u2))}
+    writer = ResultWriter(path, Layout(scene.x, FIELDS, profiles=profiles), attrs)
     for k, at in enumerate(scene.time):
         p = scene.pressure(k)
         fields = dict(zip(FIELDS, (p, 1e-7 + 0 * p, -0.05 * p, 0.05 * p, p < 0), strict=True))

@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.quantities import FIELDS, of_every_case
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
@@ -79,19 +80,18 @@ def made(
     x = np.linspace(-2.5, 1.5, nodes)
     s = np.linspace(-1.0, 0.0, 50) * A
     attrs = dict(
-        a=A, p0=p0, h_scale=A**2 / RADIUS, u1=1.12 * speed, u2=0.88 * speed, ranks=1, petsc_options=""
-    )
-    writer = ResultWriter(
-        path,
-        case_text=TABLE_1.format(viscosity=viscosity, speed=speed),
         title=title,
-        x=x * A,
-        scalars_attrs=attrs,
-        fields=list(fields),
-        every=every,
-        precision="float64",
-        profiles={side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("fast", "slow") if rough},
+        case=TABLE_1.format(viscosity=viscosity, speed=speed),
+        a=A,
+        p0=p0,
+        h_scale=A**2 / RADIUS,
+        u1=1.12 * speed,
+        u2=0.88 * speed,
+        ranks=1,
+        petsc_options="",
     )
+    profiles = {side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("fast", "slow") if rough}
+    writer = ResultWriter(path, Layout(x * A, list(fields), profiles=profiles), attrs, every)
     for step, time in enumerate(np.linspace(0, 40e-6, steps)):
         values, contact = fields_at(x, time, viscosity)
         values["pressure"] = factor * values["pressure"]

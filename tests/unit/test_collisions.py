@@ -13,6 +13,7 @@ from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot.over_time import space_time_map
 from ehlpetsc.results import series_index as swept
 from ehlpetsc.results.contacts import film_at_contact, in_contact
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import ResultWriter
 
@@ -36,17 +37,15 @@ def make(
     precision="float64",
 ):
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
-    writer = ResultWriter(
-        path,
-        case_text=case.format(viscosity),
-        title="dips",
-        x=X * A,
-        every=1,
-        precision=precision,
-        fields=fields,
-        profiles={},
-        scalars_attrs={"a": A, "p0": 1e9, "u1": SPEED, "u2": SPEED},
-    )
+    attributes = {
+        "title": "dips",
+        "case": case.format(viscosity),
+        "a": A,
+        "p0": 1e9,
+        "u1": SPEED,
+        "u2": SPEED,
+    }
+    writer = ResultWriter(path, Layout(X * A, fields, precision=precision), attributes)
     for number in range(steps + 1):
         time = number * step
         film, pressure = np.full(len(X), 0.3), np.ones(len(X))

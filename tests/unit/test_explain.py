@@ -8,6 +8,7 @@ import pytest
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.preview import forecast
 from ehlpetsc.run.preview.banner import worthwhile_ranks
@@ -81,18 +82,10 @@ def test_parts_switched_off_are_named():
 def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides):
     c = case.load(CASES / "table1_rough.toml", overrides)
     s = Scales.of(c)
-    writer = ResultWriter(
-        tmp_path / "r.h5",
-        case_text=c.text,
-        title=c.title,
-        x=s.x,
-        scalars_attrs={},
-        fields=[name for name in c.output.fields if name in of_case(FIELDS, c)],
-        figures=of_case(STEP_SCALARS, c),
-        every=c.output.every,
-        precision=c.output.precision,
-        profiles={},
-    )
+    fields = [name for name in c.output.fields if name in of_case(FIELDS, c)]
+    layout = Layout(s.x, fields, of_case(STEP_SCALARS, c), c.output.precision)
+    attributes = {"title": c.title, "case": c.text}
+    writer = ResultWriter(tmp_path / "r.h5", layout, attributes, c.output.every)
     nothing = np.zeros(s.nx)
     for step in range(steps(s) + 1):
         writer.append(step, step * s.dt, dict.fromkeys(FIELDS, nothing), {}, nothing > 0)

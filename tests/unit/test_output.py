@@ -18,6 +18,7 @@ import pytest
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, STORED
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.output_guard import check_index, check_place
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
@@ -29,19 +30,16 @@ SCALES = dict(a=3.3e-4, p0=1e9, h_scale=5.7e-6, u1=5.6, u2=4.4, ranks=2, petsc_o
 SCALARS = dict.fromkeys(STEP_SCALARS, 1)
 
 
-def make_writer(path, **changes):
-    arguments = dict(
-        case_text='title = "ä"\n',
-        title="ä",
+def make_writer(path, every=1, attributes=SCALES, resume_step=None, contact_count=None, **changes):
+    layout = dict(
         x=X,
         fields=STORED,
         figures=list(STEP_SCALARS),
-        every=1,
-        precision="float64",
-        scalars_attrs=SCALES,
         profiles={"fast": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "slow": None},
     )
-    return ResultWriter(path, **(arguments | changes))
+    attributes = {"title": "ä", "case": 'title = "ä"\n'} | attributes
+    going_on = dict(resume_step=resume_step, contact_count=contact_count)
+    return ResultWriter(path, Layout(**(layout | changes)), attributes, every, **going_on)
 
 
 def put(writer, steps):
@@ -99,7 +97,7 @@ def test_headers_alone_tell_what_is_stored(tmp_path):
 def test_texts_are_of_fixed_length_and_fields_have_checksums(tmp_path):
     """Texts of variable length lie in a heap that has no checksum; HDF5 crashes where it is damaged."""
     attributes = []
-    with h5py.File(written(tmp_path / "r.h5", range(3), case_text="c" * 100_000), "r") as file:
+    with h5py.File(written(tmp_path / "r.h5", range(3), attributes={"case": "c" * 100_000}), "r") as file:
         file.visititems(lambda _, item: attributes.extend((item, name) for name in item.attrs))
         attributes += [(file, name) for name in file.attrs]
         kinds = [h5py.check_string_dtype(item.attrs.get_id(name).dtype) for item, name in attributes]
@@ -138,7 +136,7 @@ def test_numbers_that_contradict_each_other_are_told(tmp_path, name, values, fau
 
 
 def test_provenance_is_complete(tmp_path):
-    path = written(tmp_path / "r.h5", range(3), scalars_attrs={"versions": {"petsc": "3.18.5"}})
+    path = written(tmp_path / "r.h5", range(3), attributes={"versions": {"petsc": "3.18.5"}})
     with read_result(path) as r:
         assert r.attrs["format_version"] == 1
         assert (r.attrs["title"], r.attrs["case"], r.attrs["status"]) == ("ä", 'title = "ä"\n', "done")
@@ -325,7 +323,7 @@ def test_resuming_twice_keeps_the_history(tmp_path):
         ({"x": X * 2, "resume_step": 9}, "another mesh"),
         ({"fields": ["pressure"], "resume_step": 9}, "stores other fields"),
         ({"resume_step": 12}, "ends at step 9, before step 12"),
-        ({"scalars_attrs": SCALES | {"u1": 6.0}, "resume_step": 9}, "for another speed .u1 = 5.6"),
+        ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, "for another speed .u1 = 5.6"),
         ({"resume_step": 5}, "contacts up to step 5 are not known"),
     ],
 )

@@ -15,6 +15,7 @@ from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot import figures, labels, movies, over_time, stribeck
 from ehlpetsc.plot import frames as drawing
 from ehlpetsc.results import series_index as swept
+from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.surfaces import roughness
@@ -158,17 +159,9 @@ def test_instant_is_the_one_with_most_contacts(result):
 
 def test_instant_is_that_of_the_highest_pressure_if_nothing_touches(tmp_path):
     x = np.linspace(-1, 1, 11)
-    writer = ResultWriter(
-        tmp_path / "r.h5",
-        case_text="",
-        title="",
-        x=x * A,
-        fields=["pressure", "film_thickness"],
-        every=2,
-        scalars_attrs={"a": A, "p0": 1e9},
-        precision="float64",
-        profiles={},
-    )
+    layout = Layout(x * A, ["pressure", "film_thickness"])
+    attributes = {"title": "", "case": "", "a": A, "p0": 1e9}
+    writer = ResultWriter(tmp_path / "r.h5", layout, attributes, every=2)
     for step, highest in enumerate([1.0, 9.0, 3.0, 8.0, 2.0]):  # the odd steps are not stored
         values = {"pressure": np.full(11, highest), "film_thickness": np.ones(11)}
         writer.append(step, step * 1e-6, values, {"p_max": highest, "contacts": 0}, np.zeros(11, bool))

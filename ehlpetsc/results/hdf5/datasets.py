@@ -3,11 +3,12 @@
 import contextlib
 import os
 import struct
+from dataclasses import dataclass, field
 
 import h5py
 import numpy as np
 
-from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS
+from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS, of_every_case
 from ehlpetsc.results.hdf5 import attributes
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
@@ -17,37 +18,49 @@ RESERVE_BYTES = 2**16  # more than it writes on closing
 MEMORY_BLOCK = 2**22  # by which a file in memory grows
 
 
-def lay_out(file, x, fields, figures, precision, profiles):
-    """Create every dataset, empty along time.
+@dataclass(frozen=True)
+class Layout:
+    """What a result file stores.
 
     Parameters
     ----------
-    file : h5py.File
     x : ndarray, shape (nx,)
         Nodes [m].
     fields : list of str
-        Fields to store, keys of `ehlpetsc.quantities.FIELDS`.
-    figures : list of str
-        Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`.
+        Fields to store in a frame, keys of `ehlpetsc.quantities.FIELDS`.
+    figures : list of str, optional
+        Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`; by default those that every case has.
     precision : {"float64", "float32"}
-        Type of the fields.
+        Type of the stored fields.
     profiles : dict
-        As for `ehlpetsc.results.writer.ResultWriter`.
+        ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
+        fifth one tells whether there is room for a permanent set.
     """
+
+    x: np.ndarray
+    fields: list
+    figures: list = field(default_factory=lambda: of_every_case(STEP_SCALARS))
+    precision: str = "float64"
+    profiles: dict = field(default_factory=dict)
+
+
+def lay_out(file, layout):
+    """Create every dataset of a `Layout`, empty along time."""
+    x = layout.x
     _fixed(file, "x", OTHERS["x"], np.asarray(x, dtype=float))
     _growing(file, "time", OTHERS["time"], CHUNK_STEPS)
-    for name in [n for n in FIELDS if n in fields]:
+    for name in [n for n in FIELDS if n in layout.fields]:
         flag = FIELDS[name].dtype == "u1"
-        dtype = np.dtype("u1" if flag else precision)
+        dtype = np.dtype("u1" if flag else layout.precision)
         rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
         # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
         packed = {"compression": "gzip", "compression_opts": 1} if flag else {}
         _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
     _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
     _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
-    for name in sorted(figures, key="time".__ne__):  # the scale of the others comes first
+    for name in sorted(layout.figures, key="time".__ne__):  # the scale of the others comes first
         _growing(file, f"steps/{name}", STEP_SCALARS[name], CHUNK_STEPS)
-    for surface, profile in profiles.items():
+    for surface, profile in layout.profiles.items():
         if profile is not None:
             _surface(file, f"surface/{surface}", *profile)
     for name, text in GROUPS.items():
