@@ -17,6 +17,7 @@ except ImportError:
     COMPILED = False
 # what indices are that cannot be negative, over which numba takes half the time
 unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
+ZERO = np.int64(0)  # to hand to compiled functions, which numba would compile once more for a literal 0
 
 
 def compiled(function=None, **options):

@@ -20,7 +20,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import ZERO, compiled
 
 ROUNDS = 200
 INSIDE = 1e-9  # a point outside by this share of the radius is inside
@@ -75,7 +75,7 @@ def _smallest_of_few(points, few, count):
     kept, kept_count = few.copy(), count
     part = np.empty(5, np.int64)
     for mask in range(1, 1 << count):
-        size = 0
+        size = ZERO
         for k in range(count):
             if mask >> k & 1:
                 part[size] = few[k]

@@ -10,7 +10,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import ZERO, compiled
 
 TOLERANCE = 0.02  # of the widest of the three axes
 DIRECTIONS = np.array(
@@ -77,7 +77,7 @@ def turning_samples(points, size, places):
     kept[0] = kept[size - 1] = True
     for direction in DIRECTIONS:
         _mark_reversals(points, size, direction, tolerance, kept)
-    count, first = 0, 0
+    count, first = 0, ZERO
     ends = np.empty(size, np.int64)
     for last in range(size):
         if not kept[last]:

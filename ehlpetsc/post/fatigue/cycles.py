@@ -8,7 +8,7 @@ histories). As half cycles it gives the counts of ASTM E1049, 5.4.4.
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import ZERO, compiled
 
 RESIDUES = ("closed", "half")
 
@@ -65,7 +65,7 @@ def find_cycles(series, closed, stack, first, second, weight):
     first sample is the reversal.
     """
     size = series.shape[0]
-    n = 0
+    n = ZERO
     stack[0] = 0
     top = 1
     last = 0
@@ -84,12 +84,12 @@ def find_cycles(series, closed, stack, first, second, weight):
             stack[top] = last
             top += 1
             if top >= 4:
-                top, n = _close(series, stack, 0, top, first, second, weight, n)
+                top, n = _close(series, stack, ZERO, top, first, second, weight, n)
             rising = not rising
         value = new
         last = k
     stack[top] = last
-    top, n = _close(series, stack, 0, top + 1, first, second, weight, n)
+    top, n = _close(series, stack, ZERO, top + 1, first, second, weight, n)
     if closed:
         return _close_residue(series, stack, top, first, second, weight, n)
     for i in range(top - 1):

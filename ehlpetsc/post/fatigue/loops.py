@@ -17,7 +17,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import ZERO, compiled
 
 BLOCK = 16  # points of a path that are bounded together
 
@@ -135,7 +135,7 @@ def widest(points, first, count):
     x, y, z = points[0, first:last], points[1, first:last], points[2, first:last]
     if count <= BLOCK:
         return _widest_of_few(x, y, z)
-    _, a = _farthest(x, y, z, 0)
+    _, a = _farthest(x, y, z, ZERO)
     best, b = _farthest(x, y, z, a)
     middle = (x[a] + x[b]) / 2, (y[a] + y[b]) / 2, (z[a] + z[b]) / 2
     far = _far_from(x, y, z, middle, best)
