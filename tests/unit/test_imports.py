@@ -1,6 +1,7 @@
 """Imports go one way: which room may import which, read from the source, also inside functions."""
 
 import ast
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -73,11 +74,14 @@ def imports(module, source):
     return found
 
 
-IMPORTS = {module: imports(module, path.read_text(encoding="utf-8")) for module, path in FILES.items()}
+@cache
+def imported(module):
+    """What a module of ours imports; read when first asked for, as every process collects this file."""
+    return imports(module, FILES[module].read_text(encoding="utf-8"))
 
 
 def ours(module):
-    return {name for name in IMPORTS[module] if name.split(".")[0] == "ehlpetsc"}
+    return {name for name in imported(module) if name.split(".")[0] == "ehlpetsc"}
 
 
 def reached(module):
@@ -117,7 +121,7 @@ def test_no_two_modules_import_each_other():
 
 @pytest.mark.parametrize("library", sorted(LIBRARIES))
 def test_a_heavy_library_is_imported_only_where_it_belongs(library):
-    users = [m for m in FILES if any(name.split(".")[0] == library for name in IMPORTS[m])]
+    users = [m for m in FILES if any(name.split(".")[0] == library for name in imported(m))]
     assert users and {room(module) for module in users} <= LIBRARIES[library]
 
 
@@ -125,7 +129,7 @@ def test_a_heavy_library_is_imported_only_where_it_belongs(library):
 def test_a_room_that_reads_or_checks_reaches_neither_solver_nor_petsc_nor_mpi(name):
     everything = set().union(*(reached(module) for module in FILES if room(module) == name))
     assert not {room(module) for module in everything} & SOLVER
-    libraries = {lib.split(".")[0] for module in everything for lib in IMPORTS[module]}
+    libraries = {lib.split(".")[0] for module in everything for lib in imported(module)}
     assert not libraries & {"petsc4py", "mpi4py"}
 
 
