@@ -1,5 +1,6 @@
 """What all tests share: the marker of tests under mpirun, their order, and signals as a terminal has them."""
 
+import gc
 import signal
 from pathlib import Path
 
@@ -62,6 +63,12 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if MPI_TESTS in item.path.parents:
             item.add_marker(pytest.mark.mpi)
+
+
+def pytest_collection_finish():
+    """Modules and tests stay until the end: the garbage collector need not look at them again and again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)
