@@ -66,10 +66,7 @@ def test_signals_to_a_run_of_one_process(tmp_path, name):
 def test_a_step_that_lasts_is_not_waited_for(tmp_path):
     """mpirun kills a second after the signal: the state before the step in hand is saved by then."""
     never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip", "-snes_monitor"]
-    before = start(*LONG, cwd=tmp_path)
-    wait_for(tmp_path / "r.h5", before)
-    before.send_signal(signal.SIGTERM)
-    ended(before)
+    assert run(*LONG, cwd=tmp_path, tampered=("SIGTERM", 0, 2)).returncode == 4
     process = start(*LONG, "-ehl_restart", "r.restart.h5", *never, cwd=tmp_path)
     within = (line for line in process.stdout if line.lstrip().startswith("30 SNES "))
     assert next(within, None), process.stderr.read()
@@ -154,7 +151,8 @@ def test_a_place_for_temporary_files_that_cannot_be_written(tmp_path):
 def test_a_folder_removed_in_mid_run_is_seen(tmp_path):
     folder = tmp_path / "out"
     folder.mkdir()
-    process = start(*LONG, "-ehl_output", folder / "r.h5", cwd=tmp_path)
+    soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there
+    process = start(*LONG, *soon, "-ehl_output", folder / "r.h5", cwd=tmp_path)
     wait_for(folder / "r.h5", process)
     shutil.rmtree(folder)
     _, output, errors = ended(process)

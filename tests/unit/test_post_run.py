@@ -316,7 +316,8 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
     ):
         assert {f"{stem}.png", f"{stem}.svg"} <= drawn
     assert len(legends) == 8  # distributions of one result and of both at two depths, a history; PNG and SVG
-    monkeypatch.setattr(gallery, "_save", lambda figure, stem: [])
+    for drawn_already in ("damage_picture", "depth_picture", "_save"):
+        monkeypatch.setattr(gallery, drawn_already, lambda *_: [])
     assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
     said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
