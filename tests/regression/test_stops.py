@@ -41,18 +41,20 @@ def last_step(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name, ranks, others", [("SIGTERM", 2, 0), ("SIGUSR1", 0, 2), ("SIGINT", 0, 0)])
+@pytest.mark.parametrize(
+    "name, ranks, others, step", [("SIGTERM", 2, 0, 10), ("SIGUSR1", 0, 2, 30), ("SIGINT", 0, 0, 20)]
+)
 def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(
-    whole, tmp_path, name, ranks, others
+    whole, tmp_path, name, ranks, others, step
 ):
-    stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), 20))
+    stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), step))
     assert stopped.returncode == 4, stopped.stderr
-    assert "stopped at step 20; go on with -ehl_restart table1_rough.restart.h5" in stopped.stdout
-    assert last_step(tmp_path / "table1_rough.h5") == (20, "stopped")
+    assert f"stopped at step {step}; go on with -ehl_restart table1_rough.restart.h5" in stopped.stdout
+    assert last_step(tmp_path / "table1_rough.h5") == (step, "stopped")
     going_on = [*CASE, "-ehl_restart", "table1_rough.restart.h5"]
     done = run(*going_on, cwd=tmp_path, ranks=others)
     assert done.returncode == 0, done.stderr
-    assert "restart: table1_rough.restart.h5, step 20, " in done.stdout
+    assert f"restart: table1_rough.restart.h5, step {step}, " in done.stdout
     assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
     figures, expected = summary(done.stdout), summary((whole / "log").read_text())
     for figure, rtol in {"steps": 0, "newton": 0.02, "h_min": 1e-8, "p_max": 1e-8, "contacts": 0}.items():
@@ -61,7 +63,7 @@ def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(
         assert result.attrs["restarts"] == 1
         assert result.attrs["ranks"] == max(others, 1)
         (earlier,) = json.loads(result.attrs["history"])
-        assert earlier["ranks"] == max(ranks, 1) and earlier["up_to_step"] == 20
+        assert earlier["ranks"] == max(ranks, 1) and earlier["up_to_step"] == step
 
 
 def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
@@ -75,12 +77,12 @@ def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
 @pytest.mark.slow
 def test_a_killed_run_leaves_its_last_checkpoint_and_goes_on_from_there(whole, tmp_path):
     often = [*CASE, *settings("output.checkpoint=1e-5")]
-    killed = run(*often, cwd=tmp_path, ranks=2, tampered=("SIGKILL", 0, 21))
+    killed = run(*often, cwd=tmp_path, ranks=2, tampered=("SIGKILL", 0, 11))
     assert killed.returncode not in (0, 4)
-    assert last_step(tmp_path / "table1_rough.h5") == (20, "running")
+    assert last_step(tmp_path / "table1_rough.h5") == (10, "running")
     done = run(*often, "-ehl_restart", "table1_rough.restart.h5", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "step 20, " in done.stdout
+    assert "step 10, " in done.stdout
     assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
     assert [p.name for p in tmp_path.iterdir() if p.name.endswith(".tmp")] == []
 
