@@ -43,7 +43,6 @@ class FarPressures:
 
     def __init__(self, deflection, cuts, part):
         self.deflection = d = deflection
-        self.part = part
         self.rates, self.weights = exponentials(d.curvature, HALO + 1)
         self.terms, local = len(self.rates), d.last - d.first
         self.told = 4 * self.terms + SUMS

@@ -4,7 +4,7 @@ from ehlpetsc import __version__
 from ehlpetsc.run.preview.forecast import steps
 from ehlpetsc.run.preview.surfaces import surface_lines
 
-WORTH_TWO_RANKS = 4000  # nodes: 561 take two ranks half as long again as one, 2,241 as long, 4,481 a bit less
+WORTH_TWO_RANKS = 4000  # nodes: on 561 two ranks take twice as long as one, on 4,481 a bit less
 
 
 def banner(case, scales, rough, ranks):
