@@ -141,10 +141,7 @@ class EHLProblem:
         -------
         Evaluation
         """
-        return self.rows_of(self.model.relations(q, w), h00, inputs, outside)
-
-    def rows_of(self, relations, h00, inputs, outside=None):
-        """As :meth:`evaluate`, of a state given by what its unknowns mean."""
+        relations = self.model.relations(q, w)
         residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
         separation = relations.separation - self._parabola - inputs.phi[self.window]
@@ -177,11 +174,7 @@ class EHLProblem:
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        return self.changes_of_rows(relations.changes(nodes), derivatives, v_h00, outside)
-
-    def changes_of_rows(self, changes, derivatives, v_h00, outside=None):
-        """As :meth:`product`, of changes of oil, pressure, film and separation."""
-        oil, pressure, film, separation = changes
+        oil, pressure, film, separation = relations.changes(nodes)
         rows = np.empty(count(self.local) + self.load_is_local)
         firsts(rows, self.local)[:], load = self.deflection.rows(separation, pressure, v_h00, outside)
         reynolds_product(derivatives, oil, film, self.own.start, seconds(rows, self.local))

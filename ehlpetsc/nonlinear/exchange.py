@@ -9,6 +9,7 @@ from mpi4py import MPI
 
 from ehlpetsc.discretisation.deflection import HALO
 from ehlpetsc.discretisation.far_pressures import FarPressures
+from ehlpetsc.discretisation.interleaving import count, pairs
 
 
 def largest(ranks, number):
@@ -35,13 +36,11 @@ class Exchange:
     cuts : sequence of int
         First nodes of all ranks, and the number of nodes.
     ranks : mpi4py communicator
-    width : int
-        Unknowns of a node.
     """
 
-    def __init__(self, problem, cuts, ranks, width):
-        self.problem, self.ranks, self.width = problem, ranks, width
-        self.local, self.edge = problem.local, HALO * width
+    def __init__(self, problem, cuts, ranks):
+        self.problem, self.ranks = problem, ranks
+        self.local, self.edge = problem.local, count(HALO)
         if ranks.size > 1:
             self.far = FarPressures(problem.deflection, cuts, ranks.rank)
             size = 2 * self.edge + 1 + self.far.told
@@ -55,16 +54,16 @@ class Exchange:
         vector : ndarray
             Local unknowns, interleaved; h00 last on the last rank.
         pressure : callable
-            Local pressures of the unknowns of the local nodes, given as shape (local, width).
+            Local pressures of the unknowns of the local nodes, given as shape (local, 2).
 
         Returns
         -------
-        nodes : ndarray, shape (window, width)
+        nodes : ndarray, shape (window, 2)
         h00 : float
         outside : deflection.Outside or None
             None on one rank.
         """
-        nodes = vector[: self.width * self.local].reshape(self.local, self.width)
+        nodes = pairs(vector, self.local)
         if self.ranks.size == 1:
             return nodes, vector[-1], None
         mine, edge, rank = self._mine, self.edge, self.ranks.rank
@@ -74,9 +73,9 @@ class Exchange:
         self.ranks.Allgather(mine, self._all)
         parts = [nodes]
         if rank > 0:
-            parts.insert(0, self._all[rank - 1, edge : 2 * edge].reshape(HALO, self.width))
+            parts.insert(0, pairs(self._all[rank - 1, edge:], HALO))
         if rank < self.ranks.size - 1:
-            parts.append(self._all[rank + 1, :edge].reshape(HALO, self.width))
+            parts.append(pairs(self._all[rank + 1], HALO))
         outside = self.far.outside(self._all[:, 2 * edge + 1 :])
         return np.concatenate(parts), self._all[-1, 2 * edge], outside
 

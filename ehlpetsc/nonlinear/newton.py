@@ -4,7 +4,7 @@ Direct contact: ``vinewtonrsls``. At every iteration the nodes with h at its bou
 set, whose Reynolds rows and films leave the system. Steps that begin clear of the bound take the same
 iterations without it (``newtonls``), which is a tenth quicker; those that come to touch begin anew with it.
 Mixed contact: ``newtonls`` on the semismooth system, whose unknowns carry the complementarity in their sign
-(asked for ``vinewtonrsls``, the system is :mod:`.systems.three_fields`).
+and have no bounds; ``vinewtonrsls`` then takes the same iterations.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ class NewtonSolver:
 
     Parameters
     ----------
-    system : systems.two_fields.TwoFields or systems.three_fields.ThreeFields
+    system : systems.two_fields.TwoFields
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class NewtonSolver:
         if self.touched:
             f.array[:] = np.nan  # ends the solve on all ranks
         else:
-            self.system.put_rows(evaluation, f.array)
+            f.array[:] = evaluation.residual
 
     def _jacobian(self, snes, x, operator, preconditioner):
         self.system.linearise(x)

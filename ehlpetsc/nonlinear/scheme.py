@@ -4,7 +4,6 @@ from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import text_of
-from ehlpetsc.nonlinear.systems.three_fields import ThreeFields
 from ehlpetsc.nonlinear.systems.two_fields import TwoFields
 
 ALLOWED = ("newton", "sweep")
@@ -33,11 +32,6 @@ def solver_of(case, scales, film_scale, comm, options):
         Sweeps are asked for, but the contact is dry or mixed.
     """
     if scheme(options) == "newton":
-        bounded = options.getString("snes_type", "") == "vinewtonrsls"
-        if case.contact.model == "mixed" and bounded:
-            if case.contact.yield_pressure is not None:
-                raise UsageError("-snes_type vinewtonrsls: solids that yield need newtonls; leave it out")
-            return NewtonSolver(ThreeFields(case, scales, film_scale, comm))
         return NewtonSolver(TwoFields(case, scales, film_scale, comm))
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")

@@ -28,7 +28,6 @@ SHORT = [
 MODELS = {
     "direct": ["contact.model=direct"],
     "mixed": ["contact.model=mixed"],
-    "bounded": ["contact.model=mixed"],
     "yielding": ["contact.model=mixed", "contact.yield_pressure=1.5e9"],
 }
 
@@ -43,8 +42,7 @@ def alone():
 
 def marched(comm, model):
     """Pressures, films and contacts of all steps; Newton iterations in all."""
-    options = {"snes_type": "vinewtonrsls"} if model == "bounded" else {}
-    simulation = Simulation(load(CASE, [*SHORT, *MODELS[model]]), comm, options)
+    simulation = Simulation(load(CASE, [*SHORT, *MODELS[model]]), comm)
     states, scales = list(simulation), simulation.scales
     return (
         np.array([s.pressure for s in states]) / scales.p0,

@@ -13,7 +13,7 @@ from petsc4py import PETSc
 from ehlpetsc.discretisation.deflection import HALO
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
-from ehlpetsc.discretisation.interleaving import firsts, pairs, seconds
+from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.exchange import Exchange, everywhere, largest
@@ -53,8 +53,6 @@ class TwoFields:
         More ranks than the mesh can be cut for.
     """
 
-    unknowns = 2  # of a node
-
     def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
         n, rank = scales.nx, comm.rank
         cuts = first_nodes(n, comm.size)
@@ -63,23 +61,20 @@ class TwoFields:
         self.near_field = case.mesh.near_field
         self.problem = EHLProblem(case, scales, film_scale, first, last)
         self.model = self.problem.model
-        self.exchange = Exchange(self.problem, cuts, comm.tompi4py(), self.unknowns)
+        self.exchange = Exchange(self.problem, cuts, comm.tompi4py())
         self._create_vectors()
         self.inputs = self.place = self.rows = self.operator = None
 
     def _create_vectors(self):
-        sizes = (self.unknowns * self.local + self.problem.load_is_local, self.unknowns * self.n + 1)
+        sizes = (count(self.local) + self.problem.load_is_local, count(self.n) + 1)
         self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
         self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
         self.lower.set(PETSc.NINFINITY)
         self.upper.set(PETSc.INFINITY)
-        self._put_bounds(self.lower.array)
+        if not self.model.is_mixed:
+            seconds(self.lower.array, self.local)[:] = self.model.bound
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self._made = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
-
-    def _put_bounds(self, lower):
-        if not self.model.is_mixed:
-            seconds(lower, self.local)[:] = self.model.bound
 
     def create_matrices(self, with_band):
         """Make the operator, and what preconditioners get.
@@ -92,7 +87,7 @@ class TwoFields:
         """
         sizes = self.x.getSizes()
         self.factors = Factors(self.problem, self.comm.tompi4py()) if with_band else None
-        self.jacobian = self._jacobian()
+        self.jacobian = JacobianOperator(self.problem, self.exchange, self.factors)
         self.operator = python_matrix(self.jacobian, sizes, self.comm)
         self.assembled, self.preconditioned = None, self.operator
         self._made.append(self.operator)
@@ -100,9 +95,6 @@ class TwoFields:
             self.preconditioned = PETSc.Mat().createAIJ((sizes, sizes), comm=self.comm)
             self.assembled = NearFieldMatrix(self.problem, self.near_field, self.preconditioned)
             self._made.append(self.preconditioned)
-
-    def _jacobian(self):
-        return JacobianOperator(self.problem, self.exchange, self.factors)
 
     def give_bounds(self, snes):
         """Let a SNES hold the unknowns to their bounds, and count as on them what it counts so."""
@@ -120,25 +112,17 @@ class TwoFields:
         """
         self.inputs, self.place, self.rows = inputs, None, None
         mine = slice(self.problem.first, self.problem.last)
-        self._put_unknowns(self.x.array, q[mine], w[mine])
+        firsts(self.x.array, self.local)[:], seconds(self.x.array, self.local)[:] = q[mine], w[mine]
         if self.problem.load_is_local:
             self.x.array[-1] = h00
-
-    def _put_unknowns(self, x, q, w):
-        """Fill in the unknowns of the local nodes."""
-        firsts(x, self.local)[:], seconds(x, self.local)[:] = q, w
 
     def solution(self):
         """The whole solution on every rank: q, w (shape (nx,)) and h00."""
         return self._pairs_of(self.x)
 
-    def _whole(self, v):
-        """All of a vector, on every rank."""
-        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        return self.all.array_r
-
     def _pairs_of(self, v):
-        whole = self._whole(v)
+        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
+        whole = self.all.array_r
         return firsts(whole, self.n).copy(), seconds(whole, self.n).copy(), whole[-1]
 
     def residual(self):
@@ -147,10 +131,6 @@ class TwoFields:
             self.f.array[:] = self.evaluation(self.x).residual
             self.rows = self._pairs_of(self.f)
         return self.rows
-
-    def put_rows(self, evaluation, out):
-        """Fill in the local rows that PETSc sees."""
-        out[:] = evaluation.residual
 
     def evaluation(self, x):
         """Residual and derivatives at x, where they were asked for last more often than not."""
@@ -163,12 +143,9 @@ class TwoFields:
         self.place = x.array_r.copy()
         with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
             nodes, h00, outside = self.exchange(self.place, self._pressure)
-            self._evaluation = self._evaluated(nodes, h00, outside)
+            q, w = np.ascontiguousarray(nodes.T)
+            self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, outside)
         return self._evaluation
-
-    def _evaluated(self, nodes, h00, outside):
-        q, w = np.ascontiguousarray(nodes.T)
-        return self.problem.evaluate(q, w, h00, self.inputs, outside)
 
     def _pressure(self, nodes):
         return self.model.pressure(nodes[:, 0], nodes[:, 1])
@@ -185,14 +162,11 @@ class TwoFields:
         """Shorten a step y, which is to be taken off x, and keep single entries to what they may do."""
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
         model, dry = self.model, self.problem.dry
-        self._shorten(step_limits.change(model, dry, now, step), y)
-        step = pairs(y.array, self.local)
-        step_limits.keep(model, dry, now, step, OPENED * self.problem.film_scale)
-
-    def _shorten(self, change, y):
-        change = largest(self.exchange.ranks, change)
+        change = largest(self.exchange.ranks, step_limits.change(model, dry, now, step))
         if change > step_limits.STEP_LIMIT:
             y.scale(step_limits.STEP_LIMIT / change)
+        step = pairs(y.array, self.local)
+        step_limits.keep(model, dry, now, step, OPENED * self.problem.film_scale)
 
     def touches(self, x, y):
         """Whether a film of this rank's comes to its bound by the step y."""
