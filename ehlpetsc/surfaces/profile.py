@@ -143,9 +143,10 @@ class Profile:
 
     @cached_property
     def s(self):
-        """Body points [m], increasing, equally spaced as the profile's samples, that enter during the run."""
+        """Body points [m] that enter during the run, two at least, increasing, spaced as the samples."""
         step = np.diff(self.X).mean()
-        X = np.arange(min(int(self.travelled / step * (1 + 1e-12)) + 1, MAX_SAMPLES)) * step
+        count = int(self.travelled / step * (1 + 1e-12)) + 1
+        X = np.arange(min(max(count, 2), MAX_SAMPLES)) * step
         return np.sort(self._origin + self._sign * X)
 
     @cached_property

@@ -150,3 +150,15 @@ def test_direct_contact_does_not_yield():
 def test_a_series_of_passes_is_refused(tmp_path):
     done = run(CASES / "fig1.toml", *settings("time.passes=2"), cwd=tmp_path)
     assert done.returncode == 2 and "one of them at a time" in done.stderr
+
+
+def test_a_body_that_moves_less_than_a_point_of_its_profile(tmp_path):
+    short = ("motion.slide_roll_ratio=1.99", "time.travel=0.1", "mesh.points_per_half_width=20")
+    done = run(CASE, *settings("time.passes=1", *short, "contact.yield_pressure=1.1e9"), cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with read_result(tmp_path / "running_in.h5") as result:
+        assert result.attrs["status"] == "done"
+        points = [result[f"surface/slow/{name}"][:] for name in ("s", "z", "set")]
+        assert [len(values) for values in points] == [2, 2, 2]
+        moved = result.attrs["u2"] * result.steps("time")[-1]
+        assert moved < np.diff(points[0])[0]
