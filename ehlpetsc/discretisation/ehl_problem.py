@@ -23,6 +23,7 @@ from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, reynolds_produc
 from ehlpetsc.discretisation.interleaving import both_of, count, firsts, seconds
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 from ehlpetsc.discretisation.yielding import YieldingContact
+from ehlpetsc.physics.operation import Conditions
 
 
 @dataclass(frozen=True)
@@ -39,15 +40,21 @@ class StepInputs:
         None: dry.
     inlet_film : float or None
         Oil given at the inlet in a^2/R; None: flooded.
-    load : float
-        Share of the case's load.
+    conditions : physics.operation.Conditions
+        At the end of the step.
+    load_share : float
+        Fraction of their load that is applied.
+    dt : float or None
+        Length of the step [s]; None: steady.
     """
 
     phi: np.ndarray
     history: FilmHistory | None
     fluid: object
     inlet_film: float | None
-    load: float = 1.0
+    conditions: Conditions
+    load_share: float = 1.0
+    dt: float | None = None
 
 
 @dataclass(frozen=True)
@@ -109,10 +116,11 @@ class EHLProblem:
         """Whether this rank has the load's row."""
         return self.last == self.n
 
-    def inputs(self, phi=None, history=None):
-        """Inputs of a step of this case; smooth and steady by default."""
+    def inputs(self, phi=None, history=None, conditions=None, dt=None):
+        """Inputs of a step of this case; by default smooth, steady, under the reference conditions."""
         phi = np.zeros(self.n) if phi is None else phi
-        return StepInputs(phi, history, self.fluid, self.inlet_film)
+        conditions = conditions or self.scales.conditions
+        return StepInputs(phi, history, self.fluid, self.inlet_film, conditions, dt=dt)
 
     def film(self, pressure, h00, phi):
         """Separation by the integral form, in a^2/R."""
@@ -144,7 +152,8 @@ class EHLProblem:
         relations = self.model.relations(q, w)
         residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
-        separation = relations.separation - self._parabola - inputs.phi[self.window]
+        curvature = self.scales.R / inputs.conditions.radius
+        separation = relations.separation - curvature * self._parabola - inputs.phi[self.window]
         deflection, load = self.deflection.rows(separation, relations.pressure, h00, outside)
         firsts(residual, self.local)[:] = deflection
         if self.dry:
@@ -153,7 +162,9 @@ class EHLProblem:
             imbalance, derivatives = self.reynolds.evaluate(relations.oil, relations.film, inputs)
         seconds(residual, self.local)[:] = imbalance
         if self.load_is_local:
-            residual[-1] = load - 0.5 * np.pi * inputs.load
+            residual[-1] = load - 0.5 * np.pi * inputs.load_share * (
+                inputs.conditions.load / self.scales.load
+            )
         return Evaluation(relations, residual, derivatives)
 
     def product(self, relations, derivatives, nodes, v_h00, outside=None):

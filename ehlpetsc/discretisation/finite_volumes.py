@@ -55,7 +55,7 @@ def extrapolated(m, behind, k):
 
 
 @compiled
-def flux_through(at, left, per_length, per_film, eyring, slip):
+def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
     """Mass flux through the face right of node `left`, its derivatives by (q, h) behind, left and right.
 
     Parameters
@@ -66,6 +66,8 @@ def flux_through(at, left, per_length, per_film, eyring, slip):
         p0 over the spacing [Pa/m]; a^2/R [m].
     eyring, slip : float
         As of :func:`ehlpetsc.physics.rheology.mobilities`.
+    entrainment : float
+        Mean speed over that of the scales.
 
     Returns
     -------
@@ -83,6 +85,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip):
     by_state_l = at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
     by_state_r = at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
     by_p_l, by_p_r = half * by_state_l - by_difference, half * by_state_r + by_difference
+    couette, by_left, by_behind = entrainment * couette, entrainment * by_left, entrainment * by_behind
     return (
         couette - mean * gradient,
         by_behind * at[M_Q, behind],
@@ -104,8 +107,8 @@ def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
         One node at least on either side of the cells.
     first : int
         Node of the first cell.
-    law : tuple of 4 floats
-        `per_length`, `per_film`, `eyring` and `slip` of :func:`flux_through`.
+    law : tuple of 5 floats
+        `per_length`, `per_film`, `eyring`, `slip` and `entrainment` of :func:`flux_through`.
     then, carried : ndarray, shape (cells,)
         m and what is carried over, of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
     k, rate : float

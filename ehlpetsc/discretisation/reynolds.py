@@ -129,7 +129,8 @@ class Reynolds:
         s, rows, fluid, history = self.scales, self.rows, inputs.fluid, inputs.history
         at, first = self._at(q, h, fluid), self.row_in_given
         eyring = np.inf if fluid.eyring_stress is None else fluid.eyring_stress
-        law = s.p0 / (s.a * self.dx), s.h, eyring, abs(s.u1 - s.u2) / eyring
+        now = inputs.conditions
+        law = s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
         then = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
             then = history.m[rows], history.carried[rows], history.k, self.dx / history.dt

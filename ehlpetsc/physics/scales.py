@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehlpetsc.physics.operation import Conditions
+
 
 def reduced_modulus(youngs_modulus, poisson_ratio):
     r"""Reduced modulus E' [Pa], :math:`2/E'=(1-\nu_1^2)/E_1+(1-\nu_2^2)/E_2`.
@@ -98,13 +100,9 @@ class Scales:
         return max(abs(self.u1), abs(self.u2))
 
     @property
-    def travel(self):
-        """Way of the faster surface over the whole run [m]; None in a steady case."""
-        return None if self.duration is None else self.duration * self.u_max
-
-    def travelled(self, time):
-        """Ways of the fast and the slow surface [m] in a time [s], signed."""
-        return self.u1 * time, self.u2 * time
+    def conditions(self):
+        """Operating conditions of the reference state."""
+        return Conditions(self.load, self.R, self.u1, self.u2)
 
     @classmethod
     def of(cls, case):

@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.physics import rheology
 
 
-def shear_stresses(case, scales, oil, solids, h, void, touching):
+def shear_stresses(case, dx, sliding, oil, solids, h, void, touching):
     """Shear stress in +x on the fast (upper) and the slow (lower) solid.
 
     In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, less the void fraction;
@@ -15,6 +15,11 @@ def shear_stresses(case, scales, oil, solids, h, void, touching):
 
     Parameters
     ----------
+    case : case.loading.Case
+    dx : float
+        Spacing of the nodes [m].
+    sliding : float
+        u1 - u2 [m/s].
     oil, solids : ndarray, shape (nx,)
         Pressures [Pa].
     h, void : ndarray, shape (nx,)
@@ -26,7 +31,6 @@ def shear_stresses(case, scales, oil, solids, h, void, touching):
     fast, slow : ndarray, shape (nx,)
         [Pa]
     """
-    sliding = scales.u1 - scales.u2
     slow = np.where(touching, case.contact.boundary_friction * np.sign(sliding) * solids, 0.0)
     fast = -slow
     if case.fluid is None:
@@ -34,6 +38,6 @@ def shear_stresses(case, scales, oil, solids, h, void, touching):
     without = touching & (case.contact.model == "direct")
     ln_eta, _ = rheology.viscosity(oil, case.fluid)
     film = np.where(without, 1.0, h)
-    lower, upper = rheology.wall_shear(film, np.gradient(oil, scales.dx), ln_eta, case.fluid, sliding)
+    lower, upper = rheology.wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding)
     left = np.where(without, 0.0, 1.0 - void)
     return fast - upper * left, slow + lower * left

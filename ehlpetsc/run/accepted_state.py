@@ -44,8 +44,9 @@ class AcceptedState:
         case, march, solution = simulation.case, simulation.march, simulation.solution
         rq = simulation.roughness.rq if simulation.roughness else 0.0
         depths = march.bodies.depths(solution.sets, solution.travelled) if solution.sets else ()
+        conditions = simulation.operation.at(solution.time)
         figures, fields, in_contact = observe(
-            case, simulation.scales, rq, march.problem, solution, depths, started
+            case, simulation.scales, conditions, rq, march.problem, solution, depths, started
         )
         figures |= {"step": solution.step, "time": solution.time}
         return cls(figures, fields, in_contact, solution)

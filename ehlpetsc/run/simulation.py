@@ -13,6 +13,7 @@ from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.preview.domain import domain_faults
@@ -47,6 +48,8 @@ class Simulation:
     Attributes
     ----------
     scales : physics.scales.Scales
+    operation : physics.operation.ConstantOperation
+        Load, radius and speeds over time.
     roughness : surfaces.roughness.Roughness or None
     bodies : surfaces.roughness.Bodies
         Where they were as this run began.
@@ -90,6 +93,7 @@ class Simulation:
         given = {name: _text(v) for name, v in (options or {}).items()}
         self.options = RunOptions(case.contact.model, case.petsc, given)
         self.scales = Scales.of(case)
+        self.operation = operation_of(case, self.scales)
         self.pass_number = pass_number or (after.pass_number + 1 if after else 1)
         self.bodies = Bodies.at_rest(self.scales)
         if case.time and case.time.pass_shift:
@@ -106,7 +110,7 @@ class Simulation:
             solver.limited = "snes_max_it" in self.options.users
             self._followed = any(map(table.hasName, FOLLOWED))
         sets = after.solution.sets if after else ()
-        self.march = TimeStepping(solver, self.scales, self.roughness, film)
+        self.march = TimeStepping(solver, self.scales, self.operation, self.roughness, film)
         self._carry(sets)
 
     def _carry(self, sets):
@@ -122,16 +126,15 @@ class Simulation:
         """Whether the last state is the end of the travel; of a steady case, whether it is solved."""
         if self.solution is None:
             return False
-        return self.case.time is None or self._way_left() <= 1e-9 * self.scales.travel
+        return self.case.time is None or self._time_left() == 0.0
 
     @property
     def end(self):
         """Time at which the travel is over [s]."""
-        return self.solution.time + max(self._way_left(), 0.0) / self.scales.u_max
+        return self.solution.time + self._time_left()
 
-    def _way_left(self):
-        """Of the faster surface [m]."""
-        return self.scales.travel - max(map(abs, self.solution.travelled))
+    def _time_left(self):
+        return self.operation.remaining(self.solution.time, self.solution.travelled)
 
     def __iter__(self):
         while not self.finished:

@@ -50,7 +50,8 @@ def _offsets(simulation):
     """What makes s = x - speed time hold for both sides [m]."""
     if simulation.solution is None:
         return 0.0, 0.0
-    now, constant = simulation.solution.travelled, simulation.scales.travelled(simulation.solution.time)
+    now = simulation.solution.travelled
+    constant = simulation.operation.travelled(simulation.solution.time)
     apart = [way - steady for way, steady in zip(now, constant, strict=True)]
     return [offset if abs(offset) > SAME_PLACE * simulation.scales.dx else 0.0 for offset in apart]
 

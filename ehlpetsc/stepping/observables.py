@@ -10,13 +10,15 @@ MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
 ATOM = 1e-10  # m: least film that oil balances are held against
 
 
-def observe(case, scales, rq, problem, state, depths, started):
+def observe(case, scales, conditions, rq, problem, state, depths, started):
     """Per-step figures and fields in SI units.
 
     Parameters
     ----------
     case, scales, problem
         Of the run.
+    conditions : physics.operation.Conditions
+        Of the instant.
     rq : float
         Combined root mean square height of both surfaces [m]; 0: smooth.
     state : stepping.time_stepping.State
@@ -33,7 +35,7 @@ def observe(case, scales, rq, problem, state, depths, started):
     """
     s, model = scales, problem.model
     touching = model.in_contact(state.w, state.imbalance)
-    fields = _fields(case, s, problem, state, touching)
+    fields = _fields(case, s, conditions, problem, state, touching)
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, friction, film = (
         s.dx * pressure.sum(),
@@ -48,7 +50,7 @@ def observe(case, scales, rq, problem, state, depths, started):
         "p_max": pressure.max(),
         "contacts": int(touching.sum()),
         "load": load,
-        "load_error": abs(load / s.load - 1.0),
+        "load_error": abs(load / conditions.load - 1.0),
         "mass_error": mass_error(problem, state),
         "approach": state.h00 * s.h,
         "friction": friction,
@@ -68,7 +70,7 @@ def observe(case, scales, rq, problem, state, depths, started):
     return figures, fields, touching
 
 
-def _fields(case, s, problem, state, touching):
+def _fields(case, s, conditions, problem, state, touching):
     """Fields in SI units, but for the permanent sets."""
     model = problem.model
     pressure = model.relations(state.q, state.w).pressure * s.p0
@@ -79,7 +81,7 @@ def _fields(case, s, problem, state, touching):
     void = np.zeros_like(pressure) if problem.dry else np.maximum(-state.q, 0.0)
     # the shear of a film that rounding left would be anything: there the solids rub
     rubbing = touching if model.is_mixed else state.h <= model.bound + model.near
-    fast, slow = shear_stresses(case, s, oil, carried, thickness, void, rubbing)
+    fast, slow = shear_stresses(case, s.dx, conditions.sliding, oil, carried, thickness, void, rubbing)
     return {
         "pressure": pressure,
         "contact_pressure": solids,

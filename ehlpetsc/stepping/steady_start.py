@@ -90,7 +90,7 @@ def pressed(solver, film, inputs):
     load, reached = FROM * problem.model.yield_pressure**2, 0.0
     state = hertz_start(problem, film, inputs.phi, load=load)
     while reached < 1.0:
-        nearer = attempt(state, replace(inputs, load=load))
+        nearer = attempt(state, replace(inputs, load_share=load))
         if nearer is not None:
             state, reached, load = nearer, load, min(load * PRESSED, 1.0)
             continue

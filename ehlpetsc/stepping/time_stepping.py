@@ -79,6 +79,7 @@ class TimeStepping:
     ----------
     solver : newton.NewtonSolver or gauss_seidel.GaussSeidelSolver
     scales : scales.Scales
+    operation : physics.operation.ConstantOperation
     roughness : roughness.Roughness or None
     film : float
         Expected film in a^2/R.
@@ -95,8 +96,9 @@ class TimeStepping:
         For how long before time 0 roughness at rest has grown [s]; 0 where a steady solution was found.
     """
 
-    def __init__(self, solver, scales, roughness, film, bodies=None, sets=()):
+    def __init__(self, solver, scales, operation, roughness, film, bodies=None, sets=()):
         self.solver, self.problem, self.scales, self.film = solver, solver.problem, scales, film
+        self.operation = operation
         self.roughness, self.bodies, self.sets = roughness, bodies, sets
         self.smooth, self.before = None, 0.0
 
@@ -131,7 +133,9 @@ class TimeStepping:
         return state
 
     def _steady(self, phi):
-        q, w, h00, newton = steady(self.solver, self.film, self.problem.inputs(phi))
+        q, w, h00, newton = steady(
+            self.solver, self.film, self.problem.inputs(phi, conditions=self.operation.at(0.0))
+        )
         return self._state(q, w, h00, newton=newton, sets=self.sets)
 
     def _marched(self):
@@ -146,7 +150,7 @@ class TimeStepping:
             raise NotConverged(f"steady start: {error}") from error
         steps, newton = np.ceil(GROWTH * self.scales.a / self.scales.u / self.scales.dt), state.newton
         self.before = steps * self.scales.dt
-        state = replace(state, time=-self.before, travelled=self.scales.travelled(-self.before))
+        state = replace(state, time=-self.before, travelled=self.operation.displacement(0.0, -self.before))
         self.smooth = (state.q, state.w)
         while state.time < -LEVEL * self.scales.dt:
             state = self.advance(state)
@@ -181,7 +185,7 @@ class TimeStepping:
 
     def _travelled(self, state, dt):
         """Ways of both surfaces [m] after a step of dt [s]."""
-        return tuple(map(sum, zip(state.travelled, self.scales.travelled(dt), strict=True)))
+        return tuple(map(sum, zip(state.travelled, self.operation.displacement(state.time, dt), strict=True)))
 
     def _inputs(self, state, dt):
         history = None
@@ -190,7 +194,7 @@ class TimeStepping:
             older = None if state.dt is None else state.dt * unit
             history = FilmHistory(state.m, state.m_older, dt * unit, older)
         phi = self._grown(state.time + dt) * self.phi(self._travelled(state, dt), state.sets)
-        return self.problem.inputs(phi, history)
+        return self.problem.inputs(phi, history, self.operation.at(state.time + dt), dt)
 
     def _solve(self, q, w, h00, inputs):
         """As of the solver; where solids yield, failing that, from what they would do elastically."""
@@ -213,7 +217,7 @@ class TimeStepping:
 
     def advance(self, state, dt=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
-        nominal = self.scales.dt
+        nominal = self.operation.time_step(state.time, self.scales.dt)
         dt = dt or next_step(state.time, state.dt, state.retries, nominal)
         retries = newton = 0
         while True:

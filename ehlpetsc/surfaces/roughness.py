@@ -106,7 +106,7 @@ def _profile(case, scales, spec, speed, side, bodies):
     (inlet, outlet), travelled = bodies.entrances, bodies.travelled[side]
     drawn_in = 0.0
     if case.time is not None:
-        left = max(scales.travel - max(map(abs, bodies.travelled)), 0.0)
+        left = max(scales.duration * scales.u_max - max(map(abs, bodies.travelled)), 0.0)
         # under another load the domain may reach further out than where the profile entered
         wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
         drawn_in = abs(travelled) + left * abs(speed) / scales.u_max

@@ -21,7 +21,7 @@ def rows_of(extra, first=0, last=None):
     case = load(CASE, MESH + extra)
     scales = Scales.of(case)
     oil = case.fluid.inlet_film
-    inputs = StepInputs(np.zeros(scales.nx), None, case.fluid, oil and oil / scales.h)
+    inputs = StepInputs(np.zeros(scales.nx), None, case.fluid, oil and oil / scales.h, scales.conditions)
     return Reynolds(scales, FILM, first, last or scales.nx), inputs, scales.nx
 
 

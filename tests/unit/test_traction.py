@@ -37,7 +37,9 @@ def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
 def shear(case, scales, p, h, void=0.0, touching=()):
     in_contact = np.zeros(scales.nx, bool)
     in_contact[list(touching)] = True
-    return shear_stresses(case, scales, p, p, h, np.full(scales.nx, void), in_contact)
+    return shear_stresses(
+        case, scales.dx, scales.u1 - scales.u2, p, p, h, np.full(scales.nx, void), in_contact
+    )
 
 
 @pytest.mark.parametrize("ratio", [0.5, -0.5])
@@ -101,9 +103,14 @@ def test_in_mixed_contact_the_oil_drags_beside_the_solids():
     touching = np.zeros(scales.nx, bool)
     touching[[30, 60]] = True
     solids, void = np.where(touching, 0.2e9, 0.0), np.zeros(scales.nx)
-    oil_alone = shear_stresses(mixed, scales, p, np.zeros_like(p), h, void, np.zeros_like(touching))
+    oil_alone = shear_stresses(
+        mixed, scales.dx, scales.u1 - scales.u2, p, np.zeros_like(p), h, void, np.zeros_like(touching)
+    )
     for sign, both, oil in zip(
-        (-1.0, 1.0), shear_stresses(mixed, scales, p, solids, h, void, touching), oil_alone, strict=True
+        (-1.0, 1.0),
+        shear_stresses(mixed, scales.dx, scales.u1 - scales.u2, p, solids, h, void, touching),
+        oil_alone,
+        strict=True,
     ):
         np.testing.assert_allclose(both - oil, sign * FRICTION * solids, atol=1e-6)
 
@@ -118,7 +125,7 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
         w = h / scales.h
         w[[30, 60]] = left
         state = State(p / scales.p0, w, 0.0, h=w, m=w, imbalance=np.zeros_like(w))
-        _, fields, touching = observe(case, scales, 0.0, problem, state, (), 0.0)
+        _, fields, touching = observe(case, scales, scales.conditions, 0.0, problem, state, (), 0.0)
         assert touching.sum() == (0 if left else 2)
         found.append((fields["shear_stress_slow"], fields["shear_stress_fast"]))
     for one in found[1:]:

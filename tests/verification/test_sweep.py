@@ -59,7 +59,7 @@ def test_same_film_pressure_and_contacts_as_newton(rough, step):
         with simulation.options:
             found.append(
                 march.solver.solve(
-                    q, h, h00, march.problem.inputs(march.phi(march.scales.travelled(time + dt)), history)
+                    q, h, h00, march.problem.inputs(march.phi(march.operation.travelled(time + dt)), history)
                 )
             )
     for _, film, _, _ in found:

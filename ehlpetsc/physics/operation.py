@@ -1,0 +1,111 @@
+r"""Operating conditions as functions of time: load, radius of relative curvature and both surface speeds.
+
+:class:`~ehlpetsc.physics.scales.Scales` makes the problem dimensionless with those of a reference state; what
+acts at an instant comes from here.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class Conditions(NamedTuple):
+    """Operating conditions at one instant.
+
+    Attributes
+    ----------
+    load : float
+        w' [N/m].
+    radius : float
+        Radius of relative curvature R [m].
+    u1, u2 : float
+        Speeds of surfaces 1 and 2 [m/s], signed.
+    """
+
+    load: float
+    radius: float
+    u1: float
+    u2: float
+
+    @property
+    def entrainment(self):
+        """Mean speed (u1 + u2)/2 [m/s]."""
+        return 0.5 * (self.u1 + self.u2)
+
+    @property
+    def sliding(self):
+        """Sliding speed u1 - u2 [m/s]."""
+        return self.u1 - self.u2
+
+
+@dataclass(frozen=True)
+class ConstantOperation:
+    """Constant conditions until the faster surface has covered the travel of the case.
+
+    Attributes
+    ----------
+    conditions : Conditions
+    travel : float or None
+        Distance covered by the faster surface over the run [m]; None: steady.
+    """
+
+    conditions: Conditions
+    travel: float | None = None
+
+    @classmethod
+    def of(cls, case, scales):
+        """Operation of a case with constant load, radius and speeds.
+
+        Parameters
+        ----------
+        case : case.loading.Case
+        scales : physics.scales.Scales
+        """
+        travel = None if case.time is None else scales.duration * scales.u_max
+        return cls(Conditions(scales.load, scales.R, scales.u1, scales.u2), travel)
+
+    def at(self, time):
+        """Conditions at a time [s]."""
+        return self.conditions
+
+    def displacement(self, time, dt):
+        """Distances that surfaces 1 and 2 travel from `time` to `time` + `dt` [m], signed."""
+        return self.conditions.u1 * dt, self.conditions.u2 * dt
+
+    def travelled(self, time):
+        """Distances that both surfaces have travelled since time 0 [m], signed."""
+        return self.displacement(0.0, time)
+
+    def remaining(self, time, travelled):
+        """Time left to the end of the run [s].
+
+        Parameters
+        ----------
+        time : float
+            Now [s].
+        travelled : (float, float)
+            Distances travelled by both surfaces [m]; after a restart at other speeds they are not those of
+            :meth:`travelled`.
+        """
+        fastest = max(abs(self.conditions.u1), abs(self.conditions.u2))
+        left = self.travel - max(map(abs, travelled))
+        return max(left, 0.0) / fastest if left > 1e-9 * self.travel else 0.0
+
+    def total_displacement(self):
+        """Distances that both surfaces travel over the whole run [m], signed."""
+        duration = 0.0 if self.travel is None else self.duration
+        return self.conditions.u1 * duration, self.conditions.u2 * duration
+
+    @property
+    def duration(self):
+        """Length of the whole run [s]; None: steady."""
+        fastest = max(abs(self.conditions.u1), abs(self.conditions.u2))
+        return None if self.travel is None else self.travel / fastest
+
+    def time_step(self, time, nominal):
+        """Longest time step from `time` on [s]; `nominal` is the case's, of the reference state."""
+        return nominal
+
+
+def operation_of(case, scales):
+    """Operation of a case, see :class:`ConstantOperation`."""
+    return ConstantOperation.of(case, scales)
