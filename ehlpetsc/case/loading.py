@@ -10,6 +10,7 @@ from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
 from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import PARTS, parsed, put, text_with
+from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
 from ehlpetsc.case.tables.surface import Surface
@@ -44,6 +45,7 @@ class Case(Table):
     mesh: Mesh = Field(..., description="nodes")
     surface: Surface = Field(Surface(), description="left out: smooth")
     time: Time | None = Field(None, description="left out: steady")
+    gears: Gears | None = Field(None, description="left out: constant conditions")
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
     petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")

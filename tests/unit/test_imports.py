@@ -19,7 +19,8 @@ GROUND = {
 MAY_IMPORT = {
     "physics": set(),
     "surfaces": set(),
-    "case": {"surfaces", "physics"},
+    "gears": {"physics"},
+    "case": {"gears", "surfaces", "physics"},
     "results": set(),
     "discretisation": {"physics"},
     "nonlinear": {"discretisation", "physics"},
@@ -38,7 +39,7 @@ SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run", "nonlinear"},
-    "matplotlib": {"plot", "post", "study", "api"},
+    "matplotlib": {"plot", "post", "study", "api", "gears"},
     "numba": {"compiled"},
 }
 
@@ -125,7 +126,7 @@ def test_a_heavy_library_is_imported_only_where_it_belongs(library):
     assert users and {room(module) for module in users} <= LIBRARIES[library]
 
 
-@pytest.mark.parametrize("name", ["post", "analysis", "plot", "compare", "case", "results"])
+@pytest.mark.parametrize("name", ["post", "analysis", "plot", "compare", "case", "results", "gears"])
 def test_a_room_that_reads_or_checks_reaches_neither_solver_nor_petsc_nor_mpi(name):
     everything = set().union(*(reached(module) for module in FILES if room(module) == name))
     assert not {room(module) for module in everything} & SOLVER

@@ -1,0 +1,89 @@
+"""Path of contact of a spur gear pair: ``python3 -m ehlpetsc.gears CASE.toml``.
+
+Prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table and draws them
+along the path. ``--csv FILE`` writes the path as a table for ``[operation]``.
+"""
+
+import argparse
+import sys
+import tomllib
+from pathlib import Path
+
+from ehlpetsc import environment
+from ehlpetsc.command_parser import CommandParser
+from ehlpetsc.errors import CaseError, ExitStatus, not_written
+
+
+def arguments():
+    """The command line."""
+    parser = CommandParser(
+        prog=environment.program("ehlpetsc.gears"),
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("case", help="case file with a [gears] table")
+    parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
+    parser.add_argument("--no-picture", action="store_true", help="the table alone")
+    parser.add_argument("--csv", metavar="FILE", help="the path as a table for [operation]")
+    return parser
+
+
+def main(argv=None):
+    """Run the command; returns its exit status."""
+    chosen = arguments().parse_args(argv)
+    try:
+        run(chosen)
+    except CaseError as error:
+        print("\n".join(error.faults), file=sys.stderr)
+    except (OSError, ValueError) as error:
+        told = not_written(error) if isinstance(error, OSError) else str(error)
+        print(f"ehlpetsc.gears: {told}", file=sys.stderr)
+    else:
+        return ExitStatus.DONE
+    return ExitStatus.BAD_INPUT
+
+
+def run(chosen):
+    """Print the table, write picture and CSV file."""
+    from ehlpetsc.gears.path import path_of_contact
+    from ehlpetsc.gears.table import csv, hertz, rows
+
+    case = _read(chosen.case)
+    if not isinstance(case.get("gears"), dict):
+        raise CaseError([f"{chosen.case}: no [gears] table; allowed: a case with one"])
+    try:
+        path = path_of_contact(case["gears"])
+    except CaseError as error:
+        raise CaseError([f"{chosen.case}: {fault}" for fault in error.faults]) from None
+    contact = case.get("contact")
+    stresses = hertz(path, contact if isinstance(contact, dict) else {})
+    print("\n".join(rows(path, stresses)))
+    if chosen.csv:
+        _check_target(chosen.csv, chosen.case)
+        Path(chosen.csv).write_text(csv(path), encoding="utf-8")
+        print(chosen.csv)
+    if not chosen.no_picture:
+        from ehlpetsc.gears.picture import draw
+
+        target = chosen.output or f"{Path(chosen.case).stem}.gears.png"
+        _check_target(target, chosen.case)
+        draw(path, stresses, target, str(case.get("title", chosen.case)))
+        print(target)
+
+
+def _read(path):
+    try:
+        return tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise CaseError([f"{path}: cannot be read: {error.strerror}"]) from None
+    except (ValueError, RecursionError) as error:
+        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
+
+
+def _check_target(target, case):
+    if Path(target).resolve() == Path(case).resolve():
+        raise ValueError(f"{target}: is the case; give another file")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

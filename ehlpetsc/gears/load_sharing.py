@@ -1,0 +1,85 @@
+r"""Load of one tooth pair over the load of the mesh, by named rules.
+
+One pair carries all between B and D. Between A and B it shares with the pair one base pitch ahead, between D
+and E with the one behind. With :math:`s=(\rho-\rho_A)/(\rho_B-\rho_A)` from A to B, and mirrored from E to D:
+
+``thirds``
+    :math:`(1+s)/3`: from a third to two thirds, as of teeth without relief (ISO/TR 13989-1). The rise from
+    two thirds to all takes `JUMP` of the path outside B and D: teeth bend, so that the load is continuous.
+``tip-relief``
+    Two pairs of equal stiffness c' in parallel, separated by the linear relief :math:`C_a(1-s)` of the pair
+    that comes in and :math:`C_as` of the one that leaves, share by
+    :math:`\frac12[1+\kappa(2s-1)]`, :math:`\kappa=c'C_a/w'`. With :math:`\kappa\ge1` the load comes on from
+    zero. A smaller relief would leave a load at the edge A; the pair takes it up along the line
+    :math:`s/\kappa` from zero, and near B the rest along the mirror image.
+"""
+
+import numpy as np
+
+RULES = ("thirds", "tip-relief")
+JUMP = 0.005  # of the path: the rise from two thirds to the whole load
+MIN_RELIEF_RATIO = 0.05  # kappa below which the load would come on over less than a twentieth of A to B
+
+
+def thirds(s, edge):
+    """Share between A and B without tip relief.
+
+    Parameters
+    ----------
+    s : ndarray
+        0 at A, 1 at B.
+    edge : float
+        Length of the rise to the whole load, in s.
+    """
+    shared = (1.0 + s) / 3.0
+    at_edge = (2.0 - edge) / 3.0
+    return np.where(s <= 1.0 - edge, shared, at_edge + (1.0 - at_edge) * (s - 1.0 + edge) / edge)
+
+
+def tip_relief(s, ratio):
+    """Share between A and B with tip relief; `ratio` is c' C_a / w'."""
+    elastic = np.clip(0.5 * (1.0 + ratio * (2.0 * s - 1.0)), 0.0, 1.0)
+    if ratio >= 1.0:
+        return elastic
+    return np.maximum(np.minimum(elastic, s / ratio), 1.0 - (1.0 - s) / ratio)
+
+
+def relief_ratio(pair):
+    r""":math:`c'C_a/w'`: depth of relief over the deflection of one pair under the whole load."""
+    return pair.mesh_stiffness * pair.tip_relief / pair.normal_load
+
+
+def _rule(pair):
+    """Share as a function of s, and the s at which it has a kink."""
+    if pair.rule == "thirds":
+        edge = min(JUMP * pair.contact_ratio / (pair.contact_ratio - 1.0), 0.5)
+        return lambda s: thirds(s, edge), (1.0 - edge,)
+    ratio = max(relief_ratio(pair), MIN_RELIEF_RATIO)
+    # where the load sets in, or where s/ratio meets the elastic line
+    kink = 0.5 - 0.5 / ratio if ratio >= 1.0 else 0.5 * ratio / (1.0 + ratio)
+    return lambda s: tip_relief(s, ratio), (kink, 1.0 - kink)
+
+
+def kinks(pair):
+    """Positions at which the share of a pair has a kink besides A, B, D and E [m]."""
+    points = pair.points
+    return [
+        end + s * (one - end)
+        for end, one in ((points["A"], points["B"]), (points["E"], points["D"]))
+        for s in _rule(pair)[1]
+    ]
+
+
+def share(pair, rho):
+    """Load of a tooth pair over that of the mesh, 0 to 1.
+
+    Parameters
+    ----------
+    pair : ehlpetsc.gears.geometry.GearPair
+    rho : ndarray
+        Positions between A and E [m].
+    """
+    points = pair.points
+    incoming = (rho - points["A"]) / (points["B"] - points["A"])
+    leaving = (points["E"] - rho) / (points["E"] - points["D"])
+    return _rule(pair)[0](np.clip(np.minimum(incoming, leaving), 0.0, 1.0))

@@ -1,0 +1,177 @@
+"""Path of contact of a spur gear pair: load, radius and speeds over time."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ehlpetsc.errors import CaseError
+from ehlpetsc.gears.geometry import GearPair
+from ehlpetsc.gears.load_sharing import RULES, kinks, relief_ratio, share
+
+SAMPLES = 400  # equal intervals of the path, besides its points and kinks
+PAIRS = ("teeth", "tip_diameter")
+OPTIONAL = ("pressure_angle", "tip_relief", "load_sharing", "mesh_stiffness")
+
+
+@dataclass(frozen=True)
+class Path:
+    """Conditions of a contact from A, where the wheel's tip meets, to E, where the pinion's leaves.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        From A on [s], increasing.
+    load : ndarray, shape (n,)
+        On this pair of teeth [N/m].
+    radius : ndarray, shape (n,)
+        Of relative curvature [m].
+    speed_1, speed_2 : ndarray, shape (n,)
+        Of the flanks of pinion and wheel through the contact [m/s].
+    rho : ndarray, shape (n,)
+        Position on the line of action from the base circle of the pinion [m].
+    contact_ratio : float
+    pressure_angle : float
+        Working pressure angle [degrees].
+    pair : ehlpetsc.gears.geometry.GearPair
+    """
+
+    time: np.ndarray
+    load: np.ndarray
+    radius: np.ndarray
+    speed_1: np.ndarray
+    speed_2: np.ndarray
+    rho: np.ndarray
+    contact_ratio: float
+    pressure_angle: float
+    pair: GearPair
+
+    @property
+    def entrainment(self):
+        """Mean of both speeds [m/s]."""
+        return 0.5 * (self.speed_1 + self.speed_2)
+
+    @property
+    def slide_roll_ratio(self):
+        """Sliding over entrainment speed, positive where flank 1 is the faster."""
+        return (self.speed_1 - self.speed_2) / self.entrainment
+
+    def time_at(self, point):
+        """Time [s] at which the contact passes A, B, C, D or E."""
+        points = self.pair.points
+        return (points[point] - points["A"]) / self.pair.base_speed
+
+    def index(self, point):
+        """Index of the sample at A, B, C, D or E."""
+        return int(np.argmin(np.abs(self.rho - self.pair.points[point])))
+
+
+def path_of_contact(gears):
+    """Path of contact of a spur gear pair.
+
+    Parameters
+    ----------
+    gears : dict or GearPair
+        Keys of the ``[gears]`` table: `module`, `teeth`, `pressure_angle`, `centre_distance`, `tip_diameter`,
+        `face_width`, `torque`, `speed`, and as wanted `tip_relief`, `load_sharing`, `mesh_stiffness`.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    CaseError
+        Keys that are missing, unknown or no numbers, or impossible geometry.
+
+    Examples
+    --------
+    >>> from ehlpetsc.gears import path_of_contact
+    >>> path = path_of_contact({
+    ...     "module": 4.5e-3, "teeth": [16, 24], "pressure_angle": 20.0, "centre_distance": 91.5e-3,
+    ...     "tip_diameter": [82.5e-3, 118.4e-3], "face_width": 14e-3, "torque": 302.0, "speed": 2250.0,
+    ... })
+    >>> round(path.contact_ratio, 3), round(path.pressure_angle, 3)
+    (1.443, 22.439)
+    """
+    pair = gears if isinstance(gears, GearPair) else pair_of(gears)
+    faults = pair.faults()
+    if faults:
+        raise CaseError(faults)
+    points = pair.points
+    rho = np.linspace(points["A"], points["E"], SAMPLES + 1)
+    rho = np.unique(np.concatenate([rho, list(points.values()), kinks(pair)]))
+    # equal positions but for rounding would be equal times
+    rho = rho[np.append(True, np.diff(rho) > 1e-9 * pair.base_pitch)]
+    speed_1, speed_2 = pair.speeds(rho)
+    return Path(
+        time=(rho - points["A"]) / pair.base_speed,
+        load=share(pair, rho) * pair.normal_load,
+        radius=pair.radius(rho),
+        speed_1=speed_1,
+        speed_2=speed_2,
+        rho=rho,
+        contact_ratio=pair.contact_ratio,
+        pressure_angle=float(np.degrees(pair.working_angle)),
+        pair=pair,
+    )
+
+
+def pair_of(gears):
+    """Gear pair of a ``[gears]`` table.
+
+    Raises
+    ------
+    CaseError
+        With all faults of the keys, one line each; the geometry is not checked.
+    """
+    keys = [field.name for field in fields(GearPair)]
+    faults = [f"gears.{key}: unknown key; allowed: {', '.join(keys)}" for key in gears if key not in keys]
+    values = {}
+    for key in keys:
+        value = gears.get(key)
+        if value is None:
+            faults += [f"gears.{key} is missing"] if key not in OPTIONAL else []
+        elif key == "load_sharing":
+            values[key] = value
+            if value not in RULES:
+                faults.append(f"gears.{key} = {value!r}: allowed: {', '.join(RULES)}")
+        else:
+            count = 2 if key in PAIRS else 1
+            try:
+                values[key] = np.asarray(value, float).reshape(count).tolist()
+            except (TypeError, ValueError):
+                values[key] = [np.nan]
+            lowest = 0.0 if key == "tip_relief" else np.nextafter(0.0, 1.0)
+            whole = key != "teeth" or np.array_equal(values[key], np.round(values[key]))
+            if not (np.isfinite(values[key]).all() and min(values[key]) >= lowest and whole):
+                kind = ("two " if count == 2 else "a ") + ("whole number" if key == "teeth" else "number")
+                faults.append(f"gears.{key} = {value}: allowed: {kind}{'s' * (count == 2)} > 0")
+            values[key] = tuple(values[key]) if count == 2 else values[key][0]
+    if faults:
+        raise CaseError(faults)
+    values["teeth"] = tuple(map(int, values["teeth"]))
+    return GearPair(**values)
+
+
+def describe(path):
+    """Lines of text about a path: ratio, angle, sharing, hunting.
+
+    Returns
+    -------
+    list of str
+    """
+    pair = path.pair
+    ratio = relief_ratio(pair)
+    lines = [
+        f"working pressure angle {path.pressure_angle:.3f} degrees, contact ratio {path.contact_ratio:.3f}",
+        f"load {1e-3 * pair.normal_load:.1f} kN/m between B and D, load sharing: {pair.rule}",
+        f"a pinion tooth meets {pair.partners} of {pair.teeth[1]} wheel teeth; "
+        f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
+    ]
+    if pair.rule == "tip-relief":
+        full = 1e6 * pair.normal_load / pair.mesh_stiffness
+        lines.append(
+            f"tip relief {1e6 * pair.tip_relief:.1f} um, c' C_a/w' = {ratio:.2f}; "
+            f"{full:.1f} um suit this load"
+        )
+    return lines
