@@ -83,7 +83,7 @@ REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[
 SCENES = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
-    "mixed": lambda case: case.contact.model == "mixed",
+    "mixed": lambda case: case.contact.has_contact_pressure,
     "yielding": lambda case: case.contact.yield_pressure is not None,
 }
 """Whether a case has what a quantity needs."""

@@ -1,11 +1,11 @@
 r"""The discrete contact problem: one interleaved system for q, w and the approach h00.
 
-Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact_model`; rows in the same
+Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same
 places, as SNESVI pairs row with unknown:
 
 * in q's place the deflection, :mod:`ehlpetsc.discretisation.deflection`;
 * in w's place Reynolds, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact complementary
-  to the bound of the film; in a dry contact p itself, complementary likewise, or no oil in mixed contact;
+  to the bound of the film; without oil :class:`ehlpetsc.discretisation.no_oil.NoOil`;
 * last the load, :math:`\sum p\,\Delta x=\pi/2`.
 
 Nothing here keeps a state: a step's inputs go in as one frozen record, residual and derivatives come out
@@ -17,23 +17,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact_model import DirectContact, MixedContact
+from ehlpetsc.discretisation.contact import contact_model, film_scale_of
+from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.contact.node_state import NodeState
 from ehlpetsc.discretisation.deflection import Deflection
-from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL, reynolds_product
-from ehlpetsc.discretisation.interleaving import both_of, count, firsts, seconds
+from ehlpetsc.discretisation.finite_volumes import reynolds_product
+from ehlpetsc.discretisation.interleaving import count, firsts, seconds
+from ehlpetsc.discretisation.no_oil import NoOil
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
-from ehlpetsc.discretisation.yielding import YieldingContact
 from ehlpetsc.physics.operation import Conditions
 
 
 @dataclass(frozen=True)
 class StepInputs:
-    """What a solve is given beside its first guess.
+    """Data of a solve beside its first guess.
 
     Attributes
     ----------
     phi : ndarray, shape (nx,)
-        What the roughness adds to the gap, in a^2/R.
+        Contribution of the roughness to the gap, in a^2/R.
     history : reynolds.FilmHistory or None
         Previous time levels; None: steady.
     fluid : case.tables.schema.Fluid or None
@@ -46,6 +48,8 @@ class StepInputs:
         Fraction of their load that is applied.
     dt : float or None
         Length of the step [s]; None: steady.
+    contact : contact.model.ContactModel or None
+        Contact model of the solve; None: that of the problem.
     """
 
     phi: np.ndarray
@@ -55,6 +59,7 @@ class StepInputs:
     conditions: Conditions
     load_share: float = 1.0
     dt: float | None = None
+    contact: ContactModel | None = None
 
 
 @dataclass(frozen=True)
@@ -63,14 +68,16 @@ class Evaluation:
 
     Attributes
     ----------
-    relations : contact_model.Relations
+    model : contact.model.ContactModel
+    state : contact.node_state.NodeState
     residual : ndarray
         Local rows, interleaved; shape of the local part of the vector.
     reynolds_derivatives : ndarray, shape (local nodes, 8)
         Derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1.
     """
 
-    relations: tuple
+    model: ContactModel
+    state: NodeState
     residual: np.ndarray
     reynolds_derivatives: np.ndarray
 
@@ -83,7 +90,7 @@ class EHLProblem:
     case : case.loading.Case
     scales : scales.Scales
     film_scale : float
-        What Reynolds' rows are divided by, about the expected film, in a^2/R.
+        Scale of the Reynolds rows, about the expected film, in a^2/R.
     first, last : int
         Local nodes; the rank that owns the last one owns the load row.
 
@@ -97,19 +104,20 @@ class EHLProblem:
         self.n, self.x, self.scales = scales.nx, scales.x, scales
         self.dx = self.x[1] - self.x[0]
         self.first, self.last, self.local = first, last, last - first
-        self.fluid, self.dry = case.fluid, case.fluid is None
-        if case.contact.model == "mixed":  # what is drawn in passes there at least
-            film_scale = max(film_scale, case.contact.boundary_film / scales.h)
-        self.film_scale = film_scale
+        self.fluid = case.fluid
+        self.film_scale = film_scale = film_scale_of(case, scales, film_scale)
         self.model = contact_model(case, scales, film_scale)
         self.deflection = Deflection(self.n, self.dx, first, last)
         self.window, self.own = self.deflection.window, self.deflection.own
         self._parabola = 0.5 * self.x[self.window] ** 2
-        self.reynolds = None if self.dry else Reynolds(scales, film_scale, first, last, self.window.start)
         self.inlet_film = None
-        if not self.dry and case.fluid.inlet_film is not None:
-            self.inlet_film = case.fluid.inlet_film / scales.h
-        self.reynolds_columns = self._dry_columns() if self.dry else self.reynolds.columns
+        if self.fluid is None:
+            self.reynolds = NoOil(first, last, self.window.start)
+        else:
+            self.reynolds = Reynolds(scales, film_scale, first, last, self.window.start)
+            if self.fluid.inlet_film is not None:
+                self.inlet_film = self.fluid.inlet_film / scales.h
+        self.reynolds_columns = self.reynolds.columns
 
     @property
     def load_is_local(self):
@@ -128,10 +136,8 @@ class EHLProblem:
 
     def content(self, q, w):
         r"""Film content :math:`\rho h(1-\theta)` of every node, None without oil."""
-        if self.dry:
-            return None
-        relations = self.model.relations(q, w)
-        return self.reynolds.content(relations.oil, relations.film, self.fluid)[0]
+        state = self.model.state(q, w)
+        return self.reynolds.film_content(state.reynolds_unknown, state.film, self.fluid)
 
     def evaluate(self, q, w, h00, inputs, outside=None):
         """Local rows and their derivatives at one state.
@@ -149,31 +155,29 @@ class EHLProblem:
         -------
         Evaluation
         """
-        relations = self.model.relations(q, w)
+        model = inputs.contact or self.model
+        state = model.state(q, w)
         residual = np.empty(count(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
         curvature = self.scales.R / inputs.conditions.radius
-        separation = relations.separation - curvature * self._parabola - inputs.phi[self.window]
-        deflection, load = self.deflection.rows(separation, relations.pressure, h00, outside)
+        separation = state.separation - curvature * self._parabola - inputs.phi[self.window]
+        deflection, load = self.deflection.rows(separation, state.pressure, h00, outside)
         firsts(residual, self.local)[:] = deflection
-        if self.dry:
-            imbalance, derivatives = relations.oil[self.own], self._dry_derivatives()
-        else:
-            imbalance, derivatives = self.reynolds.evaluate(relations.oil, relations.film, inputs)
-        seconds(residual, self.local)[:] = imbalance
+        reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
+        seconds(residual, self.local)[:] = reynolds
         if self.load_is_local:
             residual[-1] = load - 0.5 * np.pi * inputs.load_share * (
                 inputs.conditions.load / self.scales.load
             )
-        return Evaluation(relations, residual, derivatives)
+        return Evaluation(model, state, residual, derivatives)
 
-    def product(self, relations, derivatives, nodes, v_h00, outside=None):
+    def product(self, state, derivatives, nodes, v_h00, outside=None):
         """The whole Jacobian times a vector, in the local rows.
 
         Parameters
         ----------
-        relations, derivatives
-            Of the state, as in :class:`Evaluation`.
+        state, derivatives
+            As in :class:`Evaluation`.
         nodes : ndarray, shape (window, 2)
             q and w of the vector at the nodes of the window.
         v_h00 : float
@@ -185,40 +189,10 @@ class EHLProblem:
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        oil, pressure, film, separation = relations.changes(nodes)
+        unknown, pressure, film, separation = state.directional_derivative(nodes)
         rows = np.empty(count(self.local) + self.load_is_local)
         firsts(rows, self.local)[:], load = self.deflection.rows(separation, pressure, v_h00, outside)
-        reynolds_product(derivatives, oil, film, self.own.start, seconds(rows, self.local))
+        reynolds_product(derivatives, unknown, film, self.own.start, seconds(rows, self.local))
         if self.load_is_local:
             rows[-1] = load
         return rows
-
-    def _dry_columns(self):
-        own = both_of(np.arange(self.first, self.last, dtype=np.int32))
-        columns = np.full((self.local, count(STENCIL)), -1, dtype=np.int32)
-        columns[:, OWN : OWN + 2] = own
-        return columns
-
-    def _dry_derivatives(self):
-        derivatives = np.zeros((self.local, count(STENCIL)))
-        derivatives[:, OWN] = 1.0
-        return derivatives
-
-
-def contact_model(case, scales, film_scale):
-    """The model that a case asks for, see :mod:`.contact_model` and :mod:`.yielding`.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : scales.Scales
-    film_scale : float
-        About the expected film, in a^2/R.
-    """
-    contact = case.contact
-    if contact.model == "direct":
-        return DirectContact(contact.minimum_film / scales.h, case.fluid is None)
-    boundary_film, stiffness = contact.boundary_film / scales.h, 1.0 / film_scale
-    if contact.yield_pressure is None:
-        return MixedContact(boundary_film, stiffness)
-    return YieldingContact(boundary_film, stiffness, min(contact.yield_pressure) / scales.p0)

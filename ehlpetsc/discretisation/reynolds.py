@@ -15,7 +15,7 @@ Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact_model import ROUNDING, full_of_oil
+from ehlpetsc.discretisation.contact.node_state import ROUNDING, full_of_oil
 from ehlpetsc.discretisation.finite_volumes import (
     DP,
     FLUIDITY,
@@ -102,6 +102,10 @@ class Reynolds:
         full, (rho, drho) = full_of_oil(q), rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid)
         left = 1.0 + np.minimum(q, 0.0)
         return rho * left * h, np.where(full, drho * self.scales.p0, 1.0) * h, rho * left
+
+    def film_content(self, q, h, fluid):
+        r"""Film content :math:`\rho h(1-\theta)` of the nodes."""
+        return self.content(q, h, fluid)[0]
 
     def _at(self, q, h, fluid):
         """Properties of the nodes that the local rows need."""

@@ -69,7 +69,7 @@ class GaussSeidelSolver:
 
     def __init__(self, case, scales, film_scale):
         self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
-        self.bound, self.deflection = self.problem.model.bound, self.problem.deflection
+        self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
         self.tolerance = PETSc.Options().getReal("snes_atol", float(ATOL["direct"]))
         curvature, near = self.deflection.curvature, min(NEAR, scales.nx - 1)
         self.kernel = np.concatenate([curvature[near:0:-1], curvature[: near + 1]])

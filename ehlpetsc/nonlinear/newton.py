@@ -54,11 +54,11 @@ class NewtonSolver:
     @property
     def bound(self):
         """Thinnest film that the contact model allows, in a^2/R."""
-        return self.system.model.thinnest
+        return self.system.model.minimum_film
 
     def _create(self):
         system, options = self.system, PETSc.Options()
-        self.snes = self._snes_of_type("newtonls" if system.model.is_mixed else "vinewtonrsls")
+        self.snes = self._snes_of_type("newtonls" if system.model.lower_bound is None else "vinewtonrsls")
         self.linear_limit = self.snes.ksp.max_it
         self.follows = not options.hasName("ksp_atol")
         if system.operator is None:
@@ -67,7 +67,7 @@ class NewtonSolver:
         self.bounded, self.free = self.snes.getType() == "vinewtonrsls", None
         if self.bounded:
             system.give_bounds(self.snes)
-            if not (self.problem.dry or system.model.is_mixed or options.hasName("snes_type")):
+            if system.model.starts_unconstrained and not options.hasName("snes_type"):
                 self.free = self._snes_of_type("newtonls")
                 self._give_jacobian(self.free)
 
@@ -191,8 +191,8 @@ class NewtonSolver:
         q, w, h00 = self.system.solution()
         if not np.isfinite([q.sum(), w.sum(), h00]).all():
             raise SolveFailed("NOT_FINITE", iterations)
-        model = self.system.model
-        if not (self.bounded or model.is_mixed) and w.min() < model.bound:
+        bound = self.system.model.lower_bound
+        if bound is not None and not self.bounded and w.min() < bound:
             raise SolveFailed("FILM_BELOW_ITS_BOUND", iterations)
         return q, w, h00, iterations
 

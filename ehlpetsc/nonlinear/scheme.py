@@ -35,6 +35,6 @@ def solver_of(case, scales, film_scale, comm, options):
         return NewtonSolver(TwoFields(case, scales, film_scale, comm))
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
-    if case.contact.model == "mixed":
+    if case.contact.has_contact_pressure:
         raise UsageError("-ehl_scheme sweep: the paper's sweeps know direct contact alone; leave it out")
     return GaussSeidelSolver(case, scales, film_scale)

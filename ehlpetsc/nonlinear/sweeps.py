@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.nonlinear.systems.step_limits import OIL_KEPT, REFILLED, STEP_LIMIT
+from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
+from ehlpetsc.nonlinear.systems.two_fields import STEP_LIMIT
 
 
 class Linearised(NamedTuple):
@@ -85,7 +86,7 @@ def sweep(q, h, p, then, deflection, bound, relaxation):
             new_q = (r - b * new_h) / a
         if new_h < bound:
             new_h = bound
-            new_q = max((e - d * bound) / c, REFILLED)
+            new_q = max((e - d * bound) / c, PRESSURE_AFTER_REFILL)
         else:
             new_q = q[i] + relaxation[i] * (new_q - q[i])
             new_h = max(h[i] + relaxation[i] * (new_h - h[i]), bound)
@@ -98,5 +99,5 @@ def sweep(q, h, p, then, deflection, bound, relaxation):
 def limited(q, then):
     """A pair's new q, kept to where the coefficients of the last evaluation hold."""
     if then > 0.0:
-        return min(max(q, -REFILLED, then - STEP_LIMIT), then + STEP_LIMIT)
-    return min(max(q, OIL_KEPT * (1.0 + then) - 1.0), REFILLED)
+        return min(max(q, -PRESSURE_AFTER_REFILL, then - STEP_LIMIT), then + STEP_LIMIT)
+    return min(max(q, MIN_OIL_FRACTION * (1.0 + then) - 1.0), PRESSURE_AFTER_REFILL)

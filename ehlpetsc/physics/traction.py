@@ -1,17 +1,17 @@
-"""Traction of the film and of solids that touch on the two solids."""
+"""Traction of the film and of solids in contact on the two solids."""
 
 import numpy as np
 
 from ehlpetsc.physics import rheology
 
 
-def shear_stresses(case, dx, sliding, oil, solids, h, void, touching):
+def shear_stresses(case, dx, sliding, oil, solids, h, sheared):
     """Shear stress in +x on the fast (upper) and the slow (lower) solid.
 
-    In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, less the void fraction;
-    where solids touch ``boundary_friction * solids``, + on the slow solid and - on the fast one
-    where u1 > u2, none in pure rolling. In mixed contact both act side by side, in direct contact solids
-    leave no film.
+    In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, times the fraction of
+    the gap in which oil is sheared; between the solids ``boundary_friction * solids``, + on the slow solid
+    and - on the fast one where u1 > u2, none in pure rolling. Where both act, they are added: the shear of
+    a boundary film of some nanometres is then that of the bulk viscosity, which overestimates it.
 
     Parameters
     ----------
@@ -21,23 +21,22 @@ def shear_stresses(case, dx, sliding, oil, solids, h, void, touching):
     sliding : float
         u1 - u2 [m/s].
     oil, solids : ndarray, shape (nx,)
-        Pressures [Pa].
-    h, void : ndarray, shape (nx,)
-        Film [m], void fraction.
-    touching : ndarray of bool, shape (nx,)
+        Pressure of the oil, and the one under which solids rub, 0 out of contact [Pa].
+    h : ndarray, shape (nx,)
+        Film [m].
+    sheared : ndarray, shape (nx,)
+        Fraction of the gap in which oil is sheared: 1 less the void fraction, 0 without a film.
 
     Returns
     -------
     fast, slow : ndarray, shape (nx,)
         [Pa]
     """
-    slow = np.where(touching, case.contact.boundary_friction * np.sign(sliding) * solids, 0.0)
+    slow = case.contact.boundary_friction * np.sign(sliding) * solids
     fast = -slow
     if case.fluid is None:
         return fast, slow
-    without = touching & (case.contact.model == "direct")
     ln_eta, _ = rheology.viscosity(oil, case.fluid)
-    film = np.where(without, 1.0, h)
+    film = np.where(sheared > 0.0, h, 1.0)
     lower, upper = rheology.wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding)
-    left = np.where(without, 0.0, 1.0 - void)
-    return fast - upper * left, slow + lower * left
+    return fast - upper * sheared, slow + lower * sheared

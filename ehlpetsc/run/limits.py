@@ -67,7 +67,7 @@ def _balance(case, totals):
         return None
     figure = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
     cure = "a finer mesh or smaller snes_atol loses less"
-    if case.contact.model == "direct":
+    if not case.contact.has_contact_pressure:
         cure = 'nodes in direct contact make oil, contact.model = "mixed" keeps it'
     return f"oil balance: in one step {figure} the oil that the contact carries is lost or made; {cure}"
 

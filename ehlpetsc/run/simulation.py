@@ -189,7 +189,7 @@ class Simulation:
         return self.state
 
     def _check_ends(self, solution):
-        touching = self.march.problem.model.in_contact(solution.w, solution.imbalance)
+        touching = self.march.problem.model.contact_mask(solution.w, solution.imbalance)
         check_ends(self.scales.x, solution.p, touching)
 
     def _start(self):

@@ -34,10 +34,10 @@ def bounded_pressure(problem, phi):
     """
     limit, total = problem.model.yield_pressure, 0.5 * np.pi / problem.dx
     rate = 1.0 / (LARGEST * (problem.x[-1] - problem.x[0]))
-    p = ahead = onto(np.sqrt(np.maximum(1.0 - problem.x**2, 0.0)), limit, total)
+    p = ahead = project(np.sqrt(np.maximum(1.0 - problem.x**2, 0.0)), limit, total)
     momentum = 1.0
     for _ in range(MOST):
-        new = onto(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
+        new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
         if np.abs(new - p).max() < STILL * limit:
             break
         if (ahead - new) @ (new - p) > 0.0:
@@ -47,7 +47,7 @@ def bounded_pressure(problem, phi):
     return new, problem.film(new, 0.0, phi)
 
 
-def onto(p, limit, total):
+def project(p, limit, total):
     """The nearest pressures between 0 and `limit` of the given sum: a constant added, and cut."""
     low, high = -p.max(), limit - p.min()
     for _ in range(HALVINGS):
@@ -75,18 +75,18 @@ def bounded_start(problem, film, phi, smoothing):
     """
     model, limit = problem.model, problem.model.yield_pressure
     p, gap = bounded_pressure(problem, phi)
-    least = model.boundary_film if problem.dry else max(film, model.boundary_film)
+    lowest = model.minimum_film if problem.fluid is None else max(film, model.minimum_film)
     elastic = (p > 0.0) & (p < limit)
-    h00 = least - gap[elastic if elastic.any() else p > 0.0].max()
-    depth = np.where(p < limit, 0.0, np.maximum(least - gap - h00, 0.0))
-    if problem.dry:
+    h00 = lowest - gap[elastic if elastic.any() else p > 0.0].max()
+    depth = np.where(p < limit, 0.0, np.maximum(lowest - gap - h00, 0.0))
+    if problem.fluid is None:
         carried = p + depth / model.compliance
-        return np.zeros_like(p), model.second_unknown(gap + h00 + depth, carried), h00
+        return np.zeros_like(p), model.w_from_state(gap + h00 + depth, carried), h00
     edge = problem.x[p > 0.0].max()
     if smoothing:
         p = smoothed(p, smoothing * film ** (2.0 / 3.0) / problem.dx)
     depth[p < limit * (1.0 - 1e-9)] = 0.0
-    h = np.maximum(problem.film(p, h00, phi) + depth, least)
+    h = np.maximum(problem.film(p, h00, phi) + depth, lowest)
     behind = (problem.x > edge) & (p < AMBIENT)
-    q = np.where(behind, np.minimum(least / h - 1.0, 0.0), np.maximum(p + depth / model.compliance, AMBIENT))
-    return q, model.from_film(h), h00
+    q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(p + depth / model.compliance, AMBIENT))
+    return q, model.w_from_film(h), h00

@@ -1,4 +1,4 @@
-"""What Newton's method begins with: Hertz' pressure under an even film, or behind a starved inlet."""
+"""First guesses of steady solutions: Hertz pressure under an even film, or behind a starved inlet."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def hertz_start(problem, film, phi, thick=1.3, load=1.0):
     thick : float
         Times the expected film.
     load : float
-        Share of the load.
+        Fraction of the load.
 
     Returns
     -------
@@ -34,21 +34,18 @@ def hertz_start(problem, film, phi, thick=1.3, load=1.0):
     """
     x = problem.x
     p = np.sqrt(np.maximum(load - x**2, 0.0))
-    if not problem.dry:
+    if problem.fluid is not None:
         p = smoothed(p, SMOOTHED * film ** (2.0 / 3.0) / problem.dx)
     p *= 0.5 * np.pi * load / (problem.dx * p.sum())
     h = problem.film(p, 0.0, phi)
-    if problem.dry:
+    if problem.fluid is None:
         gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
-        begin = (
-            (np.zeros_like(p), problem.model.second_unknown(gap, p)) if problem.model.is_mixed else (p, gap)
-        )
-        return *begin, -h[np.argmax(p)]
+        return *problem.model.dry_start(p, gap), -h[np.argmax(p)]
     h00 = thick * film - h.min()
     h += h00
     behind = (x > 1.0) & (p < AMBIENT)
     q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(p, AMBIENT))
-    return q, problem.model.from_film(h), h00
+    return q, problem.model.w_from_film(h), h00
 
 
 def smoothed(p, width):
@@ -70,6 +67,6 @@ def starved_start(problem, film, inputs):
     """Hertz pressure and the oil film of the inlet, void wherever the gap is wider."""
     oil = inputs.inlet_film
     q, w, h00 = hertz_start(problem, min(film, oil), inputs.phi)
-    h = problem.model.relations(q, w).film
+    h = problem.model.state(q, w).film
     void = (problem.x < -1.0) & (h > oil)
     return np.where(void, oil / h - 1.0, q), w, h00

@@ -33,9 +33,9 @@ def observe(case, scales, conditions, rq, problem, state, depths, started):
     fields : dict of str to ndarray, shape (nx,)
     in_contact : ndarray of bool, shape (nx,)
     """
-    s, model = scales, problem.model
-    touching = model.in_contact(state.w, state.imbalance)
-    fields = _fields(case, s, conditions, problem, state, touching)
+    s = scales
+    loads = problem.model.surface_loads(state.q, state.w, state.h, state.imbalance)
+    fields, touching = _fields(case, s, conditions, problem, state, loads), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, friction, film = (
         s.dx * pressure.sum(),
@@ -59,57 +59,38 @@ def observe(case, scales, conditions, rq, problem, state, depths, started):
         "lambda_ratio": film / rq if rq else np.nan,
         "wall": clock.monotonic() - started,
     }
-    if not problem.dry:
-        figures |= _of_oil(fields, touching, model)
-    if model.is_mixed:
-        figures |= _of_solids(fields, touching, s, state.h < case.output.thin_film * model.boundary_film)
-    if model.yields:
+    if problem.fluid is not None:
+        figures |= _of_oil(loads, s)
+    figures |= problem.model.diagnostics(loads, s, case.output.thin_film)
+    if state.depth is not None:
         volumes = [one.volume for one in state.sets]
         figures |= {"yielding": int(np.count_nonzero(state.depth)), "set_volume": sum(volumes)}
         fields |= dict(zip(("set_fast", "set_slow"), depths, strict=True))
     return figures, fields, touching
 
 
-def _fields(case, s, conditions, problem, state, touching):
+def _fields(case, s, conditions, problem, state, loads):
     """Fields in SI units, but for the permanent sets."""
-    model = problem.model
-    pressure = model.relations(state.q, state.w).pressure * s.p0
-    thickness = s.h * (state.h if model.is_mixed else np.where(touching, model.bound, state.h))
-    solids = model.contact_pressure(state.w) * s.p0
-    # direct contact does not tell the solids' pressure from the oil's: there they carry what there is
-    oil, carried = (pressure - solids, solids) if model.is_mixed else (pressure, pressure)
-    void = np.zeros_like(pressure) if problem.dry else np.maximum(-state.q, 0.0)
-    # the shear of a film that rounding left would be anything: there the solids rub
-    rubbing = touching if model.is_mixed else state.h <= model.bound + model.near
-    fast, slow = shear_stresses(case, s.dx, conditions.sliding, oil, carried, thickness, void, rubbing)
+    void = np.zeros_like(loads.film) if problem.fluid is None else np.maximum(-state.q, 0.0)
+    sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
+    oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
+    fast, slow = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared)
     return {
-        "pressure": pressure,
-        "contact_pressure": solids,
-        "film_thickness": thickness,
+        "pressure": loads.pressure * s.p0,
+        "contact_pressure": loads.contact_pressure * s.p0,
+        "film_thickness": film,
         "void_fraction": void,
         "shear_stress_fast": fast,
         "shear_stress_slow": slow,
-        "in_contact": touching,
+        "in_contact": loads.contact_mask,
     }
 
 
-def _of_oil(fields, touching, model):
-    """Its largest pressure, and films of molecules."""
-    pressure = fields["pressure"]
-    oil = pressure - fields["contact_pressure"] if model.is_mixed else np.where(touching, 0.0, pressure)
-    molecular = ~touching & (fields["film_thickness"] < MOLECULES)
+def _of_oil(loads, s):
+    """Largest pressure of the oil, and number of nodes under films of molecules."""
+    oil = np.where(loads.oil_mask, loads.oil_pressure, 0.0) * s.p0
+    molecular = ~loads.contact_mask & (loads.film * s.h < MOLECULES)
     return {"oil_pressure": oil.max(), "molecular_films": int(molecular.sum())}
-
-
-def _of_solids(fields, touching, s, thin):
-    """What the solids of mixed contact carry, and where films are thin."""
-    load = s.dx * fields["pressure"].sum()
-    return {
-        "contact_share": s.dx * fields["contact_pressure"].sum() / load,
-        "contact_length": s.dx * touching.sum(),
-        "thin_length": s.dx * thin.sum(),
-        "thin_share": s.dx * fields["pressure"][thin].sum() / load,
-    }
 
 
 def mean_film(scales, h):
@@ -127,7 +108,7 @@ def mass_error(problem, state):
     is drawn in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet node has
     no balance, its pressure or its oil is given.
     """
-    if problem.dry:
+    if problem.fluid is None:
         return 0.0
     made = problem.film_scale * np.abs(state.imbalance[1:]).sum()
     carried = state.m[np.abs(problem.x) <= 1.0].mean()

@@ -17,7 +17,7 @@ THIN = 1e-3  # of the expected film, least divisor of films: on a coarse mesh th
 AGE = 0.03  # nodes off a whole number that a level one step younger makes up for
 
 
-class Level(NamedTuple):
+class TimeLevel(NamedTuple):
     """Unknowns of an earlier time level, and the way that the film had gone there [m]."""
 
     travelled: float
@@ -26,7 +26,7 @@ class Level(NamedTuple):
 
 
 @compiled
-def carried(share, nodes):
+def advected(share, nodes):
     """Move what the roughness has changed of the smooth solution along by `nodes` nodes.
 
     Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of
@@ -66,23 +66,20 @@ def predict(problem, smooth, levels, nodes):
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    smooth : Level
+    smooth : TimeLevel
         The steady solution of the start.
-    levels : sequence of Level
+    levels : sequence of TimeLevel
         Latest first.
     nodes : sequence of float
         Way of each to the new time, with the mean speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + AGE * k)
     level, way, model = levels[best], nodes[best], problem.model
-    q0, film = smooth.q, model.relations(level.q, level.w).film
-    h0 = np.maximum(model.relations(q0, smooth.w).film, THIN * problem.film_scale)
-    q = q0 + carried(level.q - q0, way)
+    q0, film = smooth.q, model.state(level.q, level.w).film
+    h0 = np.maximum(model.state(q0, smooth.w).film, THIN * problem.film_scale)
+    q = q0 + advected(level.q - q0, way)
     # where there was oil, the differences carried must not leave a cavity
     least = np.minimum(q0, np.minimum(*neighbours(level.q, way)))
     q = np.maximum(q, np.where(least > 0.0, 0.5 * least, -1.0 + 1e-3))
-    w = model.from_film(h0 * carried(film / h0, way))
-    if model.is_mixed:  # solids that touch move along as they are
-        moved = whole_nodes(level.w, way)
-        w = np.where(moved < 0.0, moved, w)
-    return model.settled(q, w) if model.yields else (q, w)
+    interpolated = model.w_from_film(h0 * advected(film / h0, way))
+    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, way)))

@@ -24,7 +24,7 @@ from dataclasses import replace
 
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.stepping.bounded_contact import bounded_start
-from ehlpetsc.stepping.certificate import certified
+from ehlpetsc.stepping.certificate import solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
 
 LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
@@ -56,16 +56,16 @@ def steady(solver, film, inputs):
     NoSteadyStart
     """
     problem, oil = solver.problem, inputs.inlet_film
-    if problem.model.yields and problem.model.yield_pressure < 1.0:
-        return pressed(solver, film, inputs)
+    if problem.model.yield_pressure < 1.0:
+        return yielding_start(solver, film, inputs)
     if oil is None:
         # the set of dry nodes may have all of them to go
-        max_it = problem.n if problem.dry and solver.bounded else None
+        max_it = problem.n if problem.fluid is None and solver.bounded else None
         return Continuation(solver, inputs, max_it).solve(hertz_start(problem, film, inputs.phi))
     flooded = replace(inputs, inlet_film=None)
     q, w, h00, iterations = Continuation(solver, flooded).solve(hertz_start(problem, film, inputs.phi))
     if problem.content(q, w)[-1] <= oil:
-        q[0] = min(oil / problem.model.relations(q, w).film[0] - 1.0, 0.0)
+        q[0] = min(oil / problem.model.state(q, w).film[0] - 1.0, 0.0)
         begin = q, w, h00
     else:
         begin = starved_start(problem, film, inputs)
@@ -74,7 +74,7 @@ def steady(solver, film, inputs):
     return *state, iterations + more
 
 
-def pressed(solver, film, inputs):
+def yielding_start(solver, film, inputs):
     """Steady solution of solids that yield under Hertz' pressure: from that of the dry contact.
 
     Arguments, returns and errors of :func:`steady`. All that touches would yield at once under Hertz'
@@ -82,7 +82,7 @@ def pressed(solver, film, inputs):
     films want the edges of the flat pressure smoothed; of several times the yield pressure thin films do not,
     and for thick ones the load is grown from where the solids begin to yield.
     """
-    problem, attempt = solver.problem, Attempts(solver)
+    problem, attempt = solver.problem, SolveAttempts(solver)
     for width in (SMOOTHED, 0.0):
         state = attempt(bounded_start(problem, film, inputs.phi, width), inputs)
         if state is not None:
@@ -100,7 +100,7 @@ def pressed(solver, film, inputs):
     return *state, attempt.spent
 
 
-class Attempts:
+class SolveAttempts:
     """Certified solves from one state or another, `MOST_ATTEMPTS` at most.
 
     Attributes
@@ -122,7 +122,7 @@ class Attempts:
             raise NoSteadyStart(f"{told}: {self.failure}", None, self.spent)
         self.made += 1
         try:
-            *state, iterations = certified(self.solver, *begin, inputs, max_it=self.max_it)
+            *state, iterations = solve_checked(self.solver, *begin, inputs, max_it=self.max_it)
         except SolveFailed as error:
             self.spent, self.failure = self.spent + error.iterations, error
             return None
@@ -134,7 +134,7 @@ class Continuation:
     """Solve at once or, failing that, with a growing share of what makes the contact hard."""
 
     def __init__(self, solver, inputs, max_it=None):
-        self.inputs, self.attempt = inputs, Attempts(solver, max_it)
+        self.inputs, self.attempt = inputs, SolveAttempts(solver, max_it)
 
     def solve(self, begin):
         """Returns q, w, h00 and the iterations spent."""

@@ -11,8 +11,8 @@ import numpy as np
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
-from ehlpetsc.stepping.certificate import certified
-from ehlpetsc.stepping.predictor import Level, predict
+from ehlpetsc.stepping.certificate import solve_checked
+from ehlpetsc.stepping.predictor import TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 from ehlpetsc.stepping.step_control import LEVEL, next_step
 
@@ -27,7 +27,7 @@ class State:
     Attributes
     ----------
     q, w, h00
-        Unknowns (see :mod:`ehlpetsc.discretisation.contact_model`).
+        Unknowns (see :mod:`ehlpetsc.discretisation.contact`).
     p, h
         Pressure and film; direct contact's w is the film itself.
     m, m_older
@@ -69,7 +69,7 @@ class State:
     @property
     def level(self):
         """What predictors of later steps need of this one."""
-        return Level(0.5 * sum(self.travelled), self.q, self.w)
+        return TimeLevel(0.5 * sum(self.travelled), self.q, self.w)
 
 
 class TimeStepping:
@@ -126,7 +126,7 @@ class TimeStepping:
         try:
             state = self._steady(phi)
         except NoSteadyStart as error:
-            if self.scales.dt is None or self.problem.dry or not phi.any():
+            if self.scales.dt is None or self.problem.fluid is None or not phi.any():
                 raise NotConverged(f"steady start: {error}") from error
             state = self._marched()
         self.smooth = (state.q, state.w)
@@ -165,23 +165,23 @@ class TimeStepping:
 
     def _state(self, q, w, h00, *, sets, travelled=(0.0, 0.0), **more):
         model = self.problem.model
-        relations, m = model.relations(q, w), self.problem.content(q, w)
-        p, h = relations.pressure, relations.film
-        if model.yields:
-            more["depth"] = relations.plastic.depth
+        nodes, m = model.state(q, w), self.problem.content(q, w)
+        p, h = nodes.pressure, nodes.film
+        if nodes.plastic is not None:
+            more["depth"] = nodes.plastic.depth
             sets = self.bodies.laid_down(sets, travelled, self.scales.h * more["depth"])
-            q, w = model.settled(q, w)
+        q, w = model.reset_yielding(q, w)
         imbalance = self.solver.mass_imbalance()
         return State(q, w, h00, p=p, h=h, m=m, imbalance=imbalance, travelled=travelled, sets=sets, **more)
 
     def guess(self, state, dt):
         """Start of Newton's iteration for a step of dt [s]."""
-        if self.roughness is None or self.problem.dry:
+        if self.roughness is None or self.problem.fluid is None:
             return state.q, state.w
         levels = (state.level, *state.earlier)
         then = 0.5 * sum(self._travelled(state, dt))
         nodes = [(then - level.travelled) / self.scales.dx for level in levels]
-        return predict(self.problem, Level(0.0, *self.smooth), levels, nodes)
+        return predict(self.problem, TimeLevel(0.0, *self.smooth), levels, nodes)
 
     def _travelled(self, state, dt):
         """Ways of both surfaces [m] after a step of dt [s]."""
@@ -189,7 +189,7 @@ class TimeStepping:
 
     def _inputs(self, state, dt):
         history = None
-        if not self.problem.dry:
+        if self.problem.fluid is not None:
             unit = self.scales.u / self.scales.a
             older = None if state.dt is None else state.dt * unit
             history = FilmHistory(state.m, state.m_older, dt * unit, older)
@@ -198,18 +198,17 @@ class TimeStepping:
 
     def _solve(self, q, w, h00, inputs):
         """As of the solver; where solids yield, failing that, from what they would do elastically."""
-        model = self.problem.model
+        elastic = self.problem.model.elastic()
         try:
-            return certified(self.solver, q, w, h00, inputs)
+            return solve_checked(self.solver, q, w, h00, inputs)
         except SolveFailed as error:
-            if not model.yields:
+            if elastic is None:
                 raise
             spent = error.iterations
         try:
-            with model.elastic():
-                *begin, more = certified(self.solver, q, w, h00, inputs)
+            *begin, more = solve_checked(self.solver, q, w, h00, replace(inputs, contact=elastic))
             spent += more
-            *state, more = certified(self.solver, *begin, inputs)
+            *state, more = solve_checked(self.solver, *begin, inputs)
         except SolveFailed as error:
             error.iterations += spent
             raise

@@ -37,7 +37,7 @@ def cpu(call, repeats):
 def near_field(system, near):
     """Rows, columns and values of the last Jacobian with the deflection of so many nodes."""
     matrix = PETSc.Mat().createAIJ((system.x.getSizes(),) * 2, comm=system.comm)
-    given = system.jacobian.relations, system.jacobian.reynolds_derivatives
+    given = system.jacobian.state, system.jacobian.reynolds_derivatives
     NearFieldMatrix(system.problem, near, matrix).fill(*given)
     pointers, columns, values = matrix.getValuesCSR()
     return np.repeat(np.arange(len(pointers) - 1), np.diff(pointers)), columns, values

@@ -15,7 +15,6 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
-from ehlpetsc.nonlinear.preconditioner.node_variables import band_entries, in_unknowns
 from ehlpetsc.nonlinear.preconditioner.spike import SpikeLU
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -48,21 +47,22 @@ def dense(problem, at, dropped):
     for end in (0, n - 1):
         by_pressure[end], by_film[end] = d.end_row(end), 0.0
         by_film[end, end] = d.end_scale
-    relations, _, derivatives = vars(problem.evaluate(*at, problem.inputs())).values()
+    evaluation = problem.evaluate(*at, problem.inputs())
+    nodes, derivatives = evaluation.state, evaluation.reynolds_derivatives
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
-    leak = np.where((relations.p_q > 0.0) | (relations.p_w != 0.0), 0.0, LEAK)
-    matrix[: 2 * n : 2, : 2 * n : 2] = by_pressure * relations.p_q + np.diag(leak)
-    matrix[: 2 * n : 2, 1 : 2 * n : 2] = by_pressure * relations.p_w + by_film * relations.h_w
+    leak = np.where((nodes.p_q > 0.0) | (nodes.p_w != 0.0), 0.0, LEAK)
+    matrix[: 2 * n : 2, : 2 * n : 2] = by_pressure * nodes.p_q + np.diag(leak)
+    matrix[: 2 * n : 2, 1 : 2 * n : 2] = by_pressure * nodes.p_w + by_film * nodes.h_w
     matrix[[0, 2 * n - 2], -1] = -d.end_scale
     for i, row in enumerate(derivatives):
         for k, j in enumerate(range(i - 2, i + 2)):
             if 0 <= j < n:
-                matrix[2 * i + 1, [2 * j, 2 * j + 1]] = row[2 * k], row[2 * k + 1] * relations.h_w[j]
+                matrix[2 * i + 1, [2 * j, 2 * j + 1]] = row[2 * k], row[2 * k + 1] * nodes.h_w[j]
     matrix[2 * dropped + 1] = 0.0
     matrix[2 * dropped + 1, 2 * dropped + 1] = 1.0
     matrix[2 * n, : 2 * n : 2], matrix[2 * n, 1 : 2 * n : 2] = (
-        problem.dx * relations.p_q,
-        problem.dx * relations.p_w,
+        problem.dx * nodes.p_q,
+        problem.dx * nodes.p_w,
     )
     return matrix
 
@@ -82,9 +82,9 @@ def test_it_solves_its_matrix(model):
     lu = SpikeLU(BandedJacobian(part), -part.deflection.end_scale, ranks)
     mine = dropped[(dropped >= first) & (dropped < last)] - first
     kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
-    relations = part.model.relations(at[0][part.window], at[1][part.window])
+    nodes = part.model.state(at[0][part.window], at[1][part.window])
     derivatives = whole.evaluate(*at, whole.inputs()).reynolds_derivatives[first:last]
-    entries = band_entries(part.model, relations, derivatives, lu.band.stencil)
+    entries = part.model.band_entries(nodes, derivatives, lu.band.stencil)
     other = entries._replace(
         p_first=np.zeros_like(entries.p_first),
         separation_second=np.zeros_like(entries.p_first),
@@ -93,7 +93,7 @@ def test_it_solves_its_matrix(model):
     lu.factor(other, dropped[:0])  # what it leaves must not matter
     lu.factor(entries, mine)
     found, approach = lu.solve(right[2 * first : 2 * last][kept], kept, right[-1] if last == n else 0.0)
-    in_unknowns(part.model, relations, part.own, found.reshape(-1, 2))
+    part.model.from_band(nodes, part.own, found.reshape(-1, 2))
     expected = np.linalg.solve(dense(whole, at, dropped), right)
     scale = np.tile(np.abs(expected[:-1]).reshape(-1, 2).max(axis=0), last - first)
     np.testing.assert_allclose(found / scale, expected[2 * first : 2 * last] / scale, rtol=0, atol=1e-7)

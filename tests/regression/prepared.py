@@ -28,7 +28,6 @@ HEAVY = (
     "ehlpetsc.case.loading",
     "ehlpetsc.discretisation.ehl_problem",
     "ehlpetsc.nonlinear.options",
-    "ehlpetsc.nonlinear.systems.step_limits",
     "ehlpetsc.results.output_guard",
     "ehlpetsc.results.reader",
     "ehlpetsc.results.restart_file",
@@ -68,9 +67,8 @@ def load_compiled():
     from ehlpetsc.case.loading import load
     from ehlpetsc.discretisation.ehl_problem import EHLProblem
     from ehlpetsc.discretisation.finite_volumes import extrapolated, reynolds_rounding
-    from ehlpetsc.nonlinear.systems import step_limits
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.stepping.predictor import carried
+    from ehlpetsc.stepping.predictor import advected
 
     case = load(HERE.parents[2] / "cases" / "table1_smooth.toml", ["mesh.points_per_half_width=20"])
     scales = Scales.of(case)
@@ -78,12 +76,12 @@ def load_compiled():
     found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
     step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
     now.flags.writeable = False  # as PETSc gives it
-    problem.product(found.relations, found.reynolds_derivatives, now, 0.0)
+    problem.product(found.state, found.reynolds_derivatives, now, 0.0)
     reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
     extrapolated(one, one, 1.0)
-    carried(one, 1.0)
-    step_limits.change(problem.model, False, now, step)
-    step_limits.keep(problem.model, False, now, step, None)
+    advected(one, 1.0)
+    problem.model.pressure_change(now, step)
+    problem.model.clip_step(now, step, 0.0)
 
 
 def load_libraries():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.ehl_problem import contact_model
+from ehlpetsc.discretisation.contact import contact_model
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.physics.film_formulas import expected_film
@@ -14,7 +14,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.way_on import way_on
-from ehlpetsc.stepping.predictor import Level
+from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.time_stepping import State
 from ehlpetsc.surfaces.roughness import Bodies
 
@@ -41,7 +41,7 @@ class Scene:
     def physical(self, q, w):
         """Oil pressure and contact pressure [Pa], void, film [m]."""
         s = self.scales
-        film, solids = self.model.relations(q, w).film, self.model.contact_pressure(w)
+        film, solids = self.model.state(q, w).film, self.model.contact_pressure(w)
         return np.maximum(q, 0.0) * s.p0, solids * s.p0, np.maximum(-q, 0.0), film * s.h
 
 
@@ -55,7 +55,7 @@ def state_of(scene, mixed=False):
         w[[20, 41]] = [-1e-4, -3e-4] if mixed else 0.0
         return q, w
 
-    earlier = tuple(Level(time, *unknowns()) for time in (2e-6, 1e-6))
+    earlier = tuple(TimeLevel(time, *unknowns()) for time in (2e-6, 1e-6))
     m, m_older = rng.uniform(0.0, 1e-3, (2, n))
     more = dict(time=3e-6, dt=1e-6, step=3, retries=1, earlier=earlier, travelled=(2e-5, 1e-5))
     return State(*unknowns(), -0.4, m=m, m_older=m_older, **more), unknowns()

@@ -68,6 +68,6 @@ def test_the_problems_film_leaves_no_residual_in_its_deflection_rows(model):
     q, phi, h00 = rng.uniform(0.1, 1.5, scales.nx), 1e-3 * rng.standard_normal(scales.nx), 9.0
     film = problem.film(q, h00, phi)
     assert film.min() > 0.0
-    evaluation = problem.evaluate(q, problem.model.from_film(film), h00, problem.inputs(phi))
+    evaluation = problem.evaluate(q, problem.model.w_from_film(film), h00, problem.inputs(phi))
     terms = problem.deflection.stretch * film.max()
     assert np.abs(firsts(evaluation.residual, problem.n)).max() < 1e-12 * terms

@@ -60,13 +60,13 @@ def scene(name):
     rng, n, problem = np.random.default_rng(2), scales.nx, system.problem
     q = np.sqrt(np.maximum(1.05 - scales.x**2, 0.01)) * rng.uniform(0.5, 1.2, n)
     w = film * rng.uniform(0.3, 3.0, n)
-    if not problem.dry:
+    if problem.fluid is not None:
         q[scales.x > 1.02] = rng.uniform(-0.8, -0.1, (scales.x > 1.02).sum())
     # two nodes side by side without any film are a kink: the limiter of the upwind flux
-    touching = ALONE if solver.bound == 0.0 and not problem.dry else [*ALONE, BESIDE]
-    w[touching] = -0.4 / system.model.stiffness if system.model.is_mixed else solver.bound
+    touching = ALONE if solver.bound == 0.0 and problem.fluid is not None else [*ALONE, BESIDE]
+    w[touching] = -0.4 / system.model.stiffness if system.model.lower_bound is None else solver.bound
     history = None
-    if not problem.dry:
+    if problem.fluid is not None:
         m = problem.content(q, w)
         history = FilmHistory(*(m * rng.uniform(0.6, 1.6, n) + 1e-6 for _ in range(2)), 0.01, 0.012)
     state = np.append(np.stack([q, w], axis=1).ravel(), H00)
@@ -103,7 +103,7 @@ def columns_of(matrix, size):
 def test_every_column_is_the_difference_of_residuals(name):
     at = scene(name)
     system, size = linearised(at), len(at.state)
-    np.testing.assert_array_equal(np.flatnonzero(system.jacobian.relations.touching), at.touching)
+    np.testing.assert_array_equal(np.flatnonzero(system.jacobian.state.contact_mask), at.touching)
     found = columns_of(system.operator, size)
     for column in range(size):
         scale = max(abs(at.state[column]), 1e-2 * system.problem.film_scale)
@@ -121,12 +121,12 @@ def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
     system, size = linearised(at), len(at.state)
     problem, jacobian = system.problem, system.jacobian
     matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)
-    NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.relations, jacobian.reynolds_derivatives)
+    NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.state, jacobian.reynolds_derivatives)
     assembled, whole = columns_of(matrix, size), columns_of(system.operator, size)
     leaks = np.diag(assembled - whole)
     np.testing.assert_allclose(assembled - np.diag(leaks), whole, rtol=1e-9, atol=1e-12 * np.abs(whole).max())
-    blind = jacobian.relations.p_q == 0.0
-    assert blind.any() != problem.dry
+    blind = jacobian.state.p_q == 0.0
+    assert blind.any() == (problem.fluid is not None)
     np.testing.assert_allclose(firsts(leaks, problem.n), np.where(blind, LEAK, 0.0), atol=1e-9)
     np.testing.assert_allclose(seconds(leaks, problem.n), 0.0, atol=1e-9)
 

@@ -9,7 +9,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.predictor import Level, carried, predict
+from ehlpetsc.stepping.predictor import TimeLevel, advected, predict
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 
@@ -23,8 +23,10 @@ def problem_of(model="direct"):
 def smooth_and_rough(problem, seed=0):
     """A uniform smooth film under a pressure with a cavity behind it, and the same with a ripple in both."""
     rng, film = np.random.default_rng(seed), problem.film_scale
-    smooth = Level(0.0, np.full(problem.n, 0.5), problem.model.from_film(np.full(problem.n, 2.0 * film)))
-    rough = Level(
+    smooth = TimeLevel(
+        0.0, np.full(problem.n, 0.5), problem.model.w_from_film(np.full(problem.n, 2.0 * film))
+    )
+    rough = TimeLevel(
         1e-6, 0.5 + 0.3 * rng.uniform(-1, 1, problem.n), smooth.w * rng.uniform(0.5, 1.5, problem.n)
     )
     return smooth, rough
@@ -44,7 +46,7 @@ def test_the_smooth_solution_is_its_own_guess():
     problem = problem_of()
     film, x = problem.film_scale, problem.x
     q0 = np.where(x < 1.0, 0.7 / (1.0 + x**2), -0.5)
-    smooth = Level(0.0, q0, film * (1.0 + np.maximum(x**2 - 1.0, 0.0)))
+    smooth = TimeLevel(0.0, q0, film * (1.0 + np.maximum(x**2 - 1.0, 0.0)))
     q, w = predict(problem, smooth, [smooth._replace(travelled=1e-6)], [2.4])
     np.testing.assert_allclose(q, smooth.q, rtol=1e-12)
     np.testing.assert_allclose(w, smooth.w, rtol=1e-12)
@@ -68,7 +70,7 @@ def test_films_stay_within_their_bound_oil_stays_oil_and_voids_keep_some(way):
     rough.q[100:110] = -0.9  # a cavity
     rough.w[60:62] = 0.0  # contact
     q, w = predict(problem, smooth, [rough], [way])
-    assert w.min() >= problem.model.bound and q.min() > -1.0
+    assert w.min() >= problem.model.lower_bound and q.min() > -1.0
     came_from = np.arange(problem.n) - way
     both_oil = (came_from < 99) | (came_from > 110)
     assert (q[both_oil] > 0.0).all()
@@ -90,8 +92,8 @@ def test_carried_values_lie_between_their_neighbours():
     v = np.zeros(30)
     v[12] = 1.0
     for nodes in (0.25, 0.5, 3.75):
-        moved = carried(v, nodes)
+        moved = advected(v, nodes)
         assert moved.min() >= 0.0 and moved.max() <= 1.0
         assert set(np.flatnonzero(moved)) <= {12 + int(nodes), 13 + int(nodes)}
     line = np.arange(60.0)
-    np.testing.assert_allclose(carried(line, 0.25)[20:-20], line[20:-20] - 0.25, rtol=1e-9)
+    np.testing.assert_allclose(advected(line, 0.25)[20:-20], line[20:-20] - 0.25, rtol=1e-9)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.contact_model import ROUNDING
+from ehlpetsc.discretisation.contact.node_state import ROUNDING
 from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 from ehlpetsc.physics.scales import Scales

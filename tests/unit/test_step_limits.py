@@ -1,15 +1,10 @@
-"""What Newton's steps are kept to."""
+"""Limits of the Newton step."""
 
 import numpy as np
 import pytest
 
-from ehlpetsc.nonlinear.systems.step_limits import (
-    OIL_KEPT,
-    REFILLED,
-    keep_oil,
-    largest_change,
-    let_overlaps_touch,
-)
+from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
+from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 
 
 def pairs(*values):
@@ -20,29 +15,29 @@ def test_largest_change_is_of_pressures_in_oil():
     now = pairs((0.5, 1.0), (-0.5, 1.0), (0.2, 0.0), (0.2, 0.0))
     step = pairs((0.2, 0.0), (-0.6, 0.0), (-5.0, 0.0), (-0.4, -1.0))
     # a cavity counts from zero on; contact that stays does not count, contact that opens does
-    assert largest_change(now, step, 0.0, 0.0) == pytest.approx(0.4)
-    assert largest_change(now, step, 0.0, -np.inf) == pytest.approx(0.6)
+    assert pressure_change(now, step, 0.0, 0.0) == pytest.approx(0.4)
+    assert pressure_change(now, step, 0.0, -np.inf) == pytest.approx(0.6)
 
 
 @pytest.mark.parametrize(
     "q, dq, h, dh, expected",
     [
         (0.5, 0.2, 1.0, 0.0, 0.3),  # oil stays oil: as it is
-        (-0.5, -1.0, 1.0, 0.0, REFILLED),  # a cavity that fills
-        (-0.5, 0.6, 1.0, 0.0, OIL_KEPT * 0.5 - 1.0),  # one that would be emptied
-        (0.5, 3.0, 1.0, 0.0, OIL_KEPT - 1.0),  # oil that would be a void at once
+        (-0.5, -1.0, 1.0, 0.0, PRESSURE_AFTER_REFILL),  # a cavity that fills
+        (-0.5, 0.6, 1.0, 0.0, MIN_OIL_FRACTION * 0.5 - 1.0),  # one that would be emptied
+        (0.5, 3.0, 1.0, 0.0, MIN_OIL_FRACTION - 1.0),  # oil that would be a void at once
         (-0.5, -0.1, 1.0, 0.0, -0.4),  # a void that shrinks
-        (-0.5, -0.1, 1.0, 1.0, REFILLED),  # a void that closes
+        (-0.5, -0.1, 1.0, 1.0, PRESSURE_AFTER_REFILL),  # a void that closes
     ],
 )
 def test_cavities_keep_oil(q, dq, h, dh, expected):
     now, step = pairs((q, h)), pairs((dq, dh))
-    keep_oil(now, step, 0.0)
+    clip_cavities(now, step, 0.0)
     assert now[0, 0] - step[0, 0] == pytest.approx(expected, rel=1e-6)
     assert step[0, 1] == dh
 
 
 def test_overlaps_touch():
     now, step = pairs((0.0, 1.0), (0.0, 1.0)), pairs((0.0, 0.5), (0.0, 1.5))
-    let_overlaps_touch(now, step, 0.0)
-    assert (now - step)[:, 0] == pytest.approx([0.0, REFILLED])
+    close_overlaps(now, step, 0.0)
+    assert (now - step)[:, 0] == pytest.approx([0.0, PRESSURE_AFTER_REFILL])

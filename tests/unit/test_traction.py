@@ -37,9 +37,8 @@ def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
 def shear(case, scales, p, h, void=0.0, touching=()):
     in_contact = np.zeros(scales.nx, bool)
     in_contact[list(touching)] = True
-    return shear_stresses(
-        case, scales.dx, scales.u1 - scales.u2, p, p, h, np.full(scales.nx, void), in_contact
-    )
+    solids, sheared = np.where(in_contact, p, 0.0), np.where(in_contact, 0.0, 1.0 - void)
+    return shear_stresses(case, scales.dx, scales.u1 - scales.u2, p, solids, h, sheared)
 
 
 @pytest.mark.parametrize("ratio", [0.5, -0.5])
@@ -102,13 +101,11 @@ def test_in_mixed_contact_the_oil_drags_beside_the_solids():
     mixed = case.copy(update={"contact": case.contact.copy(update={"model": "mixed"})})
     touching = np.zeros(scales.nx, bool)
     touching[[30, 60]] = True
-    solids, void = np.where(touching, 0.2e9, 0.0), np.zeros(scales.nx)
-    oil_alone = shear_stresses(
-        mixed, scales.dx, scales.u1 - scales.u2, p, np.zeros_like(p), h, void, np.zeros_like(touching)
-    )
+    solids, sheared = np.where(touching, 0.2e9, 0.0), np.ones(scales.nx)
+    oil_alone = shear_stresses(mixed, scales.dx, scales.u1 - scales.u2, p, np.zeros_like(p), h, sheared)
     for sign, both, oil in zip(
         (-1.0, 1.0),
-        shear_stresses(mixed, scales.dx, scales.u1 - scales.u2, p, solids, h, void, touching),
+        shear_stresses(mixed, scales.dx, scales.u1 - scales.u2, p, solids, h, sheared),
         oil_alone,
         strict=True,
     ):
@@ -119,7 +116,7 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
     """Whether rounding leaves 0 or 1e-17 of it must not matter: runs continued and not differed there."""
     case, scales, p, h = scene(0.5)
     problem = EHLProblem(case, scales, 1e-2, 0, scales.nx)
-    problem.model.near = 1e-8  # as SNES has it
+    problem.model.bound_tolerance = 1e-8  # as SNES has it
     found = []
     for left in (0.0, 1e-17, 1e-9):
         w = h / scales.h

@@ -53,6 +53,11 @@ class Contact(Table):
         "left out: elastic",
     )
 
+    @property
+    def has_contact_pressure(self):
+        """Whether the solids have a pressure of their own beside that of the oil."""
+        return self.model == "mixed"
+
     @validator("boundary_film", always=True)
     def _of_mixed_contact(cls, value, values):
         if values.get("model") != "mixed":

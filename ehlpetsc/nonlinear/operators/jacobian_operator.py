@@ -71,8 +71,8 @@ class JacobianOperator(BandSystem, Restrictable):
 
     Attributes
     ----------
-    relations, reynolds_derivatives
-        Of the state linearised at, as in `ehl_problem.Evaluation`.
+    model, state, reynolds_derivatives
+        Of the linearisation, as in `ehl_problem.Evaluation`.
     """
 
     def __init__(self, problem, exchange, factors):
@@ -83,28 +83,19 @@ class JacobianOperator(BandSystem, Restrictable):
 
     def linearise(self, evaluation):
         """Take the derivatives of a state."""
-        relations, model = evaluation.relations, self.problem.model
-        if model.yields:
-            relations = model.linearised(relations, self._all_yields(relations))
-        if not model.is_mixed:
-            # a node in contact and cavitated at once would leave its deflection row blind
-            relations = relations._replace(p_q=np.where(relations.touching, 1.0, relations.p_q))
-        self.relations, self.reynolds_derivatives = relations, evaluation.reynolds_derivatives
+        self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
+        self.state = self.model.linearised(evaluation.state, self.problem.own, self._ranks_sum)
 
-    def _all_yields(self, relations):
-        """Whether next to nothing that carries is elastic still, on all ranks together."""
-        p = self.problem
-        here = p.model.yielding_and_elastic(relations, p.own)
-        yielding, elastic = np.sum(self.exchange.ranks.allgather(here), axis=0)
-        return p.model.is_all_yielding(yielding, elastic)
+    def _ranks_sum(self, numbers):
+        return np.sum(self.exchange.ranks.allgather(numbers), axis=0)
 
     def times(self, v):
         """Product with the local part of a vector, of all ranks together."""
         nodes, h00, outside = self.exchange(v, self._pressure)
-        return self.problem.product(self.relations, self.reynolds_derivatives, nodes, h00, outside)
+        return self.problem.product(self.state, self.reynolds_derivatives, nodes, h00, outside)
 
     def _pressure(self, nodes):
-        own, r = self.problem.own, self.relations
+        own, r = self.problem.own, self.state
         return r.p_q[own] * nodes[:, 0] + r.p_w[own] * nodes[:, 1]
 
     def mult(self, mat, v, out):
@@ -129,8 +120,12 @@ class RestrictedOperator(BandSystem):
             self.dropped = np.flatnonzero(~seconds_kept)
 
     @property
-    def relations(self):
-        return self.whole.relations
+    def model(self):
+        return self.whole.model
+
+    @property
+    def state(self):
+        return self.whole.state
 
     @property
     def reynolds_derivatives(self):
@@ -187,8 +182,8 @@ class NearFieldMatrix:
             rows.append(np.arange(count(p.n) + 1))
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
-    def fill(self, relations, derivatives):
-        """Values of a state, assembled; the relations those of the whole mesh, on every rank."""
+    def fill(self, state, derivatives):
+        """Assemble the matrix of a state, which is that of the whole mesh, on every rank."""
         p, d, near = self.problem, self.problem.deflection, self.near
         kernel = np.tile(-d.curvature[np.abs(np.arange(-near, near + 1))], (p.local, 1))
         bend = np.zeros_like(kernel)
@@ -197,30 +192,30 @@ class NearFieldMatrix:
             row = end - p.first
             kernel[row], bend[row] = d.end_row(end)[self.nodes[row]], 0.0
             bend[row, near] = d.end_scale
-        by_q = kernel * relations.p_q[self.nodes] + bend * relations.separation_q[self.nodes]
+        by_q = kernel * state.p_q[self.nodes] + bend * state.separation_q[self.nodes]
         own = slice(p.first, p.last)
-        by_q[:, near] += leaks(relations.p_q[own], relations.separation_q[own])
-        by_w = kernel * relations.p_w[self.nodes] + bend * relations.separation_w[self.nodes]
+        by_q[:, near] += leaks(state.p_q[own], state.separation_q[own])
+        by_w = kernel * state.p_w[self.nodes] + bend * state.separation_w[self.nodes]
         approach = np.full((p.local, 1), -d.end_scale)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
-        set_rows(self.matrix, second_of(nodes), p.reynolds_columns, self._by_unknowns(relations, derivatives))
+        set_rows(self.matrix, second_of(nodes), p.reynolds_columns, self._by_unknowns(state, derivatives))
         if p.load_is_local:
             load = np.zeros(count(p.n))
-            firsts(load, p.n)[:], seconds(load, p.n)[:] = p.dx * relations.p_q, p.dx * relations.p_w
+            firsts(load, p.n)[:], seconds(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
             self.matrix.setValues([count(p.n)], np.arange(count(p.n), dtype=np.int32), load)
         self.matrix.assemble()
 
-    def _by_unknowns(self, relations, derivatives):
+    def _by_unknowns(self, state, derivatives):
         """Reynolds' rows by q and w."""
         p, values = self.problem, derivatives.copy()
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
         nodes = np.clip(nodes, 0, p.n - 1)
-        by_oil, by_film = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
-        seconds_of_rows(values)[:] = by_film * relations.h_w[nodes]
-        if relations.plastic is not None:
-            firsts_of_rows(values)[:] = by_oil * relations.plastic.oil_q[nodes]
-            seconds_of_rows(values)[:] += by_oil * relations.plastic.oil_w[nodes]
+        by_unknown, by_film = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+        seconds_of_rows(values)[:] = by_film * state.h_w[nodes]
+        if state.plastic is not None:
+            firsts_of_rows(values)[:] = by_unknown * state.plastic.reynolds_q[nodes]
+            seconds_of_rows(values)[:] += by_unknown * state.plastic.reynolds_w[nodes]
         return values
 
 

@@ -37,7 +37,7 @@ class BandedJacobian:
         Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
     at_ends : ndarray, shape (2, LINE)
         Numbers of the unknowns of the first and of the last group, and of the room behind them.
-    entries : node_variables.BandEntries or None
+    entries : contact.band.BandEntries or None
         Of the state last filled in.
     dense : ndarray, shape (3, nodes)
         Of the same: what the band lacks of both end nodes' deflection, and the load, under
@@ -184,7 +184,7 @@ class BandedJacobian:
 
         Parameters
         ----------
-        entries : node_variables.BandEntries
+        entries : contact.band.BandEntries
         dropped : ndarray of int
             Local nodes whose second unknown stays as it is.
 

@@ -8,7 +8,6 @@ What GMRES has left to do is the error of three exponentials, the same on any nu
 
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
-from ehlpetsc.nonlinear.preconditioner.node_variables import band_entries, in_unknowns
 from ehlpetsc.nonlinear.preconditioner.spike import SpikeLU
 
 
@@ -32,8 +31,8 @@ class Factors:
 
     def factor(self, operator):
         """Factor for the state of a :mod:`ehlpetsc.nonlinear.operators.jacobian_operator`."""
-        model, stencil = operator.problem.model, self.lu.band.stencil
-        entries = band_entries(model, operator.relations, operator.reynolds_derivatives, stencil)
+        state, derivatives = operator.state, operator.reynolds_derivatives
+        entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.dropped, anew=not self.fresh)
         self.fresh = True
 
@@ -53,5 +52,5 @@ class FarFieldBand:
         with events.BACK_SOLVE:
             rows, load = o.rows_for_band(x.array_r)
             solution, approach = o.factors.lu.solve(rows, o.kept, load.sum())
-            in_unknowns(problem.model, o.relations, problem.own, solution.reshape(-1, 2))
+            o.model.from_band(o.state, problem.own, solution.reshape(-1, 2))
             o.take_from_band(solution, approach, y.array)

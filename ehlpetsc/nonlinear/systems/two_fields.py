@@ -22,11 +22,11 @@ from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 from ehlpetsc.nonlinear.snes import owned
-from ehlpetsc.nonlinear.systems import step_limits
 
 ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
 ZERO_TOLERANCE = 1e-8  # of PETSc: how near to its bound an unknown is taken to be on it
-OPENED = 1e-3  # of the expected film: what solids that part get in that iteration
+STEP_LIMIT = 0.3  # p0: largest change of pressure of one Newton step
+FILM_AFTER_RELEASE = 1e-3  # of the expected film: film of a node in the iteration in which its solids part
 
 
 class TwoFields:
@@ -71,8 +71,8 @@ class TwoFields:
         self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
         self.lower.set(PETSc.NINFINITY)
         self.upper.set(PETSc.INFINITY)
-        if not self.model.is_mixed:
-            seconds(self.lower.array, self.local)[:] = self.model.bound
+        if self.model.lower_bound is not None:
+            seconds(self.lower.array, self.local)[:] = self.model.lower_bound
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self._made = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
 
@@ -99,7 +99,7 @@ class TwoFields:
     def give_bounds(self, snes):
         """Let a SNES hold the unknowns to their bounds, and count as on them what it counts so."""
         snes.setVariableBounds(self.lower, self.upper)
-        self.model.near = PETSc.Options().getReal("snes_vi_zero_tolerance", ZERO_TOLERANCE)
+        self.model.bound_tolerance = PETSc.Options().getReal("snes_vi_zero_tolerance", ZERO_TOLERANCE)
 
     def begin(self, q, w, h00, inputs):
         """Take a first guess, of the whole mesh, and the inputs of a time step.
@@ -148,30 +148,38 @@ class TwoFields:
         return self._evaluation
 
     def _pressure(self, nodes):
-        return self.model.pressure(nodes[:, 0], nodes[:, 1])
+        return self.contact.pressure(nodes[:, 0], nodes[:, 1])
 
     def linearise(self, x):
         """Set the matrices for x."""
         self.jacobian.linearise(self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                whole = self.exchange.whole(self.jacobian.relations)
+                whole = self.exchange.whole(self.jacobian.state)
                 self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
 
+    @property
+    def contact(self):
+        """Contact model of the solve in hand."""
+        return self.inputs.contact or self.model
+
     def limit_step(self, x, y):
-        """Shorten a step y, which is to be taken off x, and keep single entries to what they may do."""
+        """Shorten a step y, to be subtracted from x, and limit single entries of it.
+
+        The step is scaled as a whole, so that linear rows stay satisfied, to `STEP_LIMIT` p0 in any pressure,
+        because the viscosity is exponential in p; single entries are limited by the contact model.
+        """
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
-        model, dry = self.model, self.problem.dry
-        change = largest(self.exchange.ranks, step_limits.change(model, dry, now, step))
-        if change > step_limits.STEP_LIMIT:
-            y.scale(step_limits.STEP_LIMIT / change)
+        change = largest(self.exchange.ranks, self.contact.pressure_change(now, step))
+        if change > STEP_LIMIT:
+            y.scale(STEP_LIMIT / change)
         step = pairs(y.array, self.local)
-        step_limits.keep(model, dry, now, step, OPENED * self.problem.film_scale)
+        self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
     def touches(self, x, y):
         """Whether a film of this rank's comes to its bound by the step y."""
         film = seconds(x.array_r, self.local) - seconds(y.array_r, self.local)
-        return film.min() <= self.model.bound + self.model.near
+        return film.min() <= self.model.lower_bound + self.model.bound_tolerance
 
     def rounding(self):
         """What rounding of the unknowns leaves of the residual at x: nothing less can be asked.
@@ -179,8 +187,8 @@ class TwoFields:
         Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
         """
         evaluation = self.evaluate(self.x)
-        oil, film = evaluation.relations.oil, evaluation.relations.film
-        mine = reynolds_rounding(evaluation.reynolds_derivatives, oil, film, self.problem.own.start)
+        unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
+        mine = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.own.start)
         return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
 

@@ -44,7 +44,7 @@ def domain_faults(case, scales):
     """
     if case.contact.yield_pressure:
         return _too_narrow(case, scales)
-    if case.fluid is None or case.contact.model == "mixed":  # where the boundary film stays
+    if case.fluid is None or case.contact.has_contact_pressure:  # where the boundary film stays
         return []
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
     if opening <= CLOSED:
@@ -96,5 +96,5 @@ def _coarse(opening):
 
 def _cure(case, scales):
     points = math.ceil(points_for_opening(_thinnest(case, scales), COARSE))
-    other = "" if case.contact.model == "mixed" else '; or contact.model = "mixed"'
+    other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
     return f"try mesh.points_per_half_width = {points}{other}"

@@ -9,7 +9,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart.contents import TOTAL, fault
 from ehlpetsc.run.restart.rescaling import rescale
-from ehlpetsc.stepping.predictor import Level
+from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.time_stepping import State
 from ehlpetsc.surfaces.permanent_set import PermanentSet
 from ehlpetsc.surfaces.roughness import Bodies
@@ -143,13 +143,13 @@ def load(path, case, scales, model):
 
 def _fields(model, name, q, w):
     """Arrays that say what q and w stand for, so that a run may go on with another contact model."""
-    film = model.relations(q, w).film
+    film = model.state(q, w).film
     return {f"{name}q": q, f"{name}h": film, f"{name}contact_pressure": model.contact_pressure(w)}
 
 
 def _unknowns(model, arrays, name):
     q, film, solids = (arrays[name + field] for field in ("q", "h", "contact_pressure"))
-    return q, model.second_unknown(film, solids)
+    return q, model.w_from_state(film, solids)
 
 
 def _sets(arrays, attributes):
@@ -173,7 +173,7 @@ def _pass_number(attributes):
 def _earlier(model, arrays):
     if "earlier_travelled" not in arrays:
         return ()
-    return tuple(map(Level, arrays["earlier_travelled"], *_unknowns(model, arrays, "earlier_")))
+    return tuple(map(TimeLevel, arrays["earlier_travelled"], *_unknowns(model, arrays, "earlier_")))
 
 
 def _misfit(arrays, attributes, earlier, case, scales):

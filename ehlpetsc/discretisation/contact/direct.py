@@ -1,0 +1,161 @@
+"""Direct contact (Holmes et al. 2005): w is the film h, bounded below.
+
+At the bound the pressure of the oil is that of the solids too, and the Reynolds equation is dropped:
+:math:`h\\ge h_b`, :math:`F\\ge0`, :math:`(h-h_b)F=0`.
+"""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.band import BandEntries
+from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.contact.node_state import (
+    PRESSURE_AFTER_REFILL,
+    NodeState,
+    SurfaceLoads,
+    full_of_oil,
+    limit_cavitation,
+)
+
+
+class DirectContact(ContactModel):
+    """Film bounded below by `bound` (a^2/R), with oil between the solids."""
+
+    starts_unconstrained = True
+    lowest_pressure = 0.0
+
+    def __init__(self, bound):
+        self.lower_bound = self.minimum_film = bound
+
+    def pressure(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        return np.maximum(q, 0.0)
+
+    def state(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        return self._state(q, w, full_of_oil(q) * 1.0)
+
+    def _state(self, q, w, p_q):
+        none, one = np.zeros(len(w)), np.ones(len(w))
+        return NodeState(q, self.pressure(q, w), w, p_q, none, one, w <= self.lower_bound)
+
+    def contact_pressure(self, w):
+        """Not separated from the oil's: zero."""
+        return np.zeros_like(w)
+
+    def contact_mask(self, w, reynolds_residual):
+        """Nodes without a Reynolds equation: at the bound, or within its tolerance with F > 0."""
+        at_bound = w <= self.lower_bound
+        return at_bound | ((w <= self.lower_bound + self.bound_tolerance) & (reynolds_residual > 0.0))
+
+    def w_from_film(self, h):
+        """See :class:`.model.ContactModel`."""
+        return np.maximum(h, self.lower_bound)
+
+    def w_from_state(self, h, contact_pressure):
+        """The film, whatever pressure the solids have."""
+        return self.w_from_film(h)
+
+    def dry_start(self, pressure, gap):
+        """See :class:`.model.ContactModel`."""
+        return pressure, gap
+
+    def advected(self, interpolated, shifted):
+        """See :class:`.model.ContactModel`."""
+        return interpolated
+
+    def linearised(self, state, own, ranks_sum):
+        """A node in contact and cavitated at once would leave its deflection row without an entry for q."""
+        return state._replace(p_q=np.where(state.contact_mask, 1.0, state.p_q))
+
+    def pressure_change(self, now, step):
+        """See :class:`.model.ContactModel`."""
+        return pressure_change(now, step, self.lower_bound, self.lowest_pressure)
+
+    def clip_step(self, now, step, film_after_release):
+        """See :class:`.model.ContactModel`."""
+        clip_cavities(now, step, self.lower_bound)
+
+    def band_entries(self, state, derivatives, stencil):
+        """The unknowns of the band are (q, h) themselves."""
+        return BandEntries(state.p_q, np.zeros_like(state.film), state.h_w, derivatives)
+
+    def check(self, w, reynolds_residual, tolerance):
+        """See :class:`.model.ContactModel`."""
+        bound, residual = self.lower_bound, reynolds_residual
+        if w.min() < bound - self.bound_tolerance:
+            return f"a film is {w.min() - bound:.2g} a^2/R below its bound", residual
+        mask = self.contact_mask(w, residual)
+        worst = -residual[mask].min(initial=0.0)
+        if not worst <= tolerance:
+            return f"where solids touch a residual is -{worst:.2e}, allowed: {tolerance:.1e}", residual
+        return None, np.where(mask, 0.0, residual)
+
+    def surface_loads(self, q, w, h, reynolds_residual):
+        """See :class:`.model.ContactModel`.
+
+        The shear of a film within the tolerance of the bound would be rounding: solids rub there.
+        """
+        mask, pressure = self.contact_mask(w, reynolds_residual), self.pressure(q, w)
+        rubbing = h <= self.lower_bound + self.bound_tolerance
+        return SurfaceLoads(
+            mask,
+            pressure,
+            np.zeros_like(pressure),
+            np.where(mask, self.lower_bound, h),
+            pressure,
+            ~mask,
+            np.where(rubbing, pressure, 0.0),
+            ~rubbing,
+        )
+
+
+class DryContact(DirectContact):
+    """Direct contact without oil: q is the pressure itself, complementary to the gap."""
+
+    starts_unconstrained = False
+    lowest_pressure = -np.inf
+
+    def pressure(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        return q
+
+    def state(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        return self._state(q, w, np.ones(len(q)))
+
+    def clip_step(self, now, step, film_after_release):
+        """See :class:`.model.ContactModel`."""
+        close_overlaps(now, step, self.lower_bound)
+
+
+@compiled
+def pressure_change(now, step, bound, lowest):
+    """Largest change of pressure max(q, lowest), but at nodes that stay in contact: there is no viscosity."""
+    largest = 0.0
+    for i in range(len(now)):
+        q, h, dq, dh = now[i, 0], now[i, 1], step[i, 0], step[i, 1]
+        if h > bound or h - dh > bound:
+            largest = max(largest, abs(max(q - dq, lowest) - max(q, lowest)))
+    return largest
+
+
+@compiled
+def clip_cavities(now, step, bound):
+    """Limit steps in place where a cavity fills or empties; a void does not hold touching solids apart."""
+    for i in range(len(now)):
+        q, dq = now[i, 0], step[i, 0]
+        step[i, 0] = limit_cavitation(q, dq)
+        if q - dq < 0.0 and now[i, 1] - step[i, 1] <= bound:
+            step[i, 0] = q - PRESSURE_AFTER_REFILL
+
+
+@compiled
+def close_overlaps(now, step, bound):
+    """Give nodes of a dry contact a pressure, in place, where the step would make solids overlap.
+
+    SNES puts h = 0 there and then goes by the sign of F = p, which would be rounding.
+    """
+    for i in range(len(now)):
+        if now[i, 1] - step[i, 1] < bound:
+            step[i, 0] = min(step[i, 0], now[i, 0] - PRESSURE_AFTER_REFILL)

@@ -1,0 +1,163 @@
+r"""Mixed contact: oil and solids carry side by side, the solids rigidly from the boundary film on.
+
+The solids have a pressure p_c of their own, :math:`p=p_f+p_c`, complementary to the film over the boundary
+film :math:`h_b`,
+
+.. math:: h-h_b\ge0,\quad p_c\ge0,\quad p_c(h-h_b)=0,
+
+which the sign of w carries: :math:`h=h_b+\max(w,0)`, :math:`p_c=K\max(-w,0)`. All three hold exactly at any
+w, and the Reynolds equation holds at every node.
+"""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.band import BandEntries
+from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.contact.node_state import (
+    PRESSURE_AFTER_REFILL,
+    NodeState,
+    SurfaceLoads,
+    full_of_oil,
+    limit_cavitation,
+)
+from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+
+
+class SeparatedContact(ContactModel):
+    """Models in which oil and solids have a pressure each: outputs that they share."""
+
+    def surface_loads(self, q, w, h, reynolds_residual):
+        """See :class:`.model.ContactModel`."""
+        mask, pressure = self.contact_mask(w, reynolds_residual), self.state(q, w).pressure
+        solids, everywhere = self.contact_pressure(w), np.ones(len(w), dtype=bool)
+        oil = pressure - solids
+        return SurfaceLoads(mask, pressure, solids, h, oil, everywhere, solids, everywhere)
+
+    def contact_length(self, loads, scales):
+        """Length in contact [m]."""
+        return scales.dx * loads.contact_mask.sum()
+
+    def diagnostics(self, loads, scales, thin_film):
+        """See :class:`.model.ContactModel`."""
+        thin = loads.film < thin_film * self.minimum_film
+        total = loads.pressure.sum()
+        return {
+            "contact_share": loads.contact_pressure.sum() / total,
+            "contact_length": self.contact_length(loads, scales),
+            "thin_length": scales.dx * thin.sum(),
+            "thin_share": loads.pressure[thin].sum() / total,
+        }
+
+
+class MixedContact(SeparatedContact):
+    """Rigid complementarity between the pressure of the solids and the film over the boundary film.
+
+    Parameters
+    ----------
+    boundary_film : float
+        h_b in a^2/R.
+    stiffness : float
+        K, p0 per a^2/R: a scale between the two meanings of w, which no answer depends on.
+    """
+
+    def __init__(self, boundary_film, stiffness):
+        self.boundary_film = self.minimum_film = boundary_film
+        self.stiffness = stiffness
+
+    def state(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        mask, pressure = w < 0.0, np.maximum(q, 0.0) + self._carried(w)
+        p_w, h_w = np.where(mask, -self.stiffness, 0.0), np.where(mask, 0.0, 1.0)
+        film = self.boundary_film + np.maximum(w, 0.0)
+        return NodeState(q, pressure, film, full_of_oil(q) * 1.0, p_w, h_w, mask)
+
+    def _carried(self, w):
+        return self.stiffness * np.maximum(-w, 0.0)
+
+    def contact_pressure(self, w):
+        """See :class:`.model.ContactModel`."""
+        return self._carried(w)
+
+    def contact_mask(self, w, reynolds_residual):
+        """See :class:`.model.ContactModel`."""
+        return w < 0.0
+
+    def w_from_film(self, h):
+        """See :class:`.model.ContactModel`; zero where the film is below the boundary film."""
+        return np.maximum(h - self.boundary_film, 0.0)
+
+    def w_from_state(self, h, contact_pressure):
+        """See :class:`.model.ContactModel`."""
+        return np.where(contact_pressure > 0.0, -contact_pressure / self.stiffness, self.w_from_film(h))
+
+    def advected(self, interpolated, shifted):
+        """See :class:`.model.ContactModel`; solids that touch are moved by whole nodes."""
+        return np.where(shifted < 0.0, shifted, interpolated)
+
+    def pressure_change(self, now, step):
+        """See :class:`.model.ContactModel`."""
+        return pressure_change(now, step, self.stiffness)
+
+    def clip_step(self, now, step, film_after_release):
+        """See :class:`.model.ContactModel`."""
+        limit_contact_switch(now, step, self.stiffness, film_after_release)
+
+    def band_entries(self, state, derivatives, stencil):
+        """Pairs (q, h) at open nodes, (p, p_f) where solids touch, whose film does not change."""
+        mask, none = state.contact_mask, np.zeros_like(state.film)
+        p_first = np.where(mask, 1.0, state.p_q)
+        derivatives = swap_pairs(derivatives, mask[stencil], mask[stencil])
+        return BandEntries(p_first, none, state.h_w, derivatives)
+
+    def from_band(self, state, local, solution):
+        """See :class:`.model.ContactModel`."""
+        solid = np.flatnonzero(state.contact_mask[local])
+        first, oil = solution[solid, 0], solution[solid, 1]
+        solution[solid, 0] = oil
+        solution[solid, 1] = -(first - state.p_q[local][solid] * oil) / self.stiffness
+
+
+def swap_pairs(derivatives, swapped, blind):
+    """Reynolds derivatives with those by the first unknown moved to the second one.
+
+    Parameters
+    ----------
+    derivatives : ndarray, shape (local nodes, 8)
+    swapped, blind : ndarray of bool, shape (local nodes, 4)
+        Nodes of the stencil whose second unknown is the oil pressure, and those whose first one is not felt.
+    """
+    if not blind.any():
+        return derivatives
+    derivatives = derivatives.copy()
+    by_first, by_second = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+    by_second[:] = np.where(swapped, by_first, by_second)
+    by_first[:] = np.where(blind, 0.0, by_first)
+    return derivatives
+
+
+@compiled
+def pressure_change(now, step, stiffness):
+    """Largest change of total pressure; a node that crosses between gap and contact stops there."""
+    largest = 0.0
+    for i in range(len(now)):
+        q, w, new_q, new_w = now[i, 0], now[i, 1], now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
+        solids = 0.0 if w >= 0.0 else stiffness * (max(-new_w, 0.0) + w)
+        largest = max(largest, abs(max(new_q, 0.0) - max(q, 0.0) + solids))
+    return largest
+
+
+@compiled
+def limit_contact_switch(now, step, stiffness, film_after_release):
+    """Limit steps in place where solids come to touch or part: both stop just beyond.
+
+    Solids that touch begin with `PRESSURE_AFTER_REFILL`; those that part with at most `film_after_release`:
+    their derivatives are those of the other side.
+    """
+    for i in range(len(now)):
+        w, dw = now[i, 1], step[i, 1]
+        step[i, 0] = limit_cavitation(now[i, 0], step[i, 0])
+        if w >= 0.0 and w - dw < 0.0:
+            step[i, 1] = w + PRESSURE_AFTER_REFILL / stiffness
+        elif w < 0.0 and w - dw > film_after_release:
+            step[i, 1] = w - film_after_release

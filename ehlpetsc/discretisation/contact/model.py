@@ -1,0 +1,167 @@
+"""Interface of the contact models: everything in which one law of contact differs from another.
+
+A model maps the unknowns (q, w) of a node to pressures, film and separation. Solver, time stepping and
+outputs call the methods below and know no model by name; a new law of contact is one module with one
+subclass, and a line in :func:`ehlpetsc.discretisation.contact.contact_model`.
+
+Lengths in x are in half widths, films in a^2/R, pressures in p0.
+"""
+
+import numpy as np
+
+
+class ContactModel:
+    """Elastic solids that carry beside the oil; the defaults hold for every model with p_c of its own.
+
+    Attributes
+    ----------
+    minimum_film : float
+        Smallest film that the model aims at, in a^2/R.
+    lower_bound : float or None
+        Bound of w that the nonlinear solver enforces (SNESVI); None: no bound.
+    starts_unconstrained : bool
+        Whether a bounded system is solved without its bound first, where the guess is clear of it.
+    bound_tolerance : float
+        Tolerance of the active set: films this close to the bound count as on it. SNES sets it.
+    yield_pressure : float
+        In p0; inf for elastic solids.
+    """
+
+    minimum_film = 0.0
+    lower_bound = None
+    starts_unconstrained = False
+    bound_tolerance = 0.0
+    yield_pressure = np.inf
+
+    # --- unknowns -----------------------------------------------------------------------------------------
+
+    def state(self, q, w):
+        """:class:`.node_state.NodeState` at the unknowns q, w, shape (nx,)."""
+        raise NotImplementedError
+
+    def pressure(self, q, w):
+        """Total pressure in p0."""
+        return np.maximum(q, 0.0) + self.contact_pressure(w)
+
+    def contact_pressure(self, w):
+        """Pressure of the solids in p0."""
+        raise NotImplementedError
+
+    def contact_mask(self, w, reynolds_residual):
+        """Nodes in contact, of a solution."""
+        raise NotImplementedError
+
+    def w_from_film(self, h):
+        """Second unknown of an open gap of the film h."""
+        raise NotImplementedError
+
+    def w_from_state(self, h, contact_pressure):
+        """Second unknown of a film and of the pressure of the solids in p0."""
+        raise NotImplementedError
+
+    # --- first guesses ------------------------------------------------------------------------------------
+
+    def dry_start(self, pressure, gap):
+        """Unknowns q, w of a dry contact with a pressure where solids touch and a gap elsewhere."""
+        return np.zeros_like(pressure), self.w_from_state(gap, pressure)
+
+    def advected(self, interpolated, shifted):
+        """Second unknown of a new time level.
+
+        Parameters
+        ----------
+        interpolated : ndarray, shape (nx,)
+            Of the film of the last level, moved along by interpolation.
+        shifted : ndarray, shape (nx,)
+            w of the last level, moved by the nearest whole number of nodes.
+        """
+        raise NotImplementedError
+
+    # --- nonlinear solver ---------------------------------------------------------------------------------
+
+    def linearised(self, state, own, ranks_sum):
+        """State with the derivatives that the Newton step takes.
+
+        Parameters
+        ----------
+        state : NodeState
+        own : slice
+            Nodes of this rank.
+        ranks_sum : callable
+            Sum of a tuple of numbers over all ranks.
+        """
+        return state
+
+    def pressure_change(self, now, step):
+        """Largest change of pressure of a Newton step, in p0; pairs (q, w), shape (nodes, 2)."""
+        raise NotImplementedError
+
+    def clip_step(self, now, step, film_after_release):
+        """Limit single entries of a Newton step in place; the new values are ``now - step``.
+
+        Parameters
+        ----------
+        now, step : ndarray, shape (nodes, 2)
+        film_after_release : float
+            Largest film that a node gets in the iteration in which its solids part, in a^2/R.
+        """
+        raise NotImplementedError
+
+    def band_entries(self, state, derivatives, stencil):
+        """:class:`.band.BandEntries` of a state.
+
+        Parameters
+        ----------
+        state, derivatives
+            As in `ehl_problem.Evaluation`.
+        stencil : ndarray of int, shape (local nodes, 4)
+            Nodes of each Reynolds row, by their index in the window.
+        """
+        raise NotImplementedError
+
+    def from_band(self, state, local, solution):
+        """Translate the local solution, shape (local nodes, 2), from the unknowns of the band in place."""
+
+    def check(self, w, reynolds_residual, tolerance):
+        """Violation of the contact conditions by a solution.
+
+        Returns
+        -------
+        str or None
+            The violation; None: there is none.
+        residual : ndarray
+            Reynolds rows that must vanish.
+        """
+        return None, reynolds_residual
+
+    # --- yielding -----------------------------------------------------------------------------------------
+
+    def elastic(self):
+        """The same model for solids that do not yield; None where they never do."""
+        return None
+
+    def reset_yielding(self, q, w):
+        """Unknowns of the same pressures and film without plastic deformation, for the next step."""
+        return q, w
+
+    # --- outputs ------------------------------------------------------------------------------------------
+
+    def surface_loads(self, q, w, h, reynolds_residual):
+        """:class:`.node_state.SurfaceLoads` of a solution; h its film."""
+        raise NotImplementedError
+
+    def diagnostics(self, loads, scales, thin_film):
+        """Scalars of the contact in SI units.
+
+        Parameters
+        ----------
+        loads : node_state.SurfaceLoads
+        scales : physics.scales.Scales
+        thin_film : float
+            Films count as thin below this multiple of `minimum_film`.
+
+        Returns
+        -------
+        dict of str to number
+        """
+        return {}

@@ -1,0 +1,155 @@
+"""Pressures, film and separation of the nodes as functions of the two unknowns, with derivatives."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+
+ROUNDING = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
+PRESSURE_AFTER_REFILL = 1e-9  # p0: pressure of a cavity, or of a gap, in the iteration that closes it
+MIN_OIL_FRACTION = 0.2  # of the oil in a cavity that one iteration must leave
+
+
+def full_of_oil(q):
+    """Mask of the nodes with pressure and no void; which side of zero rounding is on must not matter."""
+    return q > -ROUNDING
+
+
+class PlasticState(NamedTuple):
+    """Plastic deformation of yielding nodes; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    depth
+        delta, by which both surfaces together yield in the step, in a^2/R.
+    yielding
+        Mask of the nodes that yield.
+    depth_q, depth_w, reynolds_q, reynolds_w
+        Derivatives of delta, and of `NodeState.reynolds_unknown`, with respect to q and w.
+    hardening
+        Slope of the pressure over the yield pressure in the linearised system, 0 or a small one.
+    """
+
+    depth: np.ndarray
+    yielding: np.ndarray
+    depth_q: np.ndarray
+    depth_w: np.ndarray
+    reynolds_q: np.ndarray
+    reynolds_w: np.ndarray
+    hardening: float = 0.0
+
+
+class NodeState(NamedTuple):
+    """State of the nodes at given unknowns; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    reynolds_unknown
+        Unknown of the Reynolds equation: oil pressure where positive, minus the void fraction where negative.
+    pressure, film
+        Total pressure p; film h of the Reynolds equation.
+    p_q, p_w, h_w
+        Derivatives of p with respect to q and w, of h with respect to w.
+    contact_mask
+        Nodes whose solids carry.
+    plastic : PlasticState or None
+        None where solids are elastic.
+    """
+
+    reynolds_unknown: np.ndarray
+    pressure: np.ndarray
+    film: np.ndarray
+    p_q: np.ndarray
+    p_w: np.ndarray
+    h_w: np.ndarray
+    contact_mask: np.ndarray
+    plastic: PlasticState | None = None
+
+    @property
+    def separation(self):
+        """Film less the plastic deformation of the step: shape and elastic deflection."""
+        return self.film if self.plastic is None else self.film - self.plastic.depth
+
+    @property
+    def separation_q(self):
+        """Derivative of the separation with respect to q."""
+        return np.zeros_like(self.film) if self.plastic is None else -self.plastic.depth_q
+
+    @property
+    def separation_w(self):
+        """Derivative of the separation with respect to w."""
+        return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
+
+    def directional_derivative(self, nodes):
+        """Changes of Reynolds unknown, pressure, film and separation.
+
+        Parameters
+        ----------
+        nodes : ndarray, shape (nodes, 2)
+            Changes of q and w.
+
+        Returns
+        -------
+        reynolds_unknown, pressure, film, separation : ndarray
+        """
+        unknown, pressure, film = elastic_derivative(self.p_q, self.p_w, self.h_w, nodes)
+        if self.plastic is None:
+            return unknown, pressure, film, film
+        y, (v_q, v_w) = self.plastic, nodes.T
+        unknown = y.reynolds_q * v_q + y.reynolds_w * v_w
+        return unknown, pressure, film, film - (y.depth_q * v_q + y.depth_w * v_w)
+
+
+@compiled
+def elastic_derivative(p_q, p_w, h_w, nodes):
+    """Changes of q, pressure and film, see :meth:`NodeState.directional_derivative`."""
+    q, pressure, film = np.empty(len(nodes)), np.empty(len(nodes)), np.empty(len(nodes))
+    for i in range(len(nodes)):
+        q[i], w = nodes[i, 0], nodes[i, 1]
+        pressure[i] = p_q[i] * q[i] + p_w[i] * w
+        film[i] = h_w[i] * w
+    return q, pressure, film
+
+
+@compiled
+def limit_cavitation(q, dq):
+    """Newton step of q, to be subtracted: a cavity that fills or empties stops at the change of phase.
+
+    A cavity that fills gets the pressure `PRESSURE_AFTER_REFILL`. A void leaves `MIN_OIL_FRACTION` of the
+    oil: at q = -1 on a closed gap every derivative is zero.
+    """
+    if q < 0.0 and q - dq > PRESSURE_AFTER_REFILL:
+        return q - PRESSURE_AFTER_REFILL
+    if q - dq < 0.0:
+        return min(dq, q + 1.0 - MIN_OIL_FRACTION * (1.0 + min(q, 0.0)))
+    return dq
+
+
+class SurfaceLoads(NamedTuple):
+    """What an accepted solution puts on the surfaces; arrays of shape (nx,), pressures in p0, film in a^2/R.
+
+    Attributes
+    ----------
+    contact_mask
+        Nodes in contact.
+    pressure, contact_pressure
+        Total pressure, and the part of it that the solids carry (0 where the model does not separate them).
+    film
+        Film thickness.
+    oil_pressure, oil_mask
+        Pressure of the oil, and the nodes where it is known.
+    friction_pressure
+        Pressure under which the solids rub against each other, 0 out of contact.
+    sheared_oil
+        Nodes whose oil film is sheared.
+    """
+
+    contact_mask: np.ndarray
+    pressure: np.ndarray
+    contact_pressure: np.ndarray
+    film: np.ndarray
+    oil_pressure: np.ndarray
+    oil_mask: np.ndarray
+    friction_pressure: np.ndarray
+    sheared_oil: np.ndarray

@@ -1,0 +1,193 @@
+r"""Mixed contact of elastic and perfectly plastic solids: the total pressure is bounded.
+
+.. math:: p\le p_y,\quad \delta\ge0,\quad (p_y-p)\,\delta=0,
+
+p the total pressure of oil and solids, :math:`\delta` the depth by which both surfaces together yield where
+they face each other; it widens the separation that shape and elastic deflection give:
+:math:`h=g+\delta`. With :math:`P=K\max(-w,0)` of :class:`.mixed.MixedContact`,
+
+.. math:: s=\max(q,0)+P,\quad p=\min(s,p_y),\quad \delta=D\max(s-p_y,0),
+
+and the oil pressure is p less that of the solids. So the sign of :math:`s-p_y` carries the conditions, and
+all of them hold exactly at any q and w. Where solids yield, P remains their pressure and q carries
+:math:`\delta`; without oil, or under a void, q keeps its meaning and P carries :math:`\delta`.
+"""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.band import BandEntries
+from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch, swap_pairs
+from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL, PlasticState
+
+CARRIES = 0.1  # of the yield pressure
+ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method loses the load
+HARDENING = 1.0
+
+
+class YieldingContact(MixedContact):
+    """Mixed contact of solids that yield.
+
+    Parameters
+    ----------
+    boundary_film, stiffness : float
+        As of :class:`.mixed.MixedContact`.
+    yield_pressure : float
+        p_y in p0, of the softer surface.
+    """
+
+    def __init__(self, boundary_film, stiffness, yield_pressure):
+        super().__init__(boundary_film, stiffness)
+        self.yield_pressure, self.compliance = yield_pressure, 1.0 / stiffness
+
+    def elastic(self):
+        """See :class:`.model.ContactModel`."""
+        return MixedContact(self.boundary_film, self.stiffness)
+
+    def pressure(self, q, w):
+        """Total pressure in p0, at most the yield pressure."""
+        return np.minimum(np.maximum(q, 0.0) + self._carried(w), self.yield_pressure)
+
+    def state(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        elastic = super().state(q, w)
+        excess = elastic.pressure - self.yield_pressure
+        yielding = excess > 0.0
+        by_oil = yielding & (q > 0.0)  # q carries delta there
+        solids = self.contact_pressure(w)
+        plastic = PlasticState(
+            self.compliance * np.maximum(excess, 0.0),
+            yielding,
+            np.where(by_oil, self.compliance, 0.0),
+            np.where(yielding, self.compliance * elastic.p_w, 0.0),
+            np.where(by_oil, 0.0, 1.0),
+            np.where(by_oil, -elastic.p_w, 0.0),
+        )
+        return elastic._replace(
+            reynolds_unknown=np.where(by_oil, self.yield_pressure - solids, q),
+            pressure=np.minimum(elastic.pressure, self.yield_pressure),
+            p_q=np.where(yielding, 0.0, elastic.p_q),
+            p_w=np.where(yielding, 0.0, elastic.p_w),
+            plastic=plastic,
+        )
+
+    def linearised(self, state, own, ranks_sum):
+        """See :class:`.model.ContactModel`.
+
+        Where all nodes that carry yield, no pressure depends on any unknown: the solids are then taken to
+        harden a little, by which the next iteration reaches nodes that do not carry yet.
+        """
+        yielding, elastic = ranks_sum(self.yielding_and_elastic(state, own))
+        if not self.is_all_yielding(yielding, elastic):
+            return state
+        y, per_depth = state.plastic, HARDENING / self.compliance
+        return state._replace(
+            p_q=state.p_q + per_depth * y.depth_q,
+            p_w=state.p_w + per_depth * y.depth_w,
+            plastic=y._replace(hardening=HARDENING),
+        )
+
+    def yielding_and_elastic(self, state, nodes):
+        """Numbers of nodes that yield, and that carry without yielding."""
+        yielding, pressure = state.plastic.yielding[nodes], state.pressure[nodes]
+        return yielding.sum(), (~yielding & (pressure > CARRIES * self.yield_pressure)).sum()
+
+    def is_all_yielding(self, yielding, elastic):
+        """Whether next to no node that carries is elastic, by the numbers of nodes."""
+        return yielding > 0 and elastic < ELASTIC_NODES
+
+    def contact_pressure(self, w):
+        """Pressure of the solids in p0, at most the yield pressure."""
+        return np.minimum(self._carried(w), self.yield_pressure)
+
+    def reset_yielding(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        solids = self.contact_pressure(w)
+        q = np.minimum(q, self.yield_pressure - solids)
+        return q, np.maximum(w, -self.compliance * self.yield_pressure)
+
+    def pressure_change(self, now, step):
+        """See :class:`.model.ContactModel`."""
+        return pressure_change(now, step, self.stiffness, self.yield_pressure)
+
+    def clip_step(self, now, step, film_after_release):
+        """See :class:`.model.ContactModel`."""
+        limit_contact_switch(now, step, self.stiffness, film_after_release)
+        limit_yield_switch(now, step, self.stiffness, self.yield_pressure)
+
+    def band_entries(self, state, derivatives, stencil):
+        """Where solids yield, the first unknown is the excess e over p_y, which the depth follows.
+
+        The second one is h or p_f as in mixed contact, or under a void that touches q.
+        """
+        plastic = state.plastic
+        if not plastic.yielding.any():
+            return super().band_entries(state, derivatives, stencil)
+        mask = state.contact_mask
+        p_first = np.where(plastic.yielding, plastic.hardening, np.where(mask, 1.0, state.p_q))
+        separation_first = np.where(plastic.yielding, -self.compliance, 0.0)
+        derivatives = swap_pairs(derivatives, mask[stencil], (mask | plastic.yielding)[stencil])
+        return BandEntries(p_first, separation_first, state.h_w, derivatives)
+
+    def from_band(self, state, local, solution):
+        """See :class:`.model.ContactModel`."""
+        solid = np.flatnonzero(state.contact_mask[local])
+        first, oil = solution[solid, 0], solution[solid, 1]
+        by_oil = state.plastic.depth_q[local][solid] > 0.0
+        elastic = first - state.p_q[local][solid] * oil
+        p_c = np.where(by_oil, -oil, np.where(state.plastic.yielding[local][solid], first, elastic))
+        solution[solid, 0] = np.where(by_oil, first + oil, oil)
+        solution[solid, 1] = -p_c / self.stiffness
+
+
+@compiled
+def pressure_change(now, step, stiffness, limit):
+    """As in mixed contact, the pressure bounded by `limit`; where it stays there, the solids' part."""
+    largest = 0.0
+    for i in range(len(now)):
+        new_q, new_w = now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
+        solids = min(stiffness * max(-now[i, 1], 0.0), limit)
+        # a node that comes to touch stops there, as in mixed contact
+        new_solids = min(stiffness * max(-new_w, 0.0), limit) if now[i, 1] < 0.0 else 0.0
+        total = min(max(now[i, 0], 0.0) + solids, limit)
+        new_total = min(max(new_q, 0.0) + new_solids, limit)
+        change = abs(new_total - total)
+        if total == limit and new_total == limit:
+            change = abs(new_solids - solids)
+        largest = max(largest, change)
+    return largest
+
+
+@compiled
+def limit_yield_switch(now, step, stiffness, limit):
+    """Limit steps in place where solids begin or cease to yield: both stop just beyond.
+
+    The excess is what oil and solids would carry over `limit`. Where they yield and there is oil, q carries
+    the excess and the oil has the rest of the pressure; oil that is left without pressure is a void from then
+    on, under which w carries the excess, and the other way round.
+    """
+    for i in range(len(now)):
+        q, new_q = now[i, 0], now[i, 0] - step[i, 0]
+        solids, new_solids = stiffness * max(-now[i, 1], 0.0), stiffness * max(-now[i, 1] + step[i, 1], 0.0)
+        yields = max(q, 0.0) + solids > limit
+        by_oil = yields and q > 0.0
+        excess = (new_q if by_oil else max(new_q, 0.0)) + new_solids - limit
+        if not yields and excess <= 0.0:
+            continue
+        if yields != (excess > 0.0):
+            excess = -PRESSURE_AFTER_REFILL if yields else PRESSURE_AFTER_REFILL
+            if (solids > 0.0) != (new_solids > 0.0):  # both at once would be reversed in the next iteration
+                excess, new_solids = PRESSURE_AFTER_REFILL, max(solids, PRESSURE_AFTER_REFILL)
+        if by_oil or new_q > 0.0:
+            if new_solids < limit - PRESSURE_AFTER_REFILL:
+                new_q = limit + excess - new_solids
+            elif by_oil:
+                new_q, new_solids = -PRESSURE_AFTER_REFILL, limit + excess
+            else:
+                new_solids = limit - PRESSURE_AFTER_REFILL
+                new_q = excess + PRESSURE_AFTER_REFILL
+        else:
+            new_solids = limit + excess
+        step[i, 0] = q - new_q
+        if new_solids > 0.0:
+            step[i, 1] = now[i, 1] + new_solids / stiffness
