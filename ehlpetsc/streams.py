@@ -17,6 +17,8 @@ def protect():
             os.fstat(descriptor)
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names of files need not be text
     sys.stdout = Lasting(sys.stdout, 1, "standard output")
     sys.stderr = Lasting(sys.stderr, 2)
 

@@ -56,8 +56,10 @@ def points_in_contact(result):
     Raises
     ------
     OutputError
-        The result holds neither contacts nor films.
+        The result holds no frame, or neither contacts nor films.
     """
+    if not len(result.time):
+        raise OutputError(f"{result.path}: no frame in it")
     frames, nodes = [], []
     for begin in range(0, len(result.time), BLOCK):
         frame, node = np.nonzero(in_contact(result, slice(begin, min(begin + BLOCK, len(result.time)))))

@@ -8,8 +8,10 @@ cases are the same but for seeds make one ensemble; several, as of a grid over s
 by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
 """
 
+import argparse
 import contextlib
 import csv
+import io
 import json
 import sys
 import tomllib
@@ -24,14 +26,17 @@ from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
-from ehlpetsc.results.output_guard import check_place
+from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.series_index import differences, open_all
+from ehlpetsc.results.whole_file import write_whole
 
 RESAMPLES = 2000
+MOST_RESAMPLES = 100_000
 CONFIDENCE = 0.95
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
 NO_FIGURES = ("step", "time", "dt", "wall", "load", "approach")
+TABLES = {".csv": b"ensemble,figure,units,runs,", ".json": b'"ensemble":'}  # endings, and how they begin
 HEAD = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
 
 
@@ -162,15 +167,16 @@ def write(rows, path):
     OutputError
         The file cannot be written.
     """
+    table = io.StringIO(newline="")
+    if Path(path).suffix.lower() == ".json":
+        plain = [{k: None if v != v else v for k, v in row.items()} for row in rows]
+        json.dump(plain, table, indent=1, default=float)
+    else:
+        writer = csv.DictWriter(table, HEAD)
+        writer.writeheader()
+        writer.writerows(rows)
     try:
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            if Path(path).suffix == ".json":
-                plain = [{k: None if v != v else v for k, v in row.items()} for row in rows]
-                json.dump(plain, file, indent=1, default=float)
-            else:
-                writer = csv.DictWriter(file, HEAD)
-                writer.writeheader()
-                writer.writerows(rows)
+        write_whole(path, table.getvalue().encode())
     except OSError as error:
         raise OutputError(not_written(error, path)) from None
 
@@ -191,9 +197,21 @@ def arguments(argv):
     parser = CommandParser(prog=program("ehlpetsc.analysis.ensemble"), description=__doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
-    parser.add_argument("--resamples", type=int, default=RESAMPLES, help=f"of the bootstrap [{RESAMPLES}]")
-    parser.add_argument("--seed", type=int, default=1, help="of the bootstrap [1]")
+    samples = f"of the bootstrap, 1 to {MOST_RESAMPLES} [{RESAMPLES}]"
+    parser.add_argument("--resamples", type=_within(1, MOST_RESAMPLES), default=RESAMPLES, help=samples)
+    parser.add_argument("--seed", type=_within(0, 2**63), default=1, help="of the bootstrap [1]")
     return parser.parse_args(argv)
+
+
+def _within(least, most):
+    """Type of an argument: a whole number in a range."""
+
+    def number(text):
+        if not text.isascii() or not text.isdigit() or not least <= int(text[:20]) <= most:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {most}")
+        return int(text)
+
+    return number
 
 
 def main(argv=None):
@@ -204,7 +222,7 @@ def main(argv=None):
     try:
         with contextlib.ExitStack() as stack:
             results = open_all(chosen.results, stack)
-            check_place(output, [*map(Path, chosen.results), *(r.path for r in results)], "-o")
+            check_derived(output, [*map(Path, chosen.results), *(r.path for r in results)], TABLES)
             rows = table(ensembles(results), chosen.resamples, chosen.seed)
         write(rows, output)
     except (OutputError, tomllib.TOMLDecodeError) as error:

@@ -4,6 +4,7 @@ import contextlib
 import difflib
 import re
 import tomllib
+from functools import partial
 from pathlib import Path
 
 from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
@@ -50,7 +51,7 @@ class Case(Table):
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
     petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
     series: Series | None = Field(None, description="one key swept over values")
-    _text: str = PrivateAttr("")
+    _text: str | partial = PrivateAttr("")
     _path: Path = PrivateAttr(Path())
 
     @validator("petsc")
@@ -65,6 +66,8 @@ class Case(Table):
 
     @property
     def text(self):
+        if isinstance(self._text, partial):  # of a member of a series: worked out where it is wanted
+            self._text = self._text()
         return self._text
 
     @property
@@ -133,9 +136,10 @@ def members(case):
         Of several keys the value is the tuple of theirs.
     """
     data, result = tomllib.loads(case.text), []
+    alone = text_with(case.text, [], member_tables(data, []), without="series")
     for settings in settings_of(data["series"]):
         tables = member_tables(data, settings)
-        text = text_with(case.text, settings, tables, without="series")
+        text = partial(text_with, alone, settings, tables)
         values = tuple(value for _, value in settings)
         result.append((values[0] if case.series.key else values, _made(case.path, tables, text)))
     return result
@@ -143,9 +147,13 @@ def members(case):
 
 def _read(path):
     try:
-        if Path(path).stat().st_size > MOST_BYTES:
+        if not str(path):
+            raise CaseError(["'': no name of a case file; allowed: a TOML file"])
+        with open(path, "rb") as file:  # a device has no size, and no end
+            whole = file.read(MOST_BYTES + 1)
+        if len(whole) > MOST_BYTES:
             raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
-        return Path(path).read_bytes().decode("utf-8-sig")
+        return whole.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
@@ -156,7 +164,7 @@ def _read(path):
 def _meant(path):
     """Hint at a case file of nearly that name in the same folder."""
     with contextlib.suppress(OSError, ValueError):
-        beside = [p.stem for p in Path(path).parent.glob("*.toml")]
+        beside = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
         close = difflib.get_close_matches(Path(path).stem, beside, n=1)
         if close:
             return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"

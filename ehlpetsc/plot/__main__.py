@@ -22,12 +22,13 @@ from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
-from ehlpetsc.results.output_guard import check_place
+from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
+from ehlpetsc.results.whole_file import replacing
 
 DPI = 160
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
-PAGES = (".html", ".htm")
+KINDS = {"movie": MOVIES, "report": PAGES}
 WITHOUT_FRAMES = ("contacts", "stribeck", "ensemble")  # kinds that need the figures of the steps alone
 
 
@@ -84,11 +85,11 @@ def draw(results, kind, options, output):
 
         if len(results) > 1:
             raise OutputError(f"{len(results)} results; allowed: --report of one")
-        if output.suffix.lower() not in PAGES:
-            raise OutputError(f"{output}: allowed for a page: {', '.join(PAGES)}")
         save_report(results[0], output)
     else:
-        FIGURES.get(kind, draw_frame)(results, options).savefig(output, dpi=DPI)
+        figure = FIGURES.get(kind, draw_frame)(results, options)
+        with replacing(output, keep_ending=True) as beside:
+            figure.savefig(beside, dpi=DPI)
 
 
 def main(arguments=None):
@@ -102,10 +103,11 @@ def main(arguments=None):
     try:
         with contextlib.ExitStack() as stack:
             results = in_order(open_all(options.results, stack))
-            check_place(output, [*map(Path, options.results), *(r.path for r in results)], "-o")
+            inputs = [*map(Path, options.results), *(r.path for r in results)]
+            check_derived(output, inputs, KINDS.get(kind, PICTURES))
             draw(results, kind, options, output)
     except OSError as error:
-        print(f"ehlpetsc.plot: {not_written(error)}", file=sys.stderr)
+        print(f"ehlpetsc.plot: {not_written(error, error.filename or output)}", file=sys.stderr)
         return 2
     except (OutputError, ValueError) as error:
         print(f"ehlpetsc.plot: {error}", file=sys.stderr)

@@ -1,11 +1,15 @@
 """Pressure and film over time as a movie: GIF, or MP4 and WebM by ffmpeg."""
 
+import contextlib
+import subprocess
+
 import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import fill_frame, two_panels
 from ehlpetsc.plot.frames import choose_frames
+from ehlpetsc.results.whole_file import replacing
 
 FRAMES = 150
 RATE = 15  # frames per second
@@ -27,7 +31,7 @@ def save_movie(results, options, path):
     figure, axes = two_panels()
     limits = _limits(results, steps)
     writer = _writer(path)
-    with writer.saving(figure, str(path), dpi=DPI):
+    with replacing(path, keep_ending=True) as beside, _encoding(path), writer.saving(figure, beside, DPI):
         for number, index in enumerate(steps):
             for panel in axes:
                 panel.clear()
@@ -38,6 +42,16 @@ def save_movie(results, options, path):
                 figure.draw_without_rendering()
                 figure.set_layout_engine("none")
             writer.grab_frame()
+
+
+@contextlib.contextmanager
+def _encoding(path):
+    """An encoder that ends before its time, as on a full disk, is an OutputError."""
+    try:
+        yield
+    except subprocess.CalledProcessError as error:
+        lines = str(error.stderr or error.output or "").strip().splitlines() or [f"status {error.returncode}"]
+        raise OutputError(f"{path}: not written, its encoder ended: {lines[-1]}") from None
 
 
 def _writer(path):

@@ -130,7 +130,11 @@ def _draw(paths, chosen):
     from ehlpetsc.post.pictures.gallery import draw
 
     outputs = [_output(path, chosen) for path in paths]
-    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame, chosen.passes):
+    try:
+        names = draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame, chosen.passes)
+    except OSError as fault:
+        raise PostError(f"{not_written(fault)}; pictures before it are whole") from None
+    for name in names:
         print(name)
 
 

@@ -15,6 +15,21 @@ from ehlpetsc.results.hdf5.opening import open_for_reading, open_result
 
 WAIT = "wait for it, or give another -ehl_output"
 WAYS = "give another -ehl_output, or -ehl_overwrite to lose it"
+HEAD = 512  # bytes of a file that say what it is
+PICTURES = {
+    ".png": b"\x89PNG",
+    ".svg": b"<svg",
+    ".pdf": b"%PDF",
+    ".eps": b"%!PS",
+    ".ps": b"%!PS",
+    ".jpg": b"\xff\xd8",
+    ".jpeg": b"\xff\xd8",
+    ".tif": b"II*",
+    ".tiff": b"II*",
+    ".webp": b"WEBP",
+}
+MOVIES = {".gif": b"GIF8", ".mp4": b"ftyp", ".webm": b"webm"}
+PAGES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
 
 
 def check_place(path, inputs, option="-ehl_output"):
@@ -39,6 +54,38 @@ def check_place(path, inputs, option="-ehl_output"):
         with contextlib.suppress(OSError):
             if path.exists() and read.exists() and path.samefile(read):
                 raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
+
+
+def check_derived(path, inputs, kinds, option="-o"):
+    """Refuse an output made from results that is an input, of no such kind, or in the place of another file.
+
+    Parameters
+    ----------
+    path : Path
+    inputs : iterable of Path
+        Files that the command reads.
+    kinds : dict of str to bytes
+        Endings allowed, each with bytes near the begin of every file of that kind: what lies in the place of
+        the output and does not have them is kept.
+    option : str
+        That names the output.
+
+    Raises
+    ------
+    OutputError
+    """
+    check_place(path, inputs, option)
+    mark = kinds.get(path.suffix.lower())
+    if mark is None:
+        raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(kinds)}")
+    if stands(path):
+        try:
+            with open(path, "rb") as file:
+                head = file.read(HEAD)
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
+        if head and mark not in head:
+            raise OutputError(f"{path}: exists and is not of that kind; remove it or give another {option}")
 
 
 def stands(path):

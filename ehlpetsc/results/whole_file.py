@@ -3,13 +3,21 @@
 import contextlib
 import glob
 import os
-import tempfile
+import secrets
 from pathlib import Path
 
 
 @contextlib.contextmanager
-def replacing(path):
+def replacing(path, keep_ending=False):
     """A file beside `path` to write to, for a ``with`` statement: renamed at its end, gone after an error.
+
+    An OSError of the file beside names `path` as its file.
+
+    Parameters
+    ----------
+    path : path-like
+    keep_ending : bool
+        Whether the file beside ends as `path` does, for a writer that finds its format there.
 
     Yields
     ------
@@ -17,14 +25,15 @@ def replacing(path):
         Of an empty file with the permissions that a new one has.
     """
     path = Path(path)
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
-    beside = Path(name)
+    ending = f".tmp{path.suffix}" if keep_ending else ".tmp"
+    beside = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}{ending}")
     try:
-        os.fchmod(descriptor, 0o666 & ~_umask())
-        os.close(descriptor)
+        os.close(os.open(beside, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield beside
         os.replace(beside, path)
-    except BaseException:
+    except BaseException as error:
+        if isinstance(error, OSError) and error.errno and (error.filename or str(beside)) == str(beside):
+            error.filename = str(path)
         with contextlib.suppress(OSError):
             beside.unlink()
         raise
@@ -40,7 +49,7 @@ def write_whole(path, content):
 
 def remove_left(path):
     """Remove what killed runs have left beside `path`; for who has the lock on it."""
-    for beside in Path(path).parent.glob(f".{glob.escape(Path(path).name)}.*.tmp"):
+    for beside in Path(path).parent.glob(f".{glob.escape(Path(path).name)}.*.tmp*"):
         with contextlib.suppress(OSError):
             beside.unlink()
 
@@ -51,9 +60,3 @@ def plain_reason(error):
         code = int(str(error).split("errno = ")[1].split(",")[0])
         return os.strerror(code)
     return os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
-
-
-def _umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -5,6 +5,7 @@ import os
 import shlex
 from dataclasses import dataclass, field
 
+from ehlpetsc.case.tables.table import is_plain
 from ehlpetsc.environment import program
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.options import OWN, usage
@@ -60,13 +61,18 @@ def parse_command_line(arguments):
     command.explain, command.ranks = "--explain" in rest, "--ranks" in rest
     rest = [word for word in rest if word not in ("--explain", "--ranks")]
     places = [at for at, word in enumerate(rest) if word.endswith(".toml") and not _is_value(rest, at)]
-    places = places or [at for at, word in enumerate(rest[:1]) if word[0] != "-"]
+    places = places or [at for at, word in enumerate(rest[:1]) if word[:1] != "-"]
     if len(places) > 1:
         raise UsageError(f"one case file at a time, not {' and '.join(rest[at] for at in places)}: {usage()}")
     if places:
         command.case = rest.pop(places[0])
+        if not command.case:
+            raise UsageError(f"which case? an empty name is none: {usage()}")
     elif not {"-help", "--help", "-h"} & set(rest):
         raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
+    for word in [*rest, *sets]:
+        if not is_plain(word):
+            raise UsageError(f"{word!r}: allowed: one line of UTF-8 text")
     for word, name in itertools.pairwise(rest):
         if _with_one_dash(word) == "-options_file" and not os.path.isfile(name):
             raise UsageError(f"-options_file {name}: no such file")

@@ -88,43 +88,51 @@ def say(text):
     print(text, flush=True)
 
 
-def check_outputs(case, *outputs):
-    """Refuse an output that the case is read from or that cannot be written, before anything is run."""
-    from ehlpetsc.results.output_guard import check_place, inputs_of
+def check_outputs(head, *outputs, case=None):
+    """Refuse, before anything is run, outputs that are the case's own files, another's, or not to be written.
+
+    `head` are the names of the first columns of the table.
+    """
+    from ehlpetsc.results.output_guard import PICTURES, check_derived, inputs_of
 
     for path in outputs:
-        check_place(Path(path), inputs_of(case), "-o")
+        kinds = PICTURES | {".csv": ",".join(head[:3]).encode()}
+        check_derived(Path(path), inputs_of(case) if case else (), kinds)
+        if not Path(path).parent.is_dir():
+            raise OutputError(f"{path}: not written, No such file or directory")
         if not os.access(Path(path).parent, os.W_OK):
             raise OutputError(f"{path}: its folder cannot be written to; give another -o")
 
 
 def extremes(chosen):
     """The table of extremes."""
-    from ehlpetsc.study.extremes import table
+    from ehlpetsc.study.extremes import HEAD, table
 
     model = chosen.models[0] if len(chosen.models) == 1 else None  # both: each line as it stands
     path = f"{chosen.output or 'extremes'}.csv"
+    check_outputs(HEAD, path)
     table(path, chosen.short, chosen.limit, say, far=chosen.far, model=model)
     return 0
 
 
 def random_cases(chosen):
     """Random cases: 1 where one ended in another status than 0 and 3, or left a broken file."""
-    from ehlpetsc.study.draws import run_all
+    from ehlpetsc.study.draws import HEAD, run_all
 
     table = f"{chosen.output or 'random'}.csv"
+    check_outputs(HEAD, table)
     return 1 if run_all(chosen.random, chosen.seed, table, chosen.limit, say) else 0
 
 
 def contact(chosen):
     """How much contact there is."""
     from ehlpetsc.case.loading import load
-    from ehlpetsc.study.contact import settings, table
+    from ehlpetsc.study.contact import HEAD, settings, table
     from ehlpetsc.study.runs import check_damage
 
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
     case = load(chosen.case, chosen.set)
-    check_outputs(case, f"{stem}.csv")
+    check_outputs(HEAD, f"{stem}.csv", case=case)
     if chosen.damage:
         check_damage(case, "fast", min(chosen.meshes))
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
@@ -138,13 +146,13 @@ def accuracy(chosen):
     """Error against run time."""
     from ehlpetsc.study.accuracy.picture import draw
     from ehlpetsc.study.accuracy.plan import MESH, plan
-    from ehlpetsc.study.accuracy.table import Study
+    from ehlpetsc.study.accuracy.table import HEAD, Study
     from ehlpetsc.study.runs import check_damage
 
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:
         study = Study(chosen.case, chosen.set, folder, chosen.limit, chosen.damage)
-        check_outputs(study.case, f"{stem}.csv", f"{stem}.png")
+        check_outputs(HEAD, f"{stem}.csv", f"{stem}.png", case=study.case)
         references, runs = plan(study.case, chosen.meshes, chosen.courant, chosen.ranks)
         if chosen.damage:
             check_damage(study.case, "slow", min(setting.values[MESH] for setting in (*references, *runs)))

@@ -154,6 +154,9 @@ def order(coarse, middle, fine):
     return float(np.log2(ratio)), float(fine - other / (ratio - 1.0))
 
 
+HEAD = [*Setting.__dataclass_fields__, *Measured.__dataclass_fields__]
+
+
 def settings(models, meshes, courants, boundary_films):
     """Every combination; direct contact knows no boundary film."""
     for model, film, courant, mesh in itertools.product(models, boundary_films, courants, meshes):
@@ -204,11 +207,10 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
         None: the run did not come to its end.
     """
     rows = []
-    head = [*Setting.__dataclass_fields__, *Measured.__dataclass_fields__]
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(head)
-        say(" ".join(f"{name:>13}" for name in head))
+        writer.writerow(HEAD)
+        say(" ".join(f"{name:>13}" for name in HEAD))
         for setting in chosen:
             outcome = _run(case, overrides, setting, damage, folder, limit)
             found = None

@@ -66,6 +66,12 @@ class Contact(Table):
             return None
         return BOUNDARY_FILM if value is None else value
 
+    @validator("minimum_film")
+    def _of_direct_contact(cls, value, values):
+        if value and values.get("model") == "mixed":
+            raise ValueError("for direct contact")
+        return value
+
     @validator("yield_pressure", pre=True)
     def _of_both(cls, value):
         return value if value is None or isinstance(value, (list, tuple)) else [value, value]
@@ -204,6 +210,8 @@ class Series(Table):
         if keys is None:
             if values["combine"]:
                 raise ValueError("combine is for several keys")
+            if len(lists) > MAX_MEMBERS:
+                raise ValueError(f"{len(lists)} members; allowed: at most {MAX_MEMBERS}")
             return values
         if len(set(keys)) < len(keys):
             raise ValueError("keys: the same one twice")

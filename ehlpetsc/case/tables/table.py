@@ -1,5 +1,7 @@
 """What the tables of a case file have in common: frozen, no unknown keys, the types of TOML as they are."""
 
+import re
+
 from ehlpetsc.case.tables.validation import BaseModel, Extra, validator
 
 
@@ -11,8 +13,8 @@ def is_of(kind, value):
 
 
 def is_plain(text):
-    """Whether a text is one line without control characters: HDF5 and PETSc end theirs at a nul."""
-    return text.isprintable() or not any(ord(character) < 32 or ord(character) == 127 for character in text)
+    """Whether a text is one line of UTF-8 without control characters: HDF5 and PETSc end theirs at a nul."""
+    return text.isprintable() or not re.search(r"[\x00-\x1f\x7f\ud800-\udfff]", text)
 
 
 class Table(BaseModel):
@@ -32,7 +34,7 @@ class Table(BaseModel):
             if not is_of(kind, item):
                 raise TypeError(f"{kind.__name__} expected")
             if kind is str and not is_plain(item):
-                raise ValueError("control characters")
+                raise ValueError("control characters, or no UTF-8")
             if kind is float and not -1e308 < item < 1e308:  # nan compares false
                 raise ValueError("not finite")
         return value

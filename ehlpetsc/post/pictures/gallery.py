@@ -17,6 +17,7 @@ from ehlpetsc.post.pictures.distributions import depth_picture, ratio_picture
 from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
+from ehlpetsc.results.whole_file import replacing
 
 STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # without the salt, no two SVG files would be the same
 DPI = 160
@@ -36,7 +37,8 @@ def _save(figure, stem):
     for kind in FORMATS:
         names.append(f"{stem}.{kind}")
         metadata = {"Date": None} if kind == "svg" else None
-        figure.savefig(names[-1], dpi=DPI, bbox_inches=around, metadata=metadata)
+        with replacing(names[-1], keep_ending=True) as beside:
+            figure.savefig(beside, dpi=DPI, bbox_inches=around, metadata=metadata)
     return names
 
 

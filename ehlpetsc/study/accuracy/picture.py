@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ehlpetsc.results.whole_file import replacing
 from ehlpetsc.study.accuracy.errors import MEASURES
 
 MARKERS = "osD^vP"
@@ -38,7 +39,8 @@ def draw(rows, path, title):
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0.0, 0.1, 1.0, 0.9))
     figure.legend(handles, labels, loc="lower center", ncols=(len(labels) + 1) // 2, frameon=False)
-    figure.savefig(path, dpi=110)
+    with replacing(path, keep_ending=True) as beside:
+        figure.savefig(beside, dpi=110)
 
 
 def _panel(axis, rows, measure, cost):

@@ -1,0 +1,89 @@
+"""Unusual input: empty names, bytes that are no text, devices, numbers out of range."""
+
+import pytest
+import tomlkit
+from made_results import make_result
+
+from ehlpetsc.__main__ import main
+from ehlpetsc.analysis import contact_statistics, ensemble
+from ehlpetsc.case.loading import load, members
+from ehlpetsc.errors import CaseError
+from ehlpetsc.run.preview.explain import explain
+
+STRIBECK = "cases/stribeck.toml"
+NO_TEXT = "a\udcffb"  # a byte that is no UTF-8, as the command line hands it on
+
+
+@pytest.fixture(autouse=True)
+def at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [""],
+        ["--explain", ""],
+        ["cases/dry_hertz.toml", "-ehl_set", f"title={NO_TEXT}"],
+        ["cases/dry_hertz.toml", "-ehl_output", f"{NO_TEXT}.h5"],
+        ["cases/dry_hertz.toml", "-ksp_type", NO_TEXT],
+        ["--explain", "/dev/zero"],
+        ["--explain", "cases"],
+    ],
+)
+def test_the_command_refuses_in_one_line(capfd, words):
+    assert main(["ehlpetsc", *words]) == 2
+    told = capfd.readouterr().err
+    assert told.count("\n") == 1 and ": " in told
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["--resamples", "0"], ["--resamples", "-1"], ["--resamples", "1e3"], ["--seed", "-1"], ["--seed", ""]],
+)
+def test_numbers_of_the_bootstrap_have_ranges(tmp_path, capsys, words):
+    with pytest.raises(SystemExit) as ended:
+        ensemble.main([str(make_result(tmp_path / "one.h5")), *words])
+    assert ended.value.code == 2 and words[0] in capsys.readouterr().err
+
+
+def test_a_result_without_frames_has_no_contact_statistics(tmp_path, capsys):
+    path = make_result(tmp_path / "one.h5", steps=0)
+    assert contact_statistics.main([str(path)]) == 2
+    assert f"{path}: " in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("title", ["\ud800", NO_TEXT])
+def test_a_title_that_is_no_text_is_refused(title):
+    with pytest.raises(CaseError, match=": title = "):
+        load("cases/dry_hertz.toml", {"title": title})
+
+
+def test_the_bound_of_the_film_is_of_direct_contact():
+    assert load("cases/ridge.toml", {"contact.minimum_film": 1e-9}).contact.minimum_film == 1e-9
+    with pytest.raises(CaseError, match="contact.minimum_film = 1e-09: .*direct contact"):
+        load("cases/running_in.toml", {"contact.minimum_film": 1e-9})
+
+
+def test_a_series_has_at_most_ten_thousand_members():
+    with pytest.raises(CaseError, match="10001 members; allowed: at most 10000"):
+        load(STRIBECK, {"series.values": [0.1 + 1e-4 * k for k in range(10_001)]})
+
+
+def test_a_series_of_many_is_explained_without_the_texts_of_its_members(monkeypatch):
+    """Each member's text was edited with all values in it: the time grew as the square of their number."""
+    parsed, parse = [], tomlkit.parse
+    monkeypatch.setattr(tomlkit, "parse", lambda text: parsed.append(len(text)) or parse(text))
+    case = load(STRIBECK, {"series.values": [round(0.1 + 1e-3 * k, 3) for k in range(200)]})
+    assert "A series" in explain(case)
+    assert len(parsed) == 1
+    text = members(case)[-1][1].text
+    assert "entrainment_speed = 0.299" in text and "[series]" not in text
+    assert parsed[-1] < parsed[0]
+
+
+def test_a_hint_does_not_name_what_was_asked_for(tmp_path):
+    (tmp_path / "dent.toml").mkdir()
+    with pytest.raises(CaseError) as refused:
+        load(tmp_path / "dent.toml")
+    assert "did you mean" not in str(refused.value)
