@@ -14,6 +14,10 @@ poisson_ratio = [0.3, 0.3]
 [motion]
 entrainment_speed = {mean}
 slide_roll_ratio = {ratio}
+[mesh]
+inlet = -2.5
+outlet = 1.5
+points_per_half_width = {points}
 {time}
 [output]
 every = {every}
@@ -43,7 +47,13 @@ class Scene:
         self, per_width=50, steps=None, ratio=0.5, travel=6.0, mean=25.0, courant=0.5, ripple=3e6, seed=0
     ):
         self.x = A * np.arange(-2.5 * per_width, 1.5 * per_width + 0.5) / per_width
-        self.dx, self.mean, self.ratio, self.ripple = A / per_width, mean, ratio, ripple
+        self.points, self.dx, self.mean, self.ratio, self.ripple = (
+            per_width,
+            A / per_width,
+            mean,
+            ratio,
+            ripple,
+        )
         self.courant = courant
         self.u1, self.u2 = mean * (1 + ratio / 2), mean * (1 - ratio / 2)
         dt = courant * self.dx / self.u1
@@ -85,6 +95,7 @@ def write(
     case = CASE.format(
         mean=scene.mean,
         ratio=scene.ratio,
+        points=scene.points,
         time="" if steady else f"[time]\ntravel = 6.0\ncourant = {scene.courant}",
         every=every,
         depths=list(depths),
@@ -106,6 +117,8 @@ def write(
             status="done",
         )
         file["x"], file["time"], file["step"] = scene.x, scene.time[kept], kept
+        file["steps/time"], file["steps/step"] = scene.time, np.arange(scene.time.size)
+        file["contact_count"] = np.zeros(scene.x.size, int)
         p, nx = scene.pressures[kept], scene.x.size
         loads = {"pressure": p, "shear_stress_slow": friction * p, "shear_stress_fast": -friction * p}
         for name, values in loads.items():

@@ -18,7 +18,6 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from ehlpetsc.analysis.contact_statistics import both_fill
@@ -27,6 +26,7 @@ from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.output_guard import check_derived
+from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.series_index import differences, open_all
 from ehlpetsc.results.whole_file import write_whole
 
@@ -102,22 +102,18 @@ def run_figures(result):
             continue
         reduce = EXTREMES.get(name)
         found[name] = float(reduce(values) if reduce else np.average(values, weights=weights))
-    return found | _damage(result.path.with_suffix(".post.h5"))
+    return found | _damage(damage_beside(result))
 
 
-def _damage(path):
-    """Quantiles of damage over the points of each surface, at every depth; none without a file."""
-    if not path.exists():
-        return {}
-    found = {}
-    with h5py.File(path) as file:
-        for surface in ("slow", "fast"):
-            for depth, row in zip(file["damage/z_over_a"], file.get(f"damage/{surface}", ()), strict=False):
-                known = row[np.isfinite(row)]
-                for share in QUANTILES if known.size else ():
-                    name = f"damage_{surface} z/a={depth:g} q={share:g}"
-                    found[name] = float(np.quantile(known, share))
-    return found
+def _damage(found):
+    """Quantiles of damage over the points of each surface, at every depth; none without a result."""
+    quantiles = {}
+    for surface in found.surfaces if found else ():
+        for depth, row in zip(found.z, found.passed(surface), strict=True):
+            for share in QUANTILES if row.size else ():
+                name = f"damage_{surface} z/a={depth:g} q={share:g}"
+                quantiles[name] = float(np.quantile(row, share))
+    return quantiles
 
 
 def ensembles(results):

@@ -105,8 +105,45 @@ def load(case, overrides=None):
     """
     path, text = (DICT, None) if isinstance(case, dict) else (case, _read(case))
     data = plain(case) if text is None else _parse(path, text)
-    faults, settings = [], []
     from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
+    settings, faults = _override(path, data, overrides)
+    faults += _faults(path, data)
+    if not faults:
+        faults += series_faults(path, data, lambda member: _faults(path, member))
+    if faults:
+        raise CaseError(faults)
+    return _made(path, data, toml_text(data) if from_python else text_with(text, settings, data))
+
+
+def stored_case(text, overrides=None):
+    """Case from the text in a result file; the profile files that it names are not looked for.
+
+    Parameters
+    ----------
+    text : str
+    overrides : dict or iterable of str, optional
+        As of `load`.
+
+    Returns
+    -------
+    Case
+        With the text as it is stored.
+
+    Raises
+    ------
+    CaseError
+    """
+    data = _parse(DICT, text)
+    _, faults = _override(DICT, data, overrides)
+    faults += _table_faults(DICT, data)[1]
+    if faults:
+        raise CaseError(faults)
+    return _made(DICT, data, text)
+
+
+def _override(path, data, overrides):
+    """Set keys in the tables; returns the settings and one fault for each that is none."""
+    settings, faults = [], []
     for override in list(overrides.items()) if isinstance(overrides, dict) else overrides or ():
         try:
             settings.append(parsed(override))
@@ -114,12 +151,7 @@ def load(case, overrides=None):
         except ValueError:
             typed = shortened(" ".join(str(override).split()))  # a fault is one line
             faults.append(f"{path}: {typed}: allowed: table.key=value, as in fluid.viscosity=0.003")
-    faults += _faults(path, data)
-    if not faults:
-        faults += series_faults(path, data, lambda member: _faults(path, member))
-    if faults:
-        raise CaseError(faults)
-    return _made(path, data, toml_text(data) if from_python else text_with(text, settings, data))
+    return settings, faults
 
 
 def members(case):
@@ -190,6 +222,13 @@ def _made(path, data, text):
 
 def _faults(path, data):
     """Faults of the tables and of the profile files they name."""
+    case, faults = _table_faults(path, data)
+    in_files = profile_faults(Path(path).parent, data.get("surface"), case if not faults else None)
+    return faults + [f"{path}: {fault}" for fault in in_files]
+
+
+def _table_faults(path, data):
+    """The case, or None, and the faults of its tables."""
     faults = []
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append("motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])")
@@ -198,5 +237,4 @@ def _faults(path, data):
         case = Case(**data)
     except ValidationError as error:
         faults += describe(error, Case, data)
-    faults += profile_faults(Path(path).parent, data.get("surface"), case if not faults else None)
-    return [f"{path}: {fault}" for fault in faults]
+    return case, [f"{path}: {fault}" for fault in faults]

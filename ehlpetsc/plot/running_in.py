@@ -5,7 +5,8 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
 from ehlpetsc.plot.stribeck import filled_from
-from ehlpetsc.results.running_in import damage, heights, pass_figures
+from ehlpetsc.results.post_result import damage_beside
+from ehlpetsc.results.running_in import heights, pass_figures
 
 SIZE, WIDER = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
 STRETCH = 0.6  # half widths of profile shown, around the deepest set
@@ -30,8 +31,9 @@ def draw_running_in(results, _options):
     if any("set_volume" not in result.figures for result in results):
         raise OutputError("solids that do not yield: there is no set; needs contact.yield_pressure")
     rows = [pass_figures(result, filled_from(result)) for result in results]
-    damages = [damage(result) for result in results]
-    known = all(damages)
+    found = [damage_beside(result) for result in results]
+    known = all(found)
+    damages = [one.summary() for one in found] if known else []
     figure, axes = labels.new_figure(2, 3 if known else 2, WIDER if known else SIZE)
     surface(axes[0, 0], results)
     pressure(axes[1, 0], results)

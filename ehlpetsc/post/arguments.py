@@ -11,9 +11,9 @@ from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES
 from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS
-from ehlpetsc.post.inputs.loads import SURFACES
 from ehlpetsc.post.outputs.passes_index import is_of_passes
 from ehlpetsc.post.run import WITHIN
+from ehlpetsc.results.post_result import SURFACES
 from ehlpetsc.results.series_index import files_of
 
 

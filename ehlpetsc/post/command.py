@@ -7,17 +7,17 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.compiled import COMPILED
-from ehlpetsc.errors import ExitStatus, OutputError, PostError, not_written
+from ehlpetsc.errors import CaseError, ExitStatus, OutputError, PostError, not_written
 from ehlpetsc.post.arguments import arguments
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import Counting
-from ehlpetsc.post.inputs.loads import SURFACES, check_readable
 from ehlpetsc.post.outputs.passes_file import store_passes
 from ehlpetsc.post.outputs.passes_index import note_damage
-from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.outputs.result_file import check_output
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.supervised import Supervisor
+from ehlpetsc.post.subprocess_guard import SubprocessGuard
+from ehlpetsc.results.hdf5.opening import open_for_reading
+from ehlpetsc.results.post_result import SURFACES, PostResult
 
 SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.STOPPED)
 
@@ -57,7 +57,7 @@ def _output(path, chosen):
 
 def _process(path, chosen):
     output = _output(path, chosen)
-    check_readable(path)
+    open_for_reading(path).close()
     check_output(output, chosen.results)
     surfaces = SURFACES if chosen.surface == "both" else (chosen.surface,)
     counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress, chosen.strain)
@@ -114,10 +114,7 @@ def _store_passes(paths, chosen):
 
 def _note_damage(index):
     """Damage of every pass into the index of a run, and one greppable line a pass."""
-    try:
-        found = note_damage(index)
-    except OutputError as fault:
-        raise PostError(fault) from None
+    found = note_damage(index)
     for number, known in found:
         largest = (
             f"{side} D_max={max(known[side]['largest']):.3e}" for side in ("fast", "slow") if side in known
@@ -142,9 +139,9 @@ def _status(work, path, output):
     """Exit status of work(), whose faults are told; `path` and `output` are what it reads and writes."""
     try:
         work()
-    except PostError as fault:
+    except (PostError, OutputError, CaseError) as fault:
         for line in str(fault).splitlines():
-            say(f"{path}: {line}")
+            say(line if line.startswith(str(path)) else f"{path}: {line}")
         return ExitStatus.BAD_INPUT
     except BrokenPipeError:  # as by `| head`: the reader went before all was done
         sys.stdout = None
@@ -198,6 +195,6 @@ def main(argv=None, call=lambda name, work: work()):
 
 def command():
     """Run as a command: every file in a process of its own, so that none can take the others with it."""
-    status = main(call=Supervisor(say))
+    status = main(call=SubprocessGuard(say))
     sys.stdout.flush()
     os._exit(status)  # the system frees all at once; Python would search it for cycles

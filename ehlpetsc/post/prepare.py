@@ -1,19 +1,19 @@
-"""What every task of a result file needs, worked out once: settings, body points, their passages."""
+"""Settings, body points and their passages of one result file, shared by all of its tasks."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.errors import PostError
-from ehlpetsc.post.inputs.gaps import find_gaps, frames_missed, steps_between
+from ehlpetsc.post.inputs.consistency import check_scales, check_time_step
+from ehlpetsc.post.inputs.gaps import find_gaps, frames_missed
+from ehlpetsc.post.inputs.input_checks import input_digest
 from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.inputs.plausibility import check_movement, check_scales, nominal_movement
-from ehlpetsc.post.inputs.settings import Settings, parse_case, read_settings
-from ehlpetsc.post.inputs.survey import survey
+from ehlpetsc.post.inputs.settings import Settings, read_settings
 from ehlpetsc.post.stresses.body_points import body_points, passage
 
-MOST_POINTS = 5_000_000
-SLOWEST = 1e-3  # of the faster surface's speed: nobody waits for less
+MAX_POINTS = 5_000_000
+MIN_SPEED = 1e-3  # of the faster surface's speed: nobody waits for less
 EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
 # thinned by tests/benchmarks/post_every.py
@@ -47,15 +47,13 @@ class Prepared(NamedTuple):
     digest: str
 
 
-def prepare(loads, surfaces, depths, report):
+def prepare(loads, surfaces, report):
     """Check a result file against its own case and find out which body points can be computed.
 
     Parameters
     ----------
     loads : Loads
     surfaces : sequence of str
-    depths : sequence of float or None
-        Instead of those of the case.
     report : callable(str)
         Gets warnings.
 
@@ -64,41 +62,42 @@ def prepare(loads, surfaces, depths, report):
     PostError
         The file is not fit for damage; the text says why.
     """
-    case = parse_case(loads.case)
-    settings = read_settings(case, depths)
+    settings = read_settings(loads.case)
     loads.check(surfaces)
-    _check_frames(loads, transient=bool(case["time"]))
-    check_scales(loads, case)
-    check_movement(loads, case, steps_between(loads))
-    gaps = find_gaps(loads, nominal_movement(case))
+    _check_frames(loads)
+    check_scales(loads)
+    check_time_step(loads)
+    gaps = find_gaps(loads)
     s, motions = _motions(loads, surfaces)
     missed = {name: frames_missed(gaps, motion, loads.x.size) for name, motion in motions.items()}
-    digest = survey(loads, case, surfaces)
+    digest = input_digest(loads, surfaces)
     whole = {name: m._replace(complete=m.complete & (missed[name] == 0)) for name, m in motions.items()}
     _warn(loads, gaps, motions, whole, report)
     return Prepared(loads, settings, gaps.every, s, whole, missed, digest)
 
 
-def _check_frames(loads, transient):
-    if loads.time.size < 2:
-        what = "holds one stored frame" if transient else "is a steady run with one frame"
+def _check_frames(loads):
+    if loads.time.size < 2 or loads.case.time is None:
+        what = "holds one stored frame" if loads.case.time else "is a steady run"
         if loads.time.size == 0:
             what = "holds no stored frame"
         raise PostError(f"it {what}: damage needs the stress history, a [time] section and output.every = 1")
 
 
 def _motions(loads, surfaces):
-    speeds = [loads.speeds[surface] for surface in surfaces]
-    moved = max(map(abs, speeds)) * (loads.time[-1] - loads.time[0])
-    if moved / loads.dx + loads.x.size > MOST_POINTS:
+    ways = [loads.travelled[surface] for surface in surfaces]
+    moved = max(abs(way[-1] - way[0]) for way in ways)
+    if moved / loads.dx + loads.x.size > MAX_POINTS:
         raise PostError(
-            f"the surfaces moved {moved / loads.dx:.3g} nodes: more than {MOST_POINTS} body points"
+            f"the surfaces moved {moved / loads.dx:.3g} nodes: more than {MAX_POINTS} body points"
         )
-    s = body_points(loads.x, loads.dx, loads.time, speeds)
-    motions = {
-        surface: passage(s, loads.x, loads.dx, loads.time, speed)
-        for surface, speed in zip(surfaces, speeds, strict=True)
-    }
+    s = body_points(loads.x, loads.dx, ways)
+    try:
+        motions = {
+            surface: passage(s, loads.x, loads.dx, way) for surface, way in zip(surfaces, ways, strict=True)
+        }
+    except ValueError as fault:
+        raise PostError(str(fault)) from None
     if not any(motion.complete.any() for motion in motions.values()):
         width = (loads.x[-1] - loads.x[0]) / loads.a
         raise PostError(
@@ -119,7 +118,7 @@ def _warn(loads, gaps, motions, whole, report):
             f"{steps} two measured surfaces lost {top} % of a typical point's damage at z = 0 and {below} % "
             "at z/a = 0.01, more where damage is largest"
         )
-    _tell_gaps(loads, gaps, motions, whole, report)
+    _report_gaps(loads, gaps, motions, whole, report)
     for surface, motion in motions.items():
         if not motion.complete.any():
             report(
@@ -131,20 +130,18 @@ def _warn(loads, gaps, motions, whole, report):
 def _travel_needed(loads, surface):
     """What lets points of a surface go from one end of the mesh to the other; empty if it stands still."""
     speed, fastest = abs(loads.speeds[surface]), max(map(abs, loads.speeds.values()))
-    if speed < SLOWEST * fastest:
+    if speed < MIN_SPEED * fastest:
         return ""
     width = (loads.x[-1] - loads.x[0]) / loads.a
     return f"; time.travel = {np.ceil(10 * width * fastest / speed + 0.5) / 10:g} or more lets some through"
 
 
-def _tell_gaps(loads, gaps, motions, whole, report):
+def _report_gaps(loads, gaps, motions, whole, report):
     """Points that were in the contact while frames are missing have no damage; PostError if none is left."""
     if not gaps.after.size:
         return
     frame = gaps.after[0]
-    where = f"after t = {loads.time[frame]:.6g} s"
-    if loads.step is not None:
-        where = f"after step {loads.step[frame]}"
+    where = f"after step {loads.step[frame]}"
     places = f"{gaps.after.size} places, first" if gaps.after.size > 1 else "one place,"
     what = f"{gaps.missing.sum()} frames are missing in {places} {where}"
     if not any(motion.complete.any() for motion in whole.values()):

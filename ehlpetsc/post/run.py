@@ -1,20 +1,23 @@
 """From a result file to a post-processing result: tasks over surfaces and depths."""
 
 from functools import partial
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.errors import PostError
+from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.post.counters import PAPER, Counters, columns
 from ehlpetsc.post.fatigue.accumulate import Counting
-from ehlpetsc.post.inputs.loads import SURFACES, Loads
+from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.outputs.contents import Contents
-from ehlpetsc.post.outputs.parts import Parts
-from ehlpetsc.post.outputs.result_file import check_output, fingerprint, stored_mark, write_result
+from ehlpetsc.post.outputs.depth_cache import DepthCache
+from ehlpetsc.post.outputs.result_file import check_output, fingerprint, stored_fingerprint, write_result
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM
 from ehlpetsc.post.stresses.gathering import Sweep, blocks, workers
+from ehlpetsc.results.output_guard import Lock
+from ehlpetsc.results.post_result import SURFACES
 
 MEMORY = 1e9  # bytes of open histories; too few and frames are gone through twice
 WITHIN = 0.02  # half widths either side of an asperity's peak in which its largest damage is sought
@@ -22,7 +25,10 @@ DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
 
 
 class Job(NamedTuple):
-    """What is asked of one result file."""
+    """One result file and the choices of how it is processed.
+
+    `depths` replaces those of the case, `settings` ("table.key=value") other keys of it.
+    """
 
     path: str
     output: str
@@ -33,6 +39,12 @@ class Job(NamedTuple):
     jobs: int = 1
     criteria: tuple = ()
     within: float = WITHIN
+    settings: tuple = ()
+
+    def overrides(self):
+        """Keys of the case set anew, as of `ehlpetsc.load`."""
+        depths = () if self.depths is None else (("post.depths", list(self.depths)),)
+        return [*self.settings, *depths]
 
 
 class Task(NamedTuple):
@@ -58,38 +70,40 @@ def run(job, report=None, progress=None):
 
     Raises
     ------
+    OutputError, CaseError
+        The result file or its case cannot be read, or the output is not ours to write; the text says why.
     PostError
-        The result file is not fit for damage, or the output is not ours to write; the text says why.
+        The result file is not fit for damage.
     OSError
         The output cannot be written, as on a full disk; nothing is left of it then.
     """
     report = report or (lambda text: None)
     job.counting.check()
     check_output(job.output, [job.path])
-    with Loads(job.path) as loads:
-        prepared = prepare(loads, job.surfaces, job.depths, report)
+    with Loads(job.path, job.overrides()) as loads:
+        prepared = prepare(loads, job.surfaces, report)
         choices = job.counting, job.regression, job.criteria, job.within
         mark = fingerprint(prepared.digest, job.surfaces, prepared.settings, *choices)
-        if stored_mark(job.output) == mark:
+        if stored_fingerprint(job.output) == mark:
             report(f"{job.output}: already there, of the same file and options")
             return
         if prepared.settings.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
             report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
         if job.counting.ranges == "window":
             report("note: counting takes four to eleven times as long with --ranges window")
-        with Parts(job.output, mark) as parts:
+        with Lock(Path(job.output), "wait for it, or give another -o"), DepthCache(job.output, mark) as cache:
             try:
-                _work_off(job, prepared, parts, progress or (lambda done, of: None))
-                _store(job, prepared, parts, mark, report)
-            except (PostError, OSError):
-                parts.remove()  # unlike after an interruption there is nothing to go on from
+                _compute(job, prepared, cache, progress or (lambda done, of: None))
+                _store(job, prepared, cache, mark, report)
+            except (PostError, OutputError, OSError):
+                cache.remove()  # unlike after an interruption there is nothing to continue from
                 raise
-            parts.remove()
+            cache.remove()
 
 
-def _work_off(job, prepared, parts, progress):
+def _compute(job, prepared, cache, progress):
     depths = prepared.settings.depths
-    missing = {surface: [d for d in depths if not parts.has(surface, d)] for surface in prepared.motions}
+    missing = {surface: [d for d in depths if not cache.has(surface, d)] for surface in prepared.motions}
     tasks = _tasks(missing)
     total = sum(len(task.depths) for task in tasks)
     done = 0
@@ -101,7 +115,7 @@ def _work_off(job, prepared, parts, progress):
 
             values = solve(job, prepared, task, spread, share)
             for depth, part in zip(task.depths, values, strict=True):
-                parts.save(task.surface, depth, part)
+                cache.save(task.surface, depth, part)
             done += len(task.depths)
 
 
@@ -153,10 +167,10 @@ def solve(job, prepared, task, spread=map, share=None):
     return out
 
 
-def _store(job, prepared, parts, mark, report):
+def _store(job, prepared, cache, mark, report):
     contents = Contents(prepared, job.regression, columns(job.criteria), job.within)
     for surface in prepared.motions:
-        contents.add(surface, np.stack([parts.load(surface, d) for d in prepared.settings.depths]))
+        contents.add(surface, np.stack([cache.load(surface, d) for d in prepared.settings.depths]))
     for note in contents.notes:
         report(note)
     write_result(job.output, contents.datasets, contents.attributes(mark, job.counting), contents.groups)

@@ -14,9 +14,12 @@ CHECKED = 1024  # frames at a time
 OVER_NODES = ("x", "contact_count")
 
 
-def read_result(path):
-    """A result file as `Result`, to be closed or used in a ``with`` statement; errors of `open_result`."""
-    return Result(open_result(path), path)
+def read_result(path, **options):
+    """A result file as `Result`, to be closed or used in a ``with`` statement.
+
+    Options are those of `h5py.File`, errors those of `open_result`.
+    """
+    return Result(open_result(path, **options), path)
 
 
 def _whole_rows(group, path):

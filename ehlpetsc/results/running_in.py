@@ -1,10 +1,6 @@
 """What the passes of both surfaces over each other make of them, pass by pass, from their results."""
 
-import h5py
 import numpy as np
-
-from ehlpetsc.results.hdf5.attributes import Attributes
-from ehlpetsc.results.hdf5.stored import reading
 
 RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
@@ -59,34 +55,6 @@ def statistics(result, side):
         "slope": float(np.abs(np.diff(left) / np.diff(s)).max()),
         "deepest": float((z - left).max()),
     }
-
-
-def damage(result):
-    """Fatigue damage of a pass, where ``python3 -m ehlpetsc.post`` has left its result beside.
-
-    Returns
-    -------
-    dict or None
-        "z_over_a" and, of each surface, largest and median over the points that passed the whole contact
-        ("largest", "median"), a list over the depths each. None: there is none, or it is of another case.
-    """
-    path = result.path.with_suffix(".post.h5")
-    if not path.exists():
-        return None
-    with reading(path), h5py.File(path, "r") as file:
-        if Attributes(file, path)["case"] != result.attrs["case"]:
-            return None
-        group = file["damage"]
-        found = {"z_over_a": group["z_over_a"][:].tolist()}
-        for side in ("fast", "slow"):
-            passed = group[f"{side}_complete"][:].astype(bool) if side in group else np.zeros(1, bool)
-            if passed.any():
-                values = group[side][:, passed]
-                found[side] = {
-                    "largest": values.max(axis=1).tolist(),
-                    "median": np.median(values, axis=1).tolist(),
-                }
-    return found
 
 
 def passes_to_run_in(rows):

@@ -10,13 +10,13 @@ import time as clock
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.post_result import PostResult, post_path
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 
@@ -154,14 +154,13 @@ def greatest_damage(path, surface, depths=()):
     PostError
         As of `ehlpetsc.post`: the travel is too short for one passage, for example.
     """
-    output = Path(path).with_suffix(".post.h5")
+    output = post_path(path)
     words = [sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", surface]
     words += ["--depths", *map(str, depths)] if depths else []
     done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode:
         raise PostError(f"no damage: {last_words(done.stderr)}")
-    with h5py.File(output) as file:
-        greatest = np.nanmax(file[f"damage/{surface}"][()], axis=1)
+    greatest = PostResult(output).passed(surface).max(axis=1)
     output.unlink()
     return greatest
 

@@ -16,8 +16,8 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
+from ehlpetsc.results.post_result import PostResult
 
 DEPTHS = (0.0, 0.01, 0.03, 0.1, 0.5)
 FRAMED = ("time", "pressure", "shear_stress_slow", "shear_stress_fast")

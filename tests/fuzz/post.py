@@ -32,7 +32,7 @@ from hdf5_damage import Flips, Structures
 from post_result_file import CASE, LOAD, P0, A, Scene
 from sandbox import process
 
-from ehlpetsc.post import command, supervised
+from ehlpetsc.post import command, subprocess_guard
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
 
@@ -49,6 +49,7 @@ def write_base(path):
     case = CASE.format(
         mean=scene.mean,
         ratio=scene.ratio,
+        points=scene.points,
         time="[time]\ntravel = 7.0",
         every=1,
         depths=[0.1],
@@ -110,7 +111,7 @@ def run(spoil, number, seed, pictures, keep, show):
             options = ["--pictures", str(path.parent / "pictures")] if pictures and k % pictures == 0 else []
             words = [str(path), *options]
             status, said = process(
-                lambda words=words: command.main(words, supervised.Supervisor(command.say)),
+                lambda words=words: command.main(words, subprocess_guard.SubprocessGuard(command.say)),
                 path.with_suffix(".said"),
                 LIMIT,
             )
@@ -128,7 +129,7 @@ def run(spoil, number, seed, pictures, keep, show):
 
 def fuzz(flips, structures, seed, pictures=0, keep=None, show=False):
     """Counts by outcome of both kinds; `pictures`: every so manieth file is also drawn."""
-    supervised.READ_SECONDS = READ_LIMIT
+    subprocess_guard.MAX_READ_SECONDS = READ_LIMIT
     with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
         base = Path(folder) / "run.h5"
         write_base(base)

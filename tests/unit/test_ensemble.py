@@ -106,8 +106,9 @@ def test_the_table_of_a_series(tmp_path, capsys):
 
 def test_damage_gives_its_quantiles(tmp_path):
     (path, *_) = made(tmp_path, seeds=[1])
-    with h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
-        file["damage/z_over_a"] = [0.01]
+    with h5py.File(path) as result, h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
+        file.attrs.update(a=1e-3, case=result.attrs["case"])
+        file["damage/s"], file["damage/z_over_a"] = np.arange(102.0), [0.01]
         file["damage/slow"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
     with read_result(path) as result:
         figures = ensemble.run_figures(result)

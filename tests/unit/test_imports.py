@@ -28,7 +28,7 @@ MAY_IMPORT = {
     "run": {"stepping", "nonlinear", "discretisation", "physics", "case", "surfaces", "results"},
     "analysis": {"results"},
     "plot": {"analysis", "results", "physics"},
-    "post": {"results", "physics"},
+    "post": {"case", "results", "physics"},
     "study": {"case", "analysis", "results", "physics"},  # runs the solver as a user does: by its command
     "compare": {"analysis"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked

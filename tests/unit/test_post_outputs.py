@@ -16,13 +16,13 @@ import pytest
 from post_result_file import Scene, write
 
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.post import supervised
+from ehlpetsc.post import subprocess_guard
 from ehlpetsc.post.command import main
-from ehlpetsc.post.inputs.reading import reading
-from ehlpetsc.post.outputs.parts import Parts
-from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.supervised import Supervisor
+from ehlpetsc.post.subprocess_guard import SubprocessGuard
+from ehlpetsc.results.hdf5.stored import reading
+from ehlpetsc.results.output_guard import Lock
+from ehlpetsc.results.post_result import PostResult
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = [sys.executable, "-m", "ehlpetsc.post"]
@@ -51,17 +51,17 @@ def refused(capsys, *argv):
 
 def test_the_input_is_never_the_output(result, tmp_path, capsys):
     before = result.read_bytes()
-    assert "is an input" in refused(capsys, result, "-o", result)
+    assert "is read by this run" in refused(capsys, result, "-o", result)
     link = tmp_path / "link.h5"
     link.symlink_to(result)
-    assert "is an input" in refused(capsys, result, "-o", link)
+    assert "is read by this run" in refused(capsys, result, "-o", link)
     assert result.read_bytes() == before and not left_over(tmp_path)
 
 
 def test_the_output_of_one_file_is_never_another_input(result, scene, capsys):
     assert main([str(result)]) == 0
     said = refused(capsys, result, result.with_name("run.post.h5"))
-    assert "run.post.h5 is an input" in said and "a result of post-processing, not of ehlpetsc" in said
+    assert "run.post.h5: is read by this run" in said and "a result of post-processing; give" in said
 
 
 def test_other_files_are_not_overwritten(result, scene, tmp_path, capsys):
@@ -69,8 +69,9 @@ def test_other_files_are_not_overwritten(result, scene, tmp_path, capsys):
     text = tmp_path / "notes.txt"
     text.write_text("mine")
     before = other.read_bytes()
-    for path in (other, text, tmp_path):
+    for path in (other, text):
         assert "exists and is not a result of post-processing" in refused(capsys, result, "-o", path)
+    assert "a folder, not a file" in refused(capsys, result, "-o", tmp_path)
     assert other.read_bytes() == before and text.read_text() == "mine"
     assert "does not exist" in refused(capsys, result, "-o", tmp_path / "none" / "a.h5")
 
@@ -104,11 +105,8 @@ def test_an_edit_of_the_same_size_and_time_is_seen(result, tmp_path, capsys):
 
 
 def test_two_runs_with_one_output(result, tmp_path, capsys):
-    parts = Parts(tmp_path / "run.post.h5", "the mark of a run")
-    parts.save("slow", 0.0, np.zeros((2, 3)))
-    assert "another run is writing" in refused(capsys, result)
-    assert parts.has("slow", 0.0)
-    parts.close()
+    with Lock(tmp_path / "run.post.h5"):
+        assert "is being written by" in refused(capsys, result)
     assert main([str(result)]) == 0 and not left_over(tmp_path)
 
 
@@ -182,7 +180,7 @@ def test_points_above_the_surface_are_refused(result, capsys):
 def supervisor():
     """What it says goes into `.said`."""
     said = []
-    made = Supervisor(said.append)
+    made = SubprocessGuard(said.append)
     made.said = said
     return made
 
@@ -190,23 +188,23 @@ def supervisor():
 def test_a_crash_in_reading_names_what_was_read(supervisor):
     def crash():
         faulthandler.disable()  # pytest's, which would tell of it at length
-        with reading("dataset pressure"):
+        with reading("a.h5", "pressure"):
             os.kill(os.getpid(), signal.SIGSEGV)
 
     assert supervisor("a.h5", crash) == ExitStatus.BAD_INPUT
-    assert supervisor.said == ["a.h5: dataset pressure: HDF5 crashes on it (SIGSEGV), the file is damaged"]
+    assert supervisor.said == ["a.h5: pressure: HDF5 crashes on it (SIGSEGV), the file is damaged"]
     assert supervisor("b.h5", lambda: ExitStatus.DONE) == ExitStatus.DONE
 
 
 def test_a_read_that_never_returns(supervisor, monkeypatch):
-    monkeypatch.setattr(supervised, "READ_SECONDS", 1)
+    monkeypatch.setattr(subprocess_guard, "MAX_READ_SECONDS", 1)
 
     def hang():
-        with reading("dataset time"):
+        with reading("a.h5", "time"):
             time.sleep(60)
 
     assert supervisor("a.h5", hang) == ExitStatus.BAD_INPUT
-    assert "a.h5: dataset time: HDF5 does not return" in supervisor.said[0]
+    assert "a.h5: time: HDF5 does not return" in supervisor.said[0]
 
 
 def test_a_crash_of_our_own_is_a_bug(supervisor):

@@ -9,9 +9,8 @@ from post_result_file import Scene, write
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.post import fold, largest_near, pass_statistics
 from ehlpetsc.post.command import main
-from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.running_in import damage
 
 
 def test_mean_scatter_and_life():
@@ -69,14 +68,10 @@ def test_largest_near_a_peak():
 def index(tmp_path):
     """The index of two passes, the second of a calmer pressure."""
 
-    def with_steps(file):
-        file["contact_count"] = np.zeros(file["x"].shape, int)
-        file["steps/time"], file["steps/step"] = file["time"][:], file["step"][:]
-
     rows = []
     for number, ripple in ((1, 3e6), (2, 1e6)):
         scene = Scene(per_width=20, ratio=0.5, travel=9.0, ripple=ripple)
-        write(tmp_path / f"run.pass{number}.h5", scene, depths=(0.0, 0.1), edit=with_steps)
+        write(tmp_path / f"run.pass{number}.h5", scene, depths=(0.0, 0.1))
         rows.append({"pass": number, "file": f"run.pass{number}.h5", "set_volume": 1e-12})
     path = tmp_path / "run.passes.json"
     path.write_text(json.dumps({"title": "made up", "passes": rows}))
@@ -103,9 +98,9 @@ def test_damage_of_another_case_is_not_taken_for_that_of_a_pass(index):
     pass_file = index.with_name("run.pass1.h5")
     assert main([str(pass_file)]) == ExitStatus.DONE
     with read_result(pass_file) as result:
-        assert damage(result) is not None
+        assert damage_beside(result) is not None
         result.attrs = {"case": "another"}
-        assert damage(result) is None
+        assert damage_beside(result) is None
 
 
 def test_an_index_that_is_none_is_refused(tmp_path, capsys):

@@ -89,8 +89,8 @@ def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
 
 def test_damage_of_the_file_beside_is_shown_in_decades(tmp_path, page):
     path = make_result(tmp_path / "r.h5", nodes=41, steps=3)
-    with h5py.File(tmp_path / "r.post.h5", "w") as file:
-        file.attrs["a"] = 2.0
+    with h5py.File(path) as result, h5py.File(tmp_path / "r.post.h5", "w") as file:
+        file.attrs.update(a=2.0, case=result.attrs["case"])
         group = file.create_group("damage")
         group["s"], group["z_over_a"] = [1.0, 2.0, 4.0], [0.0, 0.5]
         group["slow"] = [[1e-3, 0.0, 1e-5], [np.nan, 1e-7, 1e-8]]

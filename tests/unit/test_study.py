@@ -148,8 +148,8 @@ def test_the_least_travel_for_damage_lets_a_point_pass(table_1, mesh, ratio):
         case = load(table_1, [*chosen, f"motion.slide_roll_ratio={ratio}", f"time.travel={travel}"])
         scales = Scales.of(case)
         x, time = scales.x * scales.a, np.array([0.0, scales.duration])
-        s = body_points(x, scales.dx, time, [scales.u1, scales.u2])
-        assert passage(s, x, scales.dx, time, scales.u2).complete.any() == passes
+        s = body_points(x, scales.dx, [scales.u1 * time, scales.u2 * time])
+        assert passage(s, x, scales.dx, scales.u2 * time).complete.any() == passes
         if passes:
             check_damage(case, "slow", mesh)
         else:

@@ -7,11 +7,11 @@ from post_result_file import P0, A, Scene, write
 from ehlpetsc.post import Material, damage, stress
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.outputs.post_result import PostResult
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, history_at, parity_weights
 from ehlpetsc.post.stresses.half_plane import StressField
+from ehlpetsc.results.post_result import PostResult
 
 FINE = 16  # elements of the reference a node spacing
 DEPTHS = (0.0, 0.02, 0.05, 0.1)  # z/a: 0 to 5 elements
@@ -149,7 +149,7 @@ def test_only_points_that_entered_and_left(scene):
     time = scene.time
     s = scene.x[0] + scene.dx * np.arange(-900, scene.x.size)
     for speed in (scene.u1, scene.u2, -scene.u2):
-        motion = passage(s, scene.x, scene.dx, time, speed)
+        motion = passage(s, scene.x, scene.dx, speed * time)
         first, last = s + speed * time[0], s + speed * time[-1]
         tiny = 1e-6 * scene.dx
         through = np.sort([first, last], axis=0)
@@ -162,7 +162,7 @@ def test_only_points_that_entered_and_left(scene):
 
 
 def test_at_rest_no_point_passes(scene):
-    motion = passage(scene.x, scene.x, scene.dx, scene.time, 0.0)
+    motion = passage(scene.x, scene.x, scene.dx, 0.0 * scene.time)
     assert not motion.complete.any()
 
 

@@ -3,12 +3,12 @@
 import base64
 import tomllib
 
-import h5py
 import numpy as np
 
 from ehlpetsc.plot.frames import default_window, frame_with_most_contacts
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.post_result import damage_beside
 
 FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
 STEADY = 1e-9  # relative change over a run that is none
@@ -36,7 +36,7 @@ def report_data(result):
         "case": str(attrs["case"]),
         "frames": frames(result),
         "steps": step_figures(result),
-        "damage": damage(result.path.with_suffix(".post.h5")),
+        "damage": damage(result),
     }
 
 
@@ -112,26 +112,23 @@ def step_figures(result):
     return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
 
 
-def damage(path):
+def damage(result):
     """Damage below the surfaces from the post-processing result beside, None without one."""
-    if not path.is_file():
+    found = damage_beside(result)
+    if found is None:
         return None
-    with h5py.File(path, "r") as file:
-        if "damage" not in file:
-            return None
-        group = file["damage"]
-        s, depths = group["s"][:] / float(file.attrs["a"]), group["z_over_a"][:]
-        width, surfaces = -(-len(s) // POINTS), {}
-        for side in ("fast", "slow"):
-            if side in group:
-                with np.errstate(divide="ignore", invalid="ignore"):
-                    decades = np.log10(group[side][:])
-                decades[~np.isfinite(decades)] = np.nan
-                surfaces[side] = [_packed(binned(row, width, np.fmax.reduce)) for row in decades]
+    width = -(-len(found.s) // POINTS)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        decades = {side: np.log10(values) for side, values in found.damage.items()}
+    for values in decades.values():
+        values[~np.isfinite(values)] = np.nan
     return {
-        "s": _packed(binned(s, width, np.mean)),
-        "depths": [float(z) for z in depths],
-        "surfaces": surfaces,
+        "s": _packed(binned(found.s / found.a, width, np.mean)),
+        "depths": found.z.tolist(),
+        "surfaces": {
+            side: [_packed(binned(row, width, np.fmax.reduce)) for row in rows]
+            for side, rows in decades.items()
+        },
     }
 
 

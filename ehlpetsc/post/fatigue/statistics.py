@@ -4,17 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.results.post_result import WeibullFit
+
 PROMINENCE = 0.1  # of Rq: lower bumps are noise of the measurement, not asperities
 REGRESSIONS = ("x on y", "y on x")
 LEAST_SPREAD = 1e-6  # of the values: damages are sure to some 1e-6, what is closer together has no shape
-
-
-class WeibullFit(NamedTuple):
-    """Scale alpha, shape beta and squared correlation of the fitted line."""
-
-    alpha: float
-    beta: float
-    r_squared: float
 
 
 class Asperities(NamedTuple):

@@ -1,10 +1,10 @@
-"""Frames missing from a result, seen from the numbers of the steps, their times and the movement."""
+"""Frames missing from a result, seen from the numbers of the steps and from their times."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.post.inputs.plausibility import LONGEST_STEP
+from ehlpetsc.post.inputs.consistency import MAX_STEP
 
 
 class Gaps(NamedTuple):
@@ -25,28 +25,11 @@ class Gaps(NamedTuple):
     missing: np.ndarray
 
 
-def steps_between(loads):
-    """Steps from each stored frame to the next, (nt - 1,): by their numbers; 1 where these are not stored."""
-    if loads.step is None:
-        return np.ones(max(len(loads.time) - 1, 0), int)
-    return np.diff(loads.step)
-
-
-def find_gaps(loads, nominal):
-    """Gaps in the stored frames.
-
-    Parameters
-    ----------
-    loads : ehlpetsc.post.inputs.loads.Loads
-        With two frames or more.
-    nominal : float
-        Nodes that the faster surface moves in a time step.
-    """
-    between = steps_between(loads)
-    moved = np.diff(loads.time) * max(map(abs, loads.speeds.values())) / loads.dx
-    at_least = np.ceil(moved / (LONGEST_STEP * nominal)).astype(int)  # steps that such a movement takes
-    by_movement = np.rint(moved / nominal).astype(int)
-    between = np.where(at_least > between, by_movement, between)
+def find_gaps(loads):
+    """Gaps in the stored frames, two or more, of :class:`ehlpetsc.post.inputs.loads.Loads`."""
+    steps, nominal = np.diff(loads.time) / loads.dt[:-1], np.diff(loads.step)
+    at_least = np.ceil(steps / MAX_STEP).astype(int)  # steps that such a time takes
+    between = np.where(at_least > nominal, np.rint(steps).astype(int), nominal)
     every = max(int(np.median(between)), 1)
     missing = np.maximum(-(-between // every) - 1, 0)
     after = np.flatnonzero(missing)

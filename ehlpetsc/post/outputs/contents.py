@@ -97,7 +97,7 @@ class Contents:
         mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
         return {
             "title": loads.title,
-            "case": loads.case,
+            "case": loads.case_text,
             "source": str(loads.path),
             "fingerprint": mark,
             "a": loads.a,

@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 from ehlpetsc.results.output_guard import Lock
+from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.running_in import damage
 from ehlpetsc.results.series_index import read_index
 from ehlpetsc.results.whole_file import write_whole
 
@@ -26,7 +26,7 @@ def note_damage(index):
     Returns
     -------
     list of (int, dict)
-        Number and damage of each pass, see `ehlpetsc.results.running_in.damage`.
+        Number and damage of each pass, see `ehlpetsc.results.post_result.PostResult.summary`.
 
     Raises
     ------
@@ -38,9 +38,9 @@ def note_damage(index):
         content, found = read_index(index), []
         for row in content["passes"]:
             with read_result(index.with_name(row["file"])) as result:
-                known = damage(result)
+                known = damage_beside(result)
             if known is not None:
-                row["damage"] = known
-                found.append((row["pass"], known))
+                row["damage"] = known.summary()
+                found.append((row["pass"], row["damage"]))
         write_whole(index, json.dumps(content, indent=1).encode())
     return found

@@ -3,13 +3,14 @@
 import hashlib
 import io
 import json
-import os
 from pathlib import Path
 
 import h5py
 
 from ehlpetsc import __version__
-from ehlpetsc.errors import PostError
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.output_guard import check_place
+from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.whole_file import write_whole
 
 FORMAT_VERSION = 1
@@ -61,7 +62,7 @@ DESCRIPTIONS = {
 
 
 def fingerprint(*parts):
-    """Mark of what goes into a result: the input's digest, choices, version of the program."""
+    """Hash of everything that a result depends on: digest of the input, choices, version of the program."""
     return hashlib.sha256(json.dumps([__version__, FORMAT_VERSION, parts], default=repr).encode()).hexdigest()
 
 
@@ -70,21 +71,17 @@ def check_output(path, inputs):
 
     Raises
     ------
-    PostError
+    OutputError
         It is one of `inputs`, or exists and is something else, or its folder does not exist.
     """
     path = Path(path)
     if not path.parent.is_dir():
-        raise PostError(f"the folder of the output {path} does not exist")
-    if not path.exists():
-        if path.is_symlink():
-            raise PostError(f"the output {path} is a link to nowhere")
-        return
-    for name in inputs:
-        if Path(name).exists() and path.samefile(name):
-            raise PostError(f"the output {path} is an input: give another -o")
-    if stored_mark(path) is None:
-        raise PostError(
+        raise OutputError(f"the folder of the output {path} does not exist")
+    if path.is_symlink() and not path.exists():
+        raise OutputError(f"the output {path} is a link to nowhere")
+    check_place(path, map(Path, inputs), "-o")
+    if path.exists() and stored_fingerprint(path) is None:
+        raise OutputError(
             f"the output {path} exists and is not a result of post-processing: remove it or give another -o"
         )
 
@@ -144,13 +141,9 @@ def _scales(file):
             dataset.dims[0].attach_scale(s)
 
 
-def stored_mark(path):
+def stored_fingerprint(path):
     """Fingerprint of a finished result; None of anything else."""
-    if not os.path.isfile(path) or not h5py.is_hdf5(path):
-        return None
     try:
-        with h5py.File(path, "r") as file:
-            mark = file.attrs.get("fingerprint")
-            return mark if isinstance(mark, str) and "damage" in file and "pressure" not in file else None
-    except (OSError, RuntimeError, KeyError):
+        return PostResult(path).attrs.get("fingerprint")
+    except OutputError:
         return None

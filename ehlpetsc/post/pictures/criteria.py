@@ -51,7 +51,7 @@ def criteria_picture(result, surface):
 
 
 def _map(axes, result, surface, values, length, levels, title):
-    shown = result.shown_as(surface, values)
+    shown = result.with_damage(surface, values)
     contours = plots.damage_contours(axes, shown, surface, length, levels, gap=0.1)
     axes.set_title(title, fontsize=8, loc="left", pad=2)
     return contours

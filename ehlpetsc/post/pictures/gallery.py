@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
 from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.inputs.settings import parse_case, read_settings
-from ehlpetsc.post.outputs.post_result import PostResult
+from ehlpetsc.post.inputs.settings import read_settings
 from ehlpetsc.post.pictures import plots
 from ehlpetsc.post.pictures.criteria import criteria_picture
 from ehlpetsc.post.pictures.distributions import depth_picture, ratio_picture
 from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
+from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.whole_file import replacing
 
 STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # without the salt, no two SVG files would be the same
@@ -162,7 +162,7 @@ def field_picture(path, result, frame):
         if not 0 <= frame < loads.time.size:
             raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
         p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = getattr(read_settings(parse_case(loads.case)), surface).poisson_ratio
+        nu = getattr(read_settings(loads.case), surface).poisson_ratio
         z = FIELD_DEPTH * np.linspace(0, 1, 121) ** 2
         fields = plots.stress_fields(*stress(loads.x, z * loads.a, p, q, nu), nu)
         x, time = loads.x / loads.a, loads.time[frame]
@@ -197,7 +197,7 @@ def history_picture(path, result, point):
     s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
     _check_passed(result, surface, s)
     with Loads(path) as loads:
-        material = getattr(read_settings(parse_case(loads.case)), surface)
+        material = getattr(read_settings(loads.case), surface)
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
     step = time[1] - time[0]
     time = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])

@@ -25,23 +25,40 @@ class Passage(NamedTuple):
         return int((self.leave - self.enter + 1)[self.complete].max(initial=0))
 
 
-def body_points(x, dx, time, speeds):
-    """Body coordinates s, dx apart, of all points of bodies at `speeds` that were ever among the nodes x."""
-    ends = np.array([[u * time[0], u * time[-1]] for u in speeds])
+def body_points(x, dx, travelled):
+    """Body coordinates s, dx apart, of all points that were ever among the nodes x.
+
+    Parameters
+    ----------
+    x : ndarray (nx,)
+        m.
+    dx : float
+    travelled : iterable of ndarray (nt,)
+        Distance that each body has covered at each frame, m.
+    """
+    ends = np.array([[way[0], way[-1]] for way in travelled])
     before = max(int(np.ceil(ends.max() / dx - GRID_ROUNDING)), 0)
     after = max(int(np.ceil(-ends.min() / dx - GRID_ROUNDING)), 0)
     return x[0] + dx * np.arange(-before, x.size + after)
 
 
-def passage(s, x, dx, time, speed):
-    """Passage of the points s = s[0] + j dx of a body at `speed` (x = s + speed * time)."""
-    base = np.round((s[0] - x[0] + speed * time) / dx, 9)
+def passage(s, x, dx, travelled):
+    """Passage of the points s = s[0] + j dx of a body that has covered `travelled` (nt,): x = s + travelled.
+
+    Raises
+    ------
+    ValueError
+        The body turns back.
+    """
+    base = np.round((s[0] - x[0] + travelled) / dx, 9)
     shift = np.floor(base).astype(np.int64)
     j, last = np.arange(s.size), x.size - 1
-    if speed >= 0:
+    if (np.diff(base) >= 0).all():
         enter, leave = np.searchsorted(base, -j, "left"), np.searchsorted(base, last - j, "right") - 1
         complete = (base[0] + j <= 0) & (base[-1] + j >= last)
-    else:
+    elif (np.diff(base) <= 0).all():
         enter, leave = np.searchsorted(-base, j - last, "left"), np.searchsorted(-base, j, "right") - 1
         complete = (base[0] + j >= last) & (base[-1] + j <= 0)
+    else:
+        raise ValueError("a surface turns back: its points would pass the contact several times")
     return Passage(shift, base - shift, enter, leave, complete)

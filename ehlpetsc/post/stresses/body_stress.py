@@ -143,7 +143,7 @@ def _at_depth(nx, depth):
 
 def history_at(loads, surface, s, depth, quantum=0.0):
     """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
-    motion = passage(np.array([s]), loads.x, loads.dx, loads.time, loads.speeds[surface])
+    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
     enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1
     stress = _at_depth(loads.x.size, depth / loads.dx)
     values = np.zeros((3, max(leave - enter, 0) + 2))

@@ -70,10 +70,13 @@ class Attributes(dict):
 
 
 def plain(value):
-    """An attribute's value, a text as str."""
+    """An attribute's value, a text as str that can be printed: bytes that are no UTF-8 are replaced."""
+    if isinstance(value, str):  # h5py keeps such bytes of a text of variable length as lone surrogates
+        return value.encode(errors="replace").decode()
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
 def one_line(fault):
     """The first line of what an exception says, its kind where it says nothing."""
-    return next(iter(str(fault).strip().splitlines()), type(fault).__name__)[:200]
+    line = next(iter(str(fault).strip().splitlines()), type(fault).__name__)[:200]
+    return "".join(character if character.isprintable() else "?" for character in line)

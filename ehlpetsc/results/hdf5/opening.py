@@ -47,15 +47,16 @@ def _marked_as_being_written(path):
     return head.startswith(b"\x89HDF\r\n\x1a\n") and len(head) == 12 and head[8] >= 3 and bool(head[11] & 4)
 
 
-def open_result(path):
-    """The HDF5 file of a result, checked to be one.
+def open_result(path, **options):
+    """The HDF5 file of a result, checked to be one; further options are those of `h5py.File`.
 
     Raises
     ------
     OutputError
         Missing, damaged, not a result file, or of a later format version.
     """
-    file = open_for_reading(path)
+    with reading(path):
+        file = open_for_reading(path, **options)
     try:
         with reading(path):
             fault = _fault(file)
@@ -70,6 +71,8 @@ def open_result(path):
 def _fault(file):
     """What keeps an HDF5 file from being a result; None: nothing."""
     version = file.attrs.get("format_version")
+    if version is not None and "damage/s" in file:
+        return "a result of post-processing; give the file it was made from"
     if version is None or "x" not in file or "steps" not in file:
         return "an HDF5 file, but not a result of ehlpetsc"
     if not np.isscalar(version) or isinstance(version, str | bytes) or not version >= 1:

@@ -1,4 +1,8 @@
-"""Datasets of a result, read on demand; what HDF5 finds damaged is an OutputError that names the file."""
+"""Datasets of a result, read on demand; what HDF5 finds damaged is an OutputError that names the file.
+
+HDF5 may crash on a damaged file or never return from reading it. A process that watches the reading one
+learns from `announced_to` which dataset was being read.
+"""
 
 import contextlib
 
@@ -7,15 +11,37 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import Attributes, one_line
 
+_listeners, _names = [], []
+
+
+@contextlib.contextmanager
+def announced_to(listener):
+    """Call listener(name) before each read in the ``with`` statement, listener("") after the last one."""
+    _listeners.append(listener)
+    try:
+        yield
+    finally:
+        _listeners.remove(listener)
+
+
+def _announce():
+    for listener in _listeners:
+        listener(_names[-1] if _names else "")
+
 
 @contextlib.contextmanager
 def reading(path, name=""):
     """Around calls of HDF5: the many kinds of exception that damage raises become an OutputError."""
+    _names.append(name or "the file")
+    _announce()
     try:
         yield
     except (OSError, RuntimeError, KeyError, AttributeError, ValueError, TypeError, MemoryError) as fault:
         what = f"{path}: {name}" if name else f"{path}"
         raise OutputError(f"{what}: cannot be read, the file is damaged ({one_line(fault)})") from None
+    finally:
+        _names.pop()
+        _announce()
 
 
 class Stored:

@@ -1,16 +1,16 @@
-"""One pass through all frames before anything is computed: finite, plausible, and what identifies them."""
+"""Check of all frames before anything is computed: finite, plausible, and a digest that identifies them."""
 
 import hashlib
 
 import numpy as np
 
 from ehlpetsc.errors import PostError
-from ehlpetsc.post.inputs.plausibility import Balance, check_shear_size
+from ehlpetsc.post.inputs.consistency import Balance
 
 FRAMES = 128  # at a time
 
 
-def survey(loads, case, surfaces):
+def input_digest(loads, surfaces):
     """Check every frame of the loads that `surfaces` need; return a digest of all that damage depends on.
 
     The digest holds two weighted sums of each frame: what does not change these in the sixteenth digit does
@@ -22,13 +22,12 @@ def survey(loads, case, surfaces):
         A value is nan or infinite, a frame does not carry the load, a pressure is negative, ...
     """
     digest = hashlib.sha256()
-    for part in (loads.case.encode(), loads.x, loads.time, loads.step, *_profiles(loads)):
+    profiles = [part for profile in loads.profiles.values() for part in profile or (None,)]
+    for part in (loads.case_text.encode(), loads.x, loads.time, loads.step, *profiles):
         digest.update(b"none" if part is None else memoryview(np.ascontiguousarray(part)).cast("B"))
     digest.update(repr((loads.a, loads.p0, loads.speeds, loads.status, surfaces)).encode())
-    balance = Balance(loads, case)
-    weights = np.stack(
-        [np.ones(loads.x.size), np.arange(1, loads.x.size + 1) * 0.6180339887498949 % 1], axis=1
-    )
+    balance, nodes = Balance(loads), loads.x.size
+    weights = np.stack([np.ones(nodes), np.arange(1, nodes + 1) * 0.6180339887498949 % 1], axis=1)
     for first in range(0, loads.time.size, FRAMES):
         last = min(first + FRAMES, loads.time.size)
         for name in ("pressure", *(f"shear_stress_{surface}" for surface in surfaces)):
@@ -36,22 +35,17 @@ def survey(loads, case, surfaces):
             with np.errstate(all="ignore"):  # of damaged numbers; they are looked for next
                 sums = rows @ weights
             _check_finite(loads, name, first, rows, sums)
-            _check_rows(loads, balance, name, first, rows, sums[:, 0])
+            _check_rows(balance, name, first, rows, sums[:, 0])
             digest.update(sums)
     return digest.hexdigest()
 
 
-def _profiles(loads):
-    for profile in loads.profiles.values():
-        yield from profile or (None,)
-
-
-def _check_rows(loads, balance, name, first, rows, total):
+def _check_rows(balance, name, first, rows, total):
     low, high = rows.min(axis=1), rows.max(axis=1)
     if name == "pressure":
         balance.check_pressure(first, total, low, high)
         return
-    check_shear_size(loads, name, first, np.maximum(-low, high))
+    balance.check_shear_size(name, first, np.maximum(-low, high))
     if name == "shear_stress_slow":
         balance.check_slow_shear(first, total)
 

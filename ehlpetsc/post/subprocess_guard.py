@@ -10,12 +10,12 @@ import sys
 import traceback
 
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.post.inputs.reading import announced_to
+from ehlpetsc.results.hdf5.stored import announced_to
 
-READ_SECONDS = 60  # for one read of some megabytes; longer, and it will not come
-STOP_SECONDS = 10  # to end in order after a signal
+MAX_READ_SECONDS = 60  # for one read of some megabytes; longer, and it will not come
+MAX_STOP_SECONDS = 10  # to end in order after a signal
 STOPS = (signal.SIGTERM, signal.SIGINT)
-HEAD = struct.Struct("<QQ")
+NOTE_HEADER = struct.Struct("<QQ")
 
 
 class _Note:
@@ -26,14 +26,14 @@ class _Note:
 
     def write(self, what):
         """`what` is being read; empty: nothing."""
-        text = what.encode(errors="replace")[: len(self._shared) - HEAD.size]
+        text = what.encode(errors="replace")[: len(self._shared) - NOTE_HEADER.size]
         self._count += 1
-        self._shared[: HEAD.size + len(text)] = HEAD.pack(self._count, len(text)) + text
+        self._shared[: NOTE_HEADER.size + len(text)] = NOTE_HEADER.pack(self._count, len(text)) + text
 
     def read(self):
         """(count, what)."""
-        count, size = HEAD.unpack(self._shared[: HEAD.size])
-        return count, self._shared[HEAD.size : HEAD.size + size].decode(errors="replace")
+        count, size = NOTE_HEADER.unpack(self._shared[: NOTE_HEADER.size])
+        return count, self._shared[NOTE_HEADER.size : NOTE_HEADER.size + size].decode(errors="replace")
 
 
 def stop_on_signals():
@@ -50,7 +50,7 @@ def stop_on_signals():
     return lambda: bool(asked)
 
 
-class Supervisor:
+class SubprocessGuard:
     """Runs pieces of work, each in a forked process, and outlives whatever happens to them.
 
     Parameters
@@ -120,7 +120,7 @@ class Supervisor:
                 if not stopping:
                     os.kill(self._child, signal.SIGTERM)  # the first came before there was a child
                 stopping += 1
-            if same >= READ_SECONDS or stopping >= STOP_SECONDS:
+            if same >= MAX_READ_SECONDS or stopping >= MAX_STOP_SECONDS:
                 os.kill(self._child, signal.SIGKILL)
                 return True
         return False

@@ -1,0 +1,97 @@
+"""A result file against its own case: numbers in wrong units, or of another case, are refused."""
+
+import numpy as np
+
+from ehlpetsc.errors import PostError
+
+AGREE = 1e-4  # relative: attributes and case are the same numbers but for rounding
+LOAD_AGREES = 0.01  # the solver balances the load to rounding; other programs' quadrature may differ
+FRAME_AGREES = 1e-4  # a stored frame, in single precision too, and the scalars of its step
+MIN_STEP = 2.0**-13  # of the nominal one: the solver gives up at twice that
+MAX_STEP = 1.5  # the solver's steps are at most the nominal one
+NEGATIVE = 1e-3  # of p0: rounding of a pressure at 0
+
+
+def check_scales(loads):
+    """Half width, Hertz pressure, speeds and nodes against the case; PostError with a line a fault."""
+    scales, faults = loads.scales, []
+    found = {"a": loads.a, "p0": loads.p0, "u1": loads.speeds["fast"], "u2": loads.speeds["slow"]}
+    for name, unit, size in (
+        ("a", "m", scales.a),
+        ("p0", "Pa", scales.p0),
+        ("u1", "m/s", scales.u_max),
+        ("u2", "m/s", scales.u_max),
+    ):
+        wanted = getattr(scales, name)
+        if not abs(found[name] - wanted) <= AGREE * size:
+            faults.append(f"attribute {name} = {found[name]:.6g}: its case gives {wanted:.6g} {unit}")
+    for surface, speed in loads.profile_speeds.items():
+        if not abs(speed - loads.speeds[surface]) <= AGREE * scales.u_max:
+            faults.append(
+                f"attribute speed of surface/{surface} = {speed:g} m/s: the surface has "
+                f"{loads.speeds[surface]:g} m/s"
+            )
+    inlet = scales.x[0] * scales.a
+    if abs(loads.dx - scales.dx) > AGREE * scales.dx or abs(loads.x[0] - inlet) > 0.01 * scales.a:
+        faults.append(
+            f"dataset x: begins at {loads.x[0]:.6g} with a spacing of {loads.dx:.6g}, its case's mesh at "
+            f"{inlet:.6g} m with {scales.dx:.6g} m"
+        )
+    if faults:
+        raise PostError("\n".join(faults))
+
+
+def check_time_step(loads):
+    """Times of the frames against the case's time step: PostError if they are in another unit."""
+    step, nominal = np.diff(loads.time) / np.diff(loads.step), loads.dt[:-1]
+    if not MIN_STEP < np.median(step / nominal) < MAX_STEP:
+        raise PostError(
+            f"dataset time: a step takes {np.median(step):.3g}, by the case {np.median(nominal):.3g} s: "
+            "times must be in s"
+        )
+
+
+class Balance:
+    """Each frame's pressure and shear against the load of the case and the scalars of its time step."""
+
+    def __init__(self, loads):
+        self.loads = loads
+        self.load = np.array([loads.operation.at(t).load for t in loads.time])
+        self.of_step = {name: loads.step_scalar(name) for name in ("load", "p_max", "friction")}
+
+    def check_pressure(self, first, total, low, high):
+        """Sums, minima and maxima of the pressures of frames from `first` on."""
+        p0, force = self.loads.p0, total * self.loads.dx
+        load = self.load[first : first + len(force)]
+        wrong = ~(np.abs(force - load) <= LOAD_AGREES * load)
+        self._refuse(wrong, first, force, "pressure", "its integral over x", load, "N/m, the case's load")
+        self._refuse(low < -NEGATIVE * p0, first, low, "pressure", "its least value", 0.0, "or more")
+        self._of_step(first, force, "load", "pressure", "its integral over x", self.load[0])
+        self._of_step(first, high, "p_max", "pressure", "its greatest value", p0)
+
+    def check_slow_shear(self, first, total):
+        """Sums of the shear stresses on the slow solid of frames from `first` on."""
+        force, small = total * self.loads.dx, 1e-3 * self.load[0]
+        self._of_step(first, force, "friction", "shear_stress_slow", "its integral over x", small)
+
+    def check_shear_size(self, name, first, size):
+        """Greatest magnitudes of a shear stress against the Hertz pressure."""
+        limit = 10 * self.loads.p0
+        self._refuse(size > limit, first, size, name, "its greatest value", limit, "or less")
+
+    def _of_step(self, first, found, name, dataset, what, size):
+        known = self.of_step[name]
+        if known is not None:
+            known = known[first : first + len(found)]
+            wrong = ~(np.abs(found - known) <= FRAME_AGREES * np.maximum(np.abs(known), size))
+            self._refuse(wrong, first, found, dataset, what, known, f"as steps/{name} has it")
+
+    def _refuse(self, wrong, first, found, dataset, what, wanted, why):
+        if not wrong.any():
+            return
+        row = int(np.flatnonzero(wrong)[0])
+        should = np.broadcast_to(wanted, wrong.shape)[row]
+        raise PostError(
+            f"dataset {dataset}: {what} at frame {first + row} (t = {self.loads.time[first + row]:.6g} s) is "
+            f"{found[row]:.6g}, it must be {should:.6g} {why}: is it in Pa, and of this case?"
+        )
