@@ -39,10 +39,10 @@ mirror() {
         awk -v name="$VERSION_CODENAME" '($1 == name || $2 == name) && $3 == "main" { print $4; exit }'
 }
 
-in_root() { # USER COMMAND: in the fresh machine, with nothing of this one's environment; its cores may be busy
+in_root() { # USER COMMAND: in the fresh machine, in a plain environment
     local home=/root
     [ "$1" = root ] || home=/home/$1
-    chroot --userspec="$1" --groups="" "$root" /usr/bin/env -i HOME="$home" USER="$1" LANG=C.UTF-8 OMPI_MCA_mpi_yield_when_idle=1 \
+    chroot --userspec="$1" --groups="" "$root" /usr/bin/env -i HOME="$home" \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin /bin/bash -c "cd && cd ehlpetsc 2>/dev/null; $2"
 }
 

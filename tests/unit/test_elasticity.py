@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.fft import next_fast_len
+from scipy.integrate import quad
 from scipy.linalg import toeplitz
 
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, CurvatureProduct, exponentials
@@ -28,10 +29,21 @@ def test_product_by_blocks(nodes):
     np.testing.assert_allclose([first, product(p)], [expected, expected], rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("n, nearest, terms", [(301, 9, 24), (12801, 9, 36), (801, 33, 22), (12801, 33, 32)])
-def test_the_far_kernel_is_a_sum_of_exponentials(n, nearest, terms):
+@pytest.mark.parametrize("tolerance", [TOLERANCE, 1e-8, 1e-6])
+@pytest.mark.parametrize("n, nearest", [(34, 33), (50, 33), (301, 9), (801, 33), (12801, 9), (12801, 33)])
+def test_the_far_kernel_is_a_sum_of_exponentials(n, nearest, tolerance):
+    """To the tolerance at every distance; their number grows as the logarithms of distance and tolerance."""
     kernel = curvature_kernel(n)
-    rates, weights = exponentials(kernel, nearest)
+    rates, weights = exponentials(kernel, nearest, tolerance)
     by_terms = np.exp(-np.outer(np.arange(n - nearest), rates)) @ weights
-    assert len(rates) == terms
-    np.testing.assert_allclose(by_terms, kernel[nearest:], rtol=TOLERANCE, atol=0)
+    np.testing.assert_allclose(by_terms, kernel[nearest:], rtol=tolerance, atol=0)
+    assert (weights > 0.0).all()  # nothing cancels
+    assert len(rates) <= 5 - np.log(tolerance) * (0.4 + 0.16 * np.log(n / nearest))
+
+
+def test_the_exponentials_are_a_quadrature_of_the_kernels_laplace_transform():
+    """Against adaptive quadrature, from the least distance at which the integral converges quickly."""
+    kernel = curvature_kernel(30)
+    for k in (3, 4, 9, 29):
+        f = quad(lambda t, k=k: t * (np.sinh(t / 2) / (t / 2)) ** 4 * np.exp(-k * t), 0, 60, epsrel=1e-12)[0]
+        assert f == pytest.approx(kernel[k], rel=1e-10)
