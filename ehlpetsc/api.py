@@ -51,7 +51,7 @@ class Result(reader.Result):
         figure, axes = pyplot.subplots(2, 1, figsize=(8.0, 5.2), sharex=True, layout="constrained")
         frames.pressure_and_film(axes, [self], [index], [colour], window or frames.default_window([self]))
         frames.frame_legend(axes, self, index, colour)
-        title = ": ".join(filter(None, [self.attrs["title"], frames.instant(self, index)]))
+        title = ": ".join(filter(None, [self.attrs["title"], frames.instant([self], [index])]))
         axes[0].set_title(title, fontsize="medium")
         return figure
 

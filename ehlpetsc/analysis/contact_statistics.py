@@ -27,14 +27,6 @@ def mean_rate(result, low=-1.0, high=1.0):
     return float(result.contact_rate()[(x >= low) & (x <= high)].mean())
 
 
-def both_fill(result, time):
-    """At which of the times [s] the roughness of both surfaces has come through to the far Hertz edge."""
-    a, speeds = result.attrs["a"], (result.attrs["u1"], result.attrs["u2"])
-    moving = [abs(u) for u in speeds if u != 0.0]
-    ends = [(a - result.x[0]) if u > 0.0 else (result.x[-1] + a) for u in speeds if u != 0.0]
-    return time >= max((end / u for end, u in zip(ends, moving, strict=True)), default=0.0)
-
-
 def contact_length(result):
     """Length in contact [m], mean over time."""
     dt, nodes = result.steps("dt")[1:], result.steps("contacts")[1:]

@@ -20,11 +20,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.analysis.contact_statistics import both_fill
 from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.series_index import differences, open_all

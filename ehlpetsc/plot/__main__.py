@@ -1,12 +1,12 @@
 """Draw results: ``python3 -m ehlpetsc.plot RESULT.h5 [...]``, or the index of a series or of passes,
 OUTPUT.series.json, OUTPUT.passes.json.
 
-Pressure and film of one frame, by default that with most contacts; of several files, a series, the same
-instant of each in one picture. Or a map of pressure over place and time, contacts per millisecond, a movie;
-of a series its collisions, film and pressure at contact points against the swept value, its Stribeck curve;
-of one result oil trapped between two contacts, or all of it as one HTML page. The ending of the file given by
--o chooses the format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). What is read is never
-written over.
+Pressure and film of one frame, by default that with the largest share of the load on the solids or, without
+such a share, of the highest pressure; of several files, a series, at the same travel in one picture. Or a map
+of pressure over place and time, contacts per millisecond, a movie; of a series its collisions, film and
+pressure at contact points against the swept value, its Stribeck curve; of one result oil trapped between two
+contacts, or all of it as one HTML page. The ending of the file given by -o chooses the format (png, svg, pdf;
+of a movie gif, mp4, webm; of a page html). Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
 """
@@ -53,7 +53,7 @@ def _parser():
     parser.add_argument("results", nargs="+", metavar="RESULT.h5")
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()
-    instant.add_argument("--step", type=int, help="number of the time step [that with most contacts]")
+    instant.add_argument("--step", type=int, help="number of the time step [largest share on solids]")
     instant.add_argument("--time", type=float, help="time [s]")
     parser.add_argument("--around", type=float, metavar="X", help="place to look at closely [half widths]")
     view = f"width of the view around it [{AROUND_WIDTH}; of a collision {COLLISION_WIDTH}]"
@@ -92,14 +92,20 @@ def draw(results, kind, options, output):
             figure.savefig(beside, dpi=DPI)
 
 
+def _stem(paths):
+    """Name of a picture without its ending: of one result its own, of several both or how many more."""
+    first, *others = (re.sub(r"(\.(series|passes)\.json|\.h5)$", "", path) for path in map(str, paths))
+    if not others:
+        return first
+    return f"{first}_and_{Path(others[0]).name if len(others) == 1 else f'{len(others)}_more'}"
+
+
 def main(arguments=None):
     """Run the command; returns its exit status."""
     options = _parser().parse_args(arguments)
     kind = next((k for k in (*FIGURES, *ENDINGS) if getattr(options, k) not in (None, False)), None)
     ending = ENDINGS.get(kind, f".{kind}.png" if kind else ".png")
-    output = options.output or Path(
-        re.sub(r"(\.(series|passes)\.json|\.h5)$", "", options.results[0]) + ending
-    )
+    output = options.output or Path(_stem(options.results) + ending)
     try:
         with contextlib.ExitStack() as stack:
             results = in_order(open_all(options.results, stack))

@@ -1,6 +1,7 @@
 """Whole figures of one or several results, one function a kind; `FIGURES` lists them."""
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
@@ -29,10 +30,10 @@ def window(results, options):
     return options.around - half, options.around + half
 
 
-def panel_title(results, index):
-    """What all results have in common of their titles, and the instant."""
+def panel_title(results, indices=None):
+    """What all results have in common of their titles, and the instant of stored frames."""
     titles = {result.attrs["title"] for result in results}
-    parts = [titles.pop() if len(titles) == 1 else "", frames.instant(results[0], index)]
+    parts = [titles.pop() if len(titles) == 1 else "", indices and frames.instant(results, indices)]
     return ": ".join(part for part in parts if part)
 
 
@@ -41,10 +42,13 @@ def fill_frame(axes, results, indices, options):
     colours, names, key = labels.series_colours(results)
     frames.pressure_and_film(axes, results, indices, colours, window(results, options))
     if len(results) > 1:
-        labels.series_legend(axes[0], colours, labels.with_hertz(names, results), key)
+        hertz = Line2D([], [], color=frames.HERTZ_GREY, label="Hertz", **frames.HERTZ_STYLE)
+        more = [hertz] if labels.one_hertz(results) else []
+        dashed = len(results) == 2
+        labels.series_legend(axes[0], colours, labels.with_hertz(names, results), key, more, dashed)
     else:
         frames.frame_legend(axes, results[0], indices[0], colours[0])
-    axes[0].set_title(panel_title(results, indices[0]), fontsize="medium")
+    axes[0].set_title(panel_title(results, indices), fontsize="medium")
 
 
 def draw_frame(results, options):
@@ -78,7 +82,7 @@ def draw_contacts(results, _options):
     parts = [mean / means[0] if means[0] else np.nan for mean in means]
     names = [f"{n}: {mean:.3g} ({part:.2f})" for n, mean, part in zip(names, means, parts, strict=True)]
     labels.series_legend(axes[1], colours, names, f"{key or 'file'}:\nmean in |x| < a\n(to the first)")
-    axes[0].set_title(panel_title(results, 0).partition(": step")[0], fontsize="medium")
+    axes[0].set_title(panel_title(results), fontsize="medium")
     return figure
 
 

@@ -8,17 +8,22 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
 from ehlpetsc.plot.labels import CONTACT_COLOUR, SOLIDS_COLOUR, legend_beside, one_hertz
 from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.filling import both_fill, travelled
 
 ACROSS = "x/a"
 PRESSURE = "pressure [GPa]"
 FILM = "film thickness [µm]"
 OUTSIDE = (-1.6, 1.4)  # limits of x/a worth seeing
-HERTZ_STYLE = dict(lw=0.8, ls="--", zorder=1)
+HERTZ_STYLE = dict(lw=0.9, ls=":", zorder=1)
 HERTZ_GREY = "0.6"
+SHARE = 0.005  # of the load on the solids, below which the pressure chooses the instant
 
 
 def choose_frames(results, step=None, time=None):
     """The same instant of every result: index of the stored frame nearest to it.
+
+    Results whose surfaces move at different speeds are compared at equal travel of the faster surface, since
+    the same asperities then are at the same place.
 
     Parameters
     ----------
@@ -26,7 +31,7 @@ def choose_frames(results, step=None, time=None):
     step : int, optional
         Step number in the first result.
     time : float, optional
-        Time [s]. Without either, the instant with most contacts in any of them.
+        Time in the first result [s]. Without either, the fullest contact that all of them reach.
 
     Raises
     ------
@@ -38,29 +43,57 @@ def choose_frames(results, step=None, time=None):
         if not results[0].step[0] <= step <= last:
             raise OutputError(f"{results[0].path}: --step {step}; allowed: {results[0].step[0]} to {last}")
         time = results[0].time[results[0].nearest_frame(step=step)]
-    elif time is not None:
-        for result in results:
-            last = result.steps("time")[-1]
-            if not result.time[0] <= time <= last * (1.0 + 1e-9):
-                raise OutputError(
-                    f"{result.path}: --time {time:g}; allowed: {result.time[0]:g} to {last:.9g} s"
-                )
+    first = results[0]
+    if time is None:
+        reached = min(travel_of(result)[-1] for result in results)
+        fullest = max(results, key=_load_on_solids)
+        travel = travel_of(fullest)[frame_to_show(fullest, reached)]
     else:
-        fullest = max(results, key=lambda result: result.steps("contacts").max())
-        time = fullest.time[frame_with_most_contacts(fullest)]
-    return [result.nearest_frame(time=time) for result in results]
+        last = first.steps("time")[-1]
+        if not first.time[0] <= time <= last * (1.0 + 1e-9):
+            raise OutputError(f"{first.path}: --time {time:g}; allowed: {first.time[0]:g} to {last:.9g} s")
+        travel = np.interp(time, first.steps("time"), travelled(first)) / first.attrs["a"]
+    indices = []
+    for result in results:
+        last = travelled(result)[-1] / result.attrs["a"]
+        if travel > last * (1.0 + 1e-9) + 1e-12:
+            raise OutputError(f"{result.path}: ends at travel {last:.4g} a, before travel {travel:.4g} a")
+        indices.append(int(np.argmin(np.abs(travel_of(result) - travel))))
+    return indices
 
 
-def frame_with_most_contacts(result):
-    """Index of the stored frame with most nodes in contact; of the highest pressure if there is no contact.
+def _load_on_solids(result):
+    """By which results of a series are compared: largest share of the load on solids, then the pressure."""
+    share = np.nanmax(result.steps("contact_share")) if "contact_share" in result.figures else 0.0
+    return (share if share > SHARE else 0.0), np.nanmax(result.steps("p_max"))
+
+
+def travel_of(result):
+    """Travel of the faster surface at the stored frames [half-widths], shape (nt,)."""
+    return np.interp(result.time, result.steps("time"), travelled(result)) / result.attrs["a"]
+
+
+def frame_to_show(result, reached=np.inf):
+    """Index of the stored frame with the largest share of the load on the solids, or the highest pressure.
+
+    The share decides where it ever exceeds `SHARE`. Once both surfaces fill the contact, only such frames are
+    looked at: the edge of a profile that enters is no typical contact.
 
     Parameters
     ----------
     result : ehlpetsc.results.reader.Result
+    reached : float
+        Travel [half-widths] up to which frames are looked at.
     """
-    contacts, highest = result.steps("contacts"), result.steps("p_max")
+    allowed = travel_of(result) <= reached * (1.0 + 1e-9)
+    if (filled := allowed & both_fill(result, result.time)).any():
+        allowed = filled
     rows = np.searchsorted(result.steps("step"), result.step)
-    return int(np.argmax(contacts[rows] if contacts[rows].any() else highest[rows]))
+    values = result.steps("p_max")[rows]
+    if "contact_share" in result.figures:
+        share = np.nan_to_num(result.steps("contact_share")[rows])
+        values = share if share[allowed].max() > SHARE else values
+    return int(np.argmax(np.where(allowed, np.nan_to_num(values), -1.0)))
 
 
 def default_window(results):
@@ -70,11 +103,16 @@ def default_window(results):
     return max(low, OUTSIDE[0]), min(high, OUTSIDE[1])
 
 
-def instant(result, index):
-    """Step and time of a stored frame in words; nothing of a steady result."""
-    if len(result.time) == 1:
+def instant(results, indices):
+    """Travel of the stored frames in words, with step and time where all share them; "" if steady."""
+    first, index = results[0], indices[0]
+    if len(first.time) == 1:
         return ""
-    return f"step {result.step[index]}, {1e6 * result.time[index]:.3f} µs"
+    travel = f"travel {travel_of(first)[index]:.2f} a"
+    times = np.array([result.time[k] for result, k in zip(results, indices, strict=True)])
+    if np.ptp(times) > 0.5 * np.nanmax(first.steps("dt")):
+        return travel
+    return f"step {first.step[index]}, {1e6 * times[0]:.3f} µs, {travel}"
 
 
 def pressure_and_film(axes, results, indices, colours, window):
@@ -95,11 +133,12 @@ def pressure_and_film(axes, results, indices, colours, window):
     upper, lower = axes
     _hertz(upper, results, colours, window)
     highest, thickest = 0.0, 1e-3
-    for result, index, colour in zip(results, indices, colours, strict=True):
+    for number, (result, index, colour) in enumerate(zip(results, indices, colours, strict=True)):
+        style = dict(color=colour, lw=1.1, ls="--" if number == 1 and len(results) == 2 else "-")
         x = result.x / result.attrs["a"]
         pressure, film = 1e-9 * result.frame("pressure", index), 1e6 * result.frame("film_thickness", index)
-        upper.plot(x, pressure, color=colour, lw=1.1)
-        lower.plot(x, film, color=colour, lw=1.1)
+        upper.plot(x, pressure, **style)
+        lower.plot(x, film, **style)
         shown = (x >= window[0]) & (x <= window[1])
         inside = shown & (np.abs(x) <= 1.0)
         highest = max(highest, pressure[shown].max())

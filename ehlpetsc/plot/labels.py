@@ -81,11 +81,16 @@ def with_hertz(labels, results):
     ]
 
 
-def series_legend(axes, colours, labels, title):
-    """Legend right of the axes: all of a series or, where it is long, every so many members."""
+def series_legend(axes, colours, labels, title, more=(), dashed=False):
+    """Legend right of the axes: all of a series or, where it is long, every so many members, and `more`.
+
+    With `dashed` the second line is: two equal curves then do not hide each other.
+    """
     step = -(-len(labels) // LEGEND_ENTRIES)
     lines = [Line2D([], [], color=c, label=n) for c, n in list(zip(colours, labels, strict=True))[::step]]
-    legend_beside(axes, lines, title)
+    if dashed:
+        lines[1].set_linestyle("--")
+    legend_beside(axes, [*lines, *more], title)
 
 
 def legend_beside(axes, handles=None, title=None):

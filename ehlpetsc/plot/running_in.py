@@ -4,7 +4,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
-from ehlpetsc.plot.stribeck import filled_from
+from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.running_in import heights, pass_figures
 
@@ -105,15 +105,26 @@ def added(axes, rows):
 def contact(axes, rows):
     """Share of the load on the solids and length of contact, means while both surfaces fill it."""
     numbers = np.arange(1, len(rows) + 1)
-    share = [row.get("contact_share") or np.nan for row in rows]
+    share, length = (
+        np.array([np.nan if row.get(name) is None else row[name] for row in rows])
+        for name in ("contact_share", "contact_length")
+    )
     axes.plot(numbers, share, "o-", color=LAST)
     axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers))
-    axes.set_ylim(0.0, ROOM * np.nanmax(share))
+    axes.set_ylim(0.0, _top(share, ROOM))
     beside = axes.twinx()
-    length = [1e6 * (row.get("contact_length") or np.nan) for row in rows]
-    beside.plot(numbers, length, "s--", color="C0", ms=4)
+    beside.plot(numbers, 1e6 * length, "s--", color="C0", ms=4)
     beside.set_ylabel("length in contact [µm]", color="C0")
-    beside.set_ylim(0.0, ROOM**2 * np.nanmax(length))
+    beside.set_ylim(0.0, _top(1e6 * length, ROOM**2))
+    if not np.isfinite(share).any():
+        note = "the run ends before both surfaces\nfill the contact: no means over time"
+        axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
+
+
+def _top(values, room):
+    """End of an axis above the largest value; 1 where all are 0 or unknown."""
+    largest = np.nanmax(values, initial=0.0)
+    return room * largest if largest > 0.0 else 1.0
 
 
 def fatigue(axes, damages, side):

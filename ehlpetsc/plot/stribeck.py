@@ -12,10 +12,10 @@ from matplotlib.patches import Patch
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
+from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.series_index import series_values
 
 SPEED = "motion.entrainment_speed"
-RAMP = 0.1  # half widths over which a profile's heights come in: those belong to the filling
 BAND = (5.0, 95.0)  # percentiles over time
 SIZE = (8.5, 7.5)  # inches
 QUANTITIES = {
@@ -54,16 +54,6 @@ class Point:
     figures: dict
     smooth: float
     boundary: float
-
-
-def filled_from(result):
-    """Time [s] from which on the roughness of both surfaces fills the contact; 0 without a moving one."""
-    a, times = result.attrs["a"], [0.0]
-    for side, speed in (("fast", result.attrs["u1"]), ("slow", result.attrs["u2"])):
-        if result.profile(side) is not None and speed != 0.0 and len(result.steps("time")) > 1:
-            way = a - result.x[0] if speed > 0.0 else result.x[-1] + a
-            times.append((way + RAMP * a) / abs(speed))
-    return max(times)
 
 
 def per_step(result, name):
@@ -106,7 +96,7 @@ def stribeck_point(result, speed):
     """
     time = result.steps("time")
     steady = len(time) == 1
-    kept = np.ones(1, bool) if steady else time > filled_from(result)
+    kept = np.ones(1, bool) if steady else both_fill(result, time)
     if not kept.any():
         return None
     weights = np.ones(1) if steady else np.nan_to_num(result.steps("dt"))[kept]
@@ -124,10 +114,14 @@ def stribeck_points(results):
     OutputError
         The results are no series over the speed, or no member lasts long enough.
     """
+    if not any(result.attrs["status"] == "done" for result in results):
+        raise OutputError("no member is done yet: a Stribeck curve needs two or more")
+    if len(results) < 2:
+        raise OutputError(f"one result alone: a Stribeck curve needs a series over {SPEED}")
     key, speeds = series_values(results)
     if key != SPEED:
         raise OutputError(
-            f"a Stribeck curve needs a series over {SPEED}, this one is over {key or 'nothing'}"
+            f"a Stribeck curve needs a series over {SPEED}, these differ in {key or 'more than that'}"
         )
     points, short = [], []
     for speed, result in sorted(zip(speeds, results, strict=True), key=lambda pair: pair[0]):

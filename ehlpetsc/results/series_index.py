@@ -13,11 +13,24 @@ from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 
 LONGEST = 80  # characters of a name
+DEFAULTS = {
+    "contact.model": "direct",
+    "contact.boundary_friction": 0.0,
+    "contact.minimum_film": 0.0,
+    "motion.slide_roll_ratio": 0.0,
+    "time.courant": 0.5,
+    "time.passes": 1,
+    "time.pass_shift": 0.0,
+    "output.every": 1,
+}  # of keys that a case leaves out
+OTHERS = (".post.h5", ".restart.h5")  # beside results, and matched by the same pattern of a shell
 WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
 
 
 def open_all(paths, stack):
     """Results of the files named; a series' index (.series.json) stands for those members that have a file.
+
+    Files of post-processing and restart files among results are left out.
 
     Parameters
     ----------
@@ -30,7 +43,18 @@ def open_all(paths, stack):
     OutputError
         A file cannot be read, or no member of a series has one.
     """
-    return [stack.enter_context(read_result(file)) for path in paths for file in files_of(path)]
+    kept = [path for path in paths if not str(path).endswith(OTHERS)]
+    if not kept:
+        kinds = {".post.h5": "of post-processing", ".restart.h5": "of a restart"}
+        told = ", ".join(f"{path}: a file {kinds[OTHERS[str(path).endswith(OTHERS[1])]]}" for path in paths)
+        raise OutputError(f"{told}; give the result, {_result_of(paths[0])}")
+    return [stack.enter_context(read_result(file)) for path in kept for file in files_of(path)]
+
+
+def _result_of(path):
+    for ending in OTHERS:
+        path = str(path).removesuffix(ending)
+    return f"{path}.h5"
 
 
 def command(name, about, report, arguments):
@@ -143,7 +167,7 @@ def told_apart(results):
     last = [key.rpartition(".")[2] for key in differing]
     words = [key if last.count(word) > 1 else word for key, word in zip(differing, last, strict=True)]
     names = [
-        ", ".join(f"{word} = {_shown(value)}" for word, value in zip(words, row, strict=True))
+        ", ".join(_shown(*named) for named in zip(differing, words, row, strict=True))
         for row in zip(*differing.values(), strict=True)
     ]
     if len(set(names)) < len(results) or max(map(len, names)) > LONGEST:
@@ -151,10 +175,11 @@ def told_apart(results):
     return names
 
 
-def _shown(value):
+def _shown(key, word, value):
+    value = DEFAULTS.get(key) if value is None else value
     if value is None:  # a key that this case leaves out
-        return "default"
-    return f"{value:g}" if isinstance(value, int | float) else str(value)
+        return f"no {word}"
+    return f"{word} = {value:g}" if isinstance(value, int | float) else f"{word} = {value}"
 
 
 def _flat(table, prefix=""):

@@ -145,7 +145,7 @@ class Run:
         elif outcome.status is ExitStatus.STOPPED:
             self._say(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
         for line in recorder.limits:
-            print(f"limit: {line}", file=self.err, flush=True)
+            self._say(f"limit: {line}")
         for line in self._looser:
             self._say(f"note: {line}")
         ignored = sorted({*self.simulation.options.unread, *unread()})

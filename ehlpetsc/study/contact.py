@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.analysis.contact_statistics import both_fill
 from ehlpetsc.case.toml_text import toml_text
 from ehlpetsc.errors import ExitStatus
+from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.runs import greatest_damage, run
 

@@ -78,7 +78,7 @@ def made(
     """
     path = Path(tempfile.mkdtemp(dir=FOLDER.name), "made.h5")
     x = np.linspace(-2.5, 1.5, nodes)
-    s = np.linspace(-1.0, 0.0, 50) * A
+    s = np.linspace(-3.5, -2.5, 50) * A
     attrs = dict(
         title=title,
         case=TABLE_1.format(viscosity=viscosity, speed=speed),

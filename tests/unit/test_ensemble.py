@@ -25,7 +25,8 @@ def made(folder, speeds=(5.0,), seeds=range(1, 7)):
     paths = []
     for speed in speeds:
         for seed, share in zip(seeds, SHARES, strict=False):
-            path = with_solids(make_result(folder / f"u{speed:g}_s{seed}.h5", speed=speed), share / speed)
+            path = make_result(folder / f"u{speed:g}_s{seed}.h5", speed=speed, rough=True)
+            with_solids(path, share / speed)
             with h5py.File(path, "r+", libver="latest") as file:
                 text = file.attrs["case"]
                 text = text.decode() if isinstance(text, bytes) else text
@@ -123,7 +124,7 @@ def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
     assert told_apart(results[:1] * 2) is None
     texts = ("", '[contact]\nmodel = "mixed"')
     cases = [SimpleNamespace(attrs={"case": text}) for text in texts]
-    assert told_apart(cases) == ["model = default", "model = mixed"]
+    assert told_apart(cases) == ["model = direct", "model = mixed"]
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])

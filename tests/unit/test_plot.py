@@ -4,21 +4,23 @@ import subprocess
 import sys
 from xml.etree import ElementTree
 
+import h5py
 import numpy as np
 import pytest
 from made_results import P0, A, make_result, with_solids
 from matplotlib.figure import Figure
 from PIL import Image as image
 
+from ehlpetsc.case.tables import schema
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot import figures, labels, movies, over_time, stribeck
 from ehlpetsc.plot import frames as drawing
 from ehlpetsc.results import series_index as swept
+from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.surfaces import roughness
 
 
 @pytest.fixture
@@ -56,9 +58,15 @@ MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
 @pytest.mark.parametrize(
     "options, name, title, window, panels",
     [
-        ([], "one.png", "made up: step 0, 0.000 µs", (-1.6, 1.4), FRAME),
-        (["--step", 12], "one.png", "made up: step 12, 12.000 µs", (-1.6, 1.4), FRAME),
-        (["--time", 1e-5, "--around", 0.3], "one.png", "made up: step 10, 10.000 µs", (0.05, 0.55), FRAME),
+        ([], "one.png", "made up: step 0, 0.000 µs, travel 0.00 a", (-1.6, 1.4), FRAME),
+        (["--step", 12], "one.png", "made up: step 12, 12.000 µs, travel 0.20 a", (-1.6, 1.4), FRAME),
+        (
+            ["--time", 1e-5, "--around", 0.3],
+            "one.png",
+            "made up: step 10, 10.000 µs, travel 0.17 a",
+            (0.05, 0.55),
+            FRAME,
+        ),
         (["--map"], "one.map.png", "made up", (-1.6, 1.375), MAP),
         (["--map", "--around", 0, "--width", 1], "one.map.png", "made up", (-0.5, 0.5), MAP),
         (
@@ -118,7 +126,7 @@ def test_series_is_overlaid(series, drawn, kind, panels, curves):
     assert panels in (None, [axes.get_ylabel() for axes in figure.axes])
     assert [len(axes.lines) for axes in figure.axes] == curves  # one a member, and Hertz' pressure
     legend = next(axes.get_legend() for axes in figure.axes if axes.get_legend())
-    assert [text.get_text().split(":")[0] for text in legend.texts] == ["0.002", "0.005", "0.01"]
+    assert [text.get_text().split(":")[0] for text in legend.texts][:3] == ["0.002", "0.005", "0.01"]
     film = figure.axes[1]
     assert len({line.get_color() for line in film.lines}) == 3
 
@@ -149,25 +157,80 @@ def test_a_steady_result_without_contacts_is_drawn(tmp_path, drawn):
             np.testing.assert_allclose(line.get_ydata(), steady[name][0] / unit)
 
 
-def test_instant_is_the_one_with_most_contacts(result):
+def test_the_instant_shown_has_the_largest_share_on_the_solids_or_the_highest_pressure(tmp_path, result):
     with read_result(result) as r:
-        chosen = drawing.frame_with_most_contacts(r)
-        assert r["in_contact"][chosen].sum() == r["in_contact"][:].sum(axis=1).max()
+        chosen = drawing.frame_to_show(r)
+        assert r.steps("p_max")[chosen] == r.steps("p_max").max()
         assert drawing.choose_frames([r], step=12) == [12]
         assert drawing.choose_frames([r], time=10.2e-6) == [10]
+    for share, name in ((0.3, "contact_share"), (1e-4, "p_max")):
+        with read_result(with_solids(make_result(tmp_path / f"{share}.h5"), share)) as r:
+            chosen = drawing.frame_to_show(r)
+            assert r.steps(name)[chosen] == r.steps(name).max()
 
 
-def test_instant_is_that_of_the_highest_pressure_if_nothing_touches(tmp_path):
+def test_the_edge_of_a_profile_that_enters_is_not_shown_by_default(tmp_path):
+    with read_result(make_result(tmp_path / "r.h5", speed=50.0, rough=True)) as r:
+        filled = both_fill(r, r.time)
+        assert 0 < filled.sum() < 41
+        chosen = drawing.frame_to_show(r)
+        assert filled[chosen] and r.steps("p_max")[chosen] == r.steps("p_max")[filled].max()
+
+
+def test_the_instant_shown_is_a_stored_one(tmp_path):
     x = np.linspace(-1, 1, 11)
     layout = Layout(x * A, ["pressure", "film_thickness"])
-    attributes = {"title": "", "case": "", "a": A, "p0": 1e9}
+    attributes = {"title": "", "case": "", "a": A, "p0": 1e9, "u1": 5.0, "u2": 5.0}
     writer = ResultWriter(tmp_path / "r.h5", layout, attributes, every=2)
     for step, highest in enumerate([1.0, 9.0, 3.0, 8.0, 2.0]):  # the odd steps are not stored
         values = {"pressure": np.full(11, highest), "film_thickness": np.ones(11)}
         writer.append(step, step * 1e-6, values, {"p_max": highest, "contacts": 0}, np.zeros(11, bool))
     writer.close("done")
     with read_result(tmp_path / "r.h5") as r:
-        assert r.step[drawing.frame_with_most_contacts(r)] == 2
+        assert r.step[drawing.frame_to_show(r)] == 2
+
+
+def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
+    """At 5 and 20 m/s, over the same 40 us: the faster one is shown after a quarter of the time."""
+    slow, fast = (read_result(make_result(tmp_path / f"{u}.h5", speed=u)) for u in (5.0, 20.0))
+    assert drawing.choose_frames([slow, fast], step=40) == [40, 10]
+    frames = drawing.choose_frames([fast, slow])
+    assert drawing.travel_of(slow)[frames[1]] == pytest.approx(drawing.travel_of(fast)[frames[0]])
+    assert drawing.instant([slow, fast], [40, 10]) == "travel 0.67 a"
+    with pytest.raises(OutputError, match="ends at travel 0.6673 a, before travel 2.669 a"):
+        drawing.choose_frames([fast, slow], step=40)
+
+
+def test_two_results_are_told_apart_and_do_not_overwrite_the_picture_of_one(tmp_path, drawn, capsys):
+    """The second curve is dashed, and a key that one of the cases leaves out has its default."""
+    paths = [make_result(tmp_path / name) for name in ("mine.h5", "mine_mixed.h5")]
+    with h5py.File(with_solids(paths[1]), "r+", libver="latest") as file:
+        text = file.attrs["case"].decode()
+        file.attrs["case"] = text.replace("[contact]", '[contact]\nmodel = "mixed"')
+    assert draw(*paths) == 0
+    assert capsys.readouterr().out == f"{tmp_path / 'mine_and_mine_mixed.png'}\n"
+    upper = drawn[0].axes[0]
+    assert [t.get_text() for t in upper.get_legend().texts] == ["model = direct", "model = mixed", "Hertz"]
+    assert [line.get_linestyle() for line in upper.lines] == [":", "-", "--"]
+    assert plot._stem(["a.h5", "b/b.h5", "c.h5"]) == "a_and_2_more"
+    assert plot._stem(["a.series.json"]) == "a"
+
+
+def test_defaults_that_tell_results_apart_are_those_of_the_cases():
+    for key, value in swept.DEFAULTS.items():
+        table, name = key.split(".")
+        fields = schema.__dict__[table.capitalize()].__fields__
+        assert fields[name].default == value
+
+
+def test_files_beside_results_are_left_out_or_named(tmp_path, result, drawn, capsys):
+    """Patterns of a shell match them too: NAME*.h5."""
+    beside = [tmp_path / "one.post.h5", tmp_path / "one.restart.h5"]
+    assert draw(result, *beside) == 0
+    capsys.readouterr()
+    assert draw(beside[0]) == 2
+    told = capsys.readouterr().err
+    assert "a file of post-processing" in told and f"give the result, {tmp_path / 'one.h5'}" in told
 
 
 def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
@@ -282,8 +345,8 @@ def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
     results = [read_result(path) for path in paths]
     figure = figures.draw_frame(results, plot._parser().parse_args(["x"]))
     upper = figure.axes[0]
-    dashed = [line for line in upper.lines if line.get_linestyle() == "--"]
-    assert [line.get_ydata().max() for line in dashed] == pytest.approx([1.0, 2.0], rel=1e-3)
+    dotted = [line for line in upper.lines if line.get_linestyle() == ":"]
+    assert [line.get_ydata().max() for line in dotted] == pytest.approx([1.0, 2.0], rel=1e-3)
     told = [text.get_text() for text in upper.get_legend().texts]
     assert told[0].startswith("case 1\n") and told[1].endswith("p0 = 2 GPa")
 
@@ -362,11 +425,14 @@ def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, 
     paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in (5.0, 40.0)]
     slow, fast = (read_result(path) for path in paths)
     # the slower surface, 0.88 u, from -2.5 a to a, and the ramp
-    assert stribeck.filled_from(fast) == pytest.approx(3.5 * A * (1 + stribeck.RAMP / 3.5) / (0.88 * 40))
     points, short = stribeck.stribeck_points([slow, fast])
     assert ([p.speed for p in points], short) == ([40.0], ["5.0.h5"])  # 40 us are too short for 5 m/s
-    assert stribeck.RAMP == roughness.RAMP
     assert np.isnan(points[0].figures["contact_share"].mean)
+    with pytest.raises(OutputError, match="needs a series over motion.entrainment_speed"):
+        stribeck.stribeck_points([slow])
+    unfinished = [read_result(make_result(tmp_path / f"u{u}.h5", speed=u, status="running")) for u in (1, 2)]
+    with pytest.raises(OutputError, match="no member is done yet"):
+        stribeck.stribeck_points(unfinished)
     with pytest.raises(OutputError, match="no member lasts"):
         stribeck.stribeck_points([slow, read_result(make_result(tmp_path / "4.h5", speed=4.0, rough=True))])
 

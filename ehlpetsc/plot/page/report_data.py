@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 
-from ehlpetsc.plot.frames import default_window, frame_with_most_contacts
+from ehlpetsc.plot.frames import default_window, frame_to_show
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.post_result import damage_beside
@@ -70,7 +70,7 @@ def frames(result):
     part = np.flatnonzero((x >= low) & (x <= high))
     columns, width = slice(part[0], part[-1] + 1), -(-len(part) // NODES)
     last = len(result.time) - 1
-    fullest = frame_with_most_contacts(result)
+    fullest = frame_to_show(result)
     chosen = np.unique(np.append(np.linspace(0, last, min(last + 1, FRAMES)).round().astype(int), fullest))
     names = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
     stored = {name: how for name, how in names.items() if name in result}

@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.output_guard import Lock, check_index, check_place, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
@@ -16,7 +17,6 @@ from ehlpetsc.run.recorder import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
-from ehlpetsc.surfaces.arrival import arrival
 
 
 class Passes:
@@ -90,7 +90,7 @@ class Passes:
 
     def _note(self, number, simulation):
         with read_result(self.file(number)) as result:
-            found = pass_figures(result, filled_from(simulation))
+            found = pass_figures(result, filled_from(result))
         row = {"pass": number, "file": self.file(number).name} | found
         before = self.rows[-1]["set_volume"] if self.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
@@ -114,14 +114,6 @@ class Passes:
     def _say(self, text):
         if self.comm.rank == 0:
             print(text, flush=True)
-
-
-def filled_from(simulation):
-    """Time from which both surfaces fill the contact [s]; 0 where none is rough."""
-    scales, rough = simulation.scales, simulation.roughness
-    arrivals = [arrival(p, scales) for p in (rough and rough.fast, rough and rough.slow) if p]
-    travel = max((fills for _, fills in filter(None, arrivals)), default=0.0)
-    return travel * scales.a / scales.u_max
 
 
 def line(row):

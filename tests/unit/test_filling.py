@@ -1,0 +1,110 @@
+"""Time from which both surfaces fill the contact: one definition for means, pictures and passes."""
+
+import h5py
+import numpy as np
+import pytest
+from made_results import A, make_result
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.plot.running_in import draw_running_in
+from ehlpetsc.results.filling import RAMP, both_fill, filled_from, travelled
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.surfaces import roughness
+from ehlpetsc.surfaces.arrival import arrival
+from ehlpetsc.surfaces.roughness import Roughness
+
+CONTACT = {"radius": 0.0191, "load": 527e3, "youngs_modulus": [207e9] * 2, "poisson_ratio": [0.3] * 2}
+CASE = {
+    "title": "t",
+    "contact": CONTACT,
+    "mesh": {"inlet": -2.5, "outlet": 1.5, "points_per_half_width": 20},
+    "motion": {"entrainment_speed": 5.0, "slide_roll_ratio": 0.4},
+    "time": {"travel": 6.0},
+}
+WAVE = {"synthetic": {"kind": "sine", "amplitude": 1e-7, "wavelength": 1e-4}}
+RIDGE = {"synthetic": {"kind": "ridge", "amplitude": 1e-7, "wavelength": 1e-4, "position": 3e-4}}
+
+
+class Stored:
+    """What a result holds of a case that has not been run."""
+
+    def __init__(self, case):
+        self.scales = Scales.of(case)
+        self.rough = Roughness.of(case, self.scales)
+        s = self.scales
+        self.x = s.x * s.a
+        self.attrs = {"case": case.text, "a": s.a, "u1": s.u1, "u2": s.u2}
+
+    def steps(self, name):
+        return np.linspace(0.0, self.scales.duration, 11)
+
+    def profile(self, side):
+        profile = getattr(self.rough, side)
+        return profile and (profile.s, profile.z, profile.speed)
+
+    def __contains__(self, name):
+        return False
+
+
+@pytest.mark.parametrize("xi", [0.4, 0.0, 2.5])
+@pytest.mark.parametrize(
+    "surface", [{"fast": WAVE}, {"slow": WAVE}, {"fast": WAVE, "slow": WAVE}, {"fast": RIDGE}]
+)
+def test_it_is_the_travel_announced_before_the_run(surface, xi):
+    motion = CASE["motion"] | {"slide_roll_ratio": xi}
+    result = Stored(load(CASE | {"surface": surface, "motion": motion}))
+    s = result.scales
+    fills = max(arrival(p, s)[1] for p in (result.rough.fast, result.rough.slow) if p)
+    assert filled_from(result) == pytest.approx(fills * s.a / s.u_max, rel=1e-12)
+    assert RAMP == roughness.RAMP
+
+
+def test_smooth_surfaces_fill_it_from_the_start_also_where_they_have_yielded(tmp_path):
+    path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
+    with h5py.File(path, "r+", libver="latest") as file:
+        file["surface/slow/z"][:] = 0.0
+    with read_result(path) as result:
+        assert filled_from(result) == pytest.approx((3.5 + RAMP) * A / (1.12 * 50.0))
+    with h5py.File(path, "r+", libver="latest") as file:
+        file["surface/fast/z"][:] = 0.0
+    with read_result(path) as result:
+        assert filled_from(result) == 0.0 and both_fill(result, result.steps("time")).all()
+
+
+def test_with_speeds_that_change_the_distance_travelled_counts(tmp_path):
+    path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
+    with read_result(path) as result:
+        begin = filled_from(result)
+    with h5py.File(path, "r+", libver="latest") as file:
+        time = file["steps/time"][:]
+        file["steps/dt"][0] = 0.0
+        for number, factor in ((1, 1.12), (2, 0.88)):  # 100 m/s for 10 us, then 50 m/s
+            file[f"steps/speed_{number}"] = factor * np.where(time <= 10.5e-6, 100.0, 50.0)
+    with read_result(path) as result:
+        assert filled_from(result) == pytest.approx(begin - 10e-6, rel=1e-6)
+        assert travelled(result)[-1] == pytest.approx(1.12 * (10e-6 * 100.0 + 30e-6 * 50.0), rel=1e-6)
+    with h5py.File(path, "r+", libver="latest") as file:
+        file["steps/speed_1"][:] = file["steps/speed_2"][:] = 1.0
+    with read_result(path) as result:
+        assert filled_from(result) == np.inf
+
+
+@pytest.mark.parametrize("speed", [50.0, 5.0])
+def test_passes_without_load_on_the_solids_are_drawn(tmp_path, speed):
+    """Share and length 0 in every pass, or no means since the run ends before the contact is filled."""
+    paths = [make_result(tmp_path / f"pass{n}.h5", speed=speed, rough=True) for n in (1, 2)]
+    for number, path in enumerate(paths):
+        with h5py.File(path, "r+", libver="latest") as file:
+            steps = file["steps/time"].size
+            for name, value in (("contact_share", 0.0), ("contact_length", 0.0), ("set_volume", 1e-12)):
+                values = np.full(steps, (1 + number) * value)
+                file.create_dataset(f"steps/{name}", data=values, maxshape=(None,))
+            for side in ("fast", "slow"):
+                file[f"surface/{side}/set"] = np.full(50, 1e-9)
+    figure = draw_running_in([read_result(path) for path in paths], None)
+    figure.draw_without_rendering()
+    share = next(axes for axes in figure.axes if axes.get_ylabel() == "share of the load on solids")
+    drawn = share.lines[0].get_ydata()
+    assert (drawn == 0.0).all() if speed == 50.0 else np.isnan(drawn).all()
+    assert [text.get_text()[:12] for text in share.texts] == ([] if speed == 50.0 else ["the run ends"])
