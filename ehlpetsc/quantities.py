@@ -85,6 +85,7 @@ SCENES = {
     "fluid": lambda case: case.fluid is not None,
     "mixed": lambda case: case.contact.has_contact_pressure,
     "yielding": lambda case: case.contact.yield_pressure is not None,
+    "variable": lambda case: case.conditions is not None,
 }
 """Whether a case has what a quantity needs."""
 
@@ -189,6 +190,12 @@ STEP_SCALARS = {
         compared=True,
         only="yielding",
     ),
+    "radius": Figure("m", "radius of relative curvature", only="variable"),
+    "load_given": Figure("N/m", "load of the operating conditions", only="variable"),
+    "speed_1": Figure("m/s", "speed of surface 1", only="variable"),
+    "speed_2": Figure("m/s", "speed of surface 2", only="variable"),
+    "displacement_1": Figure("m", "distance travelled by surface 1 since time 0, signed", only="variable"),
+    "displacement_2": Figure("m", "distance travelled by surface 2 since time 0, signed", only="variable"),
     "wall": Figure("s", "wall clock time of the step", over_run="sum"),
 }
 """Scalars of every time step, below ``steps/``, in the order in which progress and summary tell them."""

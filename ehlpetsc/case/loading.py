@@ -1,17 +1,22 @@
 """The case file: read, overridden, checked, all faults told at once."""
 
-import contextlib
-import difflib
-import re
 import tomllib
 from functools import partial
 from pathlib import Path
 
+from ehlpetsc.case.case_file import parse_toml, read_text
 from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
+from ehlpetsc.case.conditions import (
+    TableFault,
+    conditions_of,
+    reversal_faults,
+    with_reference_state,
+)
 from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.profiles import profile_faults
-from ehlpetsc.case.settings import PARTS, parsed, put, text_with
+from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.tables.gears import Gears
+from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
 from ehlpetsc.case.tables.surface import Surface
@@ -21,8 +26,6 @@ from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.errors import CaseError
 
 DICT = "case"  # what faults call a case that is no file
-MOST_BYTES = 2**26  # of a case file: far more than any profile written out in it
-LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{PARTS}}}""")
 __all__ = ["Case", "CaseError", "load", "members"]
 
 
@@ -46,6 +49,7 @@ class Case(Table):
     mesh: Mesh = Field(..., description="nodes")
     surface: Surface = Field(Surface(), description="left out: smooth")
     time: Time | None = Field(None, description="left out: steady")
+    operation: Operation | None = Field(None, description="left out: constant conditions")
     gears: Gears | None = Field(None, description="left out: constant conditions")
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
@@ -53,6 +57,7 @@ class Case(Table):
     series: Series | None = Field(None, description="one key swept over values")
     _text: str | partial = PrivateAttr("")
     _path: Path = PrivateAttr(Path())
+    _conditions: tuple | None = PrivateAttr(None)
 
     @validator("petsc")
     def _options(cls, options):
@@ -73,6 +78,14 @@ class Case(Table):
     @property
     def path(self):
         return self._path
+
+    @property
+    def conditions(self):
+        """Load, radius and speeds over time: a `physics.variable_operation.ConditionsTable`; None: constant.
+
+        The reference state of its scales is then in `contact` and `motion`.
+        """
+        return self._conditions
 
 
 def load(case, overrides=None):
@@ -103,8 +116,8 @@ def load(case, overrides=None):
     >>> case.fluid.viscosity, case.contact.radius  # Pa s, m
     (0.003, 0.0191)
     """
-    path, text = (DICT, None) if isinstance(case, dict) else (case, _read(case))
-    data = plain(case) if text is None else _parse(path, text)
+    path, text = (DICT, None) if isinstance(case, dict) else (case, read_text(case))
+    data = plain(case) if text is None else parse_toml(path, text)
     from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
     settings, faults = _override(path, data, overrides)
     faults += _faults(path, data)
@@ -133,12 +146,12 @@ def stored_case(text, overrides=None):
     ------
     CaseError
     """
-    data = _parse(DICT, text)
+    data = parse_toml(DICT, text)
     _, faults = _override(DICT, data, overrides)
-    faults += _table_faults(DICT, data)[1]
+    faults += _table_faults(DICT, data, stored=True)[1]
     if faults:
         raise CaseError(faults)
-    return _made(DICT, data, text)
+    return _made(DICT, data, text, stored=True)
 
 
 def _override(path, data, overrides):
@@ -177,47 +190,20 @@ def members(case):
     return result
 
 
-def _read(path):
-    try:
-        if not str(path):
-            raise CaseError(["'': no name of a case file; allowed: a TOML file"])
-        with open(path, "rb") as file:  # a device has no size, and no end
-            whole = file.read(MOST_BYTES + 1)
-        if len(whole) > MOST_BYTES:
-            raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
-        return whole.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError([f"{path}: cannot be read: {reason}{_meant(path)}"]) from None
-
-
-def _meant(path):
-    """Hint at a case file of nearly that name in the same folder."""
-    with contextlib.suppress(OSError, ValueError):
-        beside = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
-        close = difflib.get_close_matches(Path(path).stem, beside, n=1)
-        if close:
-            return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"
-    return ""
-
-
-def _parse(path, text):
-    found = LONG_KEY.search(text)
-    if found:  # tomllib takes the square of their number in time
-        line = text.count("\n", 0, found.start()) + 1
-        raise CaseError([f"{path}: line {line}: a key of more than {PARTS} parts; allowed: table.key"])
-    try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through
-        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
-
-
-def _made(path, data, text):
-    case = Case(**data)
-    case._text, case._path = text, Path(path)
+def _made(path, data, text, stored=False):
+    table, _ = _conditions(path, data, stored)
+    case = Case(**with_reference_state(data, table))
+    case._text, case._path, case._conditions = text, Path(path), table
     return case
+
+
+def _conditions(path, data, stored=False):
+    """Conditions over time, or None, and the faults of their table; that of a stored case is not sought."""
+    try:
+        return conditions_of(data, Path(path).parent), []
+    except TableFault as error:
+        file = data["operation"].get("file")
+        return None, [f"operation{f'.file = {show(file)}' if file else ''}: {error}"] * (not stored)
 
 
 def _faults(path, data):
@@ -227,9 +213,10 @@ def _faults(path, data):
     return faults + [f"{path}: {fault}" for fault in in_files]
 
 
-def _table_faults(path, data):
+def _table_faults(path, data, stored=False):
     """The case, or None, and the faults of its tables."""
-    faults = []
+    table, faults = _conditions(path, data, stored)
+    data = with_reference_state(data, table)
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append("motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])")
     case = None
@@ -237,4 +224,6 @@ def _table_faults(path, data):
         case = Case(**data)
     except ValidationError as error:
         faults += describe(error, Case, data)
+    if case and table:
+        faults += reversal_faults(case, table)
     return case, [f"{path}: {fault}" for fault in faults]

@@ -13,7 +13,7 @@ as another. A part of the mesh takes the unknowns of its window, see :mod:`.defl
 rows.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from ehlpetsc.discretisation.deflection import Deflection
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
 from ehlpetsc.discretisation.interleaving import count, firsts, seconds
 from ehlpetsc.discretisation.no_oil import NoOil
-from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
+from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds, mirrored
 from ehlpetsc.physics.operation import Conditions
 
 
@@ -60,6 +60,17 @@ class StepInputs:
     load_share: float = 1.0
     dt: float | None = None
     contact: ContactModel | None = None
+
+    def mirrored(self):
+        """The same step seen from the other side: x, the speeds and all arrays over nodes turned round."""
+        now = self.conditions
+        turned = {"conditions": now._replace(u1=-now.u1, u2=-now.u2)}
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray) and value.shape == self.phi.shape:
+                turned[name] = mirrored(value)
+        if self.history is not None:
+            turned["history"] = self.history.mirrored()
+        return replace(self, **turned)
 
 
 @dataclass(frozen=True)

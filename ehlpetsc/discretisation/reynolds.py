@@ -12,6 +12,8 @@ over nodes is the relative mass imbalance.
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 """
 
+import copy
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -36,6 +38,11 @@ from ehlpetsc.discretisation.interleaving import both_of, count
 from ehlpetsc.physics import rheology
 
 
+def mirrored(values):
+    """Values at the nodes in reverse order."""
+    return np.ascontiguousarray(values[::-1])
+
+
 class FilmHistory:
     r"""Film contents of the previous time levels: what BDF2 needs of the past.
 
@@ -58,6 +65,12 @@ class FilmHistory:
         self.m, self.dt = m, dt
         self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
         self.carried = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
+
+    def mirrored(self):
+        """The same history with the nodes in reverse order."""
+        turned = copy.copy(self)
+        turned.m, turned.carried = mirrored(self.m), mirrored(self.carried)
+        return turned
 
 
 class Reynolds:

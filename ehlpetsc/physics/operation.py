@@ -4,8 +4,11 @@ r"""Operating conditions as functions of time: load, radius of relative curvatur
 acts at an instant comes from here.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
+
+LEVEL = 1e-6  # of a time step: times nearer than this are the same
 
 
 class Conditions(NamedTuple):
@@ -102,10 +105,18 @@ class ConstantOperation:
         return None if self.travel is None else self.travel / fastest
 
     def time_step(self, time, nominal):
-        """Longest time step from `time` on [s]; `nominal` is the case's, of the reference state."""
+        """Length of the time step that begins at or before `time` [s]; `nominal`: of the reference state."""
         return nominal
 
+    def time_left(self, time, nominal):
+        """Time to the next time level [s]."""
+        left = nominal - time % nominal
+        return left + nominal if left < LEVEL * nominal else left
 
-def operation_of(case, scales):
-    """Operation of a case, see :class:`ConstantOperation`."""
-    return ConstantOperation.of(case, scales)
+    def level(self, time, nominal):
+        """Number of time levels passed at a time [s], with its fraction."""
+        return time / nominal
+
+    def step_count(self, nominal):
+        """Number of time steps of the whole run."""
+        return math.ceil(self.duration / nominal - 1e-9)

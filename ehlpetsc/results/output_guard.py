@@ -233,4 +233,5 @@ def inputs_of(case):
     """
     sides = (case.surface.fast, case.surface.slow)
     folder = Path(case.path).parent
-    return [Path(case.path), *(folder / side.file for side in sides if side and side.file)]
+    files = [*sides, case.operation]
+    return [Path(case.path), *(folder / table.file for table in files if table and table.file)]

@@ -174,9 +174,8 @@ class Recorder:
         self._opened = True
 
     def _append(self, state):
-        every, scales = self.simulation.case.output.every, self.simulation.scales
-        steady = self.simulation.case.time is None
-        frame = every == 1 or steady or on_level(state.time, scales.dt, every)
+        every, steady = self.simulation.case.output.every, self.simulation.case.time is None
+        frame = every == 1 or steady or on_level(self.simulation.level(state.time), every)
         self._writer.append(state.step, state.time, state.fields, state.figures, state.in_contact, frame)
 
     def _keeping(self, action, *arguments):

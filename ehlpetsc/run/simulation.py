@@ -13,8 +13,8 @@ from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.stepping.domain_ends import check_ends
@@ -132,6 +132,10 @@ class Simulation:
     def end(self):
         """Time at which the travel is over [s]."""
         return self.solution.time + self._time_left()
+
+    def level(self, time):
+        """Number of nominal time steps up to a time [s], with its fraction."""
+        return self.operation.level(time, self.scales.dt)
 
     def _time_left(self):
         return self.operation.remaining(self.solution.time, self.solution.travelled)

@@ -9,7 +9,7 @@ where nearly all that touches yields, Newton's method alone wanders from one set
 
 import numpy as np
 
-from ehlpetsc.stepping.first_guess import AMBIENT, smoothed
+from ehlpetsc.stepping.first_guess import AMBIENT, load_of, smoothed, undeformed_gap
 
 LARGEST = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
 MOST = 1000  # steps
@@ -17,24 +17,24 @@ STILL = 1e-5  # change in a step, of the yield pressure, that ends it
 HALVINGS = 60  # of an interval: to rounding
 
 
-def bounded_pressure(problem, phi):
+def bounded_pressure(problem, inputs):
     """Pressure of the dry contact, 0 <= p <= p_y, and its gap but for the approach.
 
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
         Of solids that yield.
-    phi : ndarray, shape (nx,)
-        Roughness in the gap, in a^2/R.
+    inputs : ehl_problem.StepInputs
 
     Returns
     -------
     p, gap : ndarray, shape (nx,)
         In p0; in a^2/R.
     """
-    limit, total = problem.model.yield_pressure, 0.5 * np.pi / problem.dx
+    limit, load = problem.model.yield_pressure, load_of(problem, inputs)
+    total, phi = 0.5 * np.pi * load / problem.dx, undeformed_gap(problem, inputs)
     rate = 1.0 / (LARGEST * (problem.x[-1] - problem.x[0]))
-    p = ahead = project(np.sqrt(np.maximum(1.0 - problem.x**2, 0.0)), limit, total)
+    p = ahead = project(np.sqrt(np.maximum(load - problem.x**2, 0.0)), limit, total)
     momentum = 1.0
     for _ in range(MOST):
         new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
@@ -56,7 +56,7 @@ def project(p, limit, total):
     return np.clip(p + high, 0.0, limit)
 
 
-def bounded_start(problem, film, phi, smoothing):
+def bounded_start(problem, film, inputs, smoothing):
     """Unknowns q, w and the approach h00 of that contact; with oil the oil carries it on an even film.
 
     Parameters
@@ -64,7 +64,7 @@ def bounded_start(problem, film, phi, smoothing):
     problem : ehl_problem.EHLProblem
     film : float
         Of oil, in a^2/R.
-    phi : ndarray, shape (nx,)
+    inputs : ehl_problem.StepInputs
     smoothing : float
         Of the pressure under oil, over so many lengths of the inlet sweep, film^(2/3).
 
@@ -74,7 +74,7 @@ def bounded_start(problem, film, phi, smoothing):
     h00 : float
     """
     model, limit = problem.model, problem.model.yield_pressure
-    p, gap = bounded_pressure(problem, phi)
+    p, gap = bounded_pressure(problem, inputs)
     lowest = model.minimum_film if problem.fluid is None else max(film, model.minimum_film)
     elastic = (p > 0.0) & (p < limit)
     h00 = lowest - gap[elastic if elastic.any() else p > 0.0].max()
@@ -86,7 +86,7 @@ def bounded_start(problem, film, phi, smoothing):
     if smoothing:
         p = smoothed(p, smoothing * film ** (2.0 / 3.0) / problem.dx)
     depth[p < limit * (1.0 - 1e-9)] = 0.0
-    h = np.maximum(problem.film(p, h00, phi) + depth, lowest)
+    h = np.maximum(problem.film(p, h00, undeformed_gap(problem, inputs)) + depth, lowest)
     behind = (problem.x > edge) & (p < AMBIENT)
     q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(p + depth / model.compliance, AMBIENT))
     return q, model.w_from_film(h), h00

@@ -59,6 +59,10 @@ def observe(case, scales, conditions, rq, problem, state, depths, started):
         "lambda_ratio": film / rq if rq else np.nan,
         "wall": clock.monotonic() - started,
     }
+    if case.conditions is not None:
+        figures |= {"load_given": conditions.load, "radius": conditions.radius}
+        figures |= {"speed_1": conditions.u1, "speed_2": conditions.u2}
+        figures |= dict(zip(("displacement_1", "displacement_2"), state.travelled, strict=True))
     if problem.fluid is not None:
         figures |= _of_oil(loads, s)
     figures |= problem.model.diagnostics(loads, s, case.output.thin_film)

@@ -61,9 +61,9 @@ def steady(solver, film, inputs):
     if oil is None:
         # the set of dry nodes may have all of them to go
         max_it = problem.n if problem.fluid is None and solver.bounded else None
-        return Continuation(solver, inputs, max_it).solve(hertz_start(problem, film, inputs.phi))
+        return Continuation(solver, inputs, max_it).solve(hertz_start(problem, film, inputs))
     flooded = replace(inputs, inlet_film=None)
-    q, w, h00, iterations = Continuation(solver, flooded).solve(hertz_start(problem, film, inputs.phi))
+    q, w, h00, iterations = Continuation(solver, flooded).solve(hertz_start(problem, film, inputs))
     if problem.content(q, w)[-1] <= oil:
         q[0] = min(oil / problem.model.state(q, w).film[0] - 1.0, 0.0)
         begin = q, w, h00
@@ -84,11 +84,11 @@ def yielding_start(solver, film, inputs):
     """
     problem, attempt = solver.problem, SolveAttempts(solver)
     for width in (SMOOTHED, 0.0):
-        state = attempt(bounded_start(problem, film, inputs.phi, width), inputs)
+        state = attempt(bounded_start(problem, film, inputs, width), inputs)
         if state is not None:
             return *state, attempt.spent
     load, reached = FROM * problem.model.yield_pressure**2, 0.0
-    state = hertz_start(problem, film, inputs.phi, load=load)
+    state = hertz_start(problem, film, replace(inputs, load_share=load))
     while reached < 1.0:
         nearer = attempt(state, replace(inputs, load_share=load))
         if nearer is not None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.reynolds import FilmHistory, mirrored
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
 from ehlpetsc.stepping.certificate import solve_checked
@@ -133,10 +133,32 @@ class TimeStepping:
         return state
 
     def _steady(self, phi):
-        q, w, h00, newton = steady(
-            self.solver, self.film, self.problem.inputs(phi, conditions=self.operation.at(0.0))
-        )
-        return self._state(q, w, h00, newton=newton, sets=self.sets)
+        inputs = self.problem.inputs(phi, conditions=self.operation.at(0.0))
+        solution, newton, imbalance = self._inlet_first(inputs, lambda i: steady(self.solver, self.film, i))
+        return self._state(*solution, imbalance=imbalance, newton=newton, sets=self.sets)
+
+    def _inlet_first(self, inputs, solve, *nodal):
+        """Solve with the inlet at the first node: mirrored where the entrainment speed is negative.
+
+        Parameters
+        ----------
+        inputs : ehl_problem.StepInputs
+        solve : callable
+            Of inputs and the arrays `nodal`; returns q, w, h00 and the number of iterations.
+        *nodal : ndarray, shape (nx,)
+
+        Returns
+        -------
+        solution : (q, w, h00)
+        iterations : int
+        imbalance : ndarray, shape (nx,)
+            Reynolds' rows at the solution.
+        """
+        if inputs.conditions.entrainment >= 0.0:
+            *solution, iterations = solve(inputs, *nodal)
+            return solution, iterations, self.solver.mass_imbalance()
+        q, w, h00, iterations = solve(inputs.mirrored(), *map(mirrored, nodal))
+        return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.mass_imbalance())
 
     def _marched(self):
         """The state at time 0 of a film into which roughness at rest has grown by time steps before.
@@ -148,11 +170,11 @@ class TimeStepping:
             state = self._steady(np.zeros(self.problem.n))
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
-        steps, newton = np.ceil(GROWTH * self.scales.a / self.scales.u / self.scales.dt), state.newton
-        self.before = steps * self.scales.dt
+        dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
+        self.before = np.ceil(GROWTH * self.scales.a / self.scales.u / dt) * dt
         state = replace(state, time=-self.before, travelled=self.operation.displacement(0.0, -self.before))
         self.smooth = (state.q, state.w)
-        while state.time < -LEVEL * self.scales.dt:
+        while state.time < -LEVEL * dt:
             state = self.advance(state)
             newton += state.newton
         begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
@@ -171,8 +193,7 @@ class TimeStepping:
             more["depth"] = nodes.plastic.depth
             sets = self.bodies.laid_down(sets, travelled, self.scales.h * more["depth"])
         q, w = model.reset_yielding(q, w)
-        imbalance = self.solver.mass_imbalance()
-        return State(q, w, h00, p=p, h=h, m=m, imbalance=imbalance, travelled=travelled, sets=sets, **more)
+        return State(q, w, h00, p=p, h=h, m=m, travelled=travelled, sets=sets, **more)
 
     def guess(self, state, dt):
         """Start of Newton's iteration for a step of dt [s]."""
@@ -196,7 +217,7 @@ class TimeStepping:
         phi = self._grown(state.time + dt) * self.phi(self._travelled(state, dt), state.sets)
         return self.problem.inputs(phi, history, self.operation.at(state.time + dt), dt)
 
-    def _solve(self, q, w, h00, inputs):
+    def _solve(self, inputs, q, w, h00):
         """As of the solver; where solids yield, failing that, from what they would do elastically."""
         elastic = self.problem.model.elastic()
         try:
@@ -217,12 +238,15 @@ class TimeStepping:
     def advance(self, state, dt=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
-        dt = dt or next_step(state.time, state.dt, state.retries, nominal)
+        left = self.operation.time_left(state.time, nominal)
+        dt = dt or next_step(state.dt, state.retries, nominal, left)
         retries = newton = 0
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
-                q, w, h00, iterations = self._solve(*guess, state.h00, self._inputs(state, dt))
+                solution, iterations, imbalance = self._inlet_first(
+                    self._inputs(state, dt), lambda i, q, w: self._solve(i, q, w, state.h00), *guess
+                )
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1
@@ -233,9 +257,8 @@ class TimeStepping:
                         f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
                     ) from error
         return self._state(
-            q,
-            w,
-            h00,
+            *solution,
+            imbalance=imbalance,
             m_older=state.m,
             time=state.time + dt,
             travelled=self._travelled(state, dt),

@@ -9,6 +9,7 @@ from made_results import make_result
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
+from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.series.member import Member, named
@@ -146,8 +147,8 @@ def test_totals_of_steps_are_those_of_their_file(tmp_path):
 @pytest.mark.parametrize("every", [1, 7, 10**9])
 def test_frames_are_those_of_every_so_many_steps(every):
     nominal = 0.37e-6
-    stored = [k for k in range(50) if on_level(k * nominal, nominal, every)]
-    assert stored == list(range(0, 50, every)) and not on_level(7.5 * nominal, nominal, every)
+    stored = [k for k in range(50) if on_level(k * nominal / nominal, every)]
+    assert stored == list(range(0, 50, every)) and not on_level(7.5, every)
 
 
 def test_lines_are_named(capsys):
@@ -161,16 +162,18 @@ def test_lines_are_named(capsys):
 @pytest.mark.parametrize("halvings", [1, 2, 5, 9])
 def test_halved_steps_come_back_to_the_levels_of_the_nominal_step(halvings):
     nominal = 0.37e-6
+    operation = ConstantOperation(Conditions(1.0, 1.0, 1.0, 1.0), 1.0)
     time, dt, retries = 7 * nominal, nominal, 0
     levels, steps = [], 0
     for _ in range(60):
-        longest, dt = 2.0 * dt, next_step(time, dt, retries, nominal)
+        left = operation.time_left(time, nominal)
+        longest, dt = 2.0 * dt, next_step(dt, retries, nominal, left)
         if steps == 0:
             dt *= 0.5**halvings
         assert dt <= nominal * (1 + 1e-9) and dt <= longest * (1 + 1e-9)
         time, retries = time + dt, halvings if steps == 0 else 0
         steps += 1
-        if on_level(time, nominal):
+        if on_level(operation.level(time, nominal)):
             levels.append(round(time / nominal))
     np.testing.assert_array_equal(levels, np.arange(8, 8 + len(levels)))
     assert dt == pytest.approx(nominal)

@@ -1,0 +1,62 @@
+"""Case files: read as text, parsed as TOML, faults in words."""
+
+import contextlib
+import difflib
+import re
+import tomllib
+from pathlib import Path
+
+from ehlpetsc.case.settings import PARTS
+from ehlpetsc.errors import CaseError
+
+MOST_BYTES = 2**26  # of a case file: far more than any profile written out in it
+LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{PARTS}}}""")
+
+
+def read_text(path):
+    """Text of a case file.
+
+    Raises
+    ------
+    CaseError
+    """
+    try:
+        if not str(path):
+            raise CaseError(["'': no name of a case file; allowed: a TOML file"])
+        with open(path, "rb") as file:  # a device has no size, and no end
+            whole = file.read(MOST_BYTES + 1)
+        if len(whole) > MOST_BYTES:
+            raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
+        return whole.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise CaseError([f"{path}: cannot be read: {reason}{_meant(path)}"]) from None
+
+
+def _meant(path):
+    """Hint at a case file of nearly that name in the same folder."""
+    with contextlib.suppress(OSError, ValueError):
+        beside = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
+        close = difflib.get_close_matches(Path(path).stem, beside, n=1)
+        if close:
+            return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"
+    return ""
+
+
+def parse_toml(path, text):
+    """Tables of a TOML text; `path` names it in faults.
+
+    Raises
+    ------
+    CaseError
+    """
+    found = LONG_KEY.search(text)
+    if found:  # tomllib takes the square of their number in time
+        line = text.count("\n", 0, found.start()) + 1
+        raise CaseError([f"{path}: line {line}: a key of more than {PARTS} parts; allowed: table.key"])
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through
+        raise CaseError([f"{path}: not valid TOML: {error}"]) from None

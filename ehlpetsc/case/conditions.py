@@ -1,0 +1,214 @@
+"""Conditions that change with time: of an `[operation]` table or a `[gears]` pair.
+
+A case with either has a reference state, from which its scales come: the load and radius of the widest
+contact and the fastest entrainment. It is filled in under the keys of constant cases.
+"""
+
+import numpy as np
+
+from ehlpetsc.case.conditions_file import TableFault, read_table
+from ehlpetsc.case.tables.operation import COLUMNS
+from ehlpetsc.errors import CaseError
+from ehlpetsc.gears import path_of_contact
+from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.physics.variable_operation import ConditionsTable
+
+MIN_LOAD = 0.05  # of the load of the mesh, with which the contact of two teeth begins and ends
+PLACEHOLDER = {"radius": 1.0, "load": 1.0}
+MOTION = {"entrainment_speed": 1.0}
+
+
+def conditions_of(tables, folder):
+    """Conditions over time of a case's tables.
+
+    Parameters
+    ----------
+    tables : dict
+        Of the case, unchecked.
+    folder : pathlib.Path
+        Of the case file.
+
+    Returns
+    -------
+    ConditionsTable or None
+        None: constant conditions, or a table with faults of its keys, which the schema names.
+
+    Raises
+    ------
+    TableFault
+    """
+    gears, operation = tables.get("gears"), tables.get("operation")
+    if gears is not None and isinstance(operation, dict):
+        raise TableFault("[gears] gives the same conditions; allowed: one of both")
+    if isinstance(gears, dict):
+        try:
+            return of_gears(path_of_contact(gears))
+        except CaseError:  # found by the schema too
+            return None
+    if not isinstance(operation, dict):
+        return None
+    file = operation.get("file")
+    if isinstance(file, str) and file:
+        columns, lines = read_table(folder / file)
+    else:
+        columns = {key: operation[key] for key in COLUMNS if key in operation}
+        lines = None
+    return _checked(columns, lines, tables, operation.get("repeat", 1))
+
+
+def of_gears(path):
+    """Conditions along a path of contact, from where a pair of teeth carries `MIN_LOAD` of the load.
+
+    Parameters
+    ----------
+    path : ehlpetsc.gears.Path
+    """
+    least = MIN_LOAD * path.load.max()
+    carries = np.flatnonzero(path.load >= least)
+    first, last = carries[0], carries[-1]
+    begin, end = path.time[first], path.time[last]
+    if first > 0:
+        begin = np.interp(least, path.load[first - 1 : first + 1], path.time[first - 1 : first + 1])
+    if last < len(path.load) - 1:
+        end = np.interp(least, path.load[[last + 1, last]], path.time[[last + 1, last]])
+    inside = path.time[(path.time > begin) & (path.time < end)]
+    time = np.concatenate([[begin], inside, [end]])
+    rho = np.interp(time, path.time, path.rho)
+    u1, u2 = path.pair.speeds(rho)
+    arcs = path.pair.flank_arcs(rho[0])
+    return ConditionsTable(
+        time - begin,
+        np.interp(time, path.time, path.load),
+        path.pair.radius(rho),
+        u1,
+        u2,
+        begins=(float(arcs[0]), float(arcs[1])),
+    )
+
+
+def _checked(columns, lines, tables, repeat):
+    """Conditions of the columns, constants of the case where one is left out."""
+    if "time" not in columns:
+        raise TableFault("no column time; allowed: one, increasing")
+    if len(columns) == 1:
+        raise TableFault("no column but time; allowed: load, radius, speed 1, speed 2, one at least")
+    try:
+        values = {key: np.array(column, float) for key, column in columns.items()}
+    except (TypeError, ValueError):
+        return None
+    count = len(values["time"])
+    if count < 2 or any(v.ndim != 1 or len(v) != count for v in values.values()):
+        raise TableFault("allowed: columns of the same length, two times at least")
+
+    def where(k):
+        return f"line {lines[k]}" if lines else f"entry {k + 1}"
+
+    for key, column in values.items():
+        if not np.isfinite(column).all():
+            k = int(np.flatnonzero(~np.isfinite(column))[0])
+            raise TableFault(f"{where(k)}: {key} = {column[k]}: allowed: a finite number")
+    time = values["time"]
+    if (np.diff(time) <= 0.0).any():
+        k = int(np.flatnonzero(np.diff(time) <= 0.0)[0]) + 1
+        raise TableFault(
+            f"{where(k)}: time {time[k]:g} s is not after {time[k - 1]:g} s; allowed: increasing times"
+        )
+    for key, unit in (("load", "N/m"), ("radius", "m")):
+        column = values.get(key, np.ones(count))
+        if (column <= 0.0).any():
+            k = int(np.flatnonzero(column <= 0.0)[0])
+            raise TableFault(f"{where(k)}: {key} {column[k]:g} {unit}; allowed: above 0")
+    constants = _constants(tables)
+    missing = [key for key in COLUMNS if key not in values and key not in constants]
+    if missing:
+        raise TableFault(f"{_sources(missing)}; allowed: a column of the table, or the key")
+    values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
+    if not (values["speed_1"].any() or values["speed_2"].any()):
+        last = f"up to {where(count - 1)}" if lines else "all the time"
+        raise TableFault(f"{last}: both speeds are zero; allowed: a speed at some time")
+    repeat = repeat if isinstance(repeat, int) and repeat > 0 else 1
+    return ConditionsTable(
+        time - time[0], values["load"], values["radius"], values["speed_1"], values["speed_2"], repeat
+    )
+
+
+def _constants(tables):
+    """Constant conditions of a case's other tables, as far as there are any."""
+    found = {}
+    contact, motion = tables.get("contact"), tables.get("motion")
+    for key in ("load", "radius"):
+        value = contact.get(key) if isinstance(contact, dict) else None
+        if _is_number(value) and value > 0.0:
+            found[key] = float(value)
+    if isinstance(motion, dict) and _is_number(motion.get("entrainment_speed")):
+        u, xi = motion["entrainment_speed"], motion.get("slide_roll_ratio", 0.0)
+        if _is_number(xi):
+            found["speed_1"], found["speed_2"] = u * (1.0 + xi / 2.0), u * (1.0 - xi / 2.0)
+    return found
+
+
+def _is_number(value):
+    return isinstance(value, int | float) and not isinstance(value, bool) and np.isfinite(value)
+
+
+def _sources(missing):
+    keys = {"load": "contact.load", "radius": "contact.radius"}
+    names = {keys.get(key, "motion") for key in missing}
+    return f"neither {', '.join(missing)} nor {', '.join(sorted(names))}"
+
+
+def with_reference_state(tables, table):
+    """Tables of a case with the reference state of its conditions filled in.
+
+    Parameters
+    ----------
+    tables : dict
+    table : ConditionsTable or None
+        None: constant conditions; with faulty ones placeholders keep the schema from naming keys that come
+        from the table.
+
+    Returns
+    -------
+    dict
+    """
+    named = ("contact", "motion", "time")
+    if not ("gears" in tables or "operation" in tables):
+        return tables
+    if any(not isinstance(tables.get(name, {}), dict) for name in named):  # a fault that the schema names
+        return tables
+    contact, motion, time = (tables.get(name, {}) for name in named)
+    if table is None:
+        filled = {"contact": PLACEHOLDER | contact, "motion": MOTION | motion, "time": {"travel": 1.0} | time}
+        return tables | filled
+    load, radius, u, xi = table.reference()
+    contact = contact | {"load": load, "radius": radius}
+    motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
+    if "travel" not in time:
+        try:
+            modulus = reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])
+            time = time | {"travel": table.swept_length() / hertz_line(load, radius, modulus)[0]}
+        except (KeyError, TypeError, ValueError, ZeroDivisionError):
+            time = time | {"travel": 1.0}
+    return tables | {"contact": contact, "motion": motion, "time": time}
+
+
+def reversal_faults(case, table):
+    """Fault of a domain whose ends differ under an entrainment speed that is negative at a time.
+
+    Parameters
+    ----------
+    case : ehlpetsc.case.loading.Case
+    table : ConditionsTable
+
+    Returns
+    -------
+    list of str
+    """
+    mesh = case.mesh
+    last = mesh.inlet + (mesh.nodes - 1) / mesh.points_per_half_width
+    if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:
+        return []
+    return [
+        f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative; allowed: "
+        f"{-mesh.inlet:g}, as far out as mesh.inlet"
+    ]

@@ -1,0 +1,92 @@
+"""CSV tables of conditions over time: columns by name, faults with their line."""
+
+import re
+
+from ehlpetsc.case.tables.operation import COLUMNS
+
+MOST_BYTES = 2**26  # of a table
+
+
+class TableFault(Exception):
+    """A table of conditions cannot be used; the message says why, and in which line."""
+
+
+def read_table(path):
+    """Columns of a CSV file.
+
+    Returns
+    -------
+    columns : dict of str to list of float
+        By key of `COLUMNS`.
+    lines : list of int
+        Number of each row's line in the file.
+
+    Raises
+    ------
+    TableFault
+    """
+    rows = [(k, line.partition("#")[0].strip()) for k, line in enumerate(_text(path).splitlines(), 1)]
+    rows = [(k, line) for k, line in rows if line]
+    if not rows:
+        raise TableFault("no lines; allowed: a line of column names and one line a time")
+    separator = next((mark for mark in ";,\t" if mark in rows[0][1]), None)
+    head, keys = rows[0], None
+    if not _numbers(head[1], separator):
+        keys, rows = _keys_of(*head, separator), rows[1:]
+    columns, lines = [], []
+    for number, line in rows:
+        values = _numbers(line, separator)
+        if keys is None and len(values) == len(COLUMNS):
+            keys = list(COLUMNS)
+        if keys is None:
+            names = ", ".join(names[0] for names in COLUMNS.values())
+            raise TableFault(f"line {number}: no column names; allowed: a first line with some of {names}")
+        if len(values) != len(keys):
+            raise TableFault(f"line {number}: {shown(line)}: allowed: {len(keys)} numbers")
+        columns.append(values)
+        lines.append(number)
+    return {key: [row[k] for row in columns] for k, key in enumerate(keys)}, lines
+
+
+def shown(line):
+    """A line of a file, shortened."""
+    return line if len(line) <= 40 else line[:37] + "..."
+
+
+def _text(path):
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise TableFault(f"larger than {MOST_BYTES >> 20} MB; allowed: a table of conditions")
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise TableFault(f"not UTF-8 text (byte {error.start}); allowed: a CSV table") from None
+    except FileNotFoundError:
+        raise TableFault(f"no such file: {path}") from None
+    except (OSError, ValueError) as error:
+        raise TableFault(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def _numbers(line, separator):
+    """Numbers of a line; empty where one of its words is none."""
+    words = [word.strip() for word in line.split(separator)]
+    if separator == ";":
+        words = [word.replace(",", ".") for word in words]
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        return []
+
+
+def _keys_of(number, line, separator):
+    """Keys of the columns that a line names, units in brackets left out."""
+    known = {name: key for key, names in COLUMNS.items() for name in names}
+    keys = []
+    for word in re.sub(r"\[[^\]]*\]|\([^)]*\)", "", line).split(separator):
+        name = " ".join(word.strip(" \"'").lower().replace("_", " ").split())
+        if name not in known:
+            allowed = ", ".join(names[0] for names in COLUMNS.values())
+            raise TableFault(f"line {number}: column {shown(name)!r}: allowed: {allowed}")
+        keys.append(known[name])
+    if len(set(keys)) < len(keys):
+        raise TableFault(f"line {number}: a column twice")
+    return keys

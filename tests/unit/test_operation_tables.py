@@ -1,0 +1,164 @@
+"""Tables of operating conditions: what they may hold, and their interpolation, integrals and time levels."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.variable_operation import ConditionsTable, VariableOperation, operation_of
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
+TABLE = """time [s], load [N/m], radius [m], speed 1, speed 2 [m/s]
+0,    400e3, 0.019, 5.0, 4.0
+1e-4, 527e3, 0.020, 5.5, 3.0   # heaviest
+3e-4, 300e3, 0.018, 4.0, 4.5
+"""
+
+
+@pytest.fixture
+def with_table(tmp_path):
+    def write(text, **more):
+        (tmp_path / "mesh.csv").write_text(text)
+        text = CASE.read_text().partition("[time]")[0]
+        path = tmp_path / "case.toml"
+        extra = "".join(f"{key} = {value}\n" for key, value in more.items())
+        path.write_text(text + '\n[operation]\nfile = "mesh.csv"\n' + extra)
+        return path
+
+    return write
+
+
+def test_a_table_gives_conditions_and_the_reference_state_of_its_case(with_table):
+    case = load(with_table(TABLE, repeat=2))
+    assert (case.contact.load, case.contact.radius) == (527e3, 0.020)
+    assert case.motion.entrainment_speed == pytest.approx(4.5)
+    scales = Scales.of(case)
+    operation = operation_of(case, scales)
+    assert operation.duration == pytest.approx(6e-4)
+    assert operation.at(1e-4) == pytest.approx((527e3, 0.020, 5.5, 3.0))
+    assert operation.at(4e-4) == pytest.approx((527e3, 0.020, 5.5, 3.0))
+    assert 300e3 < operation.at(2e-4).load < 527e3
+
+
+@pytest.mark.parametrize("head", ["t,w,r,u1,u2", "time;load;radius;speed_1;speed_2", None])
+def test_columns_by_other_names_separators_or_in_order(with_table, head):
+    lines = TABLE.replace("   # heaviest", "").splitlines()[1:]
+    text = "\n".join([head] * bool(head) + lines) + "\n"
+    case = load(with_table(text.replace(",", ";") if head and ";" in head else text))
+    np.testing.assert_array_equal(case.conditions.load, [400e3, 527e3, 300e3])
+    np.testing.assert_array_equal(case.conditions.u2, [4.0, 3.0, 4.5])
+
+
+def test_a_column_left_out_is_constant(with_table):
+    case = load(with_table("time, load\n0, 527e3\n1e-4, 600e3\n"))
+    assert set(case.conditions.radius) == {0.0191}
+    u1, u2 = case.conditions.u1[0], case.conditions.u2[0]
+    assert (0.5 * (u1 + u2), u1 - u2) == pytest.approx((5.0, 1.25))
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (TABLE.replace("3e-4", "0.5e-4"), "line 4: time 5e-05 s is not after 0.0001 s"),
+        (TABLE.replace("3e-4", "1e-4"), "line 4: time 0.0001 s is not after 0.0001 s"),
+        (TABLE.replace("300e3", "-300e3"), "line 4: load -300000 N/m"),
+        (TABLE.replace("527e3", "0"), "line 3: load 0 N/m"),
+        (TABLE.replace("0.018", "-1"), "line 4: radius -1 m"),
+        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "both speeds are zero"),
+        (TABLE.replace("4.0, 4.5", "4.0"), "line 4"),
+        (TABLE.replace("527e3", "lots"), "line 3"),
+        (TABLE.replace("527e3", "nan"), "line 3: load = nan"),
+        (TABLE.replace("speed 1", "velocity"), "line 1: column 'velocity'"),
+        (TABLE.replace("radius [m]", "load"), "line 1: a column twice"),
+        ("time, load\n0, 1e5\n", "two times at least"),
+        ("time\n0\n1\n", "no column but time"),
+        ("load\n1e5\n1e5\n", "no column time"),
+        ("", "no lines"),
+    ],
+)
+def test_bad_tables_are_one_sentence_with_the_line(with_table, text, sentence):
+    path = with_table(text)
+    with pytest.raises(CaseError) as error:
+        load(path)
+    assert len(error.value.faults) == 1
+    assert sentence in error.value.faults[0] and "mesh.csv" in error.value.faults[0]
+
+
+def test_a_table_that_is_not_there_is_named(with_table, tmp_path):
+    path = with_table(TABLE)
+    (tmp_path / "mesh.csv").unlink()
+    with pytest.raises(CaseError, match="no such file"):
+        load(path)
+
+
+def test_columns_may_stand_in_the_case_or_come_from_python():
+    tables = {"operation": {"time": np.array([0.0, 1e-4]), "load": [5e5, 6e5]}}
+    overrides = {f"operation.{key}": value for key, value in tables["operation"].items()}
+    case = load(CASE, overrides)
+    np.testing.assert_array_equal(case.conditions.load, [5e5, 6e5])
+    with pytest.raises(CaseError, match="entry 2: time"):
+        load(CASE, overrides | {"operation.time": [0.0, 0.0]})
+
+
+def test_reversing_entrainment_needs_as_long_an_outlet_as_an_inlet(with_table):
+    text = "time, speed 1, speed 2\n0, 1, 1\n1e-3, -1, -1\n"
+    with pytest.raises(CaseError, match="mesh.outlet = 1.5: oil enters there"):
+        load(with_table(text))
+    case = load(with_table(text), {"mesh.outlet": 4.0})
+    assert operation_of(case, Scales.of(case)).is_reversing
+
+
+def make(repeat=1, courant=0.5, **columns):
+    time = np.array([0.0, 1e-3, 1.5e-3, 3e-3])
+    values = {"load": 1e5, "radius": 0.01, "u1": 1.0, "u2": 1.0} | columns
+    values = {name: np.broadcast_to(np.asarray(v, float), time.shape) for name, v in values.items()}
+    table = ConditionsTable(time, *values.values(), repeat=repeat)
+    return VariableOperation(table, courant, 1e-6, 227e9)
+
+
+def test_distances_are_the_integrals_of_the_interpolated_speeds():
+    operation = make(repeat=3, u1=[0.0, 2.0, 1.0, 0.0], u2=[-1.0, 1.0, 0.5, -1.0])
+    for begin, end in ((0.0, 1.2e-3), (2.5e-3, 3.7e-3), (0.3e-3, 8.9e-3)):
+        count = 10_000
+        times = begin + (np.arange(count) + 0.5) / count * (end - begin)
+        mean = np.mean([operation.at(t)[2:] for t in times], axis=0)
+        np.testing.assert_allclose(
+            operation.displacement(begin, end - begin), mean * (end - begin), atol=2e-9
+        )
+    parts = [operation.displacement(k * 1e-3, 1e-3) for k in range(9)]
+    np.testing.assert_allclose(np.sum(parts, axis=0), operation.total_displacement(), rtol=1e-12)
+
+
+def test_interpolation_does_not_overshoot():
+    operation = make(load=[1e5, 5e5, 5e5, 1e5])
+    loads = [operation.at(t).load for t in np.linspace(0.0, 3e-3, 999)]
+    assert min(loads) == 1e5 and max(loads) == 5e5
+
+
+def test_time_levels_end_with_the_run_and_follow_the_faster_surface():
+    operation = make(repeat=2, u1=[0.0, 2.0, 1.0, 0.0], u2=[-1.0, 1.0, 0.5, -1.0])
+    time, steps = 0.0, 0
+    while operation.remaining(time, (0.0, 0.0)) > 0.0:
+        dt = operation.time_left(time, None)
+        moved = max(abs(operation.at(time + 0.5 * dt).u1), abs(operation.at(time + 0.5 * dt).u2)) * dt
+        assert moved <= 0.5e-6 * 1.01
+        time, steps = time + dt, steps + 1
+    assert time == pytest.approx(6e-3, rel=1e-12)
+    assert steps == operation.step_count(None)
+    # a step cut in two comes back to the same level
+    level = operation.level(1.1e-3, None)
+    left = operation.time_left(1.1e-3, None)
+    assert operation.level(1.1e-3 + left, None) == pytest.approx(np.floor(level) + 1.0, abs=1e-6)
+
+
+def test_the_edges_of_the_contact_move_by_the_courant_number_at_most():
+    operation = make(load=[1e5, 5e5, 5e5, 1e5], u1=1e-4, u2=0.0)
+    time, widest = 0.0, 0.0
+    while operation.remaining(time, (0.0, 0.0)) > 0.0:
+        dt = operation.time_left(time, None)
+        a = [np.sqrt(8.0 * operation.at(t).load * 0.01 / (np.pi * 227e9)) for t in (time, time + dt)]
+        widest, time = max(widest, abs(a[1] - a[0])), time + dt
+    assert 0.45e-6 < widest <= 0.5e-6 * 1.01
