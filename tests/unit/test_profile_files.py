@@ -1,5 +1,6 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
+import random
 import sys
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError, ProfileError
+from ehlpetsc.surfaces.measured import text_columns
 from ehlpetsc.surfaces.measured.profile_files import Layout, read_profile
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -251,3 +253,50 @@ def test_a_package_that_does_not_start_is_told_in_one_line(tmp_path, monkeypatch
     with pytest.raises(ProfileError, match="does not start: module 'numpy' has no attribute") as caught:
         read_profile(path)
     assert "\n" not in str(caught.value)
+
+
+DIGITS = "0123456789 \t\n.,;eE+-"
+
+
+def drawn_text(draw):
+    """Lines of numbers as instruments write them, with faults here and there."""
+    separator = draw.choice([",", ";", "\t", " ", ", ", " ; ", "  ", ",,"])
+    decimal = draw.choice([".", ".", ","])
+    lines = []
+    for _ in range(draw.randrange(1, 12)):
+        words = [f"{draw.random():.5f}" for _ in range(draw.choice([2] * 9 + [1, 3]))]
+        if draw.random() < 0.15:
+            words[0] = draw.choice(["", "nan", "1e5", "-.5", "+3.", "1e999", "7"])
+        line = separator.join(words).replace(".", decimal)
+        lines.append(line + draw.choice([""] * 20 + [" ", "#x", ",", ";", "\t"]))
+    if draw.random() < 0.3:
+        lines.insert(0, draw.choice(["x [um], z [um]", "# c", "1 2 3", "; ;", "", '"x"']))
+    text = list(draw.choice(["\n", "\r\n", "\r", "\n\n", "\v\n"]).join(lines))
+    for _ in range(draw.choice([0, 0, 1, 3])):
+        text.insert(draw.randrange(len(text) + 1), draw.choice(DIGITS))
+    return "".join(text)
+
+
+def test_blocks_of_numbers_are_read_as_lines_are(tmp_path, monkeypatch):
+    """However a file is cut, and whether numpy reads a block: the same numbers, or the same refusal."""
+    path, draw, refused = tmp_path / "p.csv", random.Random(5), 0
+
+    def outcome(size, fast, *layout):
+        monkeypatch.setattr(text_columns, "BLOCK", size)
+        monkeypatch.setattr(text_columns._Words, "table", table if fast else lambda *_: None)
+        try:
+            columns, header = text_columns.text_columns(path, *layout)
+            return columns.tolist().__repr__(), header
+        except ProfileError as error:
+            return str(error)
+
+    table = text_columns._Words.table
+    for _ in range(1500):
+        text = drawn_text(draw)
+        path.write_text(text, newline="")
+        layout = draw.choice([None, None, None, ",", "."]), draw.choice([None, None, None, 0, 1, 2])
+        line_by_line = outcome(1 << 20, False, *layout)
+        for choice in ((1 << 20, True), (15, True), (60, True), (15, False)):
+            assert outcome(*choice, *layout) == line_by_line, (text, layout, choice)
+        refused += isinstance(line_by_line, str)
+    assert 200 < refused < 1300  # both ends are tried

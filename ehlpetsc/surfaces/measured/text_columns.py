@@ -1,11 +1,15 @@
 """Columns of numbers out of a text file as measuring instruments write them.
 
 Separator and decimal sign are found from the lines that hold nothing but numbers; what could be read in two
-ways is refused with the key that settles it.
+ways is refused with the key that settles it. Blocks of lines that hold nothing else are read by numpy, all
+others line by line.
 """
 
 import codecs
+import io
+import itertools
 import re
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,8 +17,13 @@ from ehlpetsc.errors import ProfileError
 
 MISSING = {"", "nan", "-nan", "nan(ind)", "-nan(ind)", "na", "n/a", "bad", "*", "***", "-", "--", "---"}
 NUMBERS_ONLY = re.compile(r"[\d\s.,;eE+-]+")
+BLOCK_OF_NUMBERS = re.compile(r"[0-9 \t\n.,;eE+-]+")
+NO_NUMBER = re.compile(r"^[ ,;\t]*[,;\t][ ,;\t]*$", re.MULTILINE)  # a line of separators alone
+OUTER_TAB = re.compile(r"^ *\t|\t *$", re.MULTILINE)  # one that separates nothing
 DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 UNIT_IN_HEADER = re.compile(r"[\[(/]\s*(mm|um|µm|μm|nm|m)\s*(?:[\])]|$)", re.MULTILINE)
+OTHER_LINE_END = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]")
+BLOCK = 1 << 20  # characters that are read at once
 
 
 def text_columns(path, decimal=None, header_lines=None):
@@ -39,25 +48,35 @@ def text_columns(path, decimal=None, header_lines=None):
     ------
     ProfileError
     """
-    lines = list(enumerate(_decoded(path).splitlines(), 1))
-    header = [line for _, line in lines[: header_lines or 0]]
-    header += [line for _, line in lines if line.lstrip().startswith("#")]
-    lines = [(n, line.partition("#")[0].strip()) for n, line in lines[header_lines or 0 :]]
-    lines = [(n, line) for n, line in lines if line.strip(" ,;\t")]
-    split = _splitter([line for _, line in lines if NUMBERS_ONLY.fullmatch(line)], decimal)
-    rows = []
-    for n, line in lines:
-        row = _numbers(split(line))
-        if row is None and not rows and header_lines is None:
-            header.append(line)
-        elif row is None:
-            raise ProfileError(
-                f"line {n}: {line[:40]!r}; allowed: numbers alone below the header, x and z; "
-                "header_lines = the number of lines above them"
-            )
-        else:
-            rows.append((n, row))
-    return _without_empty_columns(rows), "\n".join(header)
+    text = _decoded(path)
+    begin = _line_begin(text, header_lines or 0)
+    header = text[:begin].splitlines()
+    header += [line for line in header if line.lstrip().startswith("#")]
+    words = _Words.of(text, begin, decimal)
+    rows, comments, above = [], [], []
+    for number, block in _blocks(text, begin):
+        found = words.table(block)
+        if found is not None:
+            blank = block[: len(block) - len(block.lstrip())]
+            rows.append((number + blank.count("\n"), found))
+            continue
+        comments += [line for line in block.splitlines() if line.lstrip().startswith("#")]
+        read = []
+        for n, line in _lines(block, number):
+            row = _numbers(words.split(line))
+            if row is not None:
+                read.append((n, row))
+            elif rows or read or header_lines is not None:
+                raise ProfileError(
+                    f"line {n}: {line[:40]!r}; allowed: numbers alone below the header, x and z; "
+                    "header_lines = the number of lines above them"
+                )
+            else:
+                above.append(line)
+        for _, group in itertools.groupby(read, lambda row: len(row[1])):
+            group = list(group)
+            rows.append((group[0][0], np.array([row for _, row in group])))
+    return _columns(rows), "\n".join([*header, *comments, *above])
 
 
 def units_in(header):
@@ -68,41 +87,128 @@ def units_in(header):
 def _decoded(path):
     raw = path.read_bytes()
     if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return raw.decode("utf-16", "replace")
+        return _with_newlines(raw.decode("utf-16", "replace"))
     if b"\0" in raw:
         raise ProfileError("not text; allowed: columns of numbers, x and z")
     raw = raw.removeprefix(codecs.BOM_UTF8)  # also before what is not UTF-8 then
     try:
-        return raw.decode().replace("\ufeff", "")  # files put together have more of them
+        text = raw.decode().replace("\ufeff", "")  # files put together have more of them
     except UnicodeDecodeError:  # instruments write µ and degrees in the code page of their country
-        return raw.decode("latin-1")
+        text = raw.decode("latin-1")
+    return _with_newlines(text)
 
 
-def _splitter(lines, decimal):
-    """Function that takes a line apart into numbers written with a point."""
-    comma = any("," in line for line in lines)
-    if any(";" in line for line in lines):
-        pattern = r"\s*;\s*"
-    elif any("\t" in line for line in lines):
-        pattern = r"[ ]*\t[ ]*"
-    elif not comma or decimal == "," or decimal is None and _decimal_comma(lines):
-        pattern = r"\s+"
-    else:
-        return lambda line: re.split(r"\s*,\s*|\s+", line)
-    separator = re.compile(pattern)
-    if comma and any("." in line for line in lines) and decimal is None:
-        raise ProfileError('both "," and "." stand in its numbers; write decimal = "," or decimal = "."')
-    if decimal == ",":
-        return lambda line: [word.replace(".", "").replace(",", ".") for word in separator.split(line)]
-    if decimal == ".":
-        return lambda line: [word.replace(",", "") for word in separator.split(line)]
-    return lambda line: [word.replace(",", ".") for word in separator.split(line)]
+def _with_newlines(text):
+    """The same with one sign for every kind of line end."""
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    return "\n".join(text.splitlines()) if OTHER_LINE_END.search(text) else text
 
 
-def _decimal_comma(lines):
-    """Whether blanks separate the numbers and every comma stands between two digits."""
-    blank = any(re.search(r"\s", line) for line in lines)
-    return blank and all(line.count(",") == len(DECIMAL_COMMA.findall(line)) for line in lines)
+def _line_begin(text, count):
+    """Where the line behind the first `count` ones begins."""
+    begin = 0
+    for _ in range(count):
+        begin = text.find("\n", begin) + 1 or len(text)
+    return begin
+
+
+def _blocks(text, begin):
+    """Whole lines, about `BLOCK` characters at once, with the number of the first."""
+    number = text.count("\n", 0, begin) + 1
+    while begin < len(text):
+        end = text.find("\n", begin + BLOCK) + 1 or len(text)
+        block = text[begin:end]
+        yield number, block
+        number, begin = number + block.count("\n"), end
+
+
+def _lines(block, number):
+    """Lines with their numbers, without comments, blank ones and those of separators alone."""
+    for n, line in enumerate(block.split("\n"), number):
+        line = line.partition("#")[0].strip()
+        if line.strip(" ,;\t"):
+            yield n, line
+
+
+def _holds_numbers_alone(block):
+    if not BLOCK_OF_NUMBERS.fullmatch(block) or "\t" in block and OUTER_TAB.search(block):
+        return False
+    separated = any(sign in f"\n{block}" for sign in ("\n;", "\n,", "\n "))
+    return not (separated and NO_NUMBER.search(block))
+
+
+def _numbers_alone(text, begin):
+    """Lines that hold nothing but numbers, many at once."""
+    for _, block in _blocks(text, begin):
+        if _holds_numbers_alone(block):
+            yield block
+        else:
+            yield "\n".join(line for _, line in _lines(block, 1) if NUMBERS_ONLY.fullmatch(line))
+
+
+def _between_digits(text, begin):
+    """Whether every comma stands between two digits."""
+    blocks = (block for block in _numbers_alone(text, begin) if "," in block)
+    return all(block.count(",") == len(DECIMAL_COMMA.findall(block)) for block in blocks)
+
+
+@dataclass(frozen=True)
+class _Words:
+    """How the numbers of a file are parted and written.
+
+    Attributes
+    ----------
+    separator : re.Pattern
+    delimiter : str or None
+        The same for numpy; None: blanks.
+    removed, comma : str
+        Sign between thousands, and what stands for a comma within a number.
+    """
+
+    separator: re.Pattern
+    delimiter: str | None
+    removed: str = ""
+    comma: str = "."
+
+    @classmethod
+    def of(cls, text, begin, decimal):
+        """That of a file, from its lines that hold nothing but numbers."""
+        seen, blank = set(), False
+        for block in _numbers_alone(text, begin):
+            seen |= {sign for sign in ",;\t." if sign in block}
+            blank = blank or " " in block and bool(re.search(r"\S[^\S\n]+\S", block))
+        if ";" in seen:
+            separator, delimiter = r"\s*;\s*", ";"
+        elif "\t" in seen:
+            separator, delimiter = r"[ ]*\t[ ]*", "\t"
+        elif "," not in seen or decimal == "," or blank and decimal is None and _between_digits(text, begin):
+            separator, delimiter = r"\s+", None
+        else:
+            return cls(re.compile(r"\s*,\s*|\s+"), ",", comma=",")
+        if {",", "."} <= seen and decimal is None:
+            raise ProfileError('both "," and "." stand in its numbers; write decimal = "," or decimal = "."')
+        return cls(re.compile(separator), delimiter, {",": ".", ".": ","}.get(decimal, ""))
+
+    def split(self, line):
+        """Numbers of a line, written with a point."""
+        return self.separator.split(self._with_points(line))
+
+    def table(self, block):
+        """Numbers of a block, a row each line; None where it has to be read line by line."""
+        if not _holds_numbers_alone(block) or block.isspace():
+            return None
+        text = self._with_points(block)
+        if self.removed and not all(map(str.strip, text.rstrip("\n").split("\n"))):  # a line without a digit
+            return None
+        try:
+            return np.loadtxt(io.StringIO(text), delimiter=self.delimiter, comments=None, ndmin=2)
+        except ValueError:  # a number is missing, or lines differ
+            return None
+
+    def _with_points(self, text):
+        if self.removed:
+            text = text.replace(self.removed, "")
+        return text if self.comma == "," else text.replace(",", self.comma)
 
 
 def _numbers(words):
@@ -114,15 +220,27 @@ def _numbers(words):
     return None if any("_" in word for word in words) or np.isnan(row).all() else row
 
 
-def _without_empty_columns(rows):
-    if not rows:
+def _columns(pieces):
+    """Rows put together, without columns that hold no number.
+
+    Parameters
+    ----------
+    pieces : list of (int, ndarray)
+        Rows of one length that follow each other, and the line of the first.
+    """
+    if not pieces:
         raise ProfileError("0 points; allowed: lines of numbers, x and z")
-    width = len(rows[-1][1])
-    for n, row in rows:
-        if len(row) != width:
+    width = pieces[-1][1].shape[1]
+    for n, rows in pieces:
+        if rows.shape[1] != width:
             raise ProfileError(
-                f"line {n}: {len(row)} numbers, the last line has {width}; allowed: as many in every line, "
-                f"or header_lines = {n} if that one belongs to the header"
+                f"line {n}: {rows.shape[1]} numbers, the last line has {width}; allowed: as many in every "
+                f"line, or header_lines = {n} if that one belongs to the header"
             )
-    columns = np.array([row for _, row in rows]).T
-    return columns[~np.isnan(columns).all(axis=1)]
+    columns = np.empty((width, sum(len(rows) for _, rows in pieces)))
+    begin = 0
+    for _, rows in pieces:
+        columns[:, begin : begin + len(rows)] = rows.T
+        begin += len(rows)
+    empty = np.isnan(columns).all(axis=1)
+    return columns[~empty] if empty.any() else columns
