@@ -15,7 +15,7 @@ from ehlpetsc.post.outputs.depth_cache import DepthCache
 from ehlpetsc.post.outputs.result_file import check_output, fingerprint, stored_fingerprint, write_result
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM
-from ehlpetsc.post.stresses.gathering import Sweep, blocks, workers
+from ehlpetsc.post.stresses.histories import Sweep, runs_of_points, workers
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import SURFACES
 
@@ -107,13 +107,13 @@ def _compute(job, prepared, cache, progress):
     tasks = _tasks(missing)
     total = sum(len(task.depths) for task in tasks)
     done = 0
-    with workers(job.jobs) as spread:
+    with workers(job.jobs) as map_:
         for task in tasks:
 
             def share(part, done=done, task=task):
                 progress(done + part * len(task.depths), total)
 
-            values = solve(job, prepared, task, spread, share)
+            values = solve(job, prepared, task, map_, share)
             for depth, part in zip(task.depths, values, strict=True):
                 cache.save(task.surface, depth, part)
             done += len(task.depths)
@@ -128,7 +128,7 @@ def _tasks(missing):
     return tasks
 
 
-def solve(job, prepared, task, spread=map, share=None):
+def solve(job, prepared, task, map_=map, share=None):
     """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan where none passed."""
     loads, motion = prepared.loads, prepared.motions[task.surface]
     width = len(PAPER) + len(columns(job.criteria))
@@ -137,8 +137,8 @@ def solve(job, prepared, task, spread=map, share=None):
     if not motion.complete.any():
         return out
     lengths = motion.leave - motion.enter + 3
-    runs = blocks(motion, MEMORY, len(task.depths), job.jobs)
-    frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points, _ in runs)
+    runs = runs_of_points(motion, MEMORY, len(task.depths))
+    frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points in runs)
     done = 0
 
     def finish(counter, depth, first, last, histories):
@@ -151,19 +151,11 @@ def solve(job, prepared, task, spread=map, share=None):
             share(done / frames)
 
     make = partial(Counters, prepared.settings, task.surface, job.counting, job.criteria)
-    counters = spread(make, [motion.samples() + 2] * job.jobs)
-    sweep = Sweep(
-        loads,
-        task.surface,
-        motion,
-        np.array(task.depths) * loads.a / loads.dx,
-        QUANTUM * loads.p0,
-        [partial(finish, counter) for counter in counters],
-        spread,
-        advance,
-    )
-    for points, slots in runs:
-        sweep(points, slots)
+    counters = list(map_(make, [motion.samples() + 2] * job.jobs))
+    depths, quantum = np.array(task.depths) * loads.a / loads.dx, QUANTUM * loads.p0
+    sweep = Sweep(loads, task.surface, motion, depths, quantum, map_, advance)
+    for points in runs:
+        sweep(points, [partial(finish, counter) for counter in counters])
     return out
 
 

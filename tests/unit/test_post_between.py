@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ehlpetsc.post.stresses import body_stress
-from ehlpetsc.post.stresses.body_stress import BodyStress, parity_weights
+from ehlpetsc.post.stresses.body_stress import BodyStress, offset_weights
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.kernels import point_kernels
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
@@ -82,10 +82,10 @@ def test_ripples_left_out_at_depth_are_not_felt(monkeypatch, depth, kept):
     x = np.linspace(-2.5, 1.5, 801)
     rough = 1 + 0.2 * np.random.default_rng(1).normal(size=(2, x.size))
     p = np.sqrt(np.clip(1 - x * x, 0, None)) * rough
-    weights = parity_weights(np.array([0.0, 0.3]))
+    weights = offset_weights(np.array([0.0, 0.3]))
     found = []
-    for share in (body_stress.kept_share, lambda nx, depth: np.ones(padded_length(nx) // 2 + 1)):
-        monkeypatch.setattr(body_stress, "kept_share", share)
+    for share in (body_stress.low_pass, lambda nx, depth: np.ones(padded_length(nx) // 2 + 1)):
+        monkeypatch.setattr(body_stress, "low_pass", share)
         body = BodyStress(x.size, np.array([depth]))
         found.append((body.tables[0].size, body(0, body.transform(p, 0.1 * p), weights)[..., : x.size]))
     assert found[0][0] < kept * found[1][0]

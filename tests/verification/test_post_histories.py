@@ -9,7 +9,7 @@ from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_points import passage
-from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, history_at, parity_weights
+from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, history_at, offset_weights
 from ehlpetsc.post.stresses.half_plane import StressField
 from ehlpetsc.results.post_result import PostResult
 
@@ -123,7 +123,7 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
         for depth, z in enumerate((0.0, 2.0)):
             exact = stress(fine, z, load(fine), 0.1 * load(fine), 0.3)
             for offset in (0.0, 0.25, 0.4375):
-                found = body(depth, spectra, parity_weights(np.array([offset])))[0, :, 100:300]
+                found = body(depth, spectra, offset_weights(np.array([offset])))[0, :, 100:300]
                 at = np.rint((x[100:300] + offset) * 16).astype(int)
                 worst = max(worst, max(np.abs(f - e[at]).max() for f, e in zip(found, exact, strict=True)))
         errors.append(worst)

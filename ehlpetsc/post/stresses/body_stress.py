@@ -5,40 +5,25 @@ or of the load, then cuts the peaks of short ripples: 5 % of the amplitude at te
 damage near the surface, which rises with about the eleventh power. Here the load has cubic pieces
 (:mod:`ehlpetsc.post.stresses.load_interpolation`), and their kernels are evaluated at the offset of the
 body's points from the nodes, one offset a frame: their spectra are polynomials in the offset, through
-Chebyshev points, so that an offset costs a sum of a few tables.
+Chebyshev points.
 """
 
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import numpy as np
 from scipy import fft
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
-from ehlpetsc.post.stresses.paired_spectra import LANES, LOADS, blocks_of, in_blocks, paired_spectra, separate
 
-BATCH = 144  # frames a thread takes at a time
-IN_CACHE = 8  # frames whose spectra and stresses stay in the cache, where threads do not wait for each other
+BATCH = 8  # frames transformed at a time: their spectra stay in the cache
 QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single precision on this grid, so that the
 #                     rounding noise of the transforms in an unloaded stretch is no cycle
-FELT = 21.0  # k z up to which a wave number k is felt at depth z: exp(-21) is 1e-9
-FADING = 0.45  # beyond, an element, in which the rest falls to nothing
-OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements, even about one half
-
-
-def in_cache(frames):
-    """Slices of so many frames, at most IN_CACHE each."""
-    return [slice(begin, min(begin + IN_CACHE, frames)) for begin in range(0, frames, IN_CACHE)]
-
-
-def offset_weights(offset):
-    """Lagrange weights of offsets (frames,) on OFFSETS: shape (frames, len(OFFSETS))."""
-    weights = np.ones((offset.size, OFFSETS.size))
-    for k, node in enumerate(OFFSETS):
-        for other in np.delete(OFFSETS, k):
-            weights[:, k] *= (offset - other) / (node - other)
-    return weights
+CUTOFF = 21.0  # k z up to which a wave number k matters at depth z: exp(-21) is 1e-9
+TAPER = 0.45  # beyond the cut-off, in 1/element, over which the rest falls to nothing
+OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
 
 
 def half_element(nx):
@@ -47,8 +32,21 @@ def half_element(nx):
     return np.exp(1j * np.pi * np.arange(n // 2 + 1) / n)
 
 
-def kept_share(nx, depth):
-    """Share that is kept of each frequency: all, then falling smoothly to none. Depth in elements.
+def offset_weights(offset):
+    """Weights (2, frames, 3) of the two parts of :func:`kernel_table` at offsets (frames,) from the nodes.
+
+    Sums and differences of the Lagrange weights of OFFSETS that lie symmetrically about one half.
+    """
+    weights = np.ones((offset.size, OFFSETS.size))
+    for k, node in enumerate(OFFSETS):
+        for other in np.delete(OFFSETS, k):
+            weights[:, k] *= (offset - other) / (node - other)
+    left, right = weights[:, :3], weights[:, :2:-1]
+    return np.stack([left + right, left - right])
+
+
+def low_pass(nx, depth):
+    """Factor of each frequency (f,): 1, then falling smoothly to 0. Depth in elements.
 
     Ripples of the load shorter than the depth hardly reach it, as exp(-k z). What the kernels' spectra hold
     beyond comes from the ends of their range and is seen there alone, where the load is zero. A sharp end
@@ -56,32 +54,40 @@ def kept_share(nx, depth):
     """
     n = padded_length(nx)
     wave_number = 2 * np.pi / n * np.arange(n // 2 + 1)
-    beyond = wave_number - FELT / max(depth, FELT / np.pi)
-    t = np.clip(1 - beyond / FADING, 0, 1)
+    beyond = wave_number - CUTOFF / max(depth, CUTOFF / np.pi)
+    t = np.clip(1 - beyond / TAPER, 0, 1)
     return t**5 * (126 - 420 * t + 540 * t**2 - 315 * t**3 + 70 * t**4)  # four flat derivatives
 
 
-def parity_tables(nx, depth):
-    r"""Kernel spectra at OFFSETS in real numbers, half of what complex ones would take; (48, f) in blocks.
+def kernel_table(nx, depth):
+    r"""Kernel spectra at the three lower OFFSETS, as real numbers (2, 3, 8, f); depth in elements.
 
     Under values kernels A, C are even, B, E odd, under slopes the other way round. The spectrum of an even
     kernel at offset 1/2 + e, or 1/i of that of an odd one, times :math:`e^{-i\omega/2}`, has a real part even
-    in e and an imaginary part odd in e. The first three rows hold the one at the three e < 0, the last three
-    the other.
+    in e (first) and an imaginary part odd in e (second), so that three offsets give all six. f ends with the
+    last frequency that matters.
     """
-    spectra = np.stack([hermite_spectra(nx, depth, d) for d in OFFSETS[:3]], axis=1) * half_element(nx).conj()
-    spectra[[1, 3, 4, 6]] *= -1j
-    share = kept_share(nx, depth)
-    kept = np.count_nonzero(share)
-    rows = np.concatenate([spectra.real, spectra.imag], axis=1) * share
-    return in_blocks(rows[..., :kept].reshape(-1, kept))
+    factor = low_pass(nx, depth)
+    kept = np.count_nonzero(factor)
+    spectra = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
+    spectra *= half_element(nx).conj() * factor
+    spectra[:, [1, 3, 4, 6]] *= -1j
+    return np.stack([spectra.real, spectra.imag])[..., :kept].copy()
 
 
-def parity_weights(offset):
-    """Weights (frames, 6) of the rows of :func:`parity_tables` at offsets (frames,) right of the nodes."""
-    weights = offset_weights(offset)
-    left, right = weights[:, :3], weights[:, :2:-1]
-    return np.concatenate([left + right, left - right], axis=1)
+@compiled(error_model="python", nogil=True, fastmath={"contract"})
+def _multiply(real, imaginary, loads, out):
+    """out (frames, 3, :f): spectra of sx, sz, txz from kernels (frames, 8, f) and loads (frames, 4, >= f)."""
+    for frame in range(real.shape[0]):
+        x, y = real[frame], imaginary[frame]
+        p, q, dp, dq = loads[frame]
+        for k in range(real.shape[2]):
+            a, b, c = complex(x[0, k], y[0, k]), complex(x[1, k], y[1, k]), complex(x[2, k], y[2, k])
+            e, da, db = complex(x[3, k], y[3, k]), complex(x[4, k], y[4, k]), complex(x[5, k], y[5, k])
+            dc, de = complex(x[6, k], y[6, k]), complex(x[7, k], y[7, k])
+            out[frame, 0, k] = c * p[k] + de * dq[k] + 1j * (e * q[k] + dc * dp[k])
+            out[frame, 1, k] = a * p[k] + db * dq[k] + 1j * (b * q[k] + da * dp[k])
+            out[frame, 2, k] = c * q[k] + db * dp[k] + 1j * (b * p[k] + dc * dq[k])
 
 
 class BodyStress:
@@ -92,47 +98,31 @@ class BodyStress:
     nx : int
     depths : ndarray, shape (nz,)
         In elements.
-    spread : callable, optional
-        Used as `map` for what is prepared for each depth.
     """
 
-    def __init__(self, nx, depths, spread=map):
-        self.n = padded_length(nx)
-        self.tables = list(spread(partial(parity_tables, nx), depths))
-        half = half_element(nx)
-        self._half = half.real.copy(), half.imag.copy()
+    def __init__(self, nx, depths):
+        self.n, self._half = padded_length(nx), half_element(nx)
+        self.tables = [kernel_table(nx, depth) for depth in depths]
 
     def transform(self, pressure, shear):
-        """Spectra (frames, ...) of the loads (frames, nx) and their slopes, shifted by half an element.
+        """Spectra (frames, 4, n/2 + 1) of the loads (frames, nx) and their slopes.
 
-        Beyond its ends a load falls to zero over one element. Layout: :mod:`paired_spectra`.
+        They are shifted by half an element. Beyond its ends a load falls to zero over one element.
         """
-        loads = np.empty((4, *pressure.shape))
-        loads[0], loads[1] = pressure, shear
-        limited_slopes(loads[0], loads[2])
-        limited_slopes(loads[1], loads[3])
-        spectra = np.empty((len(pressure), blocks_of(self.n) * LOADS * LANES))
-        paired = np.zeros((2, IN_CACHE, self.n), complex)
-        for part in in_cache(len(pressure)):
-            some = slice(part.stop - part.start)
-            paired[:, some, : pressure.shape[1]].real = loads[::2, part]
-            paired[:, some, : pressure.shape[1]].imag = loads[1::2, part]
-            separate(*fft.fft(paired[:, some]), *self._half, spectra[part])
-        return spectra
-
-    def paired(self, depth, spectra, weights):
-        """Stresses (pairs, 3, n, 2) of depth number `depth` at offsets with these :func:`parity_weights`.
-
-        The last axis is a frame and the next; without a next one its values are 0.
-        """
-        out = np.empty(((len(weights) + 1) // 2, 3, self.n), complex)
-        paired_spectra(self.tables[depth], weights, spectra, out.view(float))
-        return fft.ifft(out, overwrite_x=True).view(float).reshape(*out.shape, 2)
+        loads = np.empty((len(pressure), 4, pressure.shape[1]))
+        loads[:, 0], loads[:, 1] = pressure, shear
+        limited_slopes(loads[:, 0], loads[:, 2])
+        limited_slopes(loads[:, 1], loads[:, 3])
+        return fft.rfft(loads, self.n) * self._half
 
     def __call__(self, depth, spectra, weights):
-        """The same as (frames, 3, n)."""
-        pairs = np.moveaxis(self.paired(depth, spectra, weights), -1, 1)
-        return pairs.reshape(-1, *pairs.shape[2:])[: len(weights)]
+        """Stresses (frames, 3, n) of depth number `depth` at offsets with these :func:`offset_weights`."""
+        table = self.tables[depth]
+        parts = [w @ t.reshape(3, -1) for w, t in zip(weights, table, strict=True)]
+        real, imaginary = (part.reshape(-1, *table.shape[2:]) for part in parts)
+        out = np.zeros((len(spectra), 3, self.n // 2 + 1), complex)
+        _multiply(real, imaginary, spectra, out)
+        return fft.irfft(out, self.n, overwrite_x=True)
 
 
 @lru_cache(maxsize=8)
@@ -150,7 +140,7 @@ def history_at(loads, surface, s, depth, quantum=0.0):
     for begin in range(enter, leave, BATCH):
         frames = np.arange(begin, min(begin + BATCH, leave))
         spectra = stress.transform(*loads.read(surface, frames[0], frames[-1] + 1))
-        fields = stress(0, spectra, parity_weights(motion.offset[frames]))
+        fields = stress(0, spectra, offset_weights(motion.offset[frames]))
         at = frames - enter + 1
         values[:, at] = fields[np.arange(frames.size), :, motion.shift[frames]].T
     if quantum:

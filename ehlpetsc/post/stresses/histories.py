@@ -1,0 +1,117 @@
+"""Whole histories of body points, collected from the frames of a result file on one thread or more.
+
+A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
+"""
+
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.post.stresses.body_stress import BATCH, BodyStress, offset_weights
+
+READ = 144  # frames read at a time by each thread
+BYTES = 12  # of a sample: three stresses in single precision
+
+
+@compiled(error_model="python", nogil=True)
+def _collect(stress, begin, first, shift, enter, leave, quantum, histories):
+    """Copy stresses (frames, 3, n) of frames from `begin` on into histories (points, 3, samples).
+
+    Point by point from `first` on, rounded to a multiple of the quantum.
+    """
+    inverse, end = 1.0 / quantum, begin + stress.shape[0]
+    for row in range(histories.shape[0]):
+        j = first + row
+        for frame in range(max(begin, enter[j]), min(end, leave[j] + 1)):
+            node, sample = j + shift[frame], frame - enter[j] + 1
+            for part in range(3):
+                value = stress[frame - begin, part, node]
+                histories[row, part, sample] = np.rint(value * inverse) * quantum
+
+
+def runs_of_points(motion, memory, depths):
+    """Split the complete points into runs of consecutive ones whose histories fit in `memory` bytes."""
+    points = np.flatnonzero(motion.complete)
+    room = max(1, int(memory / (BYTES * depths * (motion.samples() + 2))))
+    runs = []
+    for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
+        runs += np.array_split(stretch, -(-stretch.size // room))
+    return runs
+
+
+@contextmanager
+def workers(count):
+    """Something to use as `map` on `count` threads; for one thread map itself."""
+    if count == 1:
+        yield map
+        return
+    with ThreadPoolExecutor(count) as pool:
+        yield pool.map
+
+
+class Sweep:
+    """Collects the histories of consecutive points and hands them over, a part of the points to each worker.
+
+    A worker is a thread: what takes time does without Python's lock.
+
+    Parameters
+    ----------
+    loads : ehlpetsc.post.inputs.loads.Loads
+    surface : str
+    motion : ehlpetsc.post.stresses.body_points.Passage
+    depths : ndarray
+        In elements.
+    quantum : float
+        Pa.
+    map_ : callable
+        Of :func:`workers`.
+    advance : callable(frames), optional
+    """
+
+    def __init__(self, loads, surface, motion, depths, quantum, map_=map, advance=None):
+        self.loads, self.surface, self.motion, self.quantum = loads, surface, motion, quantum
+        self.map, self.advance = map_, advance
+        self.stress, self.depths = BodyStress(loads.x.size, depths), len(depths)
+        self.weights = offset_weights(motion.offset)
+
+    def __call__(self, points, finish):
+        """Go through the frames of consecutive complete `points`.
+
+        Parameters
+        ----------
+        points : ndarray of int
+        finish : list of callable(depth, first, last, histories)
+            One a worker. Gets histories (points, 3, samples) of points first .. last-1, of which the first
+            leave - enter + 3 samples count.
+        """
+        motion = self.motion
+        histories = np.zeros((self.depths, points.size, 3, motion.samples() + 2), np.float32)
+        frames = motion.enter[points].min(), motion.leave[points].max() + 1
+        for begin in range(*frames, READ * len(finish)):
+            end = min(begin + READ * len(finish), frames[1])
+            loads = self.loads.read(self.surface, begin, end)
+            starts = range(begin, end, BATCH)
+            list(self.map(partial(self._add_frames, loads, begin, points[0], histories), starts))
+            if self.advance:
+                self.advance(end - begin)
+        parts = zip(np.array_split(np.arange(points.size), len(finish)), finish, strict=True)
+        list(self.map(partial(self._hand_over, points[0], histories), parts))
+
+    def _add_frames(self, loads, begin, point, histories, first):
+        """Stresses of up to BATCH frames from `first` on, of loads from frame `begin` on."""
+        m, part = self.motion, slice(first - begin, first - begin + BATCH)
+        spectra = self.stress.transform(*(load[part] for load in loads))
+        weights = self.weights[:, first : first + len(spectra)]
+        for depth in range(self.depths):
+            fields = self.stress(depth, spectra, weights)
+            _collect(fields, first, point, m.shift, m.enter, m.leave, self.quantum, histories[depth])
+
+    def _hand_over(self, point, histories, share):
+        rows, finish = share
+        if rows.size:
+            first, last = rows[0], rows[-1] + 1
+            for depth in range(self.depths):
+                finish(depth, point + first, point + last, histories[depth, first:last])
