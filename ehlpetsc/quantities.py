@@ -1,81 +1,15 @@
 """Every dataset of a result file in one table: unit, long name, type, where it exists, how it is summed up.
 
-A new quantity is a line here and a value in `ehlpetsc.stepping.observables`; the case file's list of fields,
+A new quantity is a line here and a value in `ehlpetsc.stepping.observables`, or belongs to an effect
+(`ehlpetsc.effects`), which has both; the case file's list of fields,
 writer and reader, progress, the summary line, totals of runs and series, the forecast of file sizes and
 `ehlpetsc.analysis.compare` know it from this table.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 
-_FRAME = ("time", "x")
-_STEP = ("time",)
-
-
-@dataclass(frozen=True)
-class Field:
-    """What is stored about a dataset beside its values.
-
-    Attributes
-    ----------
-    units : str
-        SI unit, "1" for a number.
-    long_name : str
-        Name for axes and headings.
-    dims : tuple of str
-        Names of the dimension scales, each beside the dataset or in a group above it.
-    dtype : str
-        Type on disk; the stored fields may be narrowed to float32 on request.
-    only : str
-        Scenes that have it, a key of `SCENES`; "": all.
-    on_request : bool
-        Whether a case must ask for it.
-    """
-
-    units: str
-    long_name: str
-    dims: tuple = _FRAME
-    dtype: str = "f8"
-    only: str = ""
-    on_request: bool = False
-
-
-@dataclass(frozen=True)
-class Column:
-    """How progress shows a figure: heading, factor from SI units, format, words in the bar."""
-
-    heading: str
-    factor: float
-    form: str
-    bar: str = ""
-
-
-@dataclass(frozen=True)
-class Figure(Field):
-    """A scalar of every time step.
-
-    Attributes
-    ----------
-    over_run, over_series : str
-        What tells of all its values, a key of `REDUCTIONS`, "" if nothing does; of a series by default that
-        of its runs.
-    summary : str
-        Format in the last line of a run; "" leaves it out.
-    label : str
-        Name in that line; its own by default.
-    progress : Column, optional
-        Its column in the lines of progress.
-    compared : bool
-        Whether two runs of one case must agree in it: what only tells how a solution was reached need not.
-    """
-
-    dims: tuple = _STEP
-    over_run: str = ""
-    over_series: str = ""
-    summary: str = ""
-    label: str = ""
-    progress: Column | None = None
-    compared: bool = False
-
+from ehlpetsc.effects import EFFECTS
+from ehlpetsc.quantity import Column, Field, Figure
 
 REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
 """From the values of the steps, in their order, to the one of a run."""
@@ -84,8 +18,8 @@ SCENES = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
     "mixed": lambda case: case.contact.has_contact_pressure,
-    "yielding": lambda case: case.contact.yield_pressure is not None,
     "variable": lambda case: case.conditions is not None,
+    **{kind.name: kind.is_in for kind in EFFECTS},
 }
 """Whether a case has what a quantity needs."""
 
@@ -97,8 +31,7 @@ FIELDS = {
     "shear_stress_fast": Field("Pa", "shear stress on the fast solid"),
     "shear_stress_slow": Field("Pa", "shear stress on the slow solid"),
     "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
-    "set_fast": Field("m", "depth by which the fast solid has yielded", only="yielding", on_request=True),
-    "set_slow": Field("m", "depth by which the slow solid has yielded", only="yielding", on_request=True),
+    **{name: replace(field, only=kind.name) for kind in EFFECTS for name, field in kind.fields.items()},
 }
 """Fields over (stored frame, node), in the order in which files list them."""
 
@@ -179,17 +112,7 @@ STEP_SCALARS = {
     "contact_length": Figure("m", "length where solids carry", compared=True, only="mixed"),
     "thin_length": Figure("m", "length where the film is thin", compared=True, only="mixed"),
     "thin_share": Figure("1", "share of the load where the film is thin", compared=True, only="mixed"),
-    "yielding": Figure(
-        "1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True, only="yielding"
-    ),
-    "set_volume": Figure(
-        "m^2",
-        "permanent set of both solids since the first pass",
-        over_run="last",
-        summary=".4g",
-        compared=True,
-        only="yielding",
-    ),
+    **{name: replace(one, only=kind.name) for kind in EFFECTS for name, one in kind.scalars.items()},
     "radius": Figure("m", "radius of relative curvature", only="variable"),
     "load_given": Figure("N/m", "load of the operating conditions", only="variable"),
     "speed_1": Figure("m/s", "speed of surface 1", only="variable"),
@@ -207,7 +130,7 @@ OTHERS = {
     "contact_count": Field("1", "time steps in contact over the whole run", ("x",), "i8"),
     "surface/s": Field("m", "coordinate fixed to the surface, s = x - speed time", ("s",)),
     "surface/z": Field("m", "height, positive out of the metal", ("s",)),
-    "surface/set": Field("m", "depth of the permanent set at the end", ("s",)),
+    **{f"surface/{name}": field for kind in EFFECTS for name, field in kind.surface.items()},
 }
 """Coordinates and what else is neither a field nor a scalar of the step."""
 

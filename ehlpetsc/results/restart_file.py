@@ -14,7 +14,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.whole_file import plain_reason, write_whole
 
-VERSION = 2
+VERSION = 3
 HEAD = 512  # bytes
 MARK = b"ehlpetsc restart file"
 

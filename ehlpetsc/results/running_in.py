@@ -2,6 +2,9 @@
 
 import numpy as np
 
+from ehlpetsc.quantities import OTHERS, STEP_SCALARS
+
+DEPTHS = [name.removeprefix("surface/") for name in OTHERS if name.startswith("surface/")][2:]
 RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
@@ -26,7 +29,8 @@ def pass_figures(result, begin):
     found = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
     found |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
     found["halved"] = int(np.count_nonzero(steps("retries")))
-    found["set_volume"] = float(steps("set_volume")[-1]) if "set_volume" in result.figures else 0.0
+    found |= {name: float(steps(name)[-1]) for name in result.figures if STEP_SCALARS[name].units == "m^2"}
+    found.setdefault("set_volume", 0.0)
     return found | {side: statistics(result, side) for side in ("fast", "slow")}
 
 
@@ -36,8 +40,8 @@ def heights(result, side):
     if f"{name}/s" not in result:
         return None
     s, z = result[f"{name}/s"][:], result[f"{name}/z"][:]
-    depth = result[f"{name}/set"][:] if f"{name}/set" in result else np.zeros_like(z)
-    return s, z, z - depth
+    depths = [result[f"{name}/{depth}"][:] for depth in DEPTHS if f"{name}/{depth}" in result]
+    return s, z, z - sum(depths)
 
 
 def statistics(result, side):

@@ -121,10 +121,10 @@ class ResultWriter:
             self._batch.write(self.contact_count)
         self.written, self._flushed = self._last, clock.monotonic()
 
-    def put_set(self, side, depth):
-        """Note the permanent set [m] of a surface, "fast" or "slow", at the points s of its profile."""
+    def put_depth(self, side, name, depth):
+        """Store a depth [m] of a surface, "fast" or "slow", at the points s of its profile."""
         with self._plain_faults("not written on"):
-            self._file[f"surface/{side}/set"][:] = depth
+            self._file[f"surface/{side}/{name}"][:] = depth
 
     def close(self, status, limits=()):
         """Write what is left, note how the run ended and close.

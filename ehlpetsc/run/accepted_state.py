@@ -41,12 +41,9 @@ class AcceptedState:
         started : float
             Monotonic clock at the begin of the step [s].
         """
-        case, march, solution = simulation.case, simulation.march, simulation.solution
-        rq = simulation.roughness.rq if simulation.roughness else 0.0
-        depths = march.bodies.depths(solution.sets, solution.travelled) if solution.sets else ()
-        conditions = simulation.operation.at(solution.time)
+        stepper, solution = simulation.stepper, simulation.solution
         figures, fields, in_contact = observe(
-            case, simulation.scales, conditions, rq, march.problem, solution, depths, started
+            simulation.scene, stepper.problem, stepper.effects, solution, started
         )
         figures |= {"step": solution.step, "time": solution.time}
         return cls(figures, fields, in_contact, solution)

@@ -21,7 +21,7 @@ from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.limits import limits
 from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.way_on import way_on
-from ehlpetsc.run.stored_surfaces import permanent_sets, profiles
+from ehlpetsc.run.stored_surfaces import body_depths, profiles
 from ehlpetsc.stepping.step_control import on_level
 
 MESSAGE_BYTES = 2**30  # MPI counts to twice as many
@@ -115,10 +115,10 @@ class Recorder:
         list of str
             What to know about it, one line each.
         """
-        simulation, model = self.simulation, self.simulation.march.problem.model
+        simulation, model = self.simulation, self.simulation.stepper.problem.model
         found, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
         solution = found.state
-        simulation.resume(solution, found.smooth, found.bodies)
+        simulation.resume(solution, found.baseline, found.positions)
         self.totals = Totals(found.totals)
         self._open(solution.step, found.contact_count)
         self._note_stored()
@@ -206,13 +206,13 @@ class Recorder:
 
     def _save_restart(self, state):
         simulation = self.simulation
-        model = simulation.march.problem.model
+        model = simulation.stepper.problem.model
         checkpoint.save(self.restart, state, simulation.case, simulation.scales, model)
 
     def _close(self, status):
         simulation = self.simulation
-        for side, depth in permanent_sets(simulation).items():
-            self._writer.put_set(side, depth)
+        for side, name, depth in body_depths(simulation):
+            self._writer.put_depth(side, name, depth)
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
         self._writer.close(status.words, self.limits)
 

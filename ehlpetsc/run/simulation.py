@@ -7,6 +7,8 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.effects import effects_of
+from ehlpetsc.effects.effect import Scene
 from ehlpetsc.errors import CaseError, NotConverged
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.defaults import RunOptions
@@ -19,8 +21,7 @@ from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.permanent_set import BothBodies
-from ehlpetsc.surfaces.roughness import Bodies, Roughness
+from ehlpetsc.surfaces.roughness import SurfacePositions
 
 FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 
@@ -51,11 +52,11 @@ class Simulation:
     operation : physics.operation.ConstantOperation
         Load, radius and speeds over time.
     roughness : surfaces.roughness.Roughness or None
-    bodies : surfaces.roughness.Bodies
-        Where they were as this run began.
+    scene : effects.effect.Scene
+        Case, scales, operation and the positions of both surfaces at the begin of this run.
     options : nonlinear.defaults.RunOptions
         A context: whoever takes many steps enters it once around them.
-    march : stepping.time_stepping.TimeStepping
+    stepper : stepping.time_stepping.TimeStepping
     pass_number : int
         Of the passes of both bodies over each other, from 1.
     state : AcceptedState or None
@@ -95,31 +96,24 @@ class Simulation:
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number = pass_number or (after.pass_number + 1 if after else 1)
-        self.bodies = Bodies.at_rest(self.scales)
+        positions = SurfacePositions.at_rest(self.scales)
         if case.time and case.time.pass_shift:
             shift = (self.pass_number - 1) * case.time.pass_shift
-            self.bodies = replace(self.bodies, begins=(0.0, shift))
+            positions = replace(positions, profile_offsets=(0.0, shift))
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
-        self.roughness = Roughness.of(case, self.scales, self.bodies)
-        film = expected_film(case, self.scales)
+        self.scene = Scene(case, self.scales, self.operation, positions)
+        self.roughness = self.scene.roughness
+        self._film = film = expected_film(case, self.scales)
         self.state = self.solution = self.watch = None
         with self.options:
             table = PETSc.Options()
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
             solver.limited = "snes_max_it" in self.options.users
             self._followed = any(map(table.hasName, FOLLOWED))
-        sets = after.solution.sets if after else ()
-        self.march = TimeStepping(solver, self.scales, self.operation, self.roughness, film)
-        self._carry(sets)
-
-    def _carry(self, sets):
-        """Hand over what both bodies have yielded before, and what they need to yield."""
-        pressures = self.case.contact.yield_pressure
-        if not (pressures or sets):
-            return
-        bodies = BothBodies(self.scales, pressures, self.bodies.offsets(self.scales))
-        self.march.bodies, self.march.sets = bodies, sets or bodies.none()
+        before = after.solution.records if after else {}
+        self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
+        self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
 
     @property
     def finished(self):
@@ -144,23 +138,25 @@ class Simulation:
         while not self.finished:
             yield self.advance()
 
-    def resume(self, solution, smooth, bodies):
-        """Go on from a time level instead of from the steady solution.
+    def resume(self, solution, baseline, positions):
+        """Continue from a time level instead of from the steady solution.
 
         Parameters
         ----------
         solution : stepping.time_stepping.State
-        smooth : pair of ndarray, shape (nx,)
+        baseline : pair of ndarray, shape (nx,)
             Steady q and w, for the predictor.
-        bodies : surfaces.roughness.Bodies
-            Where both bodies are.
+        positions : surfaces.roughness.SurfacePositions
+            Of both surfaces at that level.
         """
-        if solution.m is None:
-            solution.m = self.march.problem.content(solution.q, solution.w)
-        self.solution, self.march.smooth, self.bodies = solution, smooth, bodies
-        self.roughness = self.march.roughness = Roughness.of(self.case, self.scales, bodies)
-        self._carry(solution.sets)
-        solution.sets = self.march.sets
+        solver = self.stepper.solver
+        self.scene = replace(self.scene, positions=positions)
+        self.roughness = self.scene.roughness
+        effects = effects_of(self.scene, solution.records)
+        self.stepper = TimeStepping(solver, self.scene, effects, self._film, baseline)
+        records = {e.name: solution.records.get(e.name) or e.start() for e in effects}
+        m = solver.problem.content(solution.q, solution.w) if solution.m is None else solution.m
+        self.solution = replace(solution, records=records, m=m)
 
     def advance(self, dt=None):
         """Solve the steady contact, afterwards one time step.
@@ -180,7 +176,7 @@ class Simulation:
             Its `state` is the last good one.
         """
         started = clock.monotonic()
-        self.march.solver.watch = self.watch
+        self.stepper.solver.watch = self.watch
         with self.options:
             try:
                 solution = self._start() if self.solution is None else self._step(dt)
@@ -193,23 +189,23 @@ class Simulation:
         return self.state
 
     def _check_ends(self, solution):
-        touching = self.march.problem.model.contact_mask(solution.w, solution.imbalance)
+        touching = self.stepper.problem.model.contact_mask(solution.w, solution.imbalance)
         check_ends(self.scales.x, solution.p, touching)
 
     def _start(self):
         self._head("steady start")
         with events.START:
-            solution = self.march.start()
-        if isinstance(self.march.solver, NewtonSolver):
+            solution = self.stepper.start(self._records)
+        if isinstance(self.stepper.solver, NewtonSolver):
             for name in self.options.views:
-                snes = self.march.solver.snes
+                snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
         return solution
 
     def _step(self, dt):
         self._head(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
         with events.STEPS:
-            return self.march.advance(self.solution, dt)
+            return self.stepper.advance(self.solution, dt)
 
     def _head(self, what):
         """Head PETSc's own lines, where the user asked for some."""

@@ -1,4 +1,4 @@
-"""Both surfaces as a result stores them: heights, and where solids have yielded the depth, by body point.
+"""Both surfaces as a result stores them: heights, and depths that effects keep in the bodies, by body point.
 
 A body point s is at x = s + speed time; where a result begins after a change of speed an offset makes it so.
 """
@@ -18,32 +18,42 @@ def profiles(simulation):
     Returns
     -------
     dict of str to tuple
-        By side: body points and heights [m], speed [m/s], figures of roughness, whether it yields. None for a
-        smooth side, unless it may yield.
+        By side: body points and heights [m], speed [m/s], roughness parameters, names of the effects' depths.
+        None for a smooth side without such depths.
     """
-    yields, rough = bool(simulation.march.bodies), simulation.roughness
+    depths = [name for effect in simulation.stepper.effects for name in effect.surface]
+    rough = simulation.roughness
     found = {}
     for k, (side, offset) in enumerate(zip(("fast", "slow"), _offsets(simulation), strict=True)):
         profile = rough and getattr(rough, side)
         if profile:
             figures = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
-            found[side] = profile.s + offset, profile.z, profile.speed, figures, yields
+            found[side] = profile.s + offset, profile.z, profile.speed, figures, depths
         else:
-            found[side] = _smooth_side(simulation.scales, k, offset) if yields else None
+            found[side] = _smooth_side(simulation, k, offset, depths) if depths else None
     return found
 
 
-def permanent_sets(simulation):
-    """Depths by which both sides have yielded [m], by side, at the body points of :func:`profiles`.
+def body_depths(simulation):
+    """Depths that effects keep in the bodies at the body points of :func:`profiles` [m].
 
-    Empty where solids are elastic.
+    Returns
+    -------
+    list of (str, str, ndarray)
+        Side, name of the quantity and values.
     """
-    bodies = simulation.march.bodies
-    if not bodies:
-        return {}
-    offsets, sets = _offsets(simulation), simulation.solution.sets
+    offsets, solution = _offsets(simulation), simulation.solution
     sides = profiles(simulation)
-    return {side: bodies.at(k, sets[k], sides[side][0] - offsets[k]) for k, side in enumerate(sides)}
+    points = [
+        None if one is None else one[0] - offset for one, offset in zip(sides.values(), offsets, strict=True)
+    ]
+    found = []
+    for effect in simulation.stepper.effects:
+        for name, both in effect.on_surfaces(solution.records[effect.name], points).items():
+            found += [
+                (side, name, depth) for side, depth in zip(sides, both, strict=True) if depth is not None
+            ]
+    return found
 
 
 def _offsets(simulation):
@@ -56,10 +66,11 @@ def _offsets(simulation):
     return [offset if abs(offset) > SAME_PLACE * simulation.scales.dx else 0.0 for offset in apart]
 
 
-def _smooth_side(scales, side, offset):
-    """A smooth surface that may yield, 0: fast: the stretch that passes."""
-    speed = (scales.u1, scales.u2)[side]
-    way = 0.0 if scales.duration is None else speed * scales.duration
+def _smooth_side(simulation, side, offset, depths):
+    """The stretch of a smooth surface that passes, for depths in it; 0: fast."""
+    scales = simulation.scales
+    moved = simulation.operation.total_displacement()[side]
     ends = scales.x[[0, -1]] * scales.a
-    s = np.arange(ends[0] - max(way, 0.0), ends[1] - min(way, 0.0), scales.dx)
-    return s + offset, np.zeros_like(s), speed, {"ra": 0.0, "rq": 0.0, "rsk": 0.0}, True
+    s = np.arange(ends[0] - max(moved, 0.0), ends[1] - min(moved, 0.0), scales.dx)
+    flat = {"ra": 0.0, "rq": 0.0, "rsk": 0.0}
+    return s + offset, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths

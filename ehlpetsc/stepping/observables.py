@@ -1,29 +1,25 @@
-"""What is told of an accepted state: fields in SI units and the figures of its step."""
+"""Fields in SI units and scalars of an accepted time level."""
 
 import time as clock
 
 import numpy as np
 
+from ehlpetsc.effects.effect import Solution, Step
 from ehlpetsc.physics.traction import shear_stresses
 
 MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
 ATOM = 1e-10  # m: least film that oil balances are held against
 
 
-def observe(case, scales, conditions, rq, problem, state, depths, started):
-    """Per-step figures and fields in SI units.
+def observe(scene, problem, effects, state, started):
+    """Scalars of the step and fields, in SI units.
 
     Parameters
     ----------
-    case, scales, problem
-        Of the run.
-    conditions : physics.operation.Conditions
-        Of the instant.
-    rq : float
-        Combined root mean square height of both surfaces [m]; 0: smooth.
+    scene : effects.effect.Scene
+    problem : discretisation.ehl_problem.EHLProblem
+    effects : list of effects.effect.Effect
     state : stepping.time_stepping.State
-    depths : pair of ndarray, or empty
-        Permanent sets at the nodes [m].
     started : float
         Monotonic clock at the begin of the step [s].
 
@@ -33,7 +29,7 @@ def observe(case, scales, conditions, rq, problem, state, depths, started):
     fields : dict of str to ndarray, shape (nx,)
     in_contact : ndarray of bool, shape (nx,)
     """
-    s = scales
+    case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
     loads = problem.model.surface_loads(state.q, state.w, state.h, state.imbalance)
     fields, touching = _fields(case, s, conditions, problem, state, loads), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
@@ -66,15 +62,17 @@ def observe(case, scales, conditions, rq, problem, state, depths, started):
     if problem.fluid is not None:
         figures |= _of_oil(loads, s)
     figures |= problem.model.diagnostics(loads, s, case.output.thin_film)
-    if state.depth is not None:
-        volumes = [one.volume for one in state.sets]
-        figures |= {"yielding": int(np.count_nonzero(state.depth)), "set_volume": sum(volumes)}
-        fields |= dict(zip(("set_fast", "set_slow"), depths, strict=True))
+    step = Step(state.time, state.dt, state.travelled, conditions)
+    solution = Solution(problem.model.state(state.q, state.w), loads.contact_pressure)
+    for effect in effects:
+        if effect.is_in(case):
+            more = effect.observe(state.records[effect.name], solution, step)
+            fields, figures = fields | more[0], figures | more[1]
     return figures, fields, touching
 
 
 def _fields(case, s, conditions, problem, state, loads):
-    """Fields in SI units, but for the permanent sets."""
+    """Fields in SI units that every case has."""
     void = np.zeros_like(loads.film) if problem.fluid is None else np.maximum(-state.q, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h

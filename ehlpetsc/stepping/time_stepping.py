@@ -1,7 +1,7 @@
 """From the start to the end of a run: steady solution, time steps, retries.
 
 The first guess of a step is :mod:`.predictor`'s. A step that does not converge is halved and counted;
-:mod:`.step_control` leads back to the nominal one.
+:mod:`.step_control` returns to the nominal one.
 """
 
 from dataclasses import dataclass, field, replace
@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ehlpetsc.discretisation.reynolds import FilmHistory, mirrored
+from ehlpetsc.effects.effect import Solution, Step
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
 from ehlpetsc.stepping.certificate import solve_checked
@@ -16,11 +17,11 @@ from ehlpetsc.stepping.predictor import TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 from ehlpetsc.stepping.step_control import LEVEL, next_step
 
-GROWTH = 1.0  # half widths at the mean speed, over which roughness at rest grows where it has to
-SMALLEST = 2.0**-12  # of the nominal step: below it a step is given up
+RAMP_LENGTH = 1.0  # half-widths at the mean speed over which roughness at rest grows, where it has to
+MIN_STEP_RATIO = 2.0**-12  # of the nominal step: below it a step is given up
 
 
-@dataclass
+@dataclass(frozen=True)
 class State:
     """One time level and what the next step needs of the past; arrays of shape (nx,), dimensionless.
 
@@ -29,23 +30,21 @@ class State:
     q, w, h00
         Unknowns (see :mod:`ehlpetsc.discretisation.contact`).
     p, h
-        Pressure and film; direct contact's w is the film itself.
+        Pressure and film.
     m, m_older
         Film contents of this level and the one before (None: none).
     time, dt
-        [s]; `dt` is the step that led here (None at the start).
+        [s]; `dt` is the step to this level (None at the start).
     step
         Number of steps taken.
     travelled
-        Ways of the fast and the slow surface since time 0 [m], signed.
+        Distances travelled by surfaces 1 and 2 since time 0 [m], signed.
     earlier
         The two levels before this one, latest first.
     imbalance
         Reynolds' rows F of the solution.
-    sets
-        Permanent sets of the fast and the slow body; empty where solids are elastic.
-    depth
-        What this step has added to both together, in a^2/R (None: elastic).
+    records
+        Records of the effects by their names, see :mod:`ehlpetsc.effects`.
     """
 
     q: np.ndarray
@@ -63,8 +62,7 @@ class State:
     newton: int = 0
     retries: int = 0
     imbalance: np.ndarray = field(default=None, repr=False)
-    sets: tuple = field(default=(), repr=False)
-    depth: np.ndarray | None = field(default=None, repr=False)
+    records: dict = field(default_factory=dict, repr=False)
 
     @property
     def level(self):
@@ -78,64 +76,46 @@ class TimeStepping:
     Parameters
     ----------
     solver : newton.NewtonSolver or gauss_seidel.GaussSeidelSolver
-    scales : scales.Scales
-    operation : physics.operation.ConstantOperation
-    roughness : roughness.Roughness or None
+    scene : effects.effect.Scene
+    effects : list of effects.effect.Effect
     film : float
         Expected film in a^2/R.
-    bodies : surfaces.permanent_set.BothBodies, optional
-        Of solids that yield, or have yielded before.
-    sets : pair of PermanentSet, or empty
-        What they have yielded before.
+    baseline : pair of ndarray, optional
+        Steady q and w that the predictor starts from, of a resumed run; else :meth:`start` finds them.
 
     Attributes
     ----------
-    smooth : pair of ndarray
-        Steady q and w that the predictor starts from.
-    before : float
-        For how long before time 0 roughness at rest has grown [s]; 0 where a steady solution was found.
+    ramp_time : float
+        Time before time 0 over which roughness at rest grew [s]; 0 where a steady solution was found.
     """
 
-    def __init__(self, solver, scales, operation, roughness, film, bodies=None, sets=()):
-        self.solver, self.problem, self.scales, self.film = solver, solver.problem, scales, film
-        self.operation = operation
-        self.roughness, self.bodies, self.sets = roughness, bodies, sets
-        self.smooth, self.before = None, 0.0
+    def __init__(self, solver, scene, effects, film, baseline=None):
+        self.solver, self.problem, self.film = solver, solver.problem, film
+        self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
+        self.baseline, self.ramp_time = baseline, 0.0
+        self._advected = any(effect.moves_with_surfaces for effect in effects)
 
-    def phi(self, travelled, sets=()):
-        """What roughness and permanent sets add to the gap, in a^2/R: means over the cells of the mesh.
+    def start(self, records):
+        """Steady solution at time 0; by time steps, if roughness at rest has none in reach.
 
         Parameters
         ----------
-        travelled : (float, float)
-            Ways of the fast and the slow surface [m].
-        sets : pair of PermanentSet, or empty
+        records : dict
+            Of the effects at time 0.
         """
-        phi = np.zeros(self.problem.n)
-        with events.ROUGHNESS:
-            if self.roughness is not None:
-                places, cell = self.scales.x * self.scales.a, self.scales.dx
-                phi += self.roughness.phi_after(places, travelled, cell) / self.scales.h
-            if sets:
-                phi += sum(self.bodies.depths(sets, travelled)) / self.scales.h
-        return phi
-
-    def start(self):
-        """Steady solution at time 0 or, under roughness at rest that has none in reach, one marched to."""
-        phi = self.phi((0.0, 0.0), self.sets)
+        inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
-            state = self._steady(phi)
+            state = self._steady(inputs, records)
         except NoSteadyStart as error:
-            if self.scales.dt is None or self.problem.fluid is None or not phi.any():
+            if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
                 raise NotConverged(f"steady start: {error}") from error
-            state = self._marched()
-        self.smooth = (state.q, state.w)
+            state = self._start_by_time_stepping(records)
+        self.baseline = (state.q, state.w)
         return state
 
-    def _steady(self, phi):
-        inputs = self.problem.inputs(phi, conditions=self.operation.at(0.0))
+    def _steady(self, inputs, records):
         solution, newton, imbalance = self._inlet_first(inputs, lambda i: steady(self.solver, self.film, i))
-        return self._state(*solution, imbalance=imbalance, newton=newton, sets=self.sets)
+        return self._state(solution, imbalance, self._step_end(), records, newton=newton)
 
     def _inlet_first(self, inputs, solve, *nodal):
         """Solve with the inlet at the first node: mirrored where the entrainment speed is negative.
@@ -160,65 +140,93 @@ class TimeStepping:
         q, w, h00, iterations = solve(inputs.mirrored(), *map(mirrored, nodal))
         return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.mass_imbalance())
 
-    def _marched(self):
-        """The state at time 0 of a film into which roughness at rest has grown by time steps before.
+    def _start_by_time_stepping(self, records):
+        """State at time 0 of a film into which roughness at rest has grown by time steps before.
 
-        It lies under the film from the start, where Newton's method may find no way to it; that of a moving
-        body comes in through the inlet. The growth takes the way `GROWTH` of the mean speed.
+        It lies under the film from the start, where Newton's method may find no way to it; the roughness of
+        a moving body comes in through the inlet. The growth covers `RAMP_LENGTH` at the mean speed.
         """
         try:
-            state = self._steady(np.zeros(self.problem.n))
+            state = self._steady(self._inputs_of(self._step_end()), records)
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
-        self.before = np.ceil(GROWTH * self.scales.a / self.scales.u / dt) * dt
-        state = replace(state, time=-self.before, travelled=self.operation.displacement(0.0, -self.before))
-        self.smooth = (state.q, state.w)
+        self.ramp_time = np.ceil(RAMP_LENGTH * self.scales.a / self.scales.u / dt) * dt
+        moved = self.operation.displacement(0.0, -self.ramp_time)
+        state = replace(state, time=-self.ramp_time, travelled=moved)
+        self.baseline = (state.q, state.w)
         while state.time < -LEVEL * dt:
             state = self.advance(state)
             newton += state.newton
         begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
 
-    def _grown(self, time):
-        """Share of the roughness that has grown at a time before 0 [s]; all from there on."""
-        r = 1.0 + time / self.before if time < 0.0 else 1.0
+    def _roughness_ramp(self, time):
+        """Factor on the gap's contributions: grows to 1 before time 0 [s], 1 from there on."""
+        r = 1.0 + time / self.ramp_time if time < 0.0 else 1.0
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
-    def _state(self, q, w, h00, *, sets, travelled=(0.0, 0.0), **more):
-        model = self.problem.model
-        nodes, m = model.state(q, w), self.problem.content(q, w)
-        p, h = nodes.pressure, nodes.film
-        if nodes.plastic is not None:
-            more["depth"] = nodes.plastic.depth
-            sets = self.bodies.laid_down(sets, travelled, self.scales.h * more["depth"])
-        q, w = model.reset_yielding(q, w)
-        return State(q, w, h00, p=p, h=h, m=m, travelled=travelled, sets=sets, **more)
+    def _step_end(self, state=None, dt=None):
+        if state is None:
+            return Step(0.0, None, (0.0, 0.0), self.operation.at(0.0))
+        moved = self.operation.displacement(state.time, dt)
+        travelled = tuple(map(sum, zip(state.travelled, moved, strict=True)))
+        return Step(state.time + dt, dt, travelled, self.operation.at(state.time + dt))
 
-    def guess(self, state, dt):
-        """Start of Newton's iteration for a step of dt [s]."""
-        if self.roughness is None or self.problem.fluid is None:
-            return state.q, state.w
-        levels = (state.level, *state.earlier)
-        then = 0.5 * sum(self._travelled(state, dt))
-        nodes = [(then - level.travelled) / self.scales.dx for level in levels]
-        return predict(self.problem, TimeLevel(0.0, *self.smooth), levels, nodes)
+    def _inputs_of(self, step, history=None):
+        return self.problem.inputs(history=history, conditions=step.conditions, dt=step.dt)
 
-    def _travelled(self, state, dt):
-        """Ways of both surfaces [m] after a step of dt [s]."""
-        return tuple(map(sum, zip(state.travelled, self.operation.displacement(state.time, dt), strict=True)))
+    def _with_effects(self, inputs, records, step):
+        with events.ROUGHNESS:
+            for effect in self.effects:
+                inputs = effect.inputs(records[effect.name], inputs, step)
+        return inputs
 
-    def _inputs(self, state, dt):
+    def inputs(self, state, dt):
+        """End of a step of `dt` [s] from a state, and the inputs of its solve."""
         history = None
         if self.problem.fluid is not None:
             unit = self.scales.u / self.scales.a
             older = None if state.dt is None else state.dt * unit
             history = FilmHistory(state.m, state.m_older, dt * unit, older)
-        phi = self._grown(state.time + dt) * self.phi(self._travelled(state, dt), state.sets)
-        return self.problem.inputs(phi, history, self.operation.at(state.time + dt), dt)
+        step = self._step_end(state, dt)
+        inputs = self._with_effects(self._inputs_of(step, history), state.records, step)
+        if step.time < 0.0:
+            inputs = replace(inputs, phi=self._roughness_ramp(step.time) * inputs.phi)
+        return step, inputs
+
+    def _state(self, solution, imbalance, end, records, **more):
+        (q, w, h00), model = solution, self.problem.model
+        nodes, m = model.state(q, w), self.problem.content(q, w)
+        nodal = Solution(nodes, model.contact_pressure(w))
+        accepted = {e.name: e.accept(records[e.name], nodal, end) for e in self.effects}
+        q, w = model.reset_yielding(q, w)
+        return State(
+            q,
+            w,
+            h00,
+            p=nodes.pressure,
+            h=nodes.film,
+            m=m,
+            imbalance=imbalance,
+            time=end.time,
+            dt=end.dt,
+            travelled=end.travelled,
+            records=accepted,
+            **more,
+        )
+
+    def guess(self, state, dt):
+        """Start of Newton's iteration for a step of dt [s]."""
+        if not self._advected or self.problem.fluid is None:
+            return state.q, state.w
+        levels = (state.level, *state.earlier)
+        then = 0.5 * sum(self._step_end(state, dt).travelled)
+        nodes = [(then - level.travelled) / self.scales.dx for level in levels]
+        return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
     def _solve(self, inputs, q, w, h00):
-        """As of the solver; where solids yield, failing that, from what they would do elastically."""
+        """Solution of a step; where solids yield and there is none, from the elastic one."""
         elastic = self.problem.model.elastic()
         try:
             return solve_checked(self.solver, q, w, h00, inputs)
@@ -244,26 +252,25 @@ class TimeStepping:
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
+                step, inputs = self.inputs(state, dt)
                 solution, iterations, imbalance = self._inlet_first(
-                    self._inputs(state, dt), lambda i, q, w: self._solve(i, q, w, state.h00), *guess
+                    inputs, lambda i, q, w: self._solve(i, q, w, state.h00), *guess
                 )
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1
                 dt *= 0.5
-                if dt < SMALLEST * nominal:
+                if dt < MIN_STEP_RATIO * nominal:
                     raise NotConverged(
                         f"step {state.step + 1}, time {state.time:.6e} s: {error}, also with a step of "
                         f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
                     ) from error
         return self._state(
-            *solution,
-            imbalance=imbalance,
+            solution,
+            imbalance,
+            step,
+            state.records,
             m_older=state.m,
-            time=state.time + dt,
-            travelled=self._travelled(state, dt),
-            sets=state.sets,
-            dt=dt,
             step=state.step + 1,
             newton=newton + iterations,
             retries=retries,

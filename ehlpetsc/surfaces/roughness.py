@@ -12,33 +12,33 @@ RAMP = 0.1  # half widths of profile over which its heights come in
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """Where both bodies are at the begin of a run.
+class SurfacePositions:
+    """Positions of both surfaces at the begin of a run.
 
     Attributes
     ----------
     travelled : (float, float)
-        Ways of the fast and the slow body since their profiles began to enter [m], signed.
-    entrances : (float, float)
+        Distances that both bodies have travelled since their profiles began to enter [m], signed.
+    domain_ends_at_entry : (float, float)
         Inlet and outlet at which they entered [m].
-    begins : (float, float)
-        Abscissas in their profiles with which they began to enter [m].
+    profile_offsets : (float, float)
+        Abscissas of their profiles at which they began to enter [m].
     """
 
     travelled: tuple
-    entrances: tuple
-    begins: tuple = (0.0, 0.0)
+    domain_ends_at_entry: tuple
+    profile_offsets: tuple = (0.0, 0.0)
 
     @classmethod
     def at_rest(cls, scales):
-        """Those of a run that begins at time 0."""
+        """Positions at the begin of a run at time 0."""
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
 
     def offsets(self, scales):
-        """What body points are further on by `begins`, signed [m], as of `profile.Profile.moved`."""
+        """Signed shift of the body points by `profile_offsets` [m], as `profile.Profile.moved`."""
         return tuple(
             -begin if speed > 0.0 else begin
-            for begin, speed in zip(self.begins, (scales.u1, scales.u2), strict=True)
+            for begin, speed in zip(self.profile_offsets, (scales.u1, scales.u2), strict=True)
         )
 
 
@@ -50,25 +50,25 @@ class Roughness:
     slow: Profile | None
 
     @classmethod
-    def of(cls, case, scales, bodies=None):
+    def of(cls, case, scales, positions=None):
         """Roughness of a case, None where both surfaces are smooth.
 
         Parameters
         ----------
         case : case.loading.Case
         scales : scales.Scales
-        bodies : Bodies, optional
-            Of a run that goes on; by default one that begins.
+        positions : SurfacePositions, optional
+            Of a resumed run; by default those at time 0.
 
         Raises
         ------
         ProfileError
         """
-        sides, bodies = {}, bodies or Bodies.at_rest(scales)
+        sides, positions = {}, positions or SurfacePositions.at_rest(scales)
         speeds = (scales.u1, scales.u2)
         for k, side in enumerate(("fast", "slow")):
             spec = getattr(case.surface, side)
-            sides[side] = spec and _profile(case, scales, spec, speeds[k], k, bodies)
+            sides[side] = spec and _profile(case, scales, spec, speeds[k], k, positions)
         return cls(**sides) if any(sides.values()) else None
 
     def phi(self, x, t, cell=None):
@@ -102,15 +102,15 @@ class Roughness:
         return float(np.hypot(*(p.rq if p else 0.0 for p in (self.fast, self.slow))))
 
 
-def _profile(case, scales, spec, speed, side, bodies):
-    (inlet, outlet), travelled = bodies.entrances, bodies.travelled[side]
-    drawn_in = 0.0
+def _profile(case, scales, spec, speed, side, positions):
+    (inlet, outlet), travelled = positions.domain_ends_at_entry, positions.travelled[side]
+    swept_length = 0.0
     if case.time is not None:
-        left = max(scales.duration * scales.u_max - max(map(abs, bodies.travelled)), 0.0)
+        left = max(scales.duration * scales.u_max - max(map(abs, positions.travelled)), 0.0)
         # under another load the domain may reach further out than where the profile entered
         wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
-        drawn_in = abs(travelled) + left * abs(speed) / scales.u_max
-        drawn_in += wider if wider > MOVED * scales.a else 0.0
+        swept_length = abs(travelled) + left * abs(speed) / scales.u_max
+        swept_length += wider if wider > MOVED * scales.a else 0.0
     return Profile(
         samples(case.path.parent, spec),
         speed,
@@ -118,6 +118,6 @@ def _profile(case, scales, spec, speed, side, bodies):
         inlet,
         outlet,
         RAMP * scales.a,
-        drawn_in,
-        bodies.begins[side],
+        swept_length,
+        positions.profile_offsets[side],
     )

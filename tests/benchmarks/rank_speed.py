@@ -60,7 +60,7 @@ def inside(points, count):
     simulation = Simulation(load(ROOT / "cases" / "table1_rough.toml", mesh), comm)
     simulation.options.__enter__()  # for good: parts of steps are solved as well
     simulation.advance()
-    step, solver = simulation.scales.dt, simulation.march.solver
+    step, solver = simulation.scales.dt, simulation.stepper.solver
     for _ in range(int(1.8 * points / (0.5 * FAST))):
         simulation.advance(FAST * step)
     for _ in range(4):

@@ -32,7 +32,7 @@ class Scene:
 
     @property
     def solver(self):
-        return self.simulation.march.solver
+        return self.simulation.stepper.solver
 
     @property
     def state(self):

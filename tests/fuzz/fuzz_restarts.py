@@ -53,12 +53,12 @@ class Draw:
 
     def _load(self, path):
         simulation = Simulation(self.case)
-        model = simulation.march.problem.model
+        model = simulation.stepper.problem.model
         found, _ = checkpoint.load(path, self.case, simulation.scales, model)
         state = found.state
-        parts = (state.q, state.w, state.h00, state.m, state.time, *found.smooth, found.contact_count)
+        parts = (state.q, state.w, state.h00, state.m, state.time, *found.baseline, found.contact_count)
         content = [np.asarray(part).tobytes() for part in (*parts, state.travelled)]
-        return simulation, (state, found.smooth, found.bodies), repr(content) + repr(found.totals)
+        return simulation, (state, found.baseline, found.positions), repr(content) + repr(found.totals)
 
     def _go_on(self, forged):
         """Load it and take a step, as a run does."""

@@ -41,7 +41,7 @@ HEAVY = (
     "ehlpetsc.stepping.observables",
     "ehlpetsc.stepping.predictor",
     "ehlpetsc.stepping.steady_start",
-    "ehlpetsc.surfaces.permanent_set",
+    "ehlpetsc.surfaces.body_field",
     "ehlpetsc.surfaces.roughness",
 )
 

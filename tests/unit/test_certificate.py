@@ -25,7 +25,7 @@ def solved(request):
 
 def fault(simulation, change=lambda q, w, rows: None, h00=None, tolerance=None):
     """Fault of the solution once its copy is changed."""
-    state, solver = simulation.solution, simulation.march.solver
+    state, solver = simulation.solution, simulation.stepper.solver
     rows = [np.copy(part) for part in solver.residual()]
     q, w = state.q.copy(), state.w.copy()
     change(q, w, rows)
@@ -34,7 +34,7 @@ def fault(simulation, change=lambda q, w, rows: None, h00=None, tolerance=None):
 
 
 def test_a_solution_is_one(solved):
-    assert solved.march.solver.tolerance == pytest.approx(1e-7)
+    assert solved.stepper.solver.tolerance == pytest.approx(1e-7)
     assert fault(solved) is None
 
 
@@ -44,7 +44,7 @@ def test_mixed_contact_is_solved_to_less_by_default(model, tolerance):
         ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": model})
     )
     simulation.advance()
-    assert simulation.march.solver.tolerance == pytest.approx(tolerance)
+    assert simulation.stepper.solver.tolerance == pytest.approx(tolerance)
 
 
 def put(which, node, value):
@@ -92,13 +92,13 @@ def test_tolerances_that_are_no_numbers_pass_nothing(solved):
 
 def test_a_solver_that_takes_its_guess_for_the_solution_gets_nowhere(solved, monkeypatch):
     def solve(q, w, h00, inputs, max_it=None):
-        solver = simulation.march.solver
+        solver = simulation.stepper.solver
         solver.tolerance = 1e-7
         solver.system.begin(q, w, h00, inputs)
         return q, w, h00, 0
 
     simulation = ehlpetsc.Simulation(solved.case)
-    monkeypatch.setattr(simulation.march.solver, "solve", solve)
+    monkeypatch.setattr(simulation.stepper.solver, "solve", solve)
     with pytest.raises(NotConverged, match="steady start: SNES ended, but .* after 0 iterations"):
         simulation.advance()
 

@@ -16,7 +16,7 @@ from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.way_on import way_on
 from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.time_stepping import State
-from ehlpetsc.surfaces.roughness import Bodies
+from ehlpetsc.surfaces.roughness import SurfacePositions
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
 MESH = ["mesh.points_per_half_width=20"]
@@ -31,8 +31,8 @@ class Scene:
 
     def save(self, path, state, smooth):
         count = np.arange(self.scales.nx) % 4
-        bodies = Bodies.at_rest(self.scales)
-        kept = checkpoint.Checkpoint(state, smooth, count, TOTALS, bodies)
+        positions = SurfacePositions.at_rest(self.scales)
+        kept = checkpoint.Checkpoint(state, smooth, count, TOTALS, positions)
         checkpoint.save(path, kept, self.case, self.scales, self.model)
 
     def load(self, path):
@@ -67,12 +67,13 @@ def test_the_same_case_gets_back_what_was_saved(tmp_path, model):
     state, smooth = state_of(scene, model == "mixed")
     scene.save(tmp_path / "f.restart.h5", state, smooth)
     loaded, notes = scene.load(tmp_path / "f.restart.h5")
-    found, found_smooth, bodies = loaded.state, loaded.smooth, loaded.bodies
+    found, found_smooth, positions = loaded.state, loaded.baseline, loaded.positions
     assert notes == [] and loaded.totals == TOTALS
     np.testing.assert_array_equal(loaded.contact_count, np.arange(scene.scales.nx) % 4)
     for name in ("q", "w", "m", "m_older"):
         np.testing.assert_allclose(getattr(found, name), getattr(state, name), rtol=1e-14, atol=1e-18)
-    assert bodies.travelled == found.travelled and bodies.entrances == Bodies.at_rest(scene.scales).entrances
+    assert positions.travelled == found.travelled
+    assert positions.domain_ends_at_entry == SurfacePositions.at_rest(scene.scales).domain_ends_at_entry
     for name in ("h00", "time", "dt", "step", "retries", "travelled"):
         assert getattr(found, name) == getattr(state, name), name
     for one, other in zip((*found.earlier, (0, *found_smooth)), (*state.earlier, (0, *smooth)), strict=True):
@@ -89,7 +90,7 @@ def test_under_another_load_the_state_is_that_of_the_new_contact(tmp_path, chang
     state, smooth = state_of(scene)
     scene.save(tmp_path / "f.restart.h5", state, smooth)
     loaded, notes = other.load(tmp_path / "f.restart.h5")
-    found, found_smooth, bodies = loaded.state, loaded.smooth, loaded.bodies
+    found, found_smooth, positions = loaded.state, loaded.baseline, loaded.positions
     x = scene.scales.x
     for (q, w), (q0, w0) in (((found.q, found.w), (state.q, state.w)), (found_smooth, smooth)):
         np.testing.assert_array_equal(np.maximum(q, 0.0), np.maximum(q0, 0.0))
@@ -105,7 +106,7 @@ def test_under_another_load_the_state_is_that_of_the_new_contact(tmp_path, chang
         np.testing.assert_allclose(above[w > 0], above_then[w > 0], rtol=1e-9)
     assert (found.m, found.m_older, found.dt, found.earlier) == (None, None, None, ())
     assert (found.time, found.step, found.travelled) == (state.time, state.step, state.travelled)
-    assert bodies.entrances == (x[0] * scene.scales.a, x[-1] * scene.scales.a)
+    assert positions.domain_ends_at_entry == (x[0] * scene.scales.a, x[-1] * scene.scales.a)
     assert "contact.load was 527000.0" in " ".join(notes)
 
 

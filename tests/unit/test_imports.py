@@ -10,7 +10,7 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {
     "errors",
-    "quantities",
+    "quantity",
     "compiled",
     "environment",
     "command_parser",
@@ -19,17 +19,29 @@ GROUND = {
 MAY_IMPORT = {
     "physics": set(),
     "surfaces": set(),
+    "effects": {"surfaces", "physics"},
+    "quantities": {"effects"},
     "gears": {"physics"},
-    "case": {"gears", "surfaces", "physics"},
-    "results": set(),
+    "case": {"gears", "surfaces", "physics", "quantities"},
+    "results": {"quantities"},
     "discretisation": {"physics"},
     "nonlinear": {"discretisation", "physics"},
-    "stepping": {"nonlinear", "discretisation", "physics"},
-    "run": {"stepping", "nonlinear", "discretisation", "physics", "case", "surfaces", "results"},
-    "analysis": {"results"},
-    "plot": {"analysis", "results", "physics"},
-    "post": {"case", "results", "physics"},
-    "study": {"case", "analysis", "results", "physics"},  # runs the solver as a user does: by its command
+    "stepping": {"nonlinear", "discretisation", "physics", "effects"},
+    "run": {
+        "stepping",
+        "nonlinear",
+        "discretisation",
+        "physics",
+        "effects",
+        "case",
+        "surfaces",
+        "results",
+        "quantities",
+    },
+    "analysis": {"results", "quantities"},
+    "plot": {"analysis", "results", "physics", "quantities"},
+    "post": {"case", "results", "physics", "quantities"},
+    "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
     "compare": {"analysis"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
     "__main__": {"run", "case"},

@@ -154,7 +154,7 @@ def test_no_convergence_is_an_exception_with_the_last_good_state(case, result, t
 
     simulation = ehlpetsc.Simulation(case)
     simulation.advance()
-    monkeypatch.setattr(simulation.march.solver, "solve", fail)
+    monkeypatch.setattr(simulation.stepper.solver, "solve", fail)
     before = table()
     with pytest.raises(ehlpetsc.NotConverged, match="step 1, time ") as caught:
         simulation.advance()

@@ -7,6 +7,8 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.effects.effect import Scene
+from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.stepping.observables import observe
@@ -122,7 +124,9 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
         w = h / scales.h
         w[[30, 60]] = left
         state = State(p / scales.p0, w, 0.0, h=w, m=w, imbalance=np.zeros_like(w))
-        _, fields, touching = observe(case, scales, scales.conditions, 0.0, problem, state, (), 0.0)
+        _, fields, touching = observe(
+            Scene(case, scales, operation_of(case, scales), None), problem, [], state, 0.0
+        )
         assert touching.sum() == (0 if left else 2)
         found.append((fields["shear_stress_slow"], fields["shear_stress_fast"]))
     for one in found[1:]:

@@ -28,8 +28,8 @@ class Scene:
 
     def __init__(self, name, *overrides, **options):
         self.simulation = Simulation(load(CASES / name, overrides), options=options)
-        self.scales, self.march = self.simulation.scales, self.simulation.march
-        self.x, self.solver, self.problem = self.scales.x, self.march.solver, self.march.problem
+        self.scales, self.stepper = self.simulation.scales, self.simulation.stepper
+        self.x, self.solver, self.problem = self.scales.x, self.stepper.solver, self.stepper.problem
         self.centre = int(np.argmin(np.abs(self.x)))
 
     def start(self, max_it=30):

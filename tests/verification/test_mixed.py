@@ -27,7 +27,7 @@ def test_solids_and_film_are_complementary_to_the_bit(rough):
     touching = sum(int(s.in_contact.sum()) for s in states)
     assert touching > 500
     for state in states:
-        over = state.film_thickness - simulation.march.solver.bound * simulation.scales.h
+        over = state.film_thickness - simulation.stepper.solver.bound * simulation.scales.h
         assert state.film_thickness.min() >= bound * (1.0 - 1e-15)
         assert (over >= 0.0).all() and (state.contact_pressure >= 0.0).all()
         assert (state.contact_pressure * over == 0.0).all()

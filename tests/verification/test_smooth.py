@@ -18,7 +18,7 @@ CASES = Path(__file__).parents[2] / "cases"
 def steady(name, *overrides):
     simulation = Simulation(load(CASES / name, overrides))
     state = simulation.advance().solution
-    return simulation.scales, simulation.march.problem, state
+    return simulation.scales, simulation.stepper.problem, state
 
 
 @pytest.mark.parametrize(

@@ -53,18 +53,16 @@ def test_same_film_pressure_and_contacts_as_newton(rough, step):
         q, h, m, m_older = stored[f"levels_{step}"].astype(float)
         h00, time, dt_older, dt = stored[f"scalars_{step}"]
     for simulation in rough:
-        march = simulation.march
-        unit = march.scales.u / march.scales.a
+        stepper = simulation.stepper
+        unit = stepper.scales.u / stepper.scales.a
         history = FilmHistory(m, m_older, dt * unit, dt_older * unit)
+        scales, travelled = simulation.scales, simulation.operation.travelled(time + dt)
+        phi = simulation.roughness.phi_after(scales.x * scales.a, travelled, scales.dx) / scales.h
         with simulation.options:
-            found.append(
-                march.solver.solve(
-                    q, h, h00, march.problem.inputs(march.phi(march.operation.travelled(time + dt)), history)
-                )
-            )
+            found.append(stepper.solver.solve(q, h, h00, stepper.problem.inputs(phi, history)))
     for _, film, _, _ in found:
         np.testing.assert_array_equal(np.flatnonzero(film <= 0.0), CONTACTS[step])
-    assert_same(rough[0].march.problem, *found, rtol=1e-5)
+    assert_same(rough[0].stepper.problem, *found, rtol=1e-5)
     assert found[1][2] == pytest.approx(found[0][2], rel=1e-5)
 
 
@@ -74,14 +72,14 @@ def test_sweeps_march_from_their_own_start():
         for state in itertools.islice(simulation, 6):
             assert state.retries == 0
         states.append((state.solution.q, state.solution.h))
-    assert_same(simulation.march.problem, *states, rtol=1e-5)
+    assert_same(simulation.stepper.problem, *states, rtol=1e-5)
 
 
 def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
     coarse = "mesh.points_per_half_width=50"
     both = simulations("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
     states = [simulation.advance().solution for simulation in both]
-    swept = both[1].march
+    swept = both[1].stepper
     bound = swept.solver.bound
     assert states[1].h.min() == bound
     np.testing.assert_array_equal(states[1].h <= bound, states[0].h <= bound)
@@ -92,9 +90,11 @@ def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
 
 def test_gives_up_after_so_many_evaluations(monkeypatch):
     monkeypatch.setattr(sweep, "EVALUATIONS", 2)
-    march = simulations("table1_smooth.toml", "mesh.points_per_half_width=50")[1].march
+    stepper = simulations("table1_smooth.toml", "mesh.points_per_half_width=50")[1].stepper
     with pytest.raises(SolveFailed, match="MAX_IT after 2 "):
-        march.solver.solve(np.ones(march.problem.n), np.ones(march.problem.n), 0.0, march.problem.inputs())
+        stepper.solver.solve(
+            np.ones(stepper.problem.n), np.ones(stepper.problem.n), 0.0, stepper.problem.inputs()
+        )
 
 
 @pytest.mark.parametrize(

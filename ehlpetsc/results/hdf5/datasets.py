@@ -34,7 +34,7 @@ class Layout:
         Type of the stored fields.
     profiles : dict
         ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
-        fifth one tells whether there is room for a permanent set.
+        fifth one names depths of `ehlpetsc.quantities.OTHERS` to make room for ("set").
     """
 
     x: np.ndarray
@@ -155,11 +155,11 @@ def extend(dataset, rows):
         dataset[begin:] = rows
 
 
-def _surface(file, name, s, z, speed, statistics=None, yields=False):
+def _surface(file, name, s, z, speed, statistics=None, depths=()):
     _fixed(file, f"{name}/s", OTHERS["surface/s"], s)
     _fixed(file, f"{name}/z", OTHERS["surface/z"], z)
-    if yields:
-        _fixed(file, f"{name}/set", OTHERS["surface/set"], np.zeros(len(s)))
+    for depth in depths:
+        _fixed(file, f"{name}/{depth}", OTHERS[f"surface/{depth}"], np.zeros(len(s)))
     attributes.put(file[name], {"speed": speed} | (statistics or {}))
 
 

@@ -5,16 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehlpetsc.effects import EFFECTS
+from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.run.restart.contents import TOTAL, fault
+from ehlpetsc.run.restart.contents import RECORD, TOTAL, fault
 from ehlpetsc.run.restart.rescaling import rescale
 from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.time_stepping import State
-from ehlpetsc.surfaces.permanent_set import PermanentSet
-from ehlpetsc.surfaces.roughness import Bodies
+from ehlpetsc.surfaces.roughness import SurfacePositions
 
-SIDES = ("fast", "slow")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
 MESH = 1e-9  # of the domain: how far nodes may have moved in x/a
 
@@ -27,28 +27,28 @@ class Checkpoint:
     ----------
     state : time_stepping.State
         Its `m` is None where the contact has another size than when it was saved: that of the state is meant.
-    smooth : pair of ndarray
+    baseline : pair of ndarray
         Steady q and w that the predictor starts from.
     contact_count : ndarray of int, shape (nx,)
     totals : dict of str to number
         Of all steps so far, for the summary.
-    bodies : surfaces.roughness.Bodies
-        As they were at the begin of the run when it was saved; as they are, when it is loaded.
+    positions : surfaces.roughness.SurfacePositions
+        When saved, those at the begin of the run; when loaded, those of the state.
     pass_number : int
     """
 
     state: State
-    smooth: tuple
+    baseline: tuple
     contact_count: np.ndarray
     totals: dict
-    bodies: Bodies
+    positions: SurfacePositions
     pass_number: int = 1
 
     @classmethod
     def of(cls, simulation, contact_count, totals):
         """That of a `run.simulation.Simulation` at its last state."""
-        march, number = simulation.march, simulation.pass_number
-        return cls(simulation.solution, march.smooth, contact_count, totals, simulation.bodies, number)
+        baseline, positions = simulation.stepper.baseline, simulation.scene.positions
+        return cls(simulation.solution, baseline, contact_count, totals, positions, simulation.pass_number)
 
 
 def save(path, checkpoint, case, scales, model):
@@ -65,9 +65,9 @@ def save(path, checkpoint, case, scales, model):
     ------
     OutputError
     """
-    state, bodies = checkpoint.state, checkpoint.bodies
+    state, positions = checkpoint.state, checkpoint.positions
     arrays = {"x": scales.x * scales.a, "contact_count": checkpoint.contact_count}
-    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *checkpoint.smooth)
+    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *checkpoint.baseline)
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     if state.earlier:
         ways, q, w = (np.array(part) for part in zip(*state.earlier, strict=True))
@@ -75,16 +75,15 @@ def save(path, checkpoint, case, scales, model):
     numbers = {"time": state.time, "dt": state.dt or 0.0, "h00": state.h00}
     numbers |= {"a": scales.a, "p0": scales.p0, "h_scale": scales.h, "u1": scales.u1, "u2": scales.u2}
     numbers |= dict(zip(("travelled_fast", "travelled_slow"), state.travelled, strict=True))
-    numbers |= dict(zip(("entered_inlet", "entered_outlet"), bodies.entrances, strict=True))
-    numbers |= dict(zip(("begin_fast", "begin_slow"), bodies.begins, strict=True))
-    numbers["set_spacing"] = state.sets[0].spacing if state.sets else 0.0
+    numbers |= dict(zip(("entered_inlet", "entered_outlet"), positions.domain_ends_at_entry, strict=True))
+    numbers |= dict(zip(("begin_fast", "begin_slow"), positions.profile_offsets, strict=True))
     attributes = {name: float(value) for name, value in numbers.items()}
     attributes |= {"retries": int(state.retries), "step": int(state.step), "case": case.text}
     attributes["pass_number"] = checkpoint.pass_number
-    for side, one in zip(SIDES, state.sets or (None, None), strict=True):
-        attributes[f"set_first_{side}"] = one.first if one else 0
-        if one:
-            arrays[f"set_{side}"] = one.depth
+    for name, record in state.records.items():
+        attributes[RECORD + name] = 1
+        for key, value in flat(record, name).items():
+            (arrays if isinstance(value, np.ndarray) else attributes)[key] = value
     totals = {TOTAL + name: value for name, value in checkpoint.totals.items()}
     save_restart(path, arrays, attributes | totals)
 
@@ -116,8 +115,12 @@ def load(path, case, scales, model):
     misfit = _misfit(arrays, attributes, earlier, case, scales)
     if misfit:
         raise OutputError(f"{path}: {misfit}")
+    try:
+        records = _records(arrays | attributes)
+    except ValueError as error:
+        raise OutputError(f"{path}: damaged restart file: {error}") from None
     rescale(arrays, attributes, scales)
-    bodies = Bodies(
+    positions = SurfacePositions(
         (float(attributes["travelled_fast"]), float(attributes["travelled_slow"])),
         (float(attributes["entered_inlet"]), float(attributes["entered_outlet"])),
         (float(attributes["begin_fast"]), float(attributes["begin_slow"])),
@@ -131,14 +134,14 @@ def load(path, case, scales, model):
         dt=float(attributes["dt"]) or None,
         retries=int(attributes["retries"]),
         step=int(attributes["step"]),
-        travelled=bodies.travelled,
+        travelled=positions.travelled,
         earlier=_earlier(model, arrays),
-        sets=_sets(arrays, attributes),
+        records=records,
     )
     totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
     notes = changes(earlier, tomllib.loads(case.text))
     smooth, number = _unknowns(model, arrays, "smooth_"), _pass_number(attributes)
-    return Checkpoint(state, smooth, arrays["contact_count"], totals, bodies, number), notes
+    return Checkpoint(state, smooth, arrays["contact_count"], totals, positions, number), notes
 
 
 def _fields(model, name, q, w):
@@ -152,13 +155,13 @@ def _unknowns(model, arrays, name):
     return q, model.w_from_state(film, solids)
 
 
-def _sets(arrays, attributes):
-    if "set_fast" not in arrays:
-        return ()
-    spacing = float(attributes["set_spacing"])
-    return tuple(
-        PermanentSet(spacing, int(attributes[f"set_first_{side}"]), arrays[f"set_{side}"]) for side in SIDES
-    )
+def _records(values):
+    """Records of the effects that a file holds."""
+    return {
+        effect.name: unflat(effect.record, values, effect.name)
+        for effect in EFFECTS
+        if RECORD + effect.name in values
+    }
 
 
 def pass_of(path):

@@ -4,9 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehlpetsc.effects import EFFECTS
 from ehlpetsc.quantities import STEP_SCALARS
 
 TOTAL = "total "  # before the names of totals among the attributes
+RECORD = "record "  # before the names of effects whose records the file holds
 LARGEST = 1e300  # of any number
 
 
@@ -54,8 +56,6 @@ ARRAYS = (
         "earlier_travelled": Item("way of the film at these levels [m]", ("level",), needed=False),
         "m": Item("film content in a^2/R", ("node",), 0.0, needed=False),
         "m_older": Item("one level ago", ("node",), 0.0, needed=False),
-        "set_fast": Item("permanent set of the fast body [m]", ("cell of the fast body",), 0.0, needed=False),
-        "set_slow": Item("permanent set of the slow body [m]", ("cell of the slow body",), 0.0, needed=False),
     }
 )
 NUMBERS = {
@@ -76,9 +76,6 @@ NUMBERS = {
     "begin_fast": Item("abscissa with which the fast profile entered [m]"),
     "begin_slow": Item("abscissa with which the slow profile entered [m]"),
     "pass_number": Item("of the passes of both bodies over each other", least=1, whole=True),
-    "set_spacing": Item("cells of both sets [m], 0: none", least=0.0),
-    "set_first_fast": Item("number of the first cell of the fast body's set", whole=True),
-    "set_first_slow": Item("number of the first cell of the slow body's set", whole=True),
 }
 TEXTS = {"case": "the case as it was run"}
 
@@ -91,8 +88,8 @@ def fault(arrays, attributes):
     arrays : dict of str to ndarray
     attributes : dict of str to number or str
     """
-    numbers = {name: value for name, value in attributes.items() if not name.startswith(TOTAL)}
-    unknown = [*(arrays.keys() - ARRAYS.keys()), *(numbers.keys() - NUMBERS.keys() - TEXTS.keys())]
+    known = {*ARRAYS, *NUMBERS, *TEXTS}
+    unknown = [name for name in [*arrays, *attributes] if name not in known and not _is_of_others(name)]
     if unknown:
         return f"nobody knows its {min(unknown)}"
     lengths = {}
@@ -109,6 +106,13 @@ def fault(arrays, attributes):
         if not isinstance(attributes.get(name), str):
             return f"{name} ({meaning}) is missing or no text"
     return _fault_of_totals(attributes) or _inconsistency(arrays, attributes)
+
+
+def _is_of_others(name):
+    """Whether an entry is a total, or belongs to the record of an effect."""
+    return name.startswith((TOTAL, *(f"{effect.name}." for effect in EFFECTS))) or name in {
+        RECORD + effect.name for effect in EFFECTS
+    }
 
 
 def _fault_of(values, item, lengths):
@@ -152,9 +156,6 @@ def _inconsistency(arrays, attributes):
         return f"contact_count is {arrays['contact_count'].max()} after {step} steps"
     if attributes["dt"] > attributes["time"] * (1.0 + 1e-9):
         return "its last step is longer than its time"
-    sets = {"set_fast", "set_slow"} & arrays.keys()
-    if len(sets) == 1 or bool(sets) != (attributes["set_spacing"] > 0.0):
-        return "of the permanent sets of both bodies something is missing"
     if "m_older" in arrays and "m" not in arrays:
         return "m_older is there and m is not"
     return None

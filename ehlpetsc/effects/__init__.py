@@ -1,0 +1,21 @@
+"""Effects: physics beside the film that changes from time level to time level.
+
+An effect is one module with a class derived from :class:`.effect.Effect` and one entry in `EFFECTS`.
+"""
+
+from ehlpetsc.effects.plastic_deformation import PlasticDeformation
+from ehlpetsc.effects.roughness import RoughSurfaces
+
+EFFECTS = (RoughSurfaces, PlasticDeformation)
+
+
+def effects_of(scene, records=()):
+    """The effects of a scene: those of its case and those that have a record already.
+
+    Parameters
+    ----------
+    scene : effect.Scene
+    records : collection of str
+        Names of the records of an earlier pass or of a restart file.
+    """
+    return [kind(scene) for kind in EFFECTS if kind.is_in(scene.case) or kind.name in records]

@@ -1,0 +1,223 @@
+"""What an effect is: physics beside the film that changes from time level to time level.
+
+An effect keeps a record of its own, a NamedTuple of arrays, numbers and other NamedTuples, in the state
+of the run. The record is saved in restart files by its field names; nothing but the effect reads it.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is fixed over a run, for effects.
+
+    Attributes
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    operation : physics.operation.ConstantOperation
+    positions : surfaces.roughness.SurfacePositions
+        Of both surfaces at the begin of the run.
+    """
+
+    case: object
+    scales: object
+    operation: object
+    positions: object
+
+    @cached_property
+    def roughness(self):
+        """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
+        from ehlpetsc.surfaces.roughness import Roughness
+
+        return Roughness.of(self.case, self.scales, self.positions)
+
+    @property
+    def rq(self):
+        """Combined root mean square roughness [m]; 0: smooth."""
+        return self.roughness.rq if self.roughness else 0.0
+
+    @cached_property
+    def mesh_on_bodies(self):
+        """Cells of the mesh in both bodies, `surfaces.body_field.MeshOnBodies`."""
+        from ehlpetsc.surfaces.body_field import MeshOnBodies
+
+        return MeshOnBodies(self.scales, self.positions.offsets(self.scales))
+
+
+class Step(NamedTuple):
+    """End of a time step.
+
+    Attributes
+    ----------
+    time : float
+        [s]
+    dt : float or None
+        Length of the step [s]; None: the steady start.
+    travelled : (float, float)
+        Distances travelled by surfaces 1 and 2 since time 0 [m].
+    conditions : physics.operation.Conditions
+    """
+
+    time: float
+    dt: float | None
+    travelled: tuple
+    conditions: object
+
+
+class Solution(NamedTuple):
+    """A solution at the nodes, dimensionless; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    nodes : discretisation.contact_model.Relations
+        Pressure, film and plastic deformation of the step.
+    contact_pressure : ndarray
+        Pressure of the solids in p0; zero in direct contact.
+    """
+
+    nodes: object
+    contact_pressure: np.ndarray
+
+
+class NoRecord(NamedTuple):
+    """Record of an effect that keeps nothing."""
+
+
+class Effect:
+    """An effect without any influence; subclasses override what they have.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Attributes
+    ----------
+    name : str
+        Of the record in the state and in restart files.
+    record : type
+        NamedTuple of the record.
+    moves_with_surfaces : bool
+        Whether its contribution to the gap moves with the surfaces from the first step on.
+    fields, scalars, surface : dict
+        Its quantities, see :mod:`ehlpetsc.quantities`: fields over the nodes, scalars of every time step,
+        depths along each surface at the end of the run.
+    """
+
+    name = ""
+    record = NoRecord
+    moves_with_surfaces = False
+    fields: dict = {}
+    scalars: dict = {}
+    surface: dict = {}
+
+    def __init__(self, scene):
+        self.scene = scene
+
+    @classmethod
+    def is_in(cls, case):
+        """Whether a case has this effect."""
+        raise NotImplementedError
+
+    def start(self, before=None):
+        """Record at time 0.
+
+        Parameters
+        ----------
+        before : NamedTuple, optional
+            Record at the end of the pass before.
+        """
+        return self.record()
+
+    def inputs(self, record, inputs, step):
+        """Inputs of the solve with the contribution of the effect.
+
+        Parameters
+        ----------
+        record : NamedTuple
+            At the begin of the step.
+        inputs : discretisation.ehl_problem.StepInputs
+        step : Step
+
+        Returns
+        -------
+        StepInputs
+        """
+        return inputs
+
+    def accept(self, record, solution, step):
+        """Record at the end of an accepted step.
+
+        Parameters
+        ----------
+        record : NamedTuple
+            At its begin.
+        solution : Solution
+        step : Step
+        """
+        return record
+
+    def observe(self, record, solution, step):
+        """Fields and scalars in SI units, by the names of `fields` and `scalars`."""
+        return {}, {}
+
+    def on_surfaces(self, record, points):
+        """Values of the quantities `surface` at points of surfaces 1 and 2.
+
+        Parameters
+        ----------
+        record : NamedTuple
+        points : pair of ndarray or None
+            Body points s [m]; None: not stored.
+
+        Returns
+        -------
+        dict of str to pair of ndarray or None
+        """
+        return {}
+
+
+def flat(record, name):
+    """Fields of a record by dotted names, those of records inside it included."""
+    found = {}
+    for key, value in record._asdict().items():
+        inner = f"{name}.{key}"
+        found |= flat(value, inner) if hasattr(value, "_asdict") else {inner: value}
+    return found
+
+
+def unflat(kind, values, name):
+    """The record of a type from :func:`flat` values.
+
+    Raises
+    ------
+    ValueError
+        Something is missing or cannot be; the text says what.
+    """
+    fields = {}
+    for key, inner in kind.__annotations__.items():
+        path = f"{name}.{key}"
+        if hasattr(inner, "_fields"):
+            fields[key] = unflat(inner, values, path)
+        elif path not in values:
+            raise ValueError(f"{path} is missing")
+        else:
+            fields[key] = _checked(np.asarray(values[path]), inner, path)
+    record = kind(**fields)
+    fault = record.fault() if hasattr(record, "fault") else None
+    if fault:
+        raise ValueError(f"{name} {fault}")
+    return record
+
+
+def _checked(value, kind, path):
+    whole = kind is int
+    if value.dtype.kind != ("i" if whole else "f") or (kind is np.ndarray) != bool(value.ndim):
+        raise ValueError(f"{path} is of the type {value.dtype} with {value.ndim} dimensions")
+    if not np.isfinite(value).all():
+        raise ValueError(f"{path} is not finite")
+    return value if kind is np.ndarray else kind(value)

@@ -1,0 +1,83 @@
+r"""Plastic deformation of both surfaces: where solids yield they keep an indentation.
+
+A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.yielding` to the surfaces at the
+points that face each other: to the softer one, or half to each where both yield at the same pressure.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.effects.effect import Effect
+from ehlpetsc.quantity import Field, Figure
+from ehlpetsc.surfaces.body_field import BodyFields
+
+
+class PlasticRecord(NamedTuple):
+    """Plastic deformation of both bodies; depth that the last step added at the nodes [m], shape (nx,)."""
+
+    depth: BodyFields
+    added: np.ndarray
+
+
+class PlasticDeformation(Effect):
+    """Depth of the plastic deformation, added to the gap and kept in the bodies."""
+
+    name = "plastic_deformation"
+    record = PlasticRecord
+    fields = {
+        "set_fast": Field("m", "depth by which the fast solid has yielded", on_request=True),
+        "set_slow": Field("m", "depth by which the slow solid has yielded", on_request=True),
+    }
+    scalars = {
+        "yielding": Figure("1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True),
+        "set_volume": Figure(
+            "m^2",
+            "plastic deformation of both solids since the first pass",
+            over_run="last",
+            summary=".4g",
+            compared=True,
+        ),
+    }
+    surface = {"set": Field("m", "depth of the plastic deformation at the end", ("s",))}
+
+    def __init__(self, scene):
+        super().__init__(scene)
+        one, other = scene.case.contact.yield_pressure or (0.0, 0.0)
+        self._shares = (0.5, 0.5) if one == other else (float(one < other), float(other < one))
+
+    @classmethod
+    def is_in(cls, case):
+        """Whether the solids yield."""
+        return case.contact.yield_pressure is not None
+
+    def start(self, before=None):
+        """No deformation, or that of the pass before."""
+        scales = self.scene.scales
+        return before or PlasticRecord(BodyFields.zero(scales.dx), np.zeros(scales.nx))
+
+    def inputs(self, record, inputs, step):
+        """Add both indentations to the gap."""
+        return replace(inputs, phi=inputs.phi + sum(self._at_nodes(record, step)) / self.scene.scales.h)
+
+    def accept(self, record, solution, step):
+        """Add the depth of the step to both bodies."""
+        plastic = solution.nodes.plastic
+        if plastic is None:
+            return record
+        total = self.scene.scales.h * plastic.depth
+        depths = [share * total for share in self._shares]
+        return PlasticRecord(self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths), total)
+
+    def observe(self, record, solution, step):
+        """Indentations at the nodes, number of yielding nodes, volume."""
+        fields = dict(zip(self.fields, self._at_nodes(record, step), strict=True))
+        return fields, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}
+
+    def on_surfaces(self, record, points):
+        """Indentation along both surfaces."""
+        return {"set": self.scene.mesh_on_bodies.at_points(record.depth, points)}
+
+    def _at_nodes(self, record, step):
+        return self.scene.mesh_on_bodies.means(record.depth, step.travelled)

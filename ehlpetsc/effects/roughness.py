@@ -1,0 +1,23 @@
+"""Roughness of both surfaces in the gap."""
+
+from dataclasses import replace
+
+from ehlpetsc.effects.effect import Effect
+
+
+class RoughSurfaces(Effect):
+    """Heights of both profiles, means over the cells of the mesh, subtracted from the gap."""
+
+    name = "roughness"
+    moves_with_surfaces = True
+
+    @classmethod
+    def is_in(cls, case):
+        """Whether one of the surfaces has a profile."""
+        return bool(case.surface.fast or case.surface.slow)
+
+    def inputs(self, record, inputs, step):
+        """Add the roughness at the end of the step to the gap."""
+        scales = self.scene.scales
+        heights = self.scene.roughness.phi_after(scales.x * scales.a, step.travelled, scales.dx)
+        return replace(inputs, phi=inputs.phi + heights / scales.h)

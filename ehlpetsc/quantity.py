@@ -1,0 +1,72 @@
+"""What is stored about a quantity beside its values: the entries of :mod:`ehlpetsc.quantities`."""
+
+from dataclasses import dataclass
+
+_FRAME = ("time", "x")
+_STEP = ("time",)
+
+
+@dataclass(frozen=True)
+class Field:
+    """What is stored about a dataset beside its values.
+
+    Attributes
+    ----------
+    units : str
+        SI unit, "1" for a number.
+    long_name : str
+        Name for axes and headings.
+    dims : tuple of str
+        Names of the dimension scales, each beside the dataset or in a group above it.
+    dtype : str
+        Type on disk; the stored fields may be narrowed to float32 on request.
+    only : str
+        Scenes that have it, a key of `SCENES`; "": all.
+    on_request : bool
+        Whether a case must ask for it.
+    """
+
+    units: str
+    long_name: str
+    dims: tuple = _FRAME
+    dtype: str = "f8"
+    only: str = ""
+    on_request: bool = False
+
+
+@dataclass(frozen=True)
+class Column:
+    """How progress shows a figure: heading, factor from SI units, format, words in the bar."""
+
+    heading: str
+    factor: float
+    form: str
+    bar: str = ""
+
+
+@dataclass(frozen=True)
+class Figure(Field):
+    """A scalar of every time step.
+
+    Attributes
+    ----------
+    over_run, over_series : str
+        What tells of all its values, a key of `REDUCTIONS`, "" if nothing does; of a series by default that
+        of its runs.
+    summary : str
+        Format in the last line of a run; "" leaves it out.
+    label : str
+        Name in that line; its own by default.
+    progress : Column, optional
+        Its column in the lines of progress.
+    compared : bool
+        Whether two runs of one case must agree in it: what only tells how a solution was reached need not.
+    """
+
+    dims: tuple = _STEP
+    over_run: str = ""
+    over_series: str = ""
+    summary: str = ""
+    label: str = ""
+    progress: Column | None = None
+    compared: bool = False

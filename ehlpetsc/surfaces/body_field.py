@@ -1,0 +1,149 @@
+r"""A depth that belongs to a body: kept in cells of the body, which travel with it.
+
+A step's contribution at the nodes of the mesh is distributed to these cells by overlap, and the mesh gets the
+means over its own cells back: both conserve the volume. Nothing is moved from cell to cell, hence nothing is
+smeared, however far the body travels.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+FINER = 4  # cells of a body per cell of the mesh
+
+
+class BodyField(NamedTuple):
+    """Depth of one body over its own abscissa.
+
+    Attributes
+    ----------
+    spacing : float
+        Width of its cells [m].
+    first : int
+        Edges lie at ``(first + k) spacing`` of the body's abscissa.
+    depth : ndarray, shape (cells,)
+        Mean depth of each cell [m].
+    """
+
+    spacing: float
+    first: int
+    depth: np.ndarray
+
+    @classmethod
+    def zero(cls, cell):
+        """Depth zero, under a mesh with cells of the width `cell` [m]."""
+        return cls(cell / FINER, 0, np.zeros(0))
+
+    def fault(self):
+        """Why the values cannot be a depth; None: they can."""
+        if not 0.0 < self.spacing < 1.0 or self.depth.ndim != 1:
+            return "has no cells of a positive width"
+        return None if (self.depth >= 0.0).all() else "has a negative depth"
+
+    @property
+    def edges(self):
+        """Edges of the cells [m], shape (cells + 1,)."""
+        return self.spacing * (self.first + np.arange(len(self.depth) + 1))
+
+    @property
+    def volume(self):
+        """Integral of the depth over the body [m^2]."""
+        return float(self.depth.sum() * self.spacing)
+
+    def means(self, faces):
+        """Mean depths [m] between faces, increasing abscissas of the body [m], shape (n + 1,)."""
+        if not len(self.depth):
+            return np.zeros(len(faces) - 1)
+        below = np.concatenate([[0.0], np.cumsum(self.depth)]) * self.spacing
+        return np.diff(np.interp(faces, self.edges, below)) / np.diff(faces)
+
+    def add(self, faces, depth):
+        """The field with depths [m] added between faces.
+
+        Parameters
+        ----------
+        faces : ndarray, shape (n + 1,)
+        depth : ndarray, shape (n,)
+        """
+        where = np.flatnonzero(depth)
+        if not len(where):
+            return self
+        faces = faces[where[0] : where[-1] + 2]
+        wider = self._covering(faces[0], faces[-1])
+        volume = np.concatenate([[0.0], np.cumsum(depth[where[0] : where[-1] + 1] * np.diff(faces))])
+        added = np.diff(np.interp(wider.edges, faces, volume)) / self.spacing
+        return wider._replace(depth=wider.depth + np.maximum(added, 0.0))
+
+    def _covering(self, begin, end):
+        """The same field with cells of depth zero added to reach from begin to end [m]."""
+        first = int(np.floor(begin / self.spacing)) - 1
+        last = int(np.ceil(end / self.spacing)) + 1
+        if not len(self.depth):
+            return self._replace(first=first, depth=np.zeros(last - first))
+        before, after = max(self.first - first, 0), max(last - self.first - len(self.depth), 0)
+        if not before and not after:
+            return self
+        return self._replace(first=self.first - before, depth=np.pad(self.depth, (before, after)))
+
+
+class BodyFields(NamedTuple):
+    """Depths of both bodies."""
+
+    surface_1: BodyField
+    surface_2: BodyField
+
+    @classmethod
+    def zero(cls, cell):
+        """Depth zero on both bodies, under a mesh with cells of the width `cell` [m]."""
+        return cls(BodyField.zero(cell), BodyField.zero(cell))
+
+    @property
+    def volume(self):
+        """Integral of both depths [m^2]."""
+        return sum(one.volume for one in self)
+
+
+class MeshOnBodies:
+    """The cells of the mesh in the abscissas of both bodies.
+
+    Parameters
+    ----------
+    scales : scales.Scales
+    offsets : (float, float)
+        Abscissas at which both bodies begin to enter, as of :attr:`.profile.Profile.moved` [m].
+    """
+
+    def __init__(self, scales, offsets=(0.0, 0.0)):
+        self.cell, self.offsets = scales.dx, offsets
+        places = scales.x * scales.a
+        self._faces = np.append(places - 0.5 * self.cell, places[-1] + 0.5 * self.cell)
+
+    def faces(self, travelled):
+        """Faces of the mesh [m] in both bodies, which have travelled so far [m], shape (nx + 1,) each."""
+        return [self._faces - way + offset for way, offset in zip(travelled, self.offsets, strict=True)]
+
+    def means(self, fields, travelled):
+        """Means of both bodies' depths over the cells of the mesh [m], shape (nx,) each."""
+        return [one.means(faces) for one, faces in zip(fields, self.faces(travelled), strict=True)]
+
+    def add(self, fields, travelled, depths):
+        """The fields with depths at the nodes [m], shape (nx,) for each body, added.
+
+        Parameters
+        ----------
+        fields : BodyFields
+        travelled : (float, float)
+            Distances travelled by both bodies [m].
+        depths : pair of ndarray
+        """
+        return BodyFields(
+            *(one.add(at, d) for one, at, d in zip(fields, self.faces(travelled), depths, strict=True))
+        )
+
+    def at_points(self, fields, points):
+        """Mean depths [m] around equally spaced points s of each body [m]; None where there are no points."""
+        found = []
+        for one, s, offset in zip(fields, points, self.offsets, strict=True):
+            half = None if s is None else 0.5 * (s[1] - s[0])
+            found.append(None if s is None else one.means(np.append(s - half, s[-1] + half) + offset))
+        return found
