@@ -18,7 +18,7 @@ from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.post import Post
-from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time
+from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time, Wear
 from ehlpetsc.case.tables.surface import Surface
 from ehlpetsc.case.tables.table import Table, is_plain
 from ehlpetsc.case.tables.validation import Field, PrivateAttr, ValidationError, validator
@@ -51,6 +51,7 @@ class Case(Table):
     time: Time | None = Field(None, description="left out: steady")
     operation: Operation | None = Field(None, description="left out: constant conditions")
     gears: Gears | None = Field(None, description="left out: constant conditions")
+    wear: Wear | None = Field(None, description="left out: no wear")
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
     petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
@@ -58,6 +59,13 @@ class Case(Table):
     _text: str | partial = PrivateAttr("")
     _path: Path = PrivateAttr(Path())
     _conditions: tuple | None = PrivateAttr(None)
+
+    @validator("wear")
+    def _of_mixed_contact_in_time(cls, value, values):
+        contact, time = values.get("contact"), values.get("time")
+        if value is not None and contact is not None and (contact.model != "mixed" or time is None):
+            raise ValueError('needs contact.model = "mixed" and [time]')
+        return value
 
     @validator("petsc")
     def _options(cls, options):

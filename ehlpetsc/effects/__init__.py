@@ -5,8 +5,9 @@ An effect is one module with a class derived from :class:`.effect.Effect` and on
 
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
 from ehlpetsc.effects.roughness import RoughSurfaces
+from ehlpetsc.effects.wear import Wear
 
-EFFECTS = (RoughSurfaces, PlasticDeformation)
+EFFECTS = (RoughSurfaces, PlasticDeformation, Wear)
 
 
 def effects_of(scene, records=()):

@@ -28,6 +28,7 @@ EQUATIONS = {
     "Ground.correlation": "autocorrelation exp(-(lag/correlation)^2)",
     "Bump.position": "z = +- amplitude exp(-(2 (X - position)/wavelength)^2)",
     "Wave.wavelength": "sine: z = amplitude cos(2 pi X/wavelength)",
+    "Wear.coefficient": "dz/dt = k p_c |u1 - u2|, z the depth worn off a surface",
     "Time.travel": "the run lasts travel a/u_max",
     "Time.courant": "dt = courant dx/u_max",
     "Post.b": "de/2 = (sigma_f'/E) (2N)^b + eps_f' (2N)^c, D = sum of 1/N",

@@ -22,6 +22,7 @@ TEXTBOOKS = "the density 1 + 0.6e-9 p/(1 + 1.7e-9 p) of textbooks is"
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
 Pressure = confloat(ge=1e6, le=1e18)
+WearRate = confloat(ge=0.0, le=1e-10)
 
 
 class Contact(Table):
@@ -175,6 +176,18 @@ class Time(Table):
         unit="m",
         description="by which the slow surface's profile enters further on, from pass to pass",
     )
+
+
+class Wear(Table):
+    """`[wear]`: left out, surfaces do not wear."""
+
+    coefficient: tuple[WearRate, WearRate] = Field(
+        ..., unit="m^2/N", one_for_both=True, description="specific wear rate k, of both or of each surface"
+    )
+
+    @validator("coefficient", pre=True)
+    def _of_both(cls, value):
+        return value if isinstance(value, (list, tuple)) else [value, value]
 
 
 class Output(Table):

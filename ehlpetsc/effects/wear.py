@@ -1,0 +1,92 @@
+r"""Wear of both surfaces by Archard's law.
+
+.. math:: \frac{dz_i}{dt}=k_i\,p_c\,|u_1-u_2|
+
+(Archard, J. Appl. Phys. 24 (1953) 981: worn volume per sliding distance in proportion to the load), p_c
+the pressure of the solids in mixed contact and :math:`k_i` the specific wear rate of surface i, the wear
+coefficient over the hardness. Implicit in time: a step wears with the pressure at its end.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from ehlpetsc.effects.effect import Effect
+from ehlpetsc.quantity import Field, Figure
+from ehlpetsc.surfaces.body_field import BodyFields
+
+
+def wear_depth(coefficient, contact_pressure, sliding, dt):
+    """Depth worn off a surface in a step [m].
+
+    Parameters
+    ----------
+    coefficient : float
+        k [m^2/N].
+    contact_pressure : ndarray
+        p_c at the end of the step [Pa].
+    sliding : float
+        u1 - u2 [m/s].
+    dt : float
+        Length of the step [s].
+    """
+    return coefficient * abs(sliding) * dt * contact_pressure
+
+
+class WearRecord(NamedTuple):
+    """Wear depth of both bodies."""
+
+    depth: BodyFields
+
+
+class Wear(Effect):
+    """Wear depth, added to the gap and kept in the bodies."""
+
+    name = "wear"
+    record = WearRecord
+    fields = {
+        "wear_1": Field("m", "wear depth of surface 1", on_request=True),
+        "wear_2": Field("m", "wear depth of surface 2", on_request=True),
+    }
+    scalars = {
+        "wear_volume": Figure(
+            "m^2",
+            "worn volume of both surfaces since the first pass",
+            over_run="last",
+            summary=".4g",
+            compared=True,
+        )
+    }
+    surface = {"wear": Field("m", "wear depth at the end", ("s",))}
+
+    @classmethod
+    def is_in(cls, case):
+        """Whether the case has a table [wear]."""
+        return case.wear is not None
+
+    def start(self, before=None):
+        """No wear, or that of the pass before."""
+        return before or WearRecord(BodyFields.zero(self.scene.scales.dx))
+
+    def inputs(self, record, inputs, step):
+        """Add both wear depths to the gap."""
+        return replace(inputs, phi=inputs.phi + sum(self._at_nodes(record, step)) / self.scene.scales.h)
+
+    def accept(self, record, solution, step):
+        """Wear both surfaces where the solids carry."""
+        if step.dt is None or self.scene.case.wear is None:
+            return record
+        pressure, sliding = self.scene.scales.p0 * solution.contact_pressure, step.conditions.sliding
+        depths = [wear_depth(k, pressure, sliding, step.dt) for k in self.scene.case.wear.coefficient]
+        return WearRecord(self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
+
+    def observe(self, record, solution, step):
+        """Wear depths at the nodes and worn volume."""
+        fields = dict(zip(self.fields, self._at_nodes(record, step), strict=True))
+        return fields, {"wear_volume": record.depth.volume}
+
+    def on_surfaces(self, record, points):
+        """Wear depth along both surfaces."""
+        return {"wear": self.scene.mesh_on_bodies.at_points(record.depth, points)}
+
+    def _at_nodes(self, record, step):
+        return self.scene.mesh_on_bodies.means(record.depth, step.travelled)
