@@ -74,7 +74,7 @@ class Solution(NamedTuple):
 
     Attributes
     ----------
-    nodes : discretisation.contact_model.Relations
+    nodes : discretisation.contact.node_state.NodeState
         Pressure, film and plastic deformation of the step.
     contact_pressure : ndarray
         Pressure of the solids in p0; zero in direct contact.
