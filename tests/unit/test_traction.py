@@ -8,9 +8,9 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
+from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.stepping.observables import observe
 from ehlpetsc.stepping.time_stepping import State
 
