@@ -18,6 +18,7 @@ SCENES = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
     "mixed": lambda case: case.contact.has_contact_pressure,
+    "compliant": lambda case: case.contact.asperity_height is not None,
     "variable": lambda case: case.conditions is not None,
     **{kind.name: kind.is_in for kind in EFFECTS},
 }
@@ -109,7 +110,18 @@ STEP_SCALARS = {
     "contact_share": Figure(
         "1", "share of the load on the solids", over_run="max", summary=".4g", compared=True, only="mixed"
     ),
-    "contact_length": Figure("m", "length where solids carry", compared=True, only="mixed"),
+    "contact_length": Figure(
+        "m",
+        "length where solids carry; of a compliant layer, integral of the real area fraction",
+        compared=True,
+        only="mixed",
+    ),
+    "contact_length_10mpa": Figure(
+        "m", "length where asperities carry more than 10 MPa", compared=True, only="compliant"
+    ),
+    "contact_length_100mpa": Figure(
+        "m", "length where asperities carry more than 100 MPa", compared=True, only="compliant"
+    ),
     "thin_length": Figure("m", "length where the film is thin", compared=True, only="mixed"),
     "thin_share": Figure("1", "share of the load where the film is thin", compared=True, only="mixed"),
     **{name: replace(one, only=kind.name) for kind in EFFECTS for name, one in kind.scalars.items()},

@@ -24,7 +24,8 @@ DEFAULTS = {
 }
 # Direct contact makes up or loses percents of the oil where solids touch, and no figure changes in six digits
 # below 1e-5; mixed contact promises the oil's balance to 1e-6, which is what 1e-7 gives.
-ATOL = {"direct": "1e-5", "mixed": "1e-7"}
+# A compliant layer makes the load nonlinear in the film: 2e-8 balances it to 1e-10.
+ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "2e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 # PETSc's LU and ILU do not exchange rows, and pivots of the deflection's rows come out as zero by chance
 OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
@@ -47,7 +48,7 @@ class RunOptions:
 
     Parameters
     ----------
-    model : {"direct", "mixed"}
+    law : {"direct", "mixed", "compliant"}
         Of contact.
     of_case, given : dict of str to str
         `[petsc]` of the case; those of a call from Python.
@@ -63,8 +64,8 @@ class RunOptions:
         Those of `of_case` and `given` that nobody has read yet.
     """
 
-    def __init__(self, model, of_case=(), given=()):
-        self._defaults = DEFAULTS | {"snes_atol": ATOL[model]}
+    def __init__(self, law, of_case=(), given=()):
+        self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
         self._of_case, self._given, self._depth = dict(of_case), dict(given), 0
         self.views, self.unread = [], {*self._of_case, *self._given}
         self.users = set(self.unread)

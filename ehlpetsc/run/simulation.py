@@ -92,7 +92,7 @@ class Simulation:
             )
         self.comm = comm or MPI.COMM_SELF
         given = {name: _text(v) for name, v in (options or {}).items()}
-        self.options = RunOptions(case.contact.model, case.petsc, given)
+        self.options = RunOptions(case.contact.law, case.petsc, given)
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number = pass_number or (after.pass_number + 1 if after else 1)

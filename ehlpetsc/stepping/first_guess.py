@@ -50,11 +50,12 @@ def hertz_start(problem, film, inputs, thick=1.3):
     if problem.fluid is None:
         gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
         return *problem.model.dry_start(p, gap), -h[np.argmax(p)]
-    h00 = thick * film - h.min()
+    h00 = problem.model.start_film(thick * film) - h.min()
     h += h00
+    oil, w = problem.model.oil_start(p, h)
     behind = (x > np.sqrt(width_2)) & (p < AMBIENT)
-    q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(p, AMBIENT))
-    return q, problem.model.w_from_film(h), h00
+    q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
+    return q, w, h00
 
 
 def smoothed(p, width):

@@ -30,6 +30,8 @@ SCENES = {
     "mixed": ("table1_smooth.toml", ["contact.model='mixed'"]),
     "yielding": ("table1_smooth.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
     "dry, yielding": ("dry_hertz.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
+    "compliant": ("table1_smooth.toml", ["contact.model='mixed'", "contact.asperity_height=2e-9"]),
+    "dry, compliant": ("dry_hertz.toml", ["contact.model='mixed'", "contact.asperity_height=2e-9"]),
     "starved": ("table1_smooth.toml", ["fluid.inlet_film=1e-7"]),
     "dry": ("dry_hertz.toml", []),
 }
@@ -64,7 +66,7 @@ def scene(name):
         q[scales.x > 1.02] = rng.uniform(-0.8, -0.1, (scales.x > 1.02).sum())
     # two nodes side by side without any film are a kink: the limiter of the upwind flux
     touching = ALONE if solver.bound == 0.0 and problem.fluid is not None else [*ALONE, BESIDE]
-    w[touching] = -0.4 / system.model.stiffness if system.model.lower_bound is None else solver.bound
+    w[touching] = system.model.w_from_state(np.zeros(1), np.full(1, 0.4))
     history = None
     if problem.fluid is not None:
         m = problem.content(q, w)

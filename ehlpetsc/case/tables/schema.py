@@ -12,6 +12,7 @@ from ehlpetsc.case.tables.validation import Field, confloat, constr, root_valida
 from ehlpetsc.quantities import FIELDS, STORED
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
+ASPERITIES = {"asperity_stiffness": 1.0, "asperity_slope": 0.1}  # of ground and superfinished steel
 DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_]+)+$"  # a key below a table
 MAX_MEMBERS = 10_000  # of a series
 MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
@@ -36,6 +37,23 @@ class Contact(Table):
     model: Literal["direct", "mixed"] = Field(
         "direct", description="the film's bound replaces Reynolds; or oil and solids carry side by side"
     )
+    asperity_height: float | None = Field(
+        None,
+        ge=1e-11,
+        le=1e-6,
+        unit="m",
+        description="mixed contact: rms height of the roughness finer than the mesh, whose asperities carry "
+        "beta E* exp(-2 h/asperity_height); instead of boundary_film",
+    )
+    asperity_stiffness: float | None = Field(
+        None,
+        ge=1e-4,
+        le=1e4,
+        description="beta of that law [1]; theory: 6 to 11 times asperity_height over the longest wave",
+    )
+    asperity_slope: float | None = Field(
+        None, ge=1e-4, le=10, description="rms slope of that roughness, for the real area of contact [0.1]"
+    )
     boundary_film: float | None = Field(
         None,
         ge=1e-11,
@@ -59,13 +77,36 @@ class Contact(Table):
         """Whether the solids have a pressure of their own beside that of the oil."""
         return self.model == "mixed"
 
+    @property
+    def law(self):
+        """Name of the law of contact: "direct", "mixed" (rigid from the boundary film on) or "compliant"."""
+        return self.model if self.asperity_height is None else "compliant"
+
     @validator("boundary_film", always=True)
     def _of_mixed_contact(cls, value, values):
         if values.get("model") != "mixed":
             if value is not None:
                 raise ValueError("for mixed contact")
             return None
+        if values.get("asperity_height") is not None:
+            if value is not None:
+                raise ValueError("asperity_height replaces it; leave one of them out")
+            return None
         return BOUNDARY_FILM if value is None else value
+
+    @validator("asperity_height")
+    def _of_mixed_contact_as_well(cls, value, values):
+        if value is not None and values.get("model") != "mixed":
+            raise ValueError("for mixed contact")
+        return value
+
+    @validator("asperity_stiffness", "asperity_slope", always=True)
+    def _of_asperities(cls, value, values, field):
+        if values.get("asperity_height") is None:
+            if value is not None:
+                raise ValueError("for asperity_height")
+            return None
+        return ASPERITIES[field.name] if value is None else value
 
     @validator("minimum_film")
     def _of_direct_contact(cls, value, values):

@@ -1,14 +1,22 @@
 """Contact models: what oil and solids do at a node, one module a law, behind one interface."""
 
+from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
 from ehlpetsc.discretisation.contact.direct import DirectContact, DryContact
 from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.yielding import YieldingContact
+from ehlpetsc.physics.asperities import GAMMA
 
 
 def film_scale_of(case, scales, expected_film):
     """Scale of the Reynolds rows, at least the film that passes between touching solids; in a^2/R."""
-    boundary_film = case.contact.boundary_film
-    return expected_film if boundary_film is None else max(expected_film, boundary_film / scales.h)
+    return max(expected_film, smallest_film(case.contact, scales))
+
+
+def smallest_film(contact, scales):
+    """Film in a^2/R that solids in contact leave: boundary film, or that of the layer under p0; 0: none."""
+    if contact.asperity_height is not None:
+        return CompliantContact(Layer.of(contact, scales, GAMMA)).minimum_film
+    return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
 
 
 def contact_model(case, scales, film_scale):
@@ -28,6 +36,8 @@ def contact_model(case, scales, film_scale):
     contact = case.contact
     if contact.model == "direct":
         return (DryContact if case.fluid is None else DirectContact)(contact.minimum_film / scales.h)
+    if contact.asperity_height is not None:
+        return CompliantContact(Layer.of(contact, scales, GAMMA))
     boundary_film, stiffness = contact.boundary_film / scales.h, 1.0 / film_scale
     if contact.yield_pressure is None:
         return MixedContact(boundary_film, stiffness)

@@ -65,6 +65,14 @@ class ContactModel:
         """Unknowns q, w of a dry contact with a pressure where solids touch and a gap elsewhere."""
         return np.zeros_like(pressure), self.w_from_state(gap, pressure)
 
+    def start_film(self, film):
+        """Film of a first guess under oil, from the expected one."""
+        return film
+
+    def oil_start(self, pressure, h):
+        """Oil pressure and second unknown of a first guess with a total pressure and a film."""
+        return pressure, self.w_from_film(h)
+
     def advected(self, interpolated, shifted):
         """Second unknown of a new time level.
 

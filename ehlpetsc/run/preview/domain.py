@@ -2,6 +2,7 @@
 
 import math
 
+from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
     film_left_by_inlet,
@@ -67,9 +68,8 @@ def _too_narrow(case, scales):
 
 
 def _thinnest(case, scales):
-    """The expected film or, where it is thicker, the boundary film [a^2/R]."""
-    boundary = case.contact.boundary_film or 0.0
-    return max(expected_film(case, scales), boundary / scales.h)
+    """The expected film or, where it is thicker, the film that solids in contact leave [a^2/R]."""
+    return max(expected_film(case, scales), smallest_film(case.contact, scales))
 
 
 def _near_inlet(case, scales):

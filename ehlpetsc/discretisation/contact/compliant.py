@@ -1,0 +1,195 @@
+r"""Mixed contact through a compliant layer: roughness finer than the mesh carries before the film closes.
+
+.. math:: p=\max(q,0)+p_c(h),\qquad p_c(h)=\beta E^*e^{-h/(\gamma\sigma)},
+
+see :mod:`ehlpetsc.physics.asperities`. The unknowns are (q, h): nothing is bounded or semismooth but
+cavitation, and the Reynolds equation holds at every node with the film h. Flow factors of the layer are
+neglected: the oil between its asperities flows as in a smooth gap of the mean separation.
+
+A Newton step may at most double p_c at a node, from `FREE_RISE` p0 on: the linearised law does not contain
+the rise of an exponential.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.band import BandEntries
+from ehlpetsc.discretisation.contact.mixed import SeparatedContact
+from ehlpetsc.discretisation.contact.node_state import NodeState, full_of_oil, limit_cavitation
+from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+from ehlpetsc.physics.asperities import (
+    asperity_pressure,
+    asperity_pressures,
+    asperity_separation,
+    asperity_separations,
+    real_area_fraction,
+)
+
+CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
+HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
+FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
+ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
+LOWEST = 1e-3  # p0: asperity pressure at the edge of a dry first guess
+STIFF = 1.0  # p0 per a^2/R: slope of p_c from which pressure and void are the pair of a cavitated node
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Constants of the law in p0 and a^2/R.
+
+    Attributes
+    ----------
+    decay : float
+        gamma sigma.
+    prefactor : float
+        beta E*.
+    slope_modulus : float
+        E* h'_rms.
+    contact_pressure, high_pressure : float
+        Thresholds of the lengths in contact.
+    """
+
+    decay: float
+    prefactor: float
+    slope_modulus: float
+    contact_pressure: float
+    high_pressure: float
+
+    @classmethod
+    def of(cls, contact, scales, gamma):
+        """Layer of the table [contact], its rms height `asperity_height` a number."""
+        modulus = 0.5 * scales.E / scales.p0
+        return cls(
+            gamma * contact.asperity_height / scales.h,
+            contact.asperity_stiffness * modulus,
+            contact.asperity_slope * modulus,
+            CONTACT_PRESSURE / scales.p0,
+            HIGH_PRESSURE / scales.p0,
+        )
+
+
+class CompliantContact(SeparatedContact):
+    """Oil and the asperities of a layer carry side by side.
+
+    Parameters
+    ----------
+    layer : Layer
+    """
+
+    def __init__(self, layer):
+        self.layer = layer
+        self.law = layer.decay, layer.prefactor
+        self.minimum_film = asperity_separation(1.0, *self.law)
+
+    def state(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        solids, slope = asperity_pressures(w, *self.law)
+        pressure, one = np.maximum(q, 0.0) + solids, np.ones_like(w)
+        mask = solids > self.layer.contact_pressure
+        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, one, mask)
+
+    def contact_pressure(self, w):
+        """See :class:`.model.ContactModel`."""
+        return asperity_pressures(w, *self.law)[0]
+
+    def contact_mask(self, w, reynolds_residual):
+        """Nodes whose asperities carry more than `CONTACT_PRESSURE`."""
+        return self.contact_pressure(w) > self.layer.contact_pressure
+
+    def w_from_film(self, h):
+        """The film itself."""
+        return np.maximum(h, 1e-3 * self.layer.decay)
+
+    def w_from_state(self, h, contact_pressure):
+        """The film; without one that at which asperities carry the pressure."""
+        closed = (h <= 0.0) & (contact_pressure > 0.0)
+        return np.where(closed, self._separation(contact_pressure), self.w_from_film(h))
+
+    def _separation(self, pressure):
+        return asperity_separations(np.maximum(pressure, LOWEST), *self.law)
+
+    def dry_start(self, pressure, gap):
+        """See :class:`.model.ContactModel`."""
+        return np.zeros_like(pressure), gap + self._separation(pressure)
+
+    def start_film(self, film):
+        """See :class:`.model.ContactModel`; at least the film at which the asperities carry p0."""
+        return max(film, self.minimum_film)
+
+    def oil_start(self, pressure, h):
+        """See :class:`.model.ContactModel`; asperities carry as much of the pressure as they can."""
+        h = np.maximum(h, self._separation(pressure))
+        return pressure - self.contact_pressure(h), h
+
+    def advected(self, interpolated, shifted):
+        """See :class:`.model.ContactModel`; asperities that carry are moved by whole nodes."""
+        carries = self.contact_pressure(shifted) > ADVECTED
+        return np.where(carries, shifted, np.maximum(interpolated, asperity_separation(ADVECTED, *self.law)))
+
+    def pressure_change(self, now, step):
+        """See :class:`.model.ContactModel`; linear in h."""
+        return pressure_change(now, step, *self.law)
+
+    def clip_step(self, now, step, film_after_release):
+        """See :class:`.model.ContactModel`."""
+        limit_rise(now, step, *self.law)
+
+    def band_entries(self, state, derivatives, stencil):
+        """Pairs (p, h) at nodes full of oil; (q, h) or, where asperities are stiff, (p, q) under a void."""
+        full, stiff = self._kinds(state)
+        h_p = np.where(stiff, 1.0 / np.where(stiff, state.p_w, 1.0), 0.0)
+        p_first = np.where(full | stiff, 1.0, state.p_q)
+        separation_second = np.where(stiff, 0.0, state.separation_w)
+        slope = np.where(full, state.p_w, 0.0)[stencil]
+        derivatives = derivatives.copy()
+        by_q, by_h = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+        old_q, old_h, stiff = by_q.copy(), by_h.copy(), stiff[stencil]
+        by_q[:] = np.where(stiff, old_h * h_p[stencil], old_q)
+        by_h[:] = np.where(stiff, old_q, old_h - old_q * slope)
+        return BandEntries(p_first, h_p, separation_second, derivatives)
+
+    def _kinds(self, state):
+        """Masks of nodes full of oil, and of cavitated ones whose asperities are stiff."""
+        full = state.p_q > 0.0
+        return full, ~full & (state.p_w < -STIFF)
+
+    def from_band(self, state, local, solution):
+        """See :class:`.model.ContactModel`."""
+        full, stiff = (kind[local] for kind in self._kinds(state))
+        first, second, slope = solution[:, 0].copy(), solution[:, 1].copy(), state.p_w[local]
+        solution[:, 0] = np.where(stiff, second, first - np.where(full, slope * second, 0.0))
+        solution[:, 1] = np.where(stiff, first / np.where(stiff, slope, 1.0), second)
+
+    def contact_length(self, loads, scales):
+        """Integral of the real area fraction [m]."""
+        return scales.dx * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus).sum()
+
+    def diagnostics(self, loads, scales, thin_film):
+        """See :class:`.model.ContactModel`."""
+        return super().diagnostics(loads, scales, thin_film) | {
+            "contact_length_10mpa": scales.dx * loads.contact_mask.sum(),
+            "contact_length_100mpa": scales.dx * (loads.contact_pressure > self.layer.high_pressure).sum(),
+        }
+
+
+@compiled
+def pressure_change(now, step, decay, prefactor):
+    """Largest change of total pressure, that of the asperities linearised."""
+    largest = 0.0
+    for i in range(len(now)):
+        q, new_q = now[i, 0], now[i, 0] - step[i, 0]
+        slope = asperity_pressure(now[i, 1], decay, prefactor)[1]
+        largest = max(largest, abs(max(new_q, 0.0) - max(q, 0.0) - slope * step[i, 1]))
+    return largest
+
+
+@compiled
+def limit_rise(now, step, decay, prefactor):
+    """Limit steps in place where a cavity fills or empties, or where p_c would more than double."""
+    for i in range(len(now)):
+        h = now[i, 1]
+        step[i, 0] = limit_cavitation(now[i, 0], step[i, 0])
+        highest = max(2.0 * asperity_pressure(h, decay, prefactor)[0], FREE_RISE)
+        step[i, 1] = min(step[i, 1], h - asperity_separation(highest, decay, prefactor))

@@ -1,0 +1,102 @@
+r"""Contact of self-affine roughness: pressure over the mean separation, and the real area of contact.
+
+Persson (2007, Phys. Rev. Lett. 99, 125502; arXiv:0706.2762) derives from the elastic energy of the flattened
+asperities that a nominally flat rough surface carries
+
+.. math:: p_c(h)=\beta E^*e^{-h/(\gamma\sigma)},\qquad E^*=E'/2,
+
+at the mean separation h, :math:`\sigma` the rms height. Akarapu, Sharp and Robbins (2011, Phys. Rev. Lett.
+106, 204301) find the same exponential, and area and stiffness linear in the load, in simulations with many
+Hurst exponents, system sizes and Poisson ratios.
+
+Both constants follow from the relation of separation and pressure of the theory, with Persson's factor 0.45
+of the elastic energy. Evaluated for spectra without roll-off, Hurst exponents 0.5 to 0.9, over one
+to three decades of waves (`tests/verification/test_asperities.py`), it gives :math:`\gamma=0.44\ldots0.54`,
+and :math:`\beta=(1.4\ldots2.4)\,q_0\sigma` in the limit of light load or :math:`(1.0\ldots1.7)\,q_0\sigma`
+where :math:`0.5\sigma<h<3\sigma`, with :math:`q_0=2\pi/\lambda` of the longest wave of the roughness. So
+:math:`\beta` is of the order of the slope of that wave: 0.008 to 0.02 for 10 nm below 8 um. A larger
+:math:`\beta` counts the film from a plane that is lower by :math:`\gamma\sigma\ln(\beta/\beta_{theory})`, as
+an adsorbed film of that thickness would: 20 to 24 nm for :math:`\beta=1` in this example.
+
+Range: elastic asperities, :math:`p_c` below about :math:`\beta E^*/e`, where :math:`h>\gamma\sigma`. Thinner
+films have the continuation :math:`p_c=\beta E^*\gamma\sigma/(e\,h)` with the same slope, which keeps h
+positive.
+"""
+
+import math
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+
+GAMMA = 0.5  # decay length of the pressure over the rms height
+KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, at light load
+
+
+@compiled
+def asperity_pressure(h, decay, prefactor):
+    r"""Pressure of the asperities at a separation, and its derivative.
+
+    Parameters
+    ----------
+    h : float
+        Mean separation, positive.
+    decay : float
+        :math:`\gamma\sigma` in the unit of h.
+    prefactor : float
+        :math:`\beta E^*`.
+
+    Returns
+    -------
+    pressure, derivative : float
+        In the unit of `prefactor`, and over that of h.
+    """
+    if h >= decay:
+        pressure = prefactor * math.exp(-h / decay)
+        return pressure, -pressure / decay
+    pressure = prefactor * math.exp(-1.0) * decay / h
+    return pressure, -pressure / h
+
+
+@compiled
+def asperity_separation(pressure, decay, prefactor):
+    """Separation at which asperities carry a positive pressure: the inverse of :func:`asperity_pressure`."""
+    if pressure <= prefactor * math.exp(-1.0):
+        return decay * math.log(prefactor / pressure)
+    return prefactor * math.exp(-1.0) * decay / pressure
+
+
+@compiled
+def asperity_pressures(h, decay, prefactor):
+    """Arrays of :func:`asperity_pressure`."""
+    pressure, derivative = np.empty_like(h), np.empty_like(h)
+    for i in range(len(h)):
+        pressure[i], derivative[i] = asperity_pressure(h[i], decay, prefactor)
+    return pressure, derivative
+
+
+@compiled
+def asperity_separations(pressure, decay, prefactor):
+    """Array of :func:`asperity_separation`."""
+    h = np.empty_like(pressure)
+    for i in range(len(h)):
+        h[i] = asperity_separation(pressure[i], decay, prefactor)
+    return h
+
+
+def real_area_fraction(pressure, slope_modulus):
+    r"""Real over nominal area of contact, :math:`A/A_0=\mathrm{erf}\left(\frac{\sqrt\pi}{2}
+    \frac{\kappa p}{E^*h'_{rms}}\right)`.
+
+    Persson's law (2001, J. Chem. Phys. 115, 3840) has this form with :math:`\kappa=\sqrt{8/\pi}=1.6`;
+    simulations give :math:`\kappa` about 2 at light load (Hyun, Pei, Molinari & Robbins 2004, Phys. Rev. E
+    70, 026117), which is taken here.
+
+    Parameters
+    ----------
+    pressure : ndarray
+    slope_modulus : float
+        :math:`E^*h'_{rms}` in the unit of the pressure, h'_rms the rms slope of the roughness.
+    """
+    argument = 0.5 * math.sqrt(math.pi) * KAPPA / slope_modulus * np.asarray(pressure, dtype=float)
+    return np.array([math.erf(value) for value in argument])

@@ -1,0 +1,75 @@
+"""The law of the compliant layer against the integral of Persson's theory, evaluated numerically."""
+
+import numpy as np
+import pytest
+from scipy.integrate import trapezoid
+from scipy.special import erf
+
+from ehlpetsc.physics.asperities import (
+    GAMMA,
+    asperity_pressures,
+    asperity_separations,
+    real_area_fraction,
+)
+
+ENERGY = 0.45  # of the elastic energy of complete contact over the patches in contact, Persson (2007)
+
+
+def separations(pressure, hurst, decades, nodes=1500):
+    r"""Mean separation over rms height by Persson's theory, pressure in E*, wavenumbers in 1/h_rms.
+
+    .. math:: u(p)=\sqrt\pi\int_{q_0}^{q_1}q^2C(q)w(q)\int_p^\infty\frac{dp'}{p'}
+       [\gamma+3(1-\gamma)P^2]e^{-(wp'/E^*)^2},\quad w=\Big(\pi\int_{q_0}^qq'^3C\,dq'\Big)^{-1/2},
+
+    P = erf(w p'/E*), C the isotropic spectrum of a self-affine surface without roll-off, q_0 = 1.
+    """
+    q = np.geomspace(1.0, 10.0**decades, nodes)
+    spectrum = q ** (-2.0 * (1.0 + hurst))
+    spectrum /= 2.0 * np.pi * trapezoid(q * spectrum, q)
+    moment = q**3 * spectrum
+    w = (np.pi * np.cumsum(0.5 * (moment[1:] + moment[:-1]) * np.diff(q))) ** -0.5
+    over = np.geomspace(1.0, 1e8, 1500)
+    found = []
+    for p in pressure:
+        x = np.outer(w, p * over)
+        inner = (ENERGY + 3.0 * (1.0 - ENERGY) * erf(x) ** 2) * np.exp(-np.minimum(x * x, 700.0))
+        inner = trapezoid(inner, np.log(over), axis=1)
+        found.append(np.sqrt(np.pi) * trapezoid(q[1:] ** 2 * spectrum[1:] * w * inner, q[1:]))
+    return np.array(found)
+
+
+@pytest.mark.parametrize("hurst, decades", [(0.5, 1), (0.7, 2), (0.8, 1), (0.8, 3), (0.9, 2)])
+def test_decay_and_prefactor_are_within_the_stated_range(hurst, decades):
+    light = np.geomspace(1e-6, 1e-4, 8)
+    slope, ln_beta = np.polyfit(separations(light, hurst, decades), np.log(light), 1)
+    assert 0.43 < -1.0 / slope < 0.55
+    assert 1.35 < np.exp(ln_beta) < 2.45  # times q_0 h_rms, which is 1 here
+    moderate = np.geomspace(1e-3, 1.0, 40)
+    u = separations(moderate, hurst, decades)
+    some = (u > 0.5) & (u < 3.0)
+    slope, ln_beta = np.polyfit(u[some], np.log(moderate[some]), 1)
+    assert abs(-1.0 / slope / GAMMA - 1.0) < 0.12
+    assert 0.98 < np.exp(ln_beta) < 1.7
+
+
+def test_pressure_and_separation_are_inverse_and_smooth():
+    decay, prefactor = 1e-3, 100.0
+    pressure = np.geomspace(1e-6, 1e4, 200)
+    h = asperity_separations(pressure, decay, prefactor)
+    assert (h > 0.0).all()
+    found, slope = asperity_pressures(h, decay, prefactor)
+    np.testing.assert_allclose(found, pressure, rtol=1e-12)
+    step = 1e-6 * decay
+    forward, backward = (asperity_pressures(h + k * step, decay, prefactor)[0] for k in (1, -1))
+    np.testing.assert_allclose(slope, (forward - backward) / (2.0 * step), rtol=1e-4)
+    thick = h >= decay
+    np.testing.assert_allclose(found[thick], prefactor * np.exp(-h[thick] / decay), rtol=1e-14)
+    edge = asperity_pressures(decay * np.array([1.0 - 1e-9, 1.0 + 1e-9]), decay, prefactor)
+    for value in edge:
+        assert abs(value[1] / value[0] - 1.0) < 1e-8
+
+
+def test_real_area_is_linear_at_light_load_and_complete_at_heavy_load():
+    light, heavy = real_area_fraction(np.array([1e-4, 100.0]), 1.0)
+    assert light == pytest.approx(2.0e-4, rel=1e-6)
+    assert heavy == 1.0
