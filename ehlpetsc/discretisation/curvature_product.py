@@ -10,9 +10,12 @@ quadrature of this integral makes it a sum of M exponentials,
 
 .. math:: f_{s+d}=\sum_mw_me^{-\lambda_md},\quad d\ge0.
 
-The mesh is cut into blocks of `BLOCK` nodes. A block and its two neighbours act on each other by the kernel
+The mesh is a row of blocks of `BLOCK` nodes. A block and its two neighbours act on each other by the kernel
 itself, blocks beyond by M moments of their pressures, which decay from one block to the next. Nearly all of
 it is two products of matrices; it takes less than half the time of a Fourier transform.
+
+A rank has some of the blocks. The outer ones receive from other ranks what they would receive from blocks on
+the same rank: the sums over the neighbour's outer block, and moments.
 """
 
 import itertools
@@ -21,7 +24,7 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 
-BLOCK = 32  # nodes
+BLOCK = 16  # nodes
 TOLERANCE = 1e-11  # of the kernel
 MIN_TERMS = 4
 LINEAR_RATES = 16.0  # over the longest distance: up to them the quadrature is in t, beyond in log t
@@ -65,27 +68,43 @@ def exponentials(kernel, nearest, tolerance=TOLERANCE):
 
 
 class CurvatureProduct:
-    r"""Sums :math:`\sum_kf_kp_{i+k}` over the nodes of a mesh, or of a part of it.
+    r"""Sums :math:`\sum_kf_kp_{i+k}` over the nodes of the mesh, at the nodes of one rank.
 
     Parameters
     ----------
     kernel : ndarray, shape (n,)
         f at distances of 0 .. n-1 nodes.
+    cuts : sequence of int, optional
+        First nodes of all ranks, multiples of `BLOCK`, and n; by default one rank has the mesh.
+    rank : int
+    tolerance : float
+        Relative error of f beyond `BLOCK` nodes.
+
+    Attributes
+    ----------
+    message_size : int
+        Numbers that a rank sends: one half for ranks on its right, one for those on its left. Each has the
+        sums over the outer block at the block beyond (`BLOCK`), the moments of all other blocks, and those of
+        the outer one.
     """
 
-    def __init__(self, kernel):
-        self.n, blocks = len(kernel), -(-len(kernel) // BLOCK)
-        rates, weights = exponentials(kernel, BLOCK + 1)
-        self._fade, terms = np.exp(-BLOCK * rates), len(rates)
-        self._of_pressures = np.hstack([*self._near(kernel), *self._moments(rates)])
-        self._of_moments = np.concatenate([(weights * shares).T for shares in self._moments(rates)[::-1]])
-        self._pressures, self._sums = np.zeros((blocks, BLOCK)), np.empty((blocks, BLOCK))
+    def __init__(self, kernel, cuts=None, rank=0, tolerance=TOLERANCE):
+        cuts = (0, len(kernel)) if cuts is None else cuts
+        self._local, self._rank = cuts[rank + 1] - cuts[rank], rank
+        rates, weights = exponentials(kernel, BLOCK + 1, tolerance)
+        blocks, terms, self._decay = -(-self._local // BLOCK), len(rates), np.exp(-BLOCK * rates)
+        self.message_size = 2 * (BLOCK + 2 * terms)
+        self._translation = self._translation_factors(cuts, rates)
+        moments = self._moments(rates)
+        self._of_pressures = np.hstack([*self._near(kernel), *moments])
+        self._of_moments = np.concatenate([(weights * part).T for part in moments[::-1]])
+        self._pressures = np.zeros((blocks, BLOCK))
         self._near_and_moments = np.empty((blocks, 3 * BLOCK + 2 * terms))
-        self._arriving = np.zeros((blocks, 2 * terms))
+        self._incoming, self._arriving = np.zeros((2, 2, terms)), np.empty((blocks + 2, 2 * terms))
 
     @staticmethod
     def _near(kernel):
-        """What a block does to itself, to the block on its right and to that on its left."""
+        """Matrices of the sums over a block at itself, at the block on its right and at that on its left."""
         known = np.zeros(2 * BLOCK)
         known[: len(kernel)] = kernel[: 2 * BLOCK]
         apart = np.arange(BLOCK) - np.arange(BLOCK)[:, None]
@@ -93,51 +112,118 @@ class CurvatureProduct:
 
     @staticmethod
     def _moments(rates):
-        """What a block's pressures count in the moments that it sends to the right and to the left."""
+        """Matrices of the moments that a block sends to the right and to the left."""
         to_the_end = np.arange(BLOCK)[::-1, None]
         return [np.exp(-rates * to_the_end), np.exp(-rates * to_the_end[::-1])]
 
+    def _translation_factors(self, cuts, rates):
+        """Factors of every rank's moments (inner blocks, outer block) at the outer block of this rank."""
+        factors = np.zeros((len(cuts) - 1, 2, len(rates)))
+        for other in range(len(factors)):
+            if abs(other - self._rank) == 1:  # its outer block reaches this one by the kernel
+                factors[other, 0] = 1.0
+            elif other != self._rank:
+                left, right = sorted((other, self._rank))
+                factors[other, 1] = np.exp(-rates * (cuts[right] - cuts[left + 1] - BLOCK))
+                factors[other, 0] = self._decay * factors[other, 1]
+        return factors
+
+    def pack(self, pressure, message):
+        """Begin the product with the pressures of this rank, and fill in the message to the others."""
+        self._incoming[:] = 0.0
+        buffers = self._pressures, self._near_and_moments, self._arriving
+        pack(pressure, self._of_pressures, self._decay, self._incoming, *buffers, message)
+
+    def sums(self, messages):
+        """Sums at the nodes of this rank, from the messages of all ranks, one in each row."""
+        sums = np.empty_like(self._pressures)
+        buffers = self._incoming, self._near_and_moments, self._arriving
+        unpack(messages, self._rank, self._translation, self._of_moments, self._decay, *buffers, sums)
+        return sums.ravel()[: self._local]
+
     def __call__(self, pressure):
-        """Sums for `pressure` (n,), shape (n,)."""
-        self._pressures.ravel()[: self.n] = pressure
-        np.dot(self._pressures, self._of_pressures, out=self._near_and_moments)
-        moments_arriving(self._near_and_moments, self._fade, self._arriving)
-        np.dot(self._arriving, self._of_moments, out=self._sums)
-        add_near(self._near_and_moments, self._sums)
-        return self._sums.ravel()[: self.n].copy()
+        """Sums on one rank."""
+        message = np.empty((1, self.message_size))
+        self.pack(pressure, message[0])
+        return self.sums(message)
 
 
 @compiled
-def moments_arriving(sent, fade, arriving):
-    """Fill in the moments that arrive at each block from left and right, of blocks two and more away.
+def pack(pressure, of_pressures, decay, none, pressures, near_and_moments, arriving, message):
+    """Multiply the blocks' pressures, and fill in the message; see :class:`CurvatureProduct`."""
+    pressures.ravel()[: len(pressure)] = pressure
+    np.dot(pressures, of_pressures, near_and_moments)
+    scan_moments(near_and_moments, decay, none, arriving)
+    last, terms = len(pressures) - 1, len(decay)
+    left = BLOCK + 2 * terms
+    for i in range(BLOCK):
+        message[i] = near_and_moments[last, BLOCK + i]
+        message[left + i] = near_and_moments[0, 2 * BLOCK + i]
+    for m in range(terms):
+        message[BLOCK + m] = arriving[last + 2, m]
+        message[BLOCK + terms + m] = near_and_moments[last, 3 * BLOCK + m]
+        message[left + BLOCK + m] = arriving[0, terms + m]
+        message[left + BLOCK + terms + m] = near_and_moments[0, 3 * BLOCK + terms + m]
+
+
+@compiled
+def unpack(messages, rank, translation, of_moments, decay, incoming, near_and_moments, arriving, sums):
+    """Complete the sums with what arrives from all other ranks; see :class:`CurvatureProduct`."""
+    ranks, last, terms = len(messages), len(sums) - 1, len(decay)
+    half = BLOCK + 2 * terms
+    for other in range(ranks):
+        if other != rank:
+            side = 0 if other < rank else 1  # on which this rank receives it
+            inner = side * half + BLOCK
+            for m in range(terms):
+                moments = messages[other, inner + m], messages[other, inner + terms + m]
+                incoming[side, 0, m] += translation[other, 0, m] * moments[0]
+                incoming[side, 0, m] += translation[other, 1, m] * moments[1]
+                if abs(other - rank) == 1:
+                    incoming[side, 1, m] = moments[1]
+    if ranks > 1:
+        scan_moments(near_and_moments, decay, incoming, arriving)
+    np.dot(arriving[1:-1], of_moments, sums)
+    for b in range(last + 1):
+        for i in range(BLOCK):
+            sums[b, i] += near_and_moments[b, i]
+    for b in range(1, last + 1):
+        for i in range(BLOCK):
+            sums[b, i] += near_and_moments[b - 1, BLOCK + i]
+            sums[b - 1, i] += near_and_moments[b, 2 * BLOCK + i]
+    for i in range(BLOCK):
+        if rank > 0:
+            sums[0, i] += messages[rank - 1, i]
+        if rank < ranks - 1:
+            sums[last, i] += messages[rank + 1, half + i]
+
+
+@compiled
+def scan_moments(sent, decay, incoming, arriving):
+    """Fill in the moments that arrive at each block from blocks two and more away.
 
     Parameters
     ----------
     sent : ndarray, shape (blocks, 3 BLOCK + 2 terms)
         Its last columns are the moments that each block sends to the right and to the left.
-    fade : ndarray, shape (terms,)
-        What is left of a moment a block further.
-    arriving : ndarray, shape (blocks, 2 terms)
-        Zero at first.
+    decay : ndarray, shape (terms,)
+        Factor of a moment a block further.
+    incoming : ndarray, shape (2, 2, terms)
+        From left and from right: what arrives at the outer block, and what is added at the block behind it.
+    arriving : ndarray, shape (blocks + 2, 2 terms)
+        Of the blocks and of one beyond either end.
     """
-    blocks, terms = len(sent), len(fade)
-    to_right, to_left = sent.shape[1] - 2 * terms, sent.shape[1] - terms
-    for b in range(2, blocks):
+    blocks, terms = len(sent), len(decay)
+    to_right, to_left = 3 * BLOCK, 3 * BLOCK + terms
+    for m in range(terms):
+        arriving[0, m] = arriving[blocks + 1, terms + m] = 0.0
+        arriving[1, m], arriving[blocks, terms + m] = incoming[0, 0, m], incoming[1, 0, m]
+        arriving[2, m] = decay[m] * arriving[1, m] + incoming[0, 1, m]
+        arriving[blocks - 1, terms + m] = decay[m] * arriving[blocks, terms + m] + incoming[1, 1, m]
+    for b in range(2, blocks + 1):
+        back = blocks - 1 - b
         for m in range(terms):
-            arriving[b, m] = fade[m] * arriving[b - 1, m] + sent[b - 2, to_right + m]
-    for b in range(blocks - 3, -1, -1):
-        for m in range(terms):
-            arriving[b, terms + m] = fade[m] * arriving[b + 1, terms + m] + sent[b + 2, to_left + m]
-
-
-@compiled
-def add_near(near, sums):
-    """Add what blocks do to themselves and to their neighbours: columns of `near` one block wide each."""
-    blocks, width = sums.shape
-    for b in range(blocks):
-        for i in range(width):
-            sums[b, i] += near[b, i]
-    for b in range(1, blocks):
-        for i in range(width):
-            sums[b, i] += near[b - 1, width + i]
-            sums[b - 1, i] += near[b, 2 * width + i]
+            arriving[b + 1, m] = decay[m] * arriving[b, m] + sent[b - 2, to_right + m]
+            arriving[back + 1, terms + m] = (
+                decay[m] * arriving[back + 2, terms + m] + sent[back + 2, to_left + m]
+            )

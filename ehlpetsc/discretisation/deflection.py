@@ -11,10 +11,11 @@ at the two end nodes the whole integral with the approach h00,
 where g is the separation of the solids less what their undeformed shape gives it. Residual, matrix-free
 product, assembled matrices and sweeps all take these coefficients.
 
-A part of the mesh knows its window alone: its own nodes and `HALO` on either side. What the pressures
-beyond do to its rows is handed over, as `Outside`.
+A rank is given its window of the mesh alone: its own nodes and `HALO` on either side. Of all pressures it is
+given sums, as `PressureSums`.
 """
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -24,22 +25,22 @@ from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.curvature_product import CurvatureProduct
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
-HALO = 8  # nodes beside its own that a part of the mesh knows; the widest stencil that is taken exactly
+HALO = 8  # nodes on either side of its own that a rank is given; the widest stencil of the preconditioner
 
 
-class Outside(NamedTuple):
-    r"""What pressures of other parts of the mesh do to the rows of one.
+class PressureSums(NamedTuple):
+    r"""Sums over the pressures of the whole mesh.
 
     Attributes
     ----------
     curvature : ndarray, shape (last - first,)
-        :math:`\sum_kf_kp_{i+k}` over the nodes beyond the window.
-    sums : ndarray, shape (3,)
-        Those of :meth:`Deflection.sums`, over all other parts.
+        :math:`\sum_kf_kp_{i+k}` at the local nodes.
+    load : ndarray, shape (3,)
+        In the rows of the first and of the last node, and :math:`\sum p\,\Delta x`.
     """
 
     curvature: np.ndarray
-    sums: np.ndarray
+    load: np.ndarray
 
 
 class Deflection:
@@ -59,14 +60,14 @@ class Deflection:
         Nodes that the rows are given, first .. last-1 among them.
     curvature : ndarray, shape (n,)
         Kernel f_k.
-    stretch : float
-        What the second difference of the separation counts.
-    end_scale : float
-        What the separation counts in an end node's row; h00 counts as much, negative.
+    curvature_coefficient : float
+        Coefficient of the second difference of the separation.
+    end_row_coefficient : float
+        Coefficient of the separation in the row of an end node; that of h00 is its negative.
     ends : list of int
         Local ones of the two end nodes.
-    under_sums : ndarray, shape (3, last - first)
-        What the local pressures count in :meth:`sums`.
+    load_weights : ndarray, shape (3, last - first)
+        Coefficients of the local pressures in `PressureSums.load`.
     """
 
     def __init__(self, n, dx, first, last):
@@ -74,50 +75,48 @@ class Deflection:
         self.window = slice(max(first - HALO, 0), min(last + HALO, n))
         self.own = slice(first - self.window.start, last - self.window.start)
         self.curvature = elasticity.curvature_kernel(n)
-        self.stretch, self.end_scale = np.pi / dx, 1.0 / dx
+        self.curvature_coefficient, self.end_row_coefficient = np.pi / dx, 1.0 / dx
         self.ends = [end for end in (0, n - 1) if first <= end < last]
-        self._curvature_product = CurvatureProduct(self.curvature[: self.window.stop - self.window.start])
         logarithm = self._logarithm()
         mine = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
-        self.under_sums = np.stack([*mine, np.full(last - first, dx)])
+        self.load_weights = np.stack([*mine, np.full(last - first, dx)])
+
+    @cached_property
+    def _curvature_product(self):
+        return CurvatureProduct(self.curvature)
 
     def _logarithm(self):
         return elasticity.deflection_kernel(self.n) - np.log(self.dx)
 
     def end_row(self, node, logarithm=None):
-        """Under every pressure in the row of an end node, shape (n,)."""
+        """Coefficients of all pressures in the row of an end node, shape (n,)."""
         kernel = self._logarithm() if logarithm is None else logarithm
-        return (-self.end_scale * self.dx / np.pi) * (kernel if node == 0 else kernel[::-1])
+        return (-self.end_row_coefficient * self.dx / np.pi) * (kernel if node == 0 else kernel[::-1])
 
     def sums(self, pressure):
-        """Over the local pressures, shape (last - first,): in both end nodes' rows, and in the load's."""
-        return self.under_sums @ pressure
+        """`PressureSums` of the pressures (n,) of the mesh, on one rank."""
+        return PressureSums(self._curvature_product(pressure), self.load_weights @ pressure)
 
-    def rows(self, separation, pressure, approach, outside=None):
-        """The linear form in the local rows, and the load that the pressures carry.
+    def residual(self, separation, approach, sums):
+        """Linear form in the local rows.
 
         Parameters
         ----------
-        separation, pressure : ndarray
+        separation : ndarray
             At the nodes of `window`.
         approach : float
-        outside : Outside, optional
-            Needed unless the window is the whole mesh.
+        sums : PressureSums
 
         Returns
         -------
-        rows : ndarray, shape (last - first,)
-        load : float
+        ndarray, shape (last - first,)
         """
-        rows, sums = self._curvature_product(pressure)[self.own], self.sums(pressure[self.own])
-        if outside is not None:
-            rows += outside.curvature
-            sums = sums + outside.sums
-        second_differences(separation, self.own.start, self.stretch, rows)
+        rows = np.empty(self.last - self.first)
+        second_differences(separation, self.own.start, self.curvature_coefficient, sums.curvature, rows)
         for end in self.ends:
             k = 0 if end == 0 else -1
-            rows[k] = self.end_scale * (separation[k] - approach) + sums[k and 1]
-        return rows, sums[2]
+            rows[k] = self.end_row_coefficient * (separation[k] - approach) + sums.load[k and 1]
+        return rows
 
     def integral(self, pressure):
         r"""Elastic deflection :math:`-\frac1\pi\int p\ln|x-s|ds` at every node, in a^2/R."""
@@ -125,19 +124,19 @@ class Deflection:
 
 
 @compiled
-def second_differences(g, start, stretch, rows):
-    """Replace `rows`, sums over pressures, by stretch times the second differences of g less these sums.
+def second_differences(g, start, coefficient, curvature, rows):
+    """Fill in the deflection rows, but for those where g ends.
 
     Parameters
     ----------
     g : ndarray
+        Separation.
     start : int
-        Place in g of the first row's node.
-    stretch : float
-    rows : ndarray
-        Left as they are where g ends.
+        Index in g of the first row's node.
+    coefficient : float
+    curvature, rows : ndarray, shape (rows,)
     """
     for row in range(len(rows)):
         i = start + row
         if 0 < i < len(g) - 1:
-            rows[row] = stretch * (g[i - 1] - 2.0 * g[i] + g[i + 1]) - rows[row]
+            rows[row] = coefficient * (g[i - 1] - 2.0 * g[i] + g[i + 1]) - curvature[row]

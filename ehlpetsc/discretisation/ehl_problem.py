@@ -150,7 +150,7 @@ class EHLProblem:
         state = self.model.state(q, w)
         return self.reynolds.film_content(state.reynolds_unknown, state.film, self.fluid)
 
-    def evaluate(self, q, w, h00, inputs, outside=None):
+    def evaluate(self, q, w, h00, inputs, sums=None):
         """Local rows and their derivatives at one state.
 
         Parameters
@@ -159,8 +159,8 @@ class EHLProblem:
             At the nodes of the window.
         h00 : float
         inputs : StepInputs
-        outside : deflection.Outside, optional
-            Needed unless the window is the whole mesh.
+        sums : deflection.PressureSums, optional
+            Of the pressures at that state; needed unless the window is the whole mesh.
 
         Returns
         -------
@@ -172,17 +172,17 @@ class EHLProblem:
         # the parabola's second difference is dx^2 exactly
         curvature = self.scales.R / inputs.conditions.radius
         separation = state.separation - curvature * self._parabola - inputs.phi[self.window]
-        deflection, load = self.deflection.rows(separation, state.pressure, h00, outside)
-        firsts(residual, self.local)[:] = deflection
+        sums = self.deflection.sums(state.pressure) if sums is None else sums
+        firsts(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
         reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
         seconds(residual, self.local)[:] = reynolds
         if self.load_is_local:
-            residual[-1] = load - 0.5 * np.pi * inputs.load_share * (
+            residual[-1] = sums.load[2] - 0.5 * np.pi * inputs.load_share * (
                 inputs.conditions.load / self.scales.load
             )
         return Evaluation(model, state, residual, derivatives)
 
-    def product(self, state, derivatives, nodes, v_h00, outside=None):
+    def jacobian_vector_product(self, state, derivatives, nodes, v_h00, sums):
         """The whole Jacobian times a vector, in the local rows.
 
         Parameters
@@ -192,7 +192,7 @@ class EHLProblem:
         nodes : ndarray, shape (window, 2)
             q and w of the vector at the nodes of the window.
         v_h00 : float
-        outside : deflection.Outside, optional
+        sums : deflection.PressureSums
             Of the change of pressure.
 
         Returns
@@ -200,10 +200,10 @@ class EHLProblem:
         ndarray
             Interleaved, shape of the local part of the vector.
         """
-        unknown, pressure, film, separation = state.directional_derivative(nodes)
+        unknown, film, separation = state.directional_derivative(nodes)
         rows = np.empty(count(self.local) + self.load_is_local)
-        firsts(rows, self.local)[:], load = self.deflection.rows(separation, pressure, v_h00, outside)
+        firsts(rows, self.local)[:] = self.deflection.residual(separation, v_h00, sums)
         reynolds_product(derivatives, unknown, film, self.own.start, seconds(rows, self.local))
         if self.load_is_local:
-            rows[-1] = load
+            rows[-1] = sums.load[2]
         return rows

@@ -139,7 +139,7 @@ class GaussSeidelSolver:
             return np.linalg.norm(rows)
 
     def _sweep(self, q, h, p, gap_is_open, inputs):
-        problem, steady, stretch = self.problem, inputs.history is None, self.deflection.stretch
+        problem, steady, stretch = self.problem, inputs.history is None, self.deflection.curvature_coefficient
         sweeps = max(1, round((STEADY_REACH if steady else REACH) / problem.dx))
         shape = 0.5 * problem.x**2 + inputs.phi
         bend = self.distant(p)

@@ -114,7 +114,9 @@ def counted(solver):
             traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + numbers.nbytes
             ranks.Allreduce(mine, numbers, operation)
 
-    solver.system.exchange.ranks = solver.system.factors.lu.ranks = Counting()
+    solver.system.linear_exchange.ranks = solver.system.exchange.ranks = solver.system.factors.lu.ranks = (
+        Counting()
+    )
     return traffic
 
 

@@ -43,17 +43,17 @@ def dense(problem, at, dropped):
     apart = np.abs(np.subtract.outer(group, group))
     kernel = np.exp(-apart[..., None] * rates) @ weights
     by_pressure = -np.where(apart > 1, kernel, d.curvature[np.abs(np.subtract.outer(node, node))])
-    by_film = d.stretch * (np.eye(n, k=-1) - 2.0 * np.eye(n) + np.eye(n, k=1))
+    by_film = d.curvature_coefficient * (np.eye(n, k=-1) - 2.0 * np.eye(n) + np.eye(n, k=1))
     for end in (0, n - 1):
         by_pressure[end], by_film[end] = d.end_row(end), 0.0
-        by_film[end, end] = d.end_scale
+        by_film[end, end] = d.end_row_coefficient
     evaluation = problem.evaluate(*at, problem.inputs())
     nodes, derivatives = evaluation.state, evaluation.reynolds_derivatives
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
     leak = np.where((nodes.p_q > 0.0) | (nodes.p_w != 0.0), 0.0, LEAK)
     matrix[: 2 * n : 2, : 2 * n : 2] = by_pressure * nodes.p_q + np.diag(leak)
     matrix[: 2 * n : 2, 1 : 2 * n : 2] = by_pressure * nodes.p_w + by_film * nodes.h_w
-    matrix[[0, 2 * n - 2], -1] = -d.end_scale
+    matrix[[0, 2 * n - 2], -1] = -d.end_row_coefficient
     for i, row in enumerate(derivatives):
         for k, j in enumerate(range(i - 2, i + 2)):
             if 0 <= j < n:
@@ -79,7 +79,7 @@ def test_it_solves_its_matrix(model):
     whole, part = EHLProblem(case, scales, film, 0, n), EHLProblem(case, scales, film, first, last)
     right = np.random.default_rng(2).standard_normal(2 * n + 1)
     right[2 * dropped + 1] = 0.0
-    lu = SpikeLU(BandedJacobian(part), -part.deflection.end_scale, ranks)
+    lu = SpikeLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)
     mine = dropped[(dropped >= first) & (dropped < last)] - first
     kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
     nodes = part.model.state(at[0][part.window], at[1][part.window])

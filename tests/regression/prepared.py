@@ -76,7 +76,8 @@ def load_compiled():
     found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
     step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
     now.flags.writeable = False  # as PETSc gives it
-    problem.product(found.state, found.reynolds_derivatives, now, 0.0)
+    sums = problem.deflection.sums(found.state.pressure_derivative(now, problem.own))
+    problem.jacobian_vector_product(found.state, found.reynolds_derivatives, now, 0.0, sums)
     reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
     extrapolated(one, one, 1.0)
     advected(one, 1.0)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.deflection import Deflection
+from ehlpetsc.discretisation.curvature_product import CurvatureProduct
+from ehlpetsc.discretisation.deflection import Deflection, PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.far_pressures import FarPressures
 from ehlpetsc.discretisation.interleaving import firsts
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -24,10 +24,11 @@ def test_the_integral_fulfils_the_second_differences(seed):
     rng = np.random.default_rng(seed)
     p, approach = rng.uniform(-1.0, 3.0, N), -0.7
     d = Deflection(N, DX, 0, N)
-    rows, load = d.rows(approach + d.integral(p), p, approach)
-    terms = d.stretch * np.abs(d.integral(p)).max()
+    sums = d.sums(p)
+    rows = d.residual(approach + d.integral(p), approach, sums)
+    terms = d.curvature_coefficient * np.abs(d.integral(p)).max()
     assert np.abs(rows).max() < 1e-12 * terms
-    assert load == pytest.approx(DX * p.sum(), rel=1e-14)
+    assert sums.load[2] == pytest.approx(DX * p.sum(), rel=1e-14)
 
 
 def test_the_second_differences_fulfil_the_integral():
@@ -35,26 +36,28 @@ def test_the_second_differences_fulfil_the_integral():
     rng = np.random.default_rng(3)
     p, approach = rng.uniform(0.0, 2.0, N), 0.4
     d = Deflection(N, DX, 0, N)
-    by_separation = np.array([d.rows(unit, np.zeros(N), 0.0)[0] for unit in np.eye(N)]).T
-    found = np.linalg.solve(by_separation, -d.rows(np.zeros(N), p, approach)[0])
+    by_separation = np.array([d.residual(unit, 0.0, d.sums(np.zeros(N))) for unit in np.eye(N)]).T
+    found = np.linalg.solve(by_separation, -d.residual(np.zeros(N), approach, d.sums(p)))
     np.testing.assert_allclose(found, approach + d.integral(p), rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("cuts", [(0, 50, N), (0, 50, 90, N), (0, 16, 32, 60, 77, 101, 120, N)])
-def test_parts_of_the_mesh_have_the_rows_of_the_whole(cuts):
-    """Each knows its window, and of all beyond only the moments that the others tell."""
+@pytest.mark.parametrize("cuts", [(0, 64, N), (0, 48, 96, N), (0, 16, 32, 64, 80, 96, 112, N)])
+def test_ranks_have_the_rows_of_the_whole_mesh(cuts):
+    """Each is given its window of the separation, and of the pressures beyond its own the messages alone."""
     rng = np.random.default_rng(4)
     g, p = rng.standard_normal((2, N))
-    rows, load = Deflection(N, DX, 0, N).rows(g, p, 0.3)
+    whole = Deflection(N, DX, 0, N)
+    rows, load = whole.residual(g, 0.3, whole.sums(p)), whole.sums(p).load
     parts = [Deflection(N, DX, *ends) for ends in itertools.pairwise(cuts)]
-    far = [FarPressures(part, cuts, k) for k, part in enumerate(parts)]
-    told = np.full((len(parts), far[0].told), np.nan)  # all of it is filled in
-    for one, d, its in zip(far, parts, told, strict=True):
-        one.tell(p[d.first : d.last], its)
-    for k, d in enumerate(parts):
-        mine, whole_load = d.rows(g[d.window], p[d.window], 0.3, far[k].outside(told))
+    products = [CurvatureProduct(whole.curvature, cuts, rank) for rank in range(len(parts))]
+    messages = np.full((len(parts), products[0].message_size), np.nan)  # all of it is filled in
+    for product, d, message in zip(products, parts, messages, strict=True):
+        product.pack(p[d.first : d.last], message)
+    loads = sum(d.load_weights @ p[d.first : d.last] for d in parts)
+    np.testing.assert_allclose(loads, load, rtol=1e-12)
+    for product, d in zip(products, parts, strict=True):
+        mine = d.residual(g[d.window], 0.3, PressureSums(product.sums(messages), loads))
         np.testing.assert_allclose(mine, rows[d.first : d.last], rtol=0, atol=1e-11)
-        assert whole_load == pytest.approx(load, rel=1e-13)
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
@@ -69,5 +72,5 @@ def test_the_problems_film_leaves_no_residual_in_its_deflection_rows(model):
     film = problem.film(q, h00, phi)
     assert film.min() > 0.0
     evaluation = problem.evaluate(q, problem.model.w_from_film(film), h00, problem.inputs(phi))
-    terms = problem.deflection.stretch * film.max()
+    terms = problem.deflection.curvature_coefficient * film.max()
     assert np.abs(firsts(evaluation.residual, problem.n)).max() < 1e-12 * terms

@@ -82,7 +82,7 @@ class NodeState(NamedTuple):
         return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
 
     def directional_derivative(self, nodes):
-        """Changes of Reynolds unknown, pressure, film and separation.
+        """Changes of Reynolds unknown, film and separation.
 
         Parameters
         ----------
@@ -91,25 +91,27 @@ class NodeState(NamedTuple):
 
         Returns
         -------
-        reynolds_unknown, pressure, film, separation : ndarray
+        reynolds_unknown, film, separation : ndarray
         """
-        unknown, pressure, film = elastic_derivative(self.p_q, self.p_w, self.h_w, nodes)
+        v_q, v_w = nodes.T
+        film = self.h_w * v_w
         if self.plastic is None:
-            return unknown, pressure, film, film
-        y, (v_q, v_w) = self.plastic, nodes.T
-        unknown = y.reynolds_q * v_q + y.reynolds_w * v_w
-        return unknown, pressure, film, film - (y.depth_q * v_q + y.depth_w * v_w)
+            return v_q, film, film
+        y = self.plastic
+        return y.reynolds_q * v_q + y.reynolds_w * v_w, film, film - (y.depth_q * v_q + y.depth_w * v_w)
+
+    def pressure_derivative(self, nodes, own):
+        """Changes of pressure at some nodes with changes (nodes, 2) of their q and w."""
+        return pressure_derivative(self.p_q[own], self.p_w[own], nodes)
 
 
 @compiled
-def elastic_derivative(p_q, p_w, h_w, nodes):
-    """Changes of q, pressure and film, see :meth:`NodeState.directional_derivative`."""
-    q, pressure, film = np.empty(len(nodes)), np.empty(len(nodes)), np.empty(len(nodes))
+def pressure_derivative(p_q, p_w, nodes):
+    """Changes of pressure, see :meth:`NodeState.pressure_derivative`."""
+    pressure = np.empty(len(nodes))
     for i in range(len(nodes)):
-        q[i], w = nodes[i, 0], nodes[i, 1]
-        pressure[i] = p_q[i] * q[i] + p_w[i] * w
-        film[i] = h_w[i] * w
-    return q, pressure, film
+        pressure[i] = p_q[i] * nodes[i, 0] + p_w[i] * nodes[i, 1]
+    return pressure
 
 
 @compiled

@@ -65,7 +65,7 @@ class JacobianOperator(BandSystem, Restrictable):
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    exchange : exchange.Exchange
+    exchange : halo_exchange.HaloExchange
     factors : object
         Keeps the default preconditioner's factors between solves, see :mod:`.preconditioner`.
 
@@ -91,12 +91,9 @@ class JacobianOperator(BandSystem, Restrictable):
 
     def times(self, v):
         """Product with the local part of a vector, of all ranks together."""
-        nodes, h00, outside = self.exchange(v, self._pressure)
-        return self.problem.product(self.state, self.reynolds_derivatives, nodes, h00, outside)
-
-    def _pressure(self, nodes):
-        own, r = self.problem.own, self.state
-        return r.p_q[own] * nodes[:, 0] + r.p_w[own] * nodes[:, 1]
+        problem, state = self.problem, self.state
+        nodes, h00, sums = self.exchange(v, lambda nodes: state.pressure_derivative(nodes, problem.own))
+        return problem.jacobian_vector_product(state, self.reynolds_derivatives, nodes, h00, sums)
 
     def mult(self, mat, v, out):
         """PETSc's product."""
@@ -187,16 +184,16 @@ class NearFieldMatrix:
         p, d, near = self.problem, self.problem.deflection, self.near
         kernel = np.tile(-d.curvature[np.abs(np.arange(-near, near + 1))], (p.local, 1))
         bend = np.zeros_like(kernel)
-        bend[:, near - 1 : near + 2] = d.stretch * np.array(SECOND_DIFFERENCE)
+        bend[:, near - 1 : near + 2] = d.curvature_coefficient * np.array(SECOND_DIFFERENCE)
         for end in d.ends:
             row = end - p.first
             kernel[row], bend[row] = d.end_row(end)[self.nodes[row]], 0.0
-            bend[row, near] = d.end_scale
+            bend[row, near] = d.end_row_coefficient
         by_q = kernel * state.p_q[self.nodes] + bend * state.separation_q[self.nodes]
         own = slice(p.first, p.last)
         by_q[:, near] += leaks(state.p_q[own], state.separation_q[own])
         by_w = kernel * state.p_w[self.nodes] + bend * state.separation_w[self.nodes]
-        approach = np.full((p.local, 1), -d.end_scale)
+        approach = np.full((p.local, 1), -d.end_row_coefficient)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
         set_rows(self.matrix, second_of(nodes), p.reynolds_columns, self._by_unknowns(state, derivatives))

@@ -118,7 +118,8 @@ class BandedJacobian:
         nodes = np.concatenate([*(inner + k for k, _ in steps), ends])
         self.film_nodes = nodes - self.problem.window.start
         self.by_film = np.repeat(
-            [*(d.stretch * value for _, value in steps), d.end_scale], [*[len(inner)] * 3, len(ends)]
+            [*(d.curvature_coefficient * value for _, value in steps), d.end_row_coefficient],
+            [*[len(inner)] * 3, len(ends)],
         )
         rows = np.concatenate([row, row, row, self._pressure(ends)])
         self.film_place = self._at(rows, self._film(nodes))
@@ -138,13 +139,13 @@ class BandedJacobian:
             nodes.append(inner[near] + k)
             far = np.exp(-np.outer(apart[near], self.rates)) @ self.weights
             values.append(far - d.curvature[abs(k)])
-            bent.append(np.full(near.sum(), d.stretch * bend.get(k, 0.0)))
+            bent.append(np.full(near.sum(), d.curvature_coefficient * bend.get(k, 0.0)))
         for end in d.ends:
             near = self._beside(end)
             rows.append(np.full(len(near), self._pressure(end)))
             nodes.append(near)
             values.append(d.end_row(end)[near])
-            bent.append(np.where(near == end, d.end_scale, 0.0))
+            bent.append(np.where(near == end, d.end_row_coefficient, 0.0))
         nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
         self.by_depth, self.pressure_nodes = np.concatenate(bent), nodes - p.window.start
         self.pressure_place = self._at(np.concatenate(rows), self._pressure(nodes))

@@ -22,7 +22,7 @@ class Factors:
     """
 
     def __init__(self, problem, ranks):
-        self.lu = SpikeLU(BandedJacobian(problem), -problem.deflection.end_scale, ranks)
+        self.lu = SpikeLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh = False
 
     def of_a_new_solve(self):

@@ -13,7 +13,7 @@ their deflection, and h00. The columns of G are solved for with every matrix; w 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.nonlinear.exchange import everywhere
+from ehlpetsc.nonlinear.halo_exchange import all_ranks
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, RIGHT, SIZE, BlockLU
 from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
 
@@ -46,7 +46,7 @@ class SpikeLU:
 
         Other arguments as of :meth:`.banded_jacobian.BandedJacobian.fill`.
         """
-        if not anew and everywhere(self.ranks, self._still_good(entries, dropped)):
+        if not anew and all_ranks(self.ranks, self._still_good(entries, dropped)):
             return
         self.factored = dropped, entries.reynolds_derivatives
         e = self.band

@@ -2,7 +2,7 @@
 
 Each rank holds the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), the last one on the last rank,
 and works out its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`); what it needs of other ranks comes by
-:mod:`ehlpetsc.nonlinear.exchange`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.operators`), so
+:mod:`ehlpetsc.nonlinear.halo_exchange`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.operators`), so
 that Newton converges as with the full matrix; the preconditioner of this program takes what it needs from it,
 others (``-pc_type lu`` ...) get the near field assembled.
 """
@@ -10,16 +10,15 @@ others (``-pc_type lu`` ...) get the near field assembled.
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.discretisation.deflection import HALO
+from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.exchange import Exchange, everywhere, largest
+from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, HaloExchange, all_ranks, global_max
 from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 from ehlpetsc.nonlinear.snes import owned
 
@@ -61,7 +60,8 @@ class TwoFields:
         self.near_field = case.mesh.near_field
         self.problem = EHLProblem(case, scales, film_scale, first, last)
         self.model = self.problem.model
-        self.exchange = Exchange(self.problem, cuts, comm.tompi4py())
+        self.exchange = HaloExchange(self.problem, cuts, comm.tompi4py())
+        self.linear_exchange = HaloExchange(self.problem, cuts, comm.tompi4py(), LINEAR_TOLERANCE)
         self._create_vectors()
         self.inputs = self.place = self.rows = self.operator = None
 
@@ -87,7 +87,7 @@ class TwoFields:
         """
         sizes = self.x.getSizes()
         self.factors = Factors(self.problem, self.comm.tompi4py()) if with_band else None
-        self.jacobian = JacobianOperator(self.problem, self.exchange, self.factors)
+        self.jacobian = JacobianOperator(self.problem, self.linear_exchange, self.factors)
         self.operator = python_matrix(self.jacobian, sizes, self.comm)
         self.assembled, self.preconditioned = None, self.operator
         self._made.append(self.operator)
@@ -134,7 +134,7 @@ class TwoFields:
 
     def evaluation(self, x):
         """Residual and derivatives at x, where they were asked for last more often than not."""
-        if not everywhere(self.exchange.ranks, np.array_equal(x.array_r, self.place)):
+        if not all_ranks(self.exchange.ranks, np.array_equal(x.array_r, self.place)):
             self.evaluate(x)
         return self._evaluation
 
@@ -142,9 +142,9 @@ class TwoFields:
         """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`."""
         self.place = x.array_r.copy()
         with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
-            nodes, h00, outside = self.exchange(self.place, self._pressure)
+            nodes, h00, sums = self.exchange(self.place, self._pressure)
             q, w = np.ascontiguousarray(nodes.T)
-            self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, outside)
+            self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, sums)
         return self._evaluation
 
     def _pressure(self, nodes):
@@ -155,7 +155,7 @@ class TwoFields:
         self.jacobian.linearise(self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                whole = self.exchange.whole(self.jacobian.state)
+                whole = self.exchange.gather(self.jacobian.state)
                 self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
 
     @property
@@ -170,7 +170,7 @@ class TwoFields:
         because the viscosity is exponential in p; single entries are limited by the contact model.
         """
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
-        change = largest(self.exchange.ranks, self.contact.pressure_change(now, step))
+        change = global_max(self.exchange.ranks, self.contact.pressure_change(now, step))
         if change > STEP_LIMIT:
             y.scale(STEP_LIMIT / change)
         step = pairs(y.array, self.local)
@@ -193,14 +193,14 @@ class TwoFields:
 
 
 def first_nodes(n, ranks):
-    """First nodes of all ranks, and n.
+    """First nodes of all ranks, multiples of `BLOCK`, and n.
 
     Raises
     ------
     UsageError
-        A part must be as wide as what its neighbours know of it.
+        A rank would have no block.
     """
-    most = max(n // (HALO + GROUP), 1)
+    most = max(n // BLOCK, 1)
     if ranks > most:
         raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {most}")
-    return [n * k // ranks // GROUP * GROUP for k in range(ranks)] + [n]
+    return [n * k // ranks // BLOCK * BLOCK for k in range(ranks)] + [n]

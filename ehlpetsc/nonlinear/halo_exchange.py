@@ -1,0 +1,98 @@
+"""Exchange of unknowns and pressure sums between ranks: one collective, with the same few numbers from each.
+
+Every rank sends the unknowns of its outer nodes, which the stencils of its neighbours reach, and of its
+pressures what :mod:`ehlpetsc.discretisation.curvature_product` sends and the sums over its nodes.
+"""
+
+import numpy as np
+from mpi4py import MPI
+
+from ehlpetsc.discretisation.curvature_product import TOLERANCE, CurvatureProduct
+from ehlpetsc.discretisation.deflection import HALO, PressureSums
+from ehlpetsc.discretisation.interleaving import count, pairs
+
+LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
+
+
+def global_max(ranks, number):
+    """Largest of the numbers of all ranks."""
+    if ranks.size == 1:
+        return number
+    received = np.array([number], dtype=float)
+    ranks.Allreduce(MPI.IN_PLACE, received, MPI.MAX)
+    return received[0]
+
+
+def all_ranks(ranks, condition):
+    """Whether a condition holds on every rank."""
+    return global_max(ranks, not condition) == 0.0
+
+
+class HaloExchange:
+    """Exchange of one scene on one communicator; on one rank nothing is sent.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+        Of the nodes of this rank.
+    cuts : sequence of int
+        First nodes of all ranks, and the number of nodes.
+    ranks : mpi4py communicator
+    tolerance : float
+        Of the far kernel in the pressure sums.
+    """
+
+    def __init__(self, problem, cuts, ranks, tolerance=TOLERANCE):
+        self.problem, self.ranks = problem, ranks
+        self._product = CurvatureProduct(problem.deflection.curvature, cuts, ranks.rank, tolerance)
+        self._edge = count(HALO)
+        self._load = 2 * self._edge + 1  # behind the outer unknowns and h00: three sums, then the product's
+        size = self._load + 3 + self._product.message_size
+        self._mine, self._all = np.zeros(size), np.zeros((ranks.size, size))
+
+    def __call__(self, vector, pressure):
+        """Unknowns at the nodes of the window, and sums over all pressures.
+
+        Parameters
+        ----------
+        vector : ndarray
+            Local unknowns, interleaved; h00 last on the last rank.
+        pressure : callable
+            Pressures of the local nodes from their unknowns, given as shape (local, 2).
+
+        Returns
+        -------
+        nodes : ndarray, shape (window, 2)
+        h00 : float
+        sums : deflection.PressureSums
+        """
+        problem, rank, edge, mine = self.problem, self.ranks.rank, self._edge, self._mine
+        nodes = pairs(vector, problem.local)
+        p = pressure(nodes)
+        self._product.pack(p, mine[self._load + 3 :])
+        load = problem.deflection.load_weights @ p
+        if self.ranks.size == 1:
+            return nodes, vector[-1], PressureSums(self._product.sums(mine[None, self._load + 3 :]), load)
+        mine[:edge], mine[edge : 2 * edge] = nodes[:HALO].ravel(), nodes[-HALO:].ravel()
+        mine[2 * edge] = vector[-1]  # h00 on the last rank
+        mine[self._load : self._load + 3] = load
+        self.ranks.Allgather(mine, self._all)
+        window = [nodes]
+        if rank > 0:
+            window.insert(0, pairs(self._all[rank - 1, edge:], HALO))
+        if rank < self.ranks.size - 1:
+            window.append(pairs(self._all[rank + 1], HALO))
+        loads, messages = np.split(self._all[:, self._load :], [3], axis=1)
+        sums = PressureSums(self._product.sums(messages), loads.sum(axis=0))
+        return np.concatenate(window), self._all[-1, 2 * edge], sums
+
+    def gather(self, record):
+        """Named tuple of the arrays of all nodes, from one of arrays at the nodes of the window."""
+        if self.ranks.size == 1:
+            return record
+        return record._make(self._gather(part) for part in record)
+
+    def _gather(self, part):
+        if isinstance(part, np.ndarray):
+            return np.concatenate(self.ranks.allgather(part[self.problem.own]))
+        return self.gather(part) if isinstance(part, tuple) else part
