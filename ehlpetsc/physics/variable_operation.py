@@ -210,7 +210,8 @@ class VariableOperation:
         if (rate * self.period < 1.0).any():  # nothing moves for a while
             rate = np.maximum(rate, FEWEST_STEPS / (self.courant * self.period))
         steps = _cumulative(rate, fine.time)
-        count = max(int(np.ceil(steps[-1] * (1.0 - 1e-12))), 1)
+        multiple = 4 if self.is_reversing else 1  # strokes alike then have time levels alike
+        count = multiple * max(int(np.ceil(steps[-1] * (1.0 - 1e-12) / multiple)), 1)
         return np.interp(np.linspace(0.0, steps[-1], count + 1), steps, fine.time)
 
     def step_count(self, nominal):
