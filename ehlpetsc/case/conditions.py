@@ -183,6 +183,8 @@ def with_reference_state(tables, table):
     load, radius, u, xi = table.reference()
     contact = contact | {"load": load, "radius": radius}
     motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
+    if isinstance(tables.get("gears"), dict) and "pass_shift" not in time:
+        time = time | {"pass_shift": path_of_contact(tables["gears"]).pair.hunting_shift}
     if "travel" not in time:
         try:
             modulus = reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])

@@ -45,8 +45,10 @@ class Scene:
     def mesh_on_bodies(self):
         """Cells of the mesh in both bodies, `surfaces.body_field.MeshOnBodies`."""
         from ehlpetsc.surfaces.body_field import MeshOnBodies
+        from ehlpetsc.surfaces.roughness import directed_speeds
 
-        return MeshOnBodies(self.scales, self.positions.offsets(self.scales))
+        speeds = directed_speeds(self.case, self.scales)
+        return MeshOnBodies(self.scales, self.positions.offsets(speeds))
 
 
 class Step(NamedTuple):

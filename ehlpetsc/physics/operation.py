@@ -53,6 +53,7 @@ class ConstantOperation:
 
     conditions: Conditions
     travel: float | None = None
+    varies = False
 
     @classmethod
     def of(cls, case, scales):
@@ -93,10 +94,11 @@ class ConstantOperation:
         left = self.travel - max(map(abs, travelled))
         return max(left, 0.0) / fastest if left > 1e-9 * self.travel else 0.0
 
-    def total_displacement(self):
-        """Distances that both surfaces travel over the whole run [m], signed."""
+    def extent(self):
+        """Least and largest displacement of both surfaces over the run [m]: two pairs."""
         duration = 0.0 if self.travel is None else self.duration
-        return self.conditions.u1 * duration, self.conditions.u2 * duration
+        ends = self.conditions.u1 * duration, self.conditions.u2 * duration
+        return tuple((min(end, 0.0), max(end, 0.0)) for end in ends)
 
     @property
     def duration(self):

@@ -30,8 +30,9 @@ class ConditionsTable(NamedTuple):
         [N/m], [m], [m/s], [m/s].
     repeat : int
         Number of times that the table is run through.
-    begins : (float, float)
-        Arc lengths on both bodies at time 0 [m], from the origin of their profiles.
+    begins : (float, float), optional
+        Abscissas of both profiles that are at x = 0 at time 0 [m]: they lie under the whole contact from then
+        on, as flanks of teeth do. None: they enter at the inlet.
     """
 
     time: np.ndarray
@@ -40,7 +41,7 @@ class ConditionsTable(NamedTuple):
     u1: np.ndarray
     u2: np.ndarray
     repeat: int = 1
-    begins: tuple = (0.0, 0.0)
+    begins: tuple | None = None
 
     @property
     def speed(self):
@@ -66,6 +67,21 @@ class ConditionsTable(NamedTuple):
         from scipy.interpolate import PchipInterpolator
 
         return [PchipInterpolator(self.time, v) for v in (self.load, self.radius, self.u1, self.u2)]
+
+    def extent(self):
+        """Least and largest displacement of each body over all repeats [m]: two pairs."""
+        cubics = self.cubics()[2:]
+        found = []
+        for cubic in cubics:
+            way = cubic.antiderivative()(self.sampled().time)
+            total = (self.repeat - 1) * way[-1]
+            found.append((float(way.min() + min(total, 0.0)), float(way.max() + max(total, 0.0))))
+        return tuple(found)
+
+    def directions(self):
+        """Direction of each body's motion: 1, -1, or 0 where it reverses or rests."""
+        signs = [np.sign(u[np.abs(u) > END * self.speed.max()]) for u in (self.u1, self.u2)]
+        return tuple(int(s[0]) if len(s) and (s == s[0]).all() else 0 for s in signs)
 
     def swept_length(self):
         r"""Distance covered by the faster surface, :math:`\int\max(|u_1|,|u_2|)dt` [m], repeats included."""
@@ -128,6 +144,11 @@ class VariableOperation:
         return float(self.table.time[-1])
 
     @property
+    def varies(self):
+        """Whether a condition changes with time."""
+        return any(np.ptp(column) > 0.0 for column in self.table[1:5])
+
+    @property
     def is_reversing(self):
         """Whether the entrainment speed changes its sign."""
         u = self.table.sampled().entrainment
@@ -166,14 +187,8 @@ class VariableOperation:
         return self._position(time)
 
     def extent(self):
-        """Least and largest displacement of each surface over the run [m]: two pairs, (least, largest)."""
-        times = np.linspace(0.0, self.duration, SAMPLES + 1)
-        ways = np.array([self._position(t) for t in times])
-        return tuple((float(way.min()), float(way.max())) for way in ways.T)
-
-    def total_displacement(self):
-        """Distances that both surfaces travel over the whole run [m], signed."""
-        return self._position(self.duration)
+        """Least and largest displacement of both surfaces over the run [m]: two pairs."""
+        return self.table.extent()
 
     def remaining(self, time, travelled):
         """Time left to the end of the run [s]."""

@@ -97,9 +97,9 @@ class Simulation:
         self.operation = operation_of(case, self.scales)
         self.pass_number = pass_number or (after.pass_number + 1 if after else 1)
         positions = SurfacePositions.at_rest(self.scales)
-        if case.time and case.time.pass_shift:
-            shift = (self.pass_number - 1) * case.time.pass_shift
-            positions = replace(positions, profile_offsets=(0.0, shift))
+        one, other = (case.conditions and case.conditions.begins) or (0.0, 0.0)
+        shift = (self.pass_number - 1) * case.time.pass_shift if case.time else 0.0
+        positions = replace(positions, profile_offsets=(one, other + shift))
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
         self.scene = Scene(case, self.scales, self.operation, positions)

@@ -69,8 +69,8 @@ def _offsets(simulation):
 def _smooth_side(simulation, side, offset, depths):
     """The stretch of a smooth surface that passes, for depths in it; 0: fast."""
     scales = simulation.scales
-    moved = simulation.operation.total_displacement()[side]
+    least, largest = simulation.operation.extent()[side]
     ends = scales.x[[0, -1]] * scales.a
-    s = np.arange(ends[0] - max(moved, 0.0), ends[1] - min(moved, 0.0), scales.dx)
+    s = np.arange(ends[0] - largest, ends[1] - least, scales.dx)
     flat = {"ra": 0.0, "rq": 0.0, "rsk": 0.0}
     return s + offset, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths

@@ -93,7 +93,8 @@ class TimeStepping:
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time = baseline, 0.0
-        self._advected = any(effect.moves_with_surfaces for effect in effects)
+        # the baseline is the steady solution of the start: under other conditions it is none
+        self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
     def start(self, records):
         """Steady solution at time 0; by time steps, if roughness at rest has none in reach.

@@ -31,6 +31,10 @@ class Profile:
         Ends of the domain, length of the ramp and of the profile that enters during the run [m].
     begin : float
         Abscissa in the profile with which it begins, instead of 0 [m].
+    reach : (float, float), optional
+        Least and largest displacement of a body whose profile lies under the whole domain from the start [m].
+    is_flank : bool
+        Whether that profile begins at x = 0 at time 0, :math:`X=-s`, as arc lengths of flanks do.
 
     Attributes
     ----------
@@ -44,18 +48,21 @@ class Profile:
         Of the samples about their mean: m, m, 1.
     """
 
-    def __init__(self, given, speed, moving, inlet, outlet, ramp, drawn_in, begin=0.0):
+    def __init__(
+        self, given, speed, moving, inlet, outlet, ramp, drawn_in, begin=0.0, reach=None, is_flank=False
+    ):
         from scipy.interpolate import CubicSpline
 
         X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
         self.given, self.X, self.heights = given, X, z
-        self.enters = moving and speed != 0.0
+        self.enters = moving and speed != 0.0 and not is_flank
         self._origin, self._sign = (inlet, -1.0) if self.enters and speed > 0 else (outlet, 1.0)
         if not self.enters:
-            self._origin = inlet
+            self._origin, self._sign = (0.0, -1.0) if is_flank else (inlet, 1.0)
         self._begin, self.moved = begin, self._sign * begin
         self.ramp = ramp
         self.travelled = drawn_in if self.enters else outlet - inlet
+        self._ends = None if self.enters or reach is None else (inlet - reach[1], outlet - reach[0])
         # level ends: mirrored end to end, the profile has no kink
         self._spline = CubicSpline(X, z, bc_type="clamped")
         deviation = z - z.mean()
@@ -145,6 +152,9 @@ class Profile:
     def s(self):
         """Body points [m] that enter during the run, two at least, increasing, spaced as the samples."""
         step = np.diff(self.X).mean()
+        if self._ends:
+            count = int((self._ends[1] - self._ends[0]) / step) + 1
+            return self._ends[0] + np.arange(min(max(count, 2), MAX_SAMPLES)) * step
         count = int(self.travelled / step * (1 + 1e-12)) + 1
         X = np.arange(min(max(count, 2), MAX_SAMPLES)) * step
         return np.sort(self._origin + self._sign * X)

@@ -34,12 +34,35 @@ class SurfacePositions:
         """Positions at the begin of a run at time 0."""
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
 
-    def offsets(self, scales):
-        """Signed shift of the body points by `profile_offsets` [m], as `profile.Profile.moved`."""
+    def offsets(self, speeds):
+        """Signed shift of the body points by `profile_offsets` [m], as `profile.Profile.moved`.
+
+        Parameters
+        ----------
+        speeds : (float, float)
+            As of :func:`directed_speeds`.
+        """
         return tuple(
             -begin if speed > 0.0 else begin
-            for begin, speed in zip(self.profile_offsets, (scales.u1, scales.u2), strict=True)
+            for begin, speed in zip(self.profile_offsets, speeds, strict=True)
         )
+
+
+def directed_speeds(case, scales):
+    """Speeds of both surfaces [m/s] by which their profiles enter; 0 of one that reverses.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : scales.Scales
+    """
+    speeds = scales.u1, scales.u2
+    if case.conditions is None:
+        return speeds
+    return tuple(
+        direction * max(abs(speed), 1e-3 * scales.u_max)
+        for direction, speed in zip(case.conditions.directions(), speeds, strict=True)
+    )
 
 
 @dataclass(frozen=True)
@@ -65,7 +88,7 @@ class Roughness:
         ProfileError
         """
         sides, positions = {}, positions or SurfacePositions.at_rest(scales)
-        speeds = (scales.u1, scales.u2)
+        speeds = directed_speeds(case, scales)
         for k, side in enumerate(("fast", "slow")):
             spec = getattr(case.surface, side)
             sides[side] = spec and _profile(case, scales, spec, speeds[k], k, positions)
@@ -104,8 +127,11 @@ class Roughness:
 
 def _profile(case, scales, spec, speed, side, positions):
     (inlet, outlet), travelled = positions.domain_ends_at_entry, positions.travelled[side]
-    swept_length = 0.0
-    if case.time is not None:
+    swept_length, table, reach = 0.0, case.conditions, None
+    if table is not None:
+        reach = table.extent()[side]
+        swept_length = max(map(abs, reach))
+    elif case.time is not None:
         left = max(scales.duration * scales.u_max - max(map(abs, positions.travelled)), 0.0)
         # under another load the domain may reach further out than where the profile entered
         wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
@@ -120,4 +146,6 @@ def _profile(case, scales, spec, speed, side, positions):
         RAMP * scales.a,
         swept_length,
         positions.profile_offsets[side],
+        reach,
+        table is not None and table.begins is not None,
     )
