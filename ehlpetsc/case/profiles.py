@@ -50,14 +50,14 @@ def _try(folder, table, case):
         if "file" not in table:
             return None
         return _sought(folder / table["file"])
-    given = samples(folder, spec)
+    scales = case and Scales.of(case)
+    given = samples(folder, spec, scales and scales.dx)
     if case is None:
         return None
-    scales = Scales.of(case)
     film = scales.h * expected_film(case, scales) if case.fluid else 0.0
     fault = absurd(given, scales.a, scales.dx, scales.h, film)
     if fault:
-        likely = likely_unit(given, layout_of(spec), spec.scale)
+        likely = likely_unit(given.source or given, layout_of(spec), spec.scale)
         raise ProfileError(f"{fault}" + (f"; is it in another unit? write {likely}" if likely else ""))
     return None
 

@@ -2,9 +2,14 @@
 
 import numpy as np
 
+from ehlpetsc.surfaces.measured.filters import levelled
 from ehlpetsc.surfaces.profile import SHORT
 
 SPIKE = 4.0  # Rq beside its surroundings that make a point one of a spike
+WIDEST = (
+    129  # points of a window whose median is sought in all of them: the work grows as points times window
+)
+TILTED = 0.8  # of the height variance in a straight line that calls for a warning
 SHARE = 0.01  # of the height variance in such wavelengths that calls for a warning
 
 
@@ -26,8 +31,20 @@ def mesh_warnings(rough, scales):
                 f"variance lies in wavelengths under {SHORT} nodes ({SHORT * scales.dx * 1e6:.2f} um); "
                 f"points_per_half_width = {_needed(profile, scales)} brings that under {100 * SHARE:.0f} %"
             )
-        notes += _spike_warning(side, profile.given, scales.dx) if profile else []
+        if profile and profile.given.measured:
+            notes += _tilt_warning(side, profile.given) + _spike_warning(side, profile.given, scales.dx)
     return notes
+
+
+def _tilt_warning(side, given):
+    line = given.z - levelled(given.X, given.z)
+    share = line.var() / given.z.var() if np.ptp(given.z) > 0.0 else 0.0
+    if share < TILTED:
+        return []
+    return [
+        f"surface.{side}: {100 * share:.0f} % of the height variance is a straight line "
+        f"({1e6 * np.ptp(line):.3g} um over {1e3 * given.length:.3g} mm); level = true takes it off"
+    ]
 
 
 def _spike_warning(side, given, dx):
@@ -57,16 +74,37 @@ def spikes(given, dx):
     highest, place : float
         Greatest distance from the median, and abscissa of the first point [m].
     """
-    from scipy.ndimage import median_filter
-
     window = 2 * round(dx / given.spacing) + 1
     if not given.measured or window < 3:  # the mesh is finer than the profile
         return 0, 0.0, 0.0
-    beside = np.abs(given.z - median_filter(given.z, min(window, given.z.size), mode="mirror"))
-    found = beside > SPIKE * given.z.std()
+    rq, given = given.z.std(), given.source or given
+    window = 2 * round(dx / given.spacing) + 1
+    beside = np.abs(given.z - _running_median(given.z, min(window, given.z.size)))
+    found = beside > SPIKE * rq
     if not found.any():
         return 0, 0.0, 0.0
     return int(found.sum()), float(beside.max()), float(given.X[found.argmax()])
+
+
+def _running_median(z, window):
+    """Medians over a window around each point; of wide windows the median of those of their parts.
+
+    Parameters
+    ----------
+    z : ndarray, shape (n,)
+    window : int
+        Points.
+    """
+    from scipy.ndimage import median_filter
+
+    size = window // WIDEST + 1
+    if size == 1:
+        return median_filter(z, window, mode="mirror")
+    whole = z.size // size
+    parts = np.median(z[: whole * size].reshape(whole, size), axis=1)
+    return median_filter(parts, window // size | 1, mode="mirror")[
+        np.minimum(np.arange(z.size) // size, whole - 1)
+    ]
 
 
 def _needed(profile, scales):

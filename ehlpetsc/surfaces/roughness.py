@@ -138,7 +138,7 @@ def _profile(case, scales, spec, speed, side, positions):
         swept_length = abs(travelled) + left * abs(speed) / scales.u_max
         swept_length += wider if wider > MOVED * scales.a else 0.0
     return Profile(
-        samples(case.path.parent, spec),
+        samples(case.path.parent, spec, scales.dx),
         speed,
         case.time is not None,
         inlet,

@@ -7,6 +7,7 @@ import numpy as np
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.measured.profile_files import KEYS, UNITS, Layout, checked, read_profile
+from ehlpetsc.surfaces.measured.thinning import thinned
 
 OFFSET = 1e-3  # of Rq: a mean beyond rounding
 
@@ -25,6 +26,8 @@ class Samples:
         Read from a file.
     notes : tuple of str
         What was done to the file's numbers, for the user.
+    source : Samples or None
+        Of thinned ones those before, without spikes narrower than `short_cutoff`.
     """
 
     X: np.ndarray
@@ -32,6 +35,7 @@ class Samples:
     repeats: bool
     measured: bool = False
     notes: tuple = ()
+    source: "Samples | None" = None
 
     @property
     def length(self):
@@ -44,14 +48,16 @@ class Samples:
         return self.length / (self.X.size - 1)
 
 
-def samples(folder, spec):
-    """Samples of one surface: read or made, levelled, both filters, mean taken off, flipped, scaled.
+def samples(folder, spec, cell=None):
+    """Samples of one surface: read or made, thinned, levelled, both filters, mean taken off, flipped, scaled.
 
     Parameters
     ----------
     folder : pathlib.Path
         Of the case file: profile files lie beside it.
     spec : ehlpetsc.case.tables.surface.SurfaceProfile
+    cell : float, optional
+        Spacing of the mesh [m], to which far denser samples are thinned.
 
     Raises
     ------
@@ -66,22 +72,36 @@ def samples(folder, spec):
         X, z, notes = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
         X, z, notes = read_profile(folder / spec.file, layout_of(spec))
-    notes = list(notes)
+    notes, before = list(notes), (X, z)
+    if cell is not None:
+        X, z = thinned(X, z, min(filter(None, (cell, spec.cutoff, spec.short_cutoff))))
     if spec.level:
         z = levelled(X, z)
     if spec.cutoff is not None:
         z = high_pass(X, z, spec.cutoff)
     if spec.short_cutoff is not None:
-        before, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
-        told = [f"{1e6 * abs(spec.scale) * ra:.4f} um" for ra in (before, mean_deviation(z))]
+        ra, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
+        told = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
         notes.append(f"short_cutoff: Ra {told[0]} before, {told[1]} after")
+        before = X, z
+        if cell is not None:
+            X, z = thinned(X, z, cell)
+    source = None
+    if z.size < before[1].size:
+        notes.append(f"{before[1].size} points, thinned to {z.size}: means around each go on")
+        source = Samples(*_turned(*before, spec), True, True)
     mean = float(z.mean())
     if abs(mean) > OFFSET * (z - mean).std():  # it would come in as a step and thin the film
         z = z - mean
         notes.append(f"mean height of {1e6 * mean:.4g} um taken off")
+    return Samples(*_turned(X, z, spec), True, True, tuple(notes), source)
+
+
+def _turned(X, z, spec):
+    """Heights flipped and scaled."""
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
-    return Samples(X, spec.scale * z, True, True, tuple(notes))
+    return X, z if spec.scale == 1.0 else spec.scale * z
 
 
 def layout_of(spec):

@@ -35,7 +35,8 @@ def _profile(case, s, profile):
         *given.notes,
     ]
     if given.measured:
-        size = f"{1e3 * given.length:.4g} mm long, {given.X.size} points {1e6 * given.spacing:.4g} um apart"
+        file = given.source or given
+        size = f"{1e3 * file.length:.4g} mm long, {file.X.size} points {1e6 * file.spacing:.4g} um apart"
         lines.insert(1, size)
         if profile.travelled > given.length:
             lines.append(f"continues mirrored: {1e3 * profile.travelled:.4g} mm of it are drawn in")

@@ -5,12 +5,14 @@ import numpy as np
 from ehlpetsc.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # rounding in a file's abscissae, against a spacing that really varies
+MANY, FAR = 100_000, 10_000  # points
 SHORTEST = 2  # spacings: a profile holds no shorter wave
 
 
 def levelled(x, z):
     """Heights less their least-squares line."""
-    return z - np.polynomial.Polynomial.fit(x, z, 1)(x)
+    x = x - x.mean()
+    return z - z.mean() - x * (x @ z / (x @ x))
 
 
 def high_pass(x, z, cutoff):
@@ -46,12 +48,11 @@ def mean_line(x, z, cutoff, key):
     ProfileError
         Where x is not equally spaced, or the cut-off is longer than the profile or no wave of it.
     """
-    from scipy.fft import dct, idct
+    from scipy.fft import dct, idct, next_fast_len
 
-    step = np.diff(x)
-    if np.ptp(step) > 2 * SPACING_TOLERANCE * step.mean():
+    length, step = x[-1] - x[0], (x[-1] - x[0]) / (x.size - 1)
+    if np.ptp(np.diff(x)) > 2 * SPACING_TOLERANCE * step:
         raise ProfileError(f"{key}: the filter needs equally spaced x")
-    length, step = x[-1] - x[0], step.mean()
     if cutoff > length:
         raise ProfileError(f"{key} = {cutoff:g} m; allowed: at most the length of the profile, {length:g} m")
     if cutoff < SHORTEST * step:
@@ -60,5 +61,11 @@ def mean_line(x, z, cutoff, key):
             f"{key} = {cutoff:g} m; allowed: at least {SHORTEST} spacings of its points, {least:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
-    frequency = np.arange(x.size) / (2.0 * step * (x.size - 1))
-    return idct(dct(z, type=1) * np.exp2(-((cutoff * frequency) ** 2)), type=1)
+    size, beyond = x.size, int(2.0 * cutoff / step) + FAR  # where the filter's weights are gone
+    if size > MANY and beyond < size:  # lengths with a large prime factor cost six times the memory
+        size = next_fast_len(size - 1 + beyond, real=True) + 1
+        size = size if size - x.size < x.size else x.size
+    spectrum = dct(np.concatenate([z, z[-2 : -2 - (size - x.size) : -1]]), type=1, overwrite_x=True)
+    exponent = np.arange(size) * (cutoff / (2.0 * step * (size - 1)))
+    spectrum *= np.exp2(-np.square(exponent, out=exponent), out=exponent)
+    return idct(spectrum, type=1, overwrite_x=True)[: x.size]

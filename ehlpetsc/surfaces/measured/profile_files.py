@@ -10,6 +10,7 @@ from ehlpetsc.errors import ProfileError
 from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
+OTHER = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}
 MANY = 50  # points: fewer are a shape made by hand, between whose points there is nothing to miss
 EQUAL, MOST = 0.02, 0.9  # how far equal spacings differ, and how many must be equal where lines are missing
 FARTHEST = 1e6  # m: beyond it squares and cubes of a spline overflow
@@ -94,7 +95,8 @@ def _from_text(path, layout):
     named = units_in(header)
     if layout.unit is None and set(named) - {"m"}:
         raise ProfileError(
-            f'its header names {" and ".join(named)}; write unit = "{named[-1]}" for the heights'
+            f"its header names {' and '.join(dict.fromkeys(named))}, which a file need not mean for both "
+            f'columns; write unit = "{named[-1]}" for the heights'
             + (f' and x_unit = "{named[0]}"' if named[0] != named[-1] else "")
         )
     factor = UNITS[layout.unit or "m"]
@@ -129,6 +131,8 @@ def _chosen(columns, layout):
 
 
 def _from_surface_topography(path, layout):
+    if path.suffix.lower() in OTHER:
+        raise ProfileError(f"{path.suffix!r} is no profile file; allowed: two columns of text, x and z")
     given = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
     if given:
         raise ProfileError(f"{given[0]}: for text alone, the format {path.suffix!r} tells it; leave it out")

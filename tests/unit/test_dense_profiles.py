@@ -1,0 +1,151 @@
+"""Profiles of many more points than a mesh can tell apart: they are thinned first."""
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.preview.warnings import warnings
+from ehlpetsc.surfaces.measured import filters
+from ehlpetsc.surfaces.measured.thinning import FINEST, MANY, thinned
+from ehlpetsc.surfaces.mesh_fit import _running_median, spikes
+from ehlpetsc.surfaces.profile import Profile
+from ehlpetsc.surfaces.samples import Samples
+
+ROOT = Path(__file__).parents[2]
+COARSE = {"mesh.points_per_half_width": 20, "mesh.inlet": -1.5, "mesh.outlet": 1.3, "time.travel": 0.5}
+
+
+def waves(n, length, wavelengths, amplitude=1e-7):
+    X = np.linspace(0.0, length, n)
+    return X, amplitude * sum(np.cos(2 * np.pi * X / w + w / 1e-5) for w in wavelengths)
+
+
+@pytest.mark.parametrize("even", [True, False])
+@pytest.mark.parametrize("cells, error", [(2.0, 3e-5), (4.0, 2e-5), (20.0, 5e-6)])
+def test_means_over_cells_stay(even, cells, error):
+    cell = 1.5e-6
+    X, z = waves(400_001, 1e-3, [cells * cell])
+    if not even:
+        X = X + 1e-6 * np.sin(2 * np.pi * X / 1e-3) * np.sin(2 * np.pi * X / 7e-5) ** 2
+        z = 1e-7 * np.cos(2 * np.pi * X / (cells * cell))
+    X_thin, z_thin = thinned(X, z, cell)
+    assert X_thin.size == int(FINEST * (X[-1] - X[0]) / cell) + 1 < X.size / 30
+    assert X_thin[0] == X[0] and X_thin[-1] == X[-1]
+    faces = np.arange(X[0], X[-1], 0.37 * cell)
+    means = []
+    for one, other in ((X, z), (X_thin, z_thin)):
+        profile = Profile(Samples(one, other, True, True), 0.0, False, 0.0, X[-1], 1.0, 1.0)
+        means.append(profile.mean_height(faces)[3:-3])
+    np.testing.assert_allclose(means[1], means[0], rtol=0.0, atol=error * 1e-7)
+
+
+def test_what_is_not_dense_stays_as_it_is():
+    for n, cell in ((MANY - 1, 1e-3), (2 * MANY, 1e-3 / 12_500)):
+        X, z = waves(n, 1e-3, [1e-5])
+        assert thinned(X, z, cell)[1] is z
+
+
+def test_a_line_goes_and_the_rest_stays():
+    X, z = waves(10_001, 4e-3, [1e-4])
+    np.testing.assert_allclose(filters.levelled(X, z + 3e-3 * X - 7e-6), filters.levelled(X, z), atol=1e-18)
+    fit = np.polynomial.Polynomial.fit(X, z, 1)(X)
+    np.testing.assert_allclose(filters.levelled(X, z), z - fit, atol=1e-20)
+
+
+@pytest.mark.parametrize("cutoff", [2e-7, 1e-6, 1e-5, 3e-3])
+def test_the_filter_of_long_profiles_is_that_of_short_ones(monkeypatch, cutoff):
+    """The length is brought to one without large prime factors, mirrored points behind the end."""
+    z = np.random.default_rng(1).normal(size=100_004)
+    X = 1e-7 * np.arange(z.size)
+    long = filters.low_pass(X, z, cutoff)
+    monkeypatch.setattr(filters, "MANY", 10**9)
+    np.testing.assert_allclose(long, filters.low_pass(X, z, cutoff), rtol=0.0, atol=1e-7)
+
+
+def test_medians_of_parts_are_nearly_those_of_all_points():
+    X, z = waves(60_000, 1e-3, [4e-4, 1.3e-4])
+    z += 1e-9 * np.random.default_rng(2).normal(size=z.size)
+    window = 601
+    slow = np.array([np.median(z[max(k - 300, 0) : k + 301]) for k in range(300, z.size - 300, 97)])
+    np.testing.assert_allclose(_running_median(z, window)[300:-300:97], slow, rtol=0.0, atol=2e-9)
+
+
+def test_a_spike_narrower_than_a_cell_is_found_among_many_points():
+    X, z = waves(1_000_000, 1e-3, [1e-4])
+    spoiled = z.copy()
+    spoiled[700_000:700_200] += 3e-6  # 0.2 um wide
+    assert spikes(Samples(X, z, True, True), 1.5e-6) == (0, 0.0, 0.0)
+    X_thin, z_thin = thinned(X, spoiled, 1.5e-6)
+    given = Samples(X_thin, z_thin, True, True, source=Samples(X, spoiled, True, True))
+    count, highest, place = spikes(given, 1.5e-6)
+    assert count == 200 and highest == pytest.approx(3e-6, rel=0.01)
+    assert place == pytest.approx(0.7e-3, rel=1e-5)
+
+
+def dense(folder, n, step):
+    X = step * np.arange(n)
+    z = 3e-7 * np.sin(2 * np.pi * X / 1e-4) + 2e-9 * np.random.default_rng(0).normal(size=n)
+    with open(folder / "dense.csv", "w") as file:
+        for begin in range(0, n, 100_000):
+            part = zip(X[begin : begin + 100_000], z[begin : begin + 100_000], strict=True)
+            file.writelines(f"{x:.9e},{height:.6e}\n" for x, height in part)
+    text = (ROOT / "cases" / "table1_rough.toml").read_text()
+    path = folder / "dense.toml"
+    path.write_text(text.replace("profiles/alicona_meander_profile.csv", "dense.csv"))
+    return path
+
+
+@pytest.mark.slow
+def test_a_million_points_a_nanometre_apart_load_filter_and_run(tmp_path):
+    """Ten million take 17 s and 1.8 GB. A running median of points times window once took 9 GB for one."""
+    case = dense(tmp_path, 1_000_000, 1e-9)
+    keys = [f"{key}={value}" for key, value in COARSE.items()]
+    keys += ["surface.fast.level=true", "surface.fast.cutoff=1e-4", "surface.fast.short_cutoff=5e-9"]
+    words = [word for key in keys for word in ("-ehl_set", key)]
+    pid = os.posix_spawn(
+        sys.executable,
+        [sys.executable, "-m", "ehlpetsc", str(case), *words, "-ehl_output", str(tmp_path / "r.h5")],
+        os.environ | {"PYTHONPATH": f"{ROOT}:{os.environ.get('PYTHONPATH', '')}"},
+        file_actions=[
+            (os.POSIX_SPAWN_OPEN, fd, str(tmp_path / f"{fd}"), os.O_WRONLY | os.O_CREAT, 0o600)
+            for fd in (1, 2)
+        ],
+    )
+    _, status, used = os.wait4(pid, 0)
+    said = (tmp_path / "1").read_text()
+    assert status == 0, said + (tmp_path / "2").read_text()
+    assert "1000000 points, thinned to " in said
+    assert used.ru_maxrss < 600_000  # kB
+    assert used.ru_utime < 30.0
+
+
+def test_a_tilt_that_nobody_took_off_is_a_warning(tmp_path):
+    X, z = waves(4001, 4e-3, [1e-4])
+    for slope, level, told in ((5e-6, False, True), (5e-6, True, False), (1e-8, False, False)):
+        (tmp_path / "p.csv").write_text(
+            "".join(f"{x:.9e},{h + slope * x / 4e-3:.9e}\n" for x, h in zip(X, z, strict=True))
+        )
+        text = (ROOT / "cases" / "table1_rough.toml").read_text()
+        (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", "p.csv"))
+        case = load(tmp_path / "c.toml", {"surface.fast.level": level, "surface.slow": None})
+        lines = [line for line in warnings(case, Scales.of(case)) if "straight line" in line]
+        assert bool(lines) == told
+        if told:
+            assert lines[0].startswith("surface.fast: 100 % of") or "99 %" in lines[0]
+            assert "5 um over 4 mm" in lines[0] and "level = true" in lines[0]
+
+
+@pytest.mark.parametrize("name", ["mine.png", "mine.toml", "r.h5"])
+def test_a_file_of_another_kind_is_no_profile(tmp_path, name):
+    (tmp_path / name).write_bytes(b"\x89PNG")
+    text = (ROOT / "cases" / "table1_rough.toml").read_text()
+    (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", name))
+    with pytest.raises(CaseError, match="is no profile file; allowed: two columns of text") as refused:
+        load(tmp_path / "c.toml", {"surface.fast.unit": "um"})
+    assert "unit:" not in str(refused.value)
