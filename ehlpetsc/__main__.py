@@ -22,12 +22,18 @@ def main(argv):
         return refuse(environment.advice(missing, argv[1:]))
     if argv[1:2] in (["--keys"], ["--template"]):
         return tell_keys(argv[1:])
-    from ehlpetsc.run.command_line import parse_command_line
+    from ehlpetsc.run.command_line import options_list, parse_command_line
 
     try:
         command = parse_command_line(argv[1:])
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
+    if command.case is None and first_only_help(command.petsc):
+        from ehlpetsc.environment import first_rank
+
+        if first_rank():
+            print(options_list())
+        return told()
     if command.explain or command.ranks:
         return explain(command)
     nowhere = environment.no_place()
@@ -45,6 +51,11 @@ def main(argv):
     from ehlpetsc.run.command import run
 
     return run(command.case, command.overrides)
+
+
+def first_only_help(words):
+    """Whether the command line asks for the list of options and for nothing of PETSc's."""
+    return words == ["-help"]
 
 
 def tell_keys(words):

@@ -59,4 +59,12 @@ def parse_toml(path, text):
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through
-        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
+        raise CaseError([f"{path}: not valid TOML: {error}{_comma(text, str(error))}"]) from None
+
+
+def _comma(text, error):
+    """Hint at a decimal comma in the line that TOML refuses."""
+    line = re.search(r"at line (\d+)", error)
+    typed = text.splitlines()[int(line[1]) - 1] if line else ""
+    found = re.search(r"=\s*([+-]?\d+),(\d+)", typed)
+    return f"; a decimal point, as in {found[1]}.{found[2]}?" if found else ""

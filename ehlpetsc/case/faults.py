@@ -1,9 +1,9 @@
 """Faults of a case file in words: file, key, value, what is allowed."""
 
-import difflib
 import json
 
-from ehlpetsc.case.tables.table import item_type
+from ehlpetsc.case.hints import nearest, not_modelled, slip
+from ehlpetsc.case.tables.table import Needs, item_type
 from ehlpetsc.case.tables.validation import ValidationError
 
 
@@ -32,7 +32,12 @@ def _kind(field):
     name = next((n for k, n in names.items() if isinstance(type_, type) and issubclass(type_, k)), None)
     if several:
         count = len(field.sub_fields)
-        return "a list" if name is None else "a list of two numbers" if count == 2 else "a list of numbers"
+        if name is None:
+            return "a list"
+        plural = {"a number": "numbers", "a whole number": "whole numbers", "text": "texts"}.get(
+            name, "values"
+        )
+        return f"a list of two {plural}" if count == 2 else f"a list of {plural}"
     return name or "a table"
 
 
@@ -90,17 +95,18 @@ def describe(error, model, data, where=""):
         elif name not in data:
             faults.append(f"{key} is missing; allowed: {allowed(field)}")
         elif field is None or name != field.alias:
-            faults.append(f"{key} = {show(value)}: unknown key; {nearest(shortened(str(name)), model)}")
+            unknown = f"{key} = {show(value)}: unknown key"
+            if isinstance(value, dict):
+                unknown = f"[{key}]: unknown table"
+            hint = not_modelled(where, str(name)) or nearest(shortened(str(name)), model)
+            faults.append(f"{unknown}; {hint}")
+        elif isinstance(cause, Needs):
+            faults.append(f"{key} = {show(value)}: needs {cause}")
+        elif isinstance(value, dict) and not issubclass(field.type_, dict):
+            faults.append(f"{key}: a table here; allowed: {allowed(field)}")
         else:
-            faults.append(f"{key} = {show(value)}: allowed: {allowed(field)}")
+            faults.append(f"{key} = {show(value)}: allowed: {allowed(field)}{slip(field, value)}")
     return list(dict.fromkeys(faults))
-
-
-def nearest(name, model):
-    """Hint at the key that was probably meant."""
-    keys = [f.alias for f in model.__fields__.values()]
-    close = difflib.get_close_matches(name, keys, n=1)
-    return f'did you mean "{close[0]}"?' if close else f"allowed: {', '.join(keys)}"
 
 
 def _flat(errors):

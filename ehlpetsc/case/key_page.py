@@ -92,26 +92,34 @@ def keys(table=None):
     Parameters
     ----------
     table : str, optional
-        Only that one, as in "fluid" or "surface.fast".
+        Only that one, as in "fluid" or "surface.fast"; or one key, as in "contact.load".
 
     Raises
     ------
     UsageError
-        There is no such table.
+        There is no such table or key.
     """
     found = tables()
     if table is not None:
+        above, _, key = table.rpartition(".")
+        fields = [field for field in _keys(found[above]) if field.alias == key] if above in found else []
+        if fields:
+            return "\n".join(_lines(found[above], fields))
         found = {name: found[name] for name in found if name == table or name.startswith(f"{table}.")}
         if not found:
             names = [name for name in tables() if name and " " not in name]
-            raise UsageError(f"--keys {table}: no such table; allowed: {', '.join(names)}")
+            raise UsageError(f"--keys {table}: no such table or key; tables: {', '.join(names)}")
     lines = []
     for name, model in found.items():
-        lines += [f"[{name}]" if name else "above all tables"]
-        for field in _keys(model):
-            lines.append(f"  {field.alias}: {allowed(field)}; default: {_default(field)}")
-            lines += [f"      {_equation(model, field)}"] if _equation(model, field) else []
+        lines += [f"[{name}]" if name else "above all tables", *_lines(model, _keys(model))]
     return "\n".join(lines)
+
+
+def _lines(model, fields):
+    for field in fields:
+        yield f"  {field.alias}: {allowed(field)}; default: {_default(field)}"
+        if _equation(model, field):
+            yield f"      {_equation(model, field)}"
 
 
 def page():

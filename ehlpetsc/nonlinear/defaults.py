@@ -85,6 +85,11 @@ class RunOptions:
         """One line for every tolerance of the user's that is looser than the program's own."""
         return looser(float(self._defaults["snes_atol"]))
 
+    def unread_so_far(self):
+        """Names of the user's options that nobody has read by now."""
+        mine = {*dict(OWN), "snes_atol", *self.views}
+        return {*(name for name in self.unread if not (self._depth and was_read(name))), *unread()} - mine
+
     def _enter(self, table):
         there = table.getAll()
         wanted = self._of_case | there | self._given

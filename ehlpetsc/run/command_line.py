@@ -1,5 +1,6 @@
 """The command line taken apart: the case file, settings of its keys, and what is PETSc's."""
 
+import difflib
 import itertools
 import os
 import shlex
@@ -8,7 +9,25 @@ from dataclasses import dataclass, field
 from ehlpetsc.case.tables.table import is_plain
 from ehlpetsc.environment import program
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.options import OWN, usage
+from ehlpetsc.nonlinear.options import OWN, help_text, usage
+
+PETSC = (
+    *("snes", "ksp", "pc", "mat", "vec", "sub", "mg", "sys", "log", "options", "help", "info", "malloc"),
+    *(
+        "citations",
+        "get_total_flops",
+        "checkstack",
+        "on_error",
+        "fp_trap",
+        "version",
+        "debug",
+        "ehl",
+        "da",
+        "dm",
+    ),
+    *("start_in_debugger", "stop_for_debugger", "debugger", "error_output", "shared_tmp", "use_gpu", "cuda"),
+    *("memory", "v", "h", "skip_petscrc", "python", "viewer", "tao", "ts", "prefix", "no_signal_handler"),
+)  # beginnings of PETSc's names, and of own ones, whose misspelt forms are refused later with the nearest
 
 
 @dataclass
@@ -73,6 +92,8 @@ def parse_command_line(arguments):
     for word in [*rest, *sets]:
         if not is_plain(word):
             raise UsageError(f"{word!r}: allowed: one line of UTF-8 text")
+    for word in rest:
+        _check_name(word)
     for word, name in itertools.pairwise(rest):
         if _with_one_dash(word) == "-options_file" and not os.path.isfile(name):
             raise UsageError(f"-options_file {name}: no such file")
@@ -82,6 +103,25 @@ def parse_command_line(arguments):
 
 def _with_one_dash(word):
     return word[1:] if word.startswith("--") and word[2:3].isalpha() else word
+
+
+def options_list():
+    """Own options with values, units and defaults; needs no PETSc."""
+    return help_text()
+
+
+def _check_name(word):
+    """Refuse an option that neither this program nor PETSc can have, before anything is computed."""
+    name = word.lstrip("-")
+    if word == "-n" or word == "-np":
+        raise UsageError(
+            f"{word} is an option of mpirun and run_mpi.sh, before the case: mpirun {word} RANKS ..."
+        )
+    meant = difflib.get_close_matches(f"ehl_{name}", OWN, n=1, cutoff=0.9)
+    if word.startswith("-") and name not in OWN and meant:
+        raise UsageError(f"{word}: unknown option; did you mean -{meant[0]}?")
+    if word.startswith("--") and name[:1].isalpha() and not (name in OWN or name.startswith(PETSC)):
+        raise UsageError(f"{word}: unknown option; {program('ehlpetsc')} -help lists the options")
 
 
 def _is_value(words, at):
@@ -97,6 +137,8 @@ def _without_sets(words):
             value = next(words, "")
             if not value or value.startswith("-"):
                 raise UsageError(f"{word} stands without a value; allowed: {word} {OWN['ehl_set'].value}")
+            if "=" not in value:
+                raise UsageError(f"{word} {value}: write {word} {value}={next(words, 'VALUE')}")
             sets.append(value)
         else:
             rest.append(word)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import partial
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
-from ehlpetsc.nonlinear.defaults import unread
 from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.run.recorder import Recorder
 
@@ -28,7 +27,7 @@ class Outcome:
     wall: float
 
 
-def record(simulation, recorder, stop=None, stream=None):
+def record(simulation, recorder, stop=None, stream=None, after_first=None):
     """Keep the states of a simulation up to its end, where it does not converge or is to stop.
 
     Parameters
@@ -40,6 +39,8 @@ def record(simulation, recorder, stop=None, stream=None):
         whether to wait no longer for the step in hand.
     stream : file, optional
         Where to show progress, on rank 0.
+    after_first : callable, optional
+        Called once, after the first state: PETSc has then read the options of its solver.
 
     Returns
     -------
@@ -60,6 +61,9 @@ def record(simulation, recorder, stop=None, stream=None):
                 progress = Progress(simulation.solution.time, simulation.end, stream)
             try:
                 recorder.take(simulation.advance())
+                if after_first:
+                    after_first()
+                after_first = None
             except NotConverged as error:
                 status, failure = ExitStatus.NOT_CONVERGED, error
             except Stopped:
@@ -96,6 +100,7 @@ class Run:
         self.simulation, self.recorder = simulation, Recorder(simulation, output)
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
+        self._noted = set()
 
     def run(self, restart=None, overwrite=False):
         """Run to the end, tell how it ended.
@@ -133,7 +138,15 @@ class Run:
             notes = self.recorder.resume(restart) if restart else []
             self._say(*(f"restart: {note}" for note in notes))
             self._looser = self.simulation.options.looser()
-            return record(self.simulation, self.recorder, self.stop, self.out if self.root else None)
+            stream = self.out if self.root else None
+            return record(self.simulation, self.recorder, self.stop, stream, self._note_unread)
+
+    def _note_unread(self):
+        """Print options that nobody has read so far: most likely misspelt."""
+        ignored = self.simulation.options.unread_so_far() - self._noted
+        self._noted |= ignored
+        if ignored:
+            self._say(f"note: options that nobody read: -{', -'.join(sorted(ignored))}")
 
     def _report(self, outcome):
         recorder, state = self.recorder, self.simulation.solution
@@ -148,9 +161,7 @@ class Run:
             self._say(f"limit: {line}")
         for line in self._looser:
             self._say(f"note: {line}")
-        ignored = sorted({*self.simulation.options.unread, *unread()})
-        if ignored:
-            self._say(f"note: options that nobody read: -{', -'.join(ignored)}")
+        self._note_unread()
         if state is not None:
             self._say(f"result: {recorder.output}")
         self._say(summary_line(outcome.status, recorder.totals, outcome.wall))

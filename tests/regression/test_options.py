@@ -154,7 +154,12 @@ def test_the_case_must_be_named_once(arguments, message):
         (["-pc_python_type", "collections.Counter"], "has no method apply(pc, x, y)"),
         (["-snes_atol", "nan"], "-snes_atol nan: allowed: a number"),
         (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: allowed: a number"),
-        (["-ehl_set", "mesh.inlet"], "mesh.inlet: allowed: table.key=value"),
+        (["-ehl_set", "mesh.inlet"], "-ehl_set mesh.inlet: write -ehl_set mesh.inlet=VALUE"),
+        (["-ehl_set", "mesh.inlet", "-2"], "-ehl_set mesh.inlet: write -ehl_set mesh.inlet=-2"),
+        (["-restart", "x.h5"], "-restart: unknown option; did you mean -ehl_restart?"),
+        (["--output", "x.h5"], "--output: unknown option; did you mean -ehl_output?"),
+        (["--frobnicate"], "--frobnicate: unknown option; "),
+        (["-n", "2"], "-n is an option of mpirun and run_mpi.sh"),
         (["-ehl_set", "-help"], "-ehl_set stands without a value; allowed: -ehl_set TABLE.KEY=VALUE"),
     ],
 )
@@ -254,6 +259,8 @@ def test_options_that_nobody_read_are_named(case, tmp_path):
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stdout.splitlines() if line.startswith("note: options")]
     assert notes == ["note: options that nobody read: -ksp_rtoll, -snes_monitr"]
+    lines = done.stdout.splitlines()  # before the steps, not after hours of them
+    assert lines.index(notes[0]) < next(n for n, line in enumerate(lines) if line.startswith("    step "))
     assert "nobody read" not in run(case, "-ehl_set", "petsc={}", "-ehl_overwrite", cwd=tmp_path).stdout
 
 
@@ -267,7 +274,10 @@ def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
     for petscs in ("-snes_linesearch_type", "-ksp_rtol", "-pc_type"):
         assert petscs in done.stdout
     assert not (tmp_path / "case.h5").exists()
-    assert "Own options:" in run("-help", cwd=tmp_path).stdout
+    alone = run("-help", cwd=tmp_path).stdout
+    for words in ("Own options:", "--keys", "--template", "--explain", "--ranks"):
+        assert words in alone
+    assert len(alone.splitlines()) < 25 and "-malloc_dump" not in alone
 
 
 def test_views_come_once_and_monitors_are_headed(tmp_path):

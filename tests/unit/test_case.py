@@ -178,7 +178,7 @@ def test_a_fault_of_each_kind(override, words):
         assert word in line
 
 
-@pytest.mark.parametrize("key", ["radius", "viscosity", "kappa", "gamma", "entrainment_speed", "outlet"])
+@pytest.mark.parametrize("key", ["radius", "viscosity", "kappa", "entrainment_speed", "outlet"])
 def test_a_missing_key_is_named(write, key):
     assert f".{key} is missing; allowed: a number" in fault(write(f"\n{key} = ", "\n# "))
 

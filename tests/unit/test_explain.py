@@ -1,5 +1,6 @@
 """The scene in words: its figures, its size, what is switched off."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -171,16 +172,72 @@ def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp
     assert seen == pytest.approx(1e6 * area / 3.357e-6, rel=0.3) and seen < 0.3 * given
 
 
+def test_the_part_of_a_profile_that_passes_is_that_of_its_travel():
+    """A body point X reaches x = -a after 1.5 a + X of its own travel and has passed x = a after 2 a more."""
+    told = starting(lines("fig1.toml"), "Surface fast")
+    c = case.load(CASES / "fig1.toml")
+    s = Scales.of(c)
+    through = (c.time.travel - 1.5 - 2.0) * s.a
+    assert f"of 1.712 mm x = 0 to {1e3 * through:.3g} mm pass the contact" in told[2]
+    needed = int(told[2].rpartition("time.travel = ")[2].split()[0])
+    assert told[2].endswith("for all") and needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
+    whole = lines("fig1.toml", f"time.travel={needed}")
+    assert any(line.startswith("Surface fast: continued by reflection") for line in whole)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (
+            ["contact.radius=12"],
+            "Hertz' pressure p0 = 0.0399 GPa: EHL contacts have 0.1 to 10 GPa; radius = 12",
+        ),
+        (["fluid.viscosity=15"], "the expected film"),
+        (["fluid.law='barus'"], 'fluid.kappa, fluid.chi: not used by law = "barus"'),
+    ],
+)
+def test_implausible_magnitudes_and_unused_constants_are_named(overrides, words):
+    c = case.load(CASES / "table1_smooth.toml", overrides)
+    assert any(words in line for line in warnings(c, Scales.of(c)))
+
+
+@pytest.mark.parametrize("level", [False, True])
+def test_a_tilted_profile_is_named_with_its_cure(level):
+    x = 1e-6 * np.arange(4001)
+    z = 5e-6 * x / x[-1] + 0.4e-6 * np.sin(x / 5e-6)
+    surface = {"surface": {"fast": {"x": x.tolist(), "z": z.tolist(), "level": level}}}
+    c = case.load(CASES / "table1_smooth.toml", surface | {"time": {"travel": 6.0}})
+    found = [line for line in warnings(c, Scales.of(c)) if "straight line" in line]
+    if level:
+        assert found == []
+    else:
+        share = 5.0**2 / 12 / (5.0**2 / 12 + 0.4**2 / 2)
+        assert found[0].startswith(f"surface.fast: {100 * share:.0f} % of the height variance")
+        assert "5 um over 4 mm" in found[0] and "level = true" in found[0]
+
+
+def test_a_mesh_at_the_brink_is_not_warned_of():
+    """Where less than a tenth more points would do, the figure is noise."""
+    base = ["motion.entrainment_speed=1"]
+    for points, warned in ((300, False), (30, True)):
+        c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={points}"])
+        assert any("too coarse for the inlet" in line for line in warnings(c, Scales.of(c))) == warned
+    told = next(line for line in warnings(c, Scales.of(c)) if "too coarse for the inlet" in line)
+    needed = int(re.search(r"points_per_half_width = (\d+)", told)[1])
+    c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
+    assert not any("too coarse for the inlet" in line for line in warnings(c, Scales.of(c)))
+
+
 def test_each_surface_is_told_with_its_figures():
     told = starting(lines("fig7.toml"), "Surface slow")
-    assert told[0].endswith("lambda ratio 0.81")
+    assert told[0].endswith("Rsk 0.080")
     assert told[1] == "Surface slow: 1.712 mm long, 3425 points 0.5 um apart"
-    assert told[2] == "Surface slow: continues mirrored: 18.28 mm of it are drawn in"
+    assert told[2] == "Surface slow: continued by reflection: 18.28 mm enter during the run"
     assert told[3] == "Surface slow: reaches the contact at travel 1.93 a and fills it at 4.63 a"
     assert told[4].endswith(
         "heights from -0.275 to 0.325 um; means over cells, as the mesh has them, -0.265 to 0.314 um"
     )
-    assert not [line for line in lines("fig1.toml") if "mirrored" in line]
+    assert not [line for line in lines("fig1.toml") if "reflection" in line]
     ridge = starting(lines("ridge.toml"), "Surface")
     assert ridge[0] == "Surface fast: smooth"
     assert ridge[2].endswith("at travel 1.67 a and stands with its middle at x = 0 at 3.73 a")

@@ -37,8 +37,13 @@ def test_a_table_alone_has_units_bounds_and_defaults():
     assert told[3].endswith("default: 0.0")
     assert "[surface.fast.synthetic (ridge)]" in key_page.keys("surface.fast")
     assert "[surface.slow]" in key_page.keys("surface")
-    with pytest.raises(UsageError, match="--keys fluids: no such table; allowed: contact, fluid"):
+    with pytest.raises(UsageError, match="--keys fluids: no such table or key; tables: contact, fluid"):
         key_page.keys("fluids")
+    with pytest.raises(UsageError, match="--keys contact.laod: no such table or key"):
+        key_page.keys("contact.laod")
+    (line, equation) = key_page.keys("contact.load").splitlines()
+    assert line.startswith("  load: a number >= 0.001") and "a = sqrt" in equation
+    assert "a list of texts (several keys" in key_page.keys("series")
 
 
 def test_equations_are_those_of_keys():

@@ -61,7 +61,7 @@ def test_a_title_that_is_no_text_is_refused(title):
 
 def test_the_bound_of_the_film_is_of_direct_contact():
     assert load("cases/ridge.toml", {"contact.minimum_film": 1e-9}).contact.minimum_film == 1e-9
-    with pytest.raises(CaseError, match="contact.minimum_film = 1e-09: .*direct contact"):
+    with pytest.raises(CaseError, match="contact.minimum_film = 1e-09: needs contact.model = .direct"):
         load("cases/running_in.toml", {"contact.minimum_film": 1e-9})
 
 

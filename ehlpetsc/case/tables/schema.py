@@ -7,7 +7,7 @@ for any machine element in SI units and narrow enough that a value in GPa, mm or
 import math
 from typing import Any, Literal
 
-from ehlpetsc.case.tables.table import Table
+from ehlpetsc.case.tables.table import Needs, Table
 from ehlpetsc.case.tables.validation import Field, confloat, constr, root_validator, validator
 from ehlpetsc.quantities import FIELDS, STORED
 
@@ -20,6 +20,10 @@ MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip
 # the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
 TEXTBOOKS = "the density 1 + 0.6e-9 p/(1 + 1.7e-9 p) of textbooks is"
 
+DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
+ROELANDS_PRESSURE = 1.96e8  # Pa
+ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
+
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
 Pressure = confloat(ge=1e6, le=1e18)
@@ -31,9 +35,15 @@ class Contact(Table):
 
     radius: float = Field(..., ge=1e-9, le=100, unit="m", description="radius of relative curvature")
     load: float = Field(..., ge=1e-3, le=1e10, unit="N/m", description="load per length of contact")
-    youngs_modulus: tuple[Modulus, Modulus] = Field(..., unit="Pa", description="of surface fast and slow")
-    poisson_ratio: tuple[Ratio, Ratio] = Field(..., description="of surface fast and slow")
-    boundary_friction: float = Field(0.0, ge=0, le=2, description="|q|/p at dry nodes")
+    youngs_modulus: tuple[Modulus, Modulus] = Field(
+        ..., unit="Pa", one_for_both=True, description="of both solids, or of surface fast and slow"
+    )
+    poisson_ratio: tuple[Ratio, Ratio] = Field(
+        ..., one_for_both=True, description="of both solids, or of surface fast and slow"
+    )
+    boundary_friction: float = Field(
+        0.0, ge=0, le=2, description="boundary friction coefficient: shear stress over pressure of the solids"
+    )
     model: Literal["direct", "mixed"] = Field(
         "direct", description="the film's bound replaces Reynolds; or oil and solids carry side by side"
     )
@@ -86,7 +96,7 @@ class Contact(Table):
     def _of_mixed_contact(cls, value, values):
         if values.get("model") != "mixed":
             if value is not None:
-                raise ValueError("for mixed contact")
+                raise Needs('contact.model = "mixed"')
             return None
         if values.get("asperity_height") is not None:
             if value is not None:
@@ -111,17 +121,17 @@ class Contact(Table):
     @validator("minimum_film")
     def _of_direct_contact(cls, value, values):
         if value and values.get("model") == "mixed":
-            raise ValueError("for direct contact")
+            raise Needs('contact.model = "direct"')
         return value
 
-    @validator("yield_pressure", pre=True)
+    @validator("youngs_modulus", "poisson_ratio", "yield_pressure", pre=True)
     def _of_both(cls, value):
         return value if value is None or isinstance(value, (list, tuple)) else [value, value]
 
     @validator("yield_pressure")
     def _of_mixed_contact_too(cls, value, values):
         if value is not None and values.get("model") != "mixed":
-            raise ValueError("for mixed contact")
+            raise Needs('contact.model = "mixed"')
         return value
 
 
@@ -133,36 +143,43 @@ class Fluid(Table):
     pressure_viscosity: float = Field(..., ge=1e-12, le=1e-6, unit="1/Pa", description="alpha")
     kappa: float | None = Field(None, ge=1e-9, le=1, unit="Pa s", description="seed law, below viscosity")
     chi: float | None = Field(None, ge=1e-12, le=1e-6, unit="1/Pa", description="seed law")
-    roelands_z: float | None = Field(None, ge=1e-3, le=2, description="Roelands law, exponent z")
-    roelands_pressure: float | None = Field(None, ge=1e6, le=1e10, unit="Pa", description="Roelands law, pr")
+    roelands_z: float | None = Field(
+        None, ge=1e-3, le=2, description="Roelands law, exponent z; left out: alpha pr/(ln eta0 + 9.67)"
+    )
+    roelands_pressure: float | None = Field(
+        None,
+        ge=1e6,
+        le=1e10,
+        unit="Pa",
+        description="Roelands law, pr; left out: 1.96e8, or 1/chi where given",
+    )
     density: Literal["dowson-higginson", "incompressible"] = Field(..., description="density law")
-    gamma: float | None = Field(None, ge=0, le=1e-6, unit="1/Pa", description=f"{TEXTBOOKS} gamma = 2.3e-9")
+    gamma: float | None = Field(
+        None, ge=0, le=1e-6, unit="1/Pa", description=f"{TEXTBOOKS} gamma = 2.3e-9, the default"
+    )
     lambda_: float | None = Field(
         None,
         alias="lambda",
         ge=0,
         le=1e-6,
         unit="1/Pa",
-        description=f"below gamma; {TEXTBOOKS} gamma = 2.3e-9 and lambda = 1.7e-9",
+        description=f"below gamma; {TEXTBOOKS} gamma = 2.3e-9 and lambda = 1.7e-9, the defaults",
     )
     eyring_stress: float | None = Field(None, ge=1e3, le=1e12, unit="Pa", description="left out: Newtonian")
     inlet_film: float | None = Field(
         None, ge=1e-10, le=1e-2, unit="m", description="oil film at the inlet; left out: fully flooded"
     )
 
-    @validator("kappa", "chi", "roelands_z", "roelands_pressure", "gamma", "lambda_", always=True)
-    def _law_is_complete(cls, value, values, field):
-        law, density = values.get("law"), values.get("density")
-        needed = {
-            "kappa": law == "seed",
-            "chi": law == "seed",
-            "roelands_z": law == "roelands",
-            "roelands_pressure": law == "roelands",
-            "gamma": density == "dowson-higginson",
-            "lambda_": density == "dowson-higginson",
-        }
-        if value is None and needed[field.name]:
+    @validator("kappa", "chi", always=True)
+    def _law_is_complete(cls, value, values):
+        if value is None and values.get("law") == "seed":
             raise ValueError("missing for this law")
+        return value
+
+    @validator("gamma", "lambda_", always=True)
+    def _density_of_textbooks(cls, value, values, field):
+        if value is None and values.get("density") == "dowson-higginson":
+            return DENSITY[field.name]
         return value
 
     @validator("kappa", "lambda_")
@@ -173,6 +190,25 @@ class Fluid(Table):
         if value is not None and limit is not None and (value > limit or equal_too and value == limit):
             raise ValueError("too large")
         return value
+
+    @root_validator(skip_on_failure=True)
+    def _roelands(cls, values):
+        """Constants left out: from kappa and chi, which write the same law, or from eta0 and alpha."""
+        if values["law"] != "roelands":
+            return values
+        eta0, alpha, kappa, chi = (values[k] for k in ("viscosity", "pressure_viscosity", "kappa", "chi"))
+        other = kappa is not None and chi is not None
+        pressure = values["roelands_pressure"] or (1.0 / chi if other else ROELANDS_PRESSURE)
+        decades = math.log(eta0 / kappa) if other else math.log(eta0 / ROELANDS_VISCOSITY)
+        z = values["roelands_z"]
+        if z is None:
+            z = alpha * pressure / decades if decades > 0.0 else math.inf
+            if not 1e-3 <= z <= 2.0:
+                raise ValueError(
+                    f"roelands_z is missing, and by viscosity and pressure_viscosity it is {z:.3g}; allowed: "
+                    "0.001 to 2 (viscosity in Pa s, pressure_viscosity in 1/Pa?)"
+                )
+        return values | {"roelands_z": z, "roelands_pressure": pressure}
 
 
 class Motion(Table):

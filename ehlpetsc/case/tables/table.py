@@ -5,6 +5,10 @@ import re
 from ehlpetsc.case.tables.validation import BaseModel, Extra, validator
 
 
+class Needs(ValueError):
+    """A key is allowed only beside others; the text says beside which."""
+
+
 def is_of(kind, value):
     """TOML's own types: an integer is a number, true and false are not."""
     if isinstance(value, bool):

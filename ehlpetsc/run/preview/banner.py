@@ -2,7 +2,7 @@
 
 from ehlpetsc import __version__
 from ehlpetsc.run.preview.forecast import steps
-from ehlpetsc.run.preview.surfaces import surface_lines
+from ehlpetsc.run.preview.surfaces import lambda_line, surface_lines
 
 WORTH_TWO_RANKS = 4000  # nodes: on 561 two ranks take twice as long as one, on 4,481 a bit less
 
@@ -27,6 +27,7 @@ def banner(case, scales, rough, ranks):
         f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
         f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
         *(surface_lines(case, scales, rough) if rough else []),
+        *lambda_line(case, scales, rough),
         *_ranks_for_nothing(scales, ranks),
     ]
 

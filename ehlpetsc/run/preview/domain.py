@@ -13,6 +13,7 @@ from ehlpetsc.physics.film_formulas import (
 LEFT = 0.95  # of the flooded film: below it the inlet is told to be too near
 ENOUGH = 0.99  # of it: what the inlet that is proposed leaves
 COARSE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
+BRINK = 1.1  # no warning of a mesh that lacks a few percent of its points
 CLOSED = 5.0  # the same: a smooth film has none left
 FURTHEST = 100.0  # half widths that mesh.inlet may be
 
@@ -33,7 +34,7 @@ def domain_warnings(case, scales):
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
-    if COARSE < opening:
+    if BRINK * COARSE < opening:
         notes.append(f"{_coarse(opening)}: the film comes out too thin; {_cure(case, scales)}")
     return notes
 

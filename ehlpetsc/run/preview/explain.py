@@ -8,16 +8,14 @@ from ehlpetsc.case.loading import members
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.preview.forecast import (
-    FULL_FILM,
     begin_time,
     dowson_higginson,
     file_size,
-    lambda_ratio,
     run_time,
     steps,
     work_time,
 )
-from ehlpetsc.run.preview.surfaces import height_lines, surface_lines
+from ehlpetsc.run.preview.surfaces import height_lines, lambda_line, surface_lines
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -73,20 +71,7 @@ def _film(case, s, rough):
         f"L = {s.moes_l:.2f}",
         f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3g} um",
     ]
-    if rough and rough.rq > 0:
-        ratio = lambda_ratio(case, s, rough)
-        lines.append(
-            f"Lambda ratio: {ratio:.2g} "
-            f"(that film over the combined Rq, {rough.rq * 1e6:.3f} um): {_regime(ratio)}"
-        )
-    return lines
-
-
-def _regime(ratio):
-    """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
-    if ratio > FULL_FILM:
-        return "full film"
-    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
+    return [*lines, *lambda_line(case, s, rough)]
 
 
 def _motion(case, s):

@@ -1,6 +1,8 @@
 """What is told of both surfaces before a run."""
 
-from ehlpetsc.run.preview.forecast import dowson_higginson
+import math
+
+from ehlpetsc.run.preview.forecast import FULL_FILM, dowson_higginson, lambda_ratio
 from ehlpetsc.surfaces.arrival import arrival
 
 
@@ -25,13 +27,29 @@ def surface_lines(case, s, rough):
     return lines
 
 
+def lambda_line(case, s, rough):
+    """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
+    if case.fluid is None or not rough or rough.rq <= 0.0:
+        return []
+    ratio, film = lambda_ratio(case, s, rough), dowson_higginson(s, case.fluid.pressure_viscosity)
+    return [
+        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * film:.3g} um (Dowson & Higginson) over the "
+        f"combined Rq {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
+    ]
+
+
+def _regime(ratio):
+    """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
+    if ratio > FULL_FILM:
+        return "full film"
+    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
+
+
 def _profile(case, s, profile):
     """Size, roughness and travel of one profile, a line each."""
     given = profile.given
-    film = dowson_higginson(s, case.fluid.pressure_viscosity) if case.fluid else None
-    ratio = f", lambda ratio {film / profile.rq:.2g}" if film and profile.rq > 0.0 else ""
     lines = [
-        f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}{ratio}",
+        f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}",
         *given.notes,
     ]
     if given.measured:
@@ -39,13 +57,25 @@ def _profile(case, s, profile):
         size = f"{1e3 * file.length:.4g} mm long, {file.X.size} points {1e6 * file.spacing:.4g} um apart"
         lines.insert(1, size)
         if profile.travelled > given.length:
-            lines.append(f"continues mirrored: {1e3 * profile.travelled:.4g} mm of it are drawn in")
+            lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
+        elif case.time is not None and profile.enters:
+            lines.append(_part_in_contact(case, s, profile))
     arrives = arrival(profile, s)
     if arrives:
         reaches, fills = arrives
         then = "and fills it" if profile.repeats else "and stands with its middle at x = 0"
         lines.append(f"reaches the contact at travel {reaches:.2f} a {then} at {fills:.2f} a")
     return lines
+
+
+def _part_in_contact(case, s, profile):
+    """Part of a measured profile that passes the whole contact, and the travel needed for all of it."""
+    arrives, length = arrival(profile, s)[0], profile.given.length
+    slower = s.u_max / abs(profile.speed)
+    through = s.a * (case.time.travel - arrives - 2.0 * slower) / slower
+    needed = arrives + (2.0 + length / s.a) * slower
+    part = f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
+    return f"of {1e3 * length:.4g} mm {part}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"
 
 
 def height_lines(rough, s):

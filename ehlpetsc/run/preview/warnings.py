@@ -1,10 +1,16 @@
 """What to know of a case before it runs, gathered: solids, motion, domain, profiles."""
 
+import numpy as np
+
+from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.run.preview.domain import domain_warnings
 from ehlpetsc.surfaces.arrival import arrival_warnings
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
+LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz' pressure of EHL contacts, with room
+THICK = 0.1  # half-widths: films of EHL contacts are a hundredth of it and less
+TILT = 0.5  # of the height variance, above which a profile counts as tilted
 SOFT = 0.25  # of p0: solids softer than that flow as a whole
 
 
@@ -29,5 +35,56 @@ def warnings(case, scales):
             "the roughness is held still under the film; add [time] to let it move"
         )
     profiles = Roughness.of(case, scales)
-    notes += domain_warnings(case, scales)
-    return notes + arrival_warnings(case, scales, profiles) + mesh_warnings(profiles, scales)
+    notes += magnitude_warnings(case, scales) + oil_warnings(case.fluid) + domain_warnings(case, scales)
+    notes += tilt_warnings(case, profiles) + arrival_warnings(case, scales, profiles)
+    return notes + mesh_warnings(profiles, scales)
+
+
+def magnitude_warnings(case, scales):
+    """Magnitudes outside elastohydrodynamic contacts: most likely a slip in a unit."""
+    notes = []
+    if not LOW_PRESSURE <= scales.p0 <= HIGH_PRESSURE:
+        notes.append(
+            f"Hertz' pressure p0 = {1e-9 * scales.p0:.3g} GPa: EHL contacts have "
+            f"{1e-9 * LOW_PRESSURE:g} to {1e-9 * HIGH_PRESSURE:g} GPa; "
+            f"radius = {scales.R:g} m, load = {scales.load:g} N/m?"
+        )
+    film = expected_film(case, scales) * scales.h if case.fluid else 0.0
+    if film > THICK * scales.a:
+        notes.append(
+            f"the expected film, {1e6 * film:.3g} um, is more than a tenth of the contact's half-width, "
+            f"{1e6 * scales.a:.3g} um: "
+            f"viscosity = {scales.eta0:g} Pa s, entrainment_speed = {scales.u:g} m/s?"
+        )
+    return notes
+
+
+def oil_warnings(fluid):
+    """Constants of the oil that its law does not use."""
+    unused = {"seed": ("roelands_z", "roelands_pressure"), "roelands": ("kappa", "chi")}
+    if fluid is None:
+        return []
+    names = unused.get(fluid.law, (*unused["seed"], *unused["roelands"]))
+    if fluid.law == "roelands" and fluid.chi and abs(fluid.roelands_pressure * fluid.chi - 1.0) < 1e-6:
+        return []  # written by them
+    given = [f"fluid.{name}" for name in names if getattr(fluid, name) is not None]
+    return [f'{", ".join(given)}: not used by law = "{fluid.law}"'] if given else []
+
+
+def tilt_warnings(case, profiles):
+    """Profiles whose heights are mostly a straight line: a tilt of the measurement."""
+    notes = []
+    for side in ("fast", "slow"):
+        profile, spec = profiles and getattr(profiles, side), getattr(case.surface, side)
+        if not profile or not profile.given.measured or spec.level:
+            continue
+        X, z = profile.X, profile.heights
+        slope = np.polyfit(X - X.mean(), z, 1)[0]
+        share = slope**2 * X.var() / z.var() if z.any() else 0.0
+        if share > TILT:
+            notes.append(
+                f"surface.{side}: {100 * share:.0f} % of the height variance is a straight line "
+                f"({1e6 * abs(slope) * (X[-1] - X[0]):.3g} um over {1e3 * (X[-1] - X[0]):.3g} mm); "
+                "level = true takes it off"
+            )
+    return notes

@@ -118,7 +118,9 @@ class Passes:
 
 def line(row):
     """One line that tells of a pass."""
-    parts = [f"pass {row['pass']}: set {row['set_volume']:.4g} m^2, added {row['added']:.4g} m^2"]
+    parts = [
+        f"pass {row['pass']}: set {1e12 * row['set_volume']:.4g} um^2, added {1e12 * row['added']:.4g} um^2"
+    ]
     for side in ("fast", "slow"):
         if row[side]:
             parts.append(f"Ra {side} {1e6 * row[side]['ra']:.4f} um")

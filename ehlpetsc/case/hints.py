@@ -1,0 +1,66 @@
+"""Hints beside faults of a case: the key that was meant, a power of ten left out, physics not modelled."""
+
+import difflib
+import math
+
+from ehlpetsc.case.tables.table import item_type
+
+POWERS = {"Pa": (9, 6), "1/Pa": (-9,), "m": (-3, -6, -9)}  # of units that values are often written in
+SYNONYMS = {
+    "movement": "motion",
+    "velocity": "motion",
+    "kinematics": "motion",
+    "oil": "fluid",
+    "lubricant": "fluid",
+    "grid": "mesh",
+    "speed": "entrainment_speed",
+    "slip": "slide_roll_ratio",
+    "friction": "boundary_friction",
+    "friction_coefficient": "boundary_friction",
+    "eta": "viscosity",
+    "eta0": "viscosity",
+    "alpha": "pressure_viscosity",
+    "e": "youngs_modulus",
+    "nu": "poisson_ratio",
+    "r": "radius",
+    "w": "load",
+}
+NOT_MODELLED = {
+    "radius_x": "the contact is a line contact: one radius in the direction of motion",
+    "radius_y": "the contact is a line contact: one radius in the direction of motion",
+    "ellipticity": "the contact is a line contact",
+    "limiting_shear_stress": "the oil's shear stress is limited by eyring_stress alone",
+    "mass": "inertia is neglected: the load is in balance at every step",
+    "damping": "inertia is neglected: the load is in balance at every step",
+    "side_leakage": "the contact is a line contact: no flow across the direction of motion",
+}
+
+
+def not_modelled(where, name):
+    """Answer to a key that asks for physics which the program does not have; "" otherwise."""
+    if name == "type" and where == "contact.":
+        return "not modelled: point contacts; the contact is always a line contact"
+    return f"not modelled: {NOT_MODELLED[name]}" if name in NOT_MODELLED else ""
+
+
+def slip(field, value):
+    """Hint at a power of ten that was left out, as in 206 for 206e9."""
+    type_ = item_type(field)
+    low, high = (getattr(type_, name, None) for name in ("ge", "le"))
+    number = value[0] if isinstance(value, (list, tuple)) and value else value
+    if isinstance(number, bool) or not isinstance(number, int | float) or not number or low is None:
+        return ""
+    unit = field.field_info.extra.get("unit", "")
+    for power in POWERS.get(unit, ()):
+        if low <= number * 10.0**power <= (high or math.inf) and not low <= number <= (high or math.inf):
+            return f"; {number:g}e{power:d}?"
+    return ""
+
+
+def nearest(name, model):
+    """Hint at the key that was probably meant."""
+    keys = [f.alias for f in model.__fields__.values()]
+    close = difflib.get_close_matches(name, keys, n=1)
+    if SYNONYMS.get(name.lower()) in keys:
+        close = [SYNONYMS[name.lower()]]
+    return f'did you mean "{close[0]}"?' if close else f"allowed: {', '.join(keys)}"

@@ -1,0 +1,89 @@
+"""Hints beside faults of a case, and constants of the oil that may be left out."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.hints import nearest
+from ehlpetsc.case.loading import Case, load
+from ehlpetsc.errors import CaseError
+from ehlpetsc.physics.rheology import viscosity
+
+CASES = Path(__file__).parents[2] / "cases"
+SMOOTH = CASES / "table1_smooth.toml"
+OIL = {"fluid.law": "roelands", "fluid.kappa": None, "fluid.chi": None}
+
+
+def fault(overrides):
+    with pytest.raises(CaseError) as refused:
+        load(SMOOTH, overrides)
+    (line,) = refused.value.faults
+    return line
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "hint"),
+    [
+        ("contact.youngs_modulus", 206, "; 206e9?"),
+        ("contact.youngs_modulus", [206, 206], "; 206e9?"),
+        ("fluid.pressure_viscosity", 18, "; 18e-9?"),
+        ("contact.yield_pressure", 3e9, 'needs contact.model = "mixed"'),
+        ("contact.boundary_film", 1e-8, 'needs contact.model = "mixed"'),
+        ("contact.radius", {"a": 1}, "contact.radius: a table here; allowed: a number"),
+        ("movement.speed", 3, '[movement]: unknown table; did you mean "motion"?'),
+        ("contact.radius_y", 3.0, "unknown key; not modelled: the contact is a line contact"),
+        ("contact.type", "point", "not modelled: point contacts"),
+        (
+            "fluid.limiting_shear_stress",
+            1e7,
+            "not modelled: the oil's shear stress is limited by eyring_stress",
+        ),
+        ("fluid.alpha", 1e-8, 'did you mean "pressure_viscosity"?'),
+    ],
+)
+def test_a_fault_names_what_was_probably_meant(key, value, hint):
+    assert hint in fault({key: value})
+
+
+def test_hints_are_tables_and_keys_there_are():
+    assert nearest("movement", Case) == 'did you mean "motion"?'
+    assert nearest("oil", Case) == 'did you mean "fluid"?'
+
+
+def test_a_decimal_comma_is_recognised(tmp_path):
+    path = tmp_path / "c.toml"
+    path.write_text(re.sub(r"\nviscosity = [\d.]+", "\nviscosity = 0,015", SMOOTH.read_text()))
+    assert "0,015" in path.read_text()
+    with pytest.raises(CaseError, match="a decimal point, as in 0.015"):
+        load(path)
+
+
+def test_one_value_for_both_solids():
+    contact = load(SMOOTH, {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.29}).contact
+    assert contact.youngs_modulus == (206e9, 206e9) and contact.poisson_ratio == (0.29, 0.29)
+
+
+def test_roelands_constants_left_out_follow_from_viscosity_and_its_pressure_coefficient():
+    """z = alpha pr/(ln eta0 + 9.67), and the slope of ln eta at ambient pressure is alpha."""
+    fluid = load(SMOOTH, OIL | {"fluid.viscosity": 0.015, "fluid.pressure_viscosity": 18e-9}).fluid
+    assert fluid.roelands_pressure == 1.96e8
+    assert fluid.roelands_z == pytest.approx(18e-9 * 1.96e8 / (math.log(0.015) + 9.67), rel=1e-4)
+    small = 1e3  # Pa
+    (exponent,) = viscosity(np.array([small]), fluid)[0]
+    assert exponent == pytest.approx(18e-9 * small, rel=1e-5)
+    assert "by viscosity and pressure_viscosity it is" in fault(OIL | {"fluid.viscosity": 65e-6})
+
+
+def test_kappa_and_chi_write_the_same_law():
+    pair = {"fluid.kappa": 63.2e-6, "fluid.chi": 5.1e-9}
+    seed, roelands = (load(SMOOTH, pair | {"fluid.law": law}).fluid for law in ("seed", "roelands"))
+    p = np.array([1e8, 1e9, 3e9])
+    assert viscosity(p, seed)[0] == pytest.approx(viscosity(p, roelands)[0], rel=1e-13)
+
+
+def test_the_density_left_out_is_that_of_textbooks():
+    fluid = load(SMOOTH, {"fluid.gamma": None, "fluid.lambda": None}).fluid
+    assert (fluid.gamma, fluid.lambda_) == (2.3e-9, 1.7e-9)
