@@ -40,7 +40,7 @@ def record(simulation, recorder, stop=None, stream=None, after_first=None):
     stream : file, optional
         Where to show progress, on rank 0.
     after_first : callable, optional
-        Called once, after the first state: PETSc has then read the options of its solver.
+        Called once, after the first time step: PETSc has then read the options of its solver.
 
     Returns
     -------
@@ -61,9 +61,9 @@ def record(simulation, recorder, stop=None, stream=None, after_first=None):
                 progress = Progress(simulation.solution.time, simulation.end, stream)
             try:
                 recorder.take(simulation.advance())
-                if after_first:
+                if after_first and simulation.state.step >= 1:
                     after_first()
-                after_first = None
+                    after_first = None
             except NotConverged as error:
                 status, failure = ExitStatus.NOT_CONVERGED, error
             except Stopped:

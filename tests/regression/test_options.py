@@ -260,7 +260,7 @@ def test_options_that_nobody_read_are_named(case, tmp_path):
     notes = [line for line in done.stdout.splitlines() if line.startswith("note: options")]
     assert notes == ["note: options that nobody read: -ksp_rtoll, -snes_monitr"]
     lines = done.stdout.splitlines()  # before the steps, not after hours of them
-    assert lines.index(notes[0]) < next(n for n, line in enumerate(lines) if line.startswith("    step "))
+    assert lines.index(notes[0]) < next(n for n, line in enumerate(lines) if line.startswith("result:")) - 2
     assert "nobody read" not in run(case, "-ehl_set", "petsc={}", "-ehl_overwrite", cwd=tmp_path).stdout
 
 
