@@ -19,6 +19,7 @@ from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
 
 BATCH = 8  # frames transformed at a time: their spectra stay in the cache
+BLOCK = 32  # frequencies
 QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single precision on this grid, so that the
 #                     rounding noise of the transforms in an unloaded stretch is no cycle
 CUTOFF = 21.0  # k z up to which a wave number k matters at depth z: exp(-21) is 1e-9
@@ -60,7 +61,7 @@ def low_pass(nx, depth):
 
 
 def kernel_table(nx, depth):
-    r"""Kernel spectra at the three lower OFFSETS, as real numbers (2, 3, 8, f); depth in elements.
+    r"""Kernel spectra at the three lower OFFSETS, as real numbers (f, 2, 3, 8); depth in elements.
 
     Under values kernels A, C are even, B, E odd, under slopes the other way round. The spectrum of an even
     kernel at offset 1/2 + e, or 1/i of that of an odd one, times :math:`e^{-i\omega/2}`, has a real part even
@@ -72,22 +73,33 @@ def kernel_table(nx, depth):
     spectra = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
     spectra *= half_element(nx).conj() * factor
     spectra[:, [1, 3, 4, 6]] *= -1j
-    return np.stack([spectra.real, spectra.imag])[..., :kept].copy()
+    return np.ascontiguousarray(np.moveaxis(np.stack([spectra.real, spectra.imag])[..., :kept], -1, 0))
 
 
 @compiled(error_model="python", nogil=True, fastmath={"contract"})
-def _multiply(real, imaginary, loads, out):
-    """out (frames, 3, :f): spectra of sx, sz, txz from kernels (frames, 8, f) and loads (frames, 4, >= f)."""
-    for frame in range(real.shape[0]):
-        x, y = real[frame], imaginary[frame]
-        p, q, dp, dq = loads[frame]
-        for k in range(real.shape[2]):
-            a, b, c = complex(x[0, k], y[0, k]), complex(x[1, k], y[1, k]), complex(x[2, k], y[2, k])
-            e, da, db = complex(x[3, k], y[3, k]), complex(x[4, k], y[4, k]), complex(x[5, k], y[5, k])
-            dc, de = complex(x[6, k], y[6, k]), complex(x[7, k], y[7, k])
-            out[frame, 0, k] = c * p[k] + de * dq[k] + 1j * (e * q[k] + dc * dp[k])
-            out[frame, 1, k] = a * p[k] + db * dq[k] + 1j * (b * q[k] + da * dp[k])
-            out[frame, 2, k] = c * q[k] + db * dp[k] + 1j * (b * p[k] + dc * dq[k])
+def _multiply(table, weights, loads, out):
+    """Spectra out (frames, 3, :f) of sx, sz, txz from a kernel_table, weights and loads (frames, 4, >= f).
+
+    BLOCK frequencies of all frames at a time: their part of the table stays in the cache.
+    """
+    real, imaginary = np.empty(8), np.empty(8)
+    for start in range(0, table.shape[0], BLOCK):
+        for frame in range(weights.shape[1]):
+            u0, u1, u2 = weights[0, frame, 0], weights[0, frame, 1], weights[0, frame, 2]
+            v0, v1, v2 = weights[1, frame, 0], weights[1, frame, 1], weights[1, frame, 2]
+            for k in range(start, min(start + BLOCK, table.shape[0])):
+                x, y = table[k, 0], table[k, 1]
+                for m in range(8):
+                    real[m] = u0 * x[0, m] + u1 * x[1, m] + u2 * x[2, m]
+                    imaginary[m] = v0 * y[0, m] + v1 * y[1, m] + v2 * y[2, m]
+                a, b = complex(real[0], imaginary[0]), complex(real[1], imaginary[1])
+                c, e = complex(real[2], imaginary[2]), complex(real[3], imaginary[3])
+                da, db = complex(real[4], imaginary[4]), complex(real[5], imaginary[5])
+                dc, de = complex(real[6], imaginary[6]), complex(real[7], imaginary[7])
+                p, q, dp, dq = loads[frame, 0, k], loads[frame, 1, k], loads[frame, 2, k], loads[frame, 3, k]
+                out[frame, 0, k] = c * p + de * dq + 1j * (e * q + dc * dp)
+                out[frame, 1, k] = a * p + db * dq + 1j * (b * q + da * dp)
+                out[frame, 2, k] = c * q + db * dp + 1j * (b * p + dc * dq)
 
 
 class BodyStress:
@@ -113,15 +125,14 @@ class BodyStress:
         loads[:, 0], loads[:, 1] = pressure, shear
         limited_slopes(loads[:, 0], loads[:, 2])
         limited_slopes(loads[:, 1], loads[:, 3])
-        return fft.rfft(loads, self.n) * self._half
+        spectra = fft.rfft(loads, self.n)
+        spectra *= self._half
+        return spectra
 
     def __call__(self, depth, spectra, weights):
         """Stresses (frames, 3, n) of depth number `depth` at offsets with these :func:`offset_weights`."""
-        table = self.tables[depth]
-        parts = [w @ t.reshape(3, -1) for w, t in zip(weights, table, strict=True)]
-        real, imaginary = (part.reshape(-1, *table.shape[2:]) for part in parts)
         out = np.zeros((len(spectra), 3, self.n // 2 + 1), complex)
-        _multiply(real, imaginary, spectra, out)
+        _multiply(self.tables[depth], weights, spectra, out)
         return fft.irfft(out, self.n, overwrite_x=True)
 
 
