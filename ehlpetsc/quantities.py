@@ -14,6 +14,9 @@ from ehlpetsc.quantity import Column, Field, Figure
 REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
 """From the values of the steps, in their order, to the one of a run."""
 
+MEANS = ("friction_coefficient", "film_central", "lambda_ratio", "mean_gap_ratio", "contact_share")
+"""Scalars whose means over the time in which both surfaces fill the contact are in the summary of a run."""
+
 SCENES = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
@@ -108,7 +111,13 @@ STEP_SCALARS = {
         "1", "nodes out of contact under less than 1 nm of oil", dtype="i4", over_run="sum", only="fluid"
     ),
     "contact_share": Figure(
-        "1", "share of the load on the solids", over_run="max", summary=".4g", compared=True, only="mixed"
+        "1",
+        "share of the load on the solids",
+        over_run="max",
+        summary=".4g",
+        label="contact_share_max",
+        compared=True,
+        only="mixed",
     ),
     "contact_length": Figure(
         "m",

@@ -36,9 +36,8 @@ def filled_from(result):
 
 def travelled(result):
     """Distance that the faster surface has travelled by the end of each step [m], shape (nsteps,)."""
-    if "steps/speed_1" in result:
-        speeds = np.abs([result.steps("speed_1"), result.steps("speed_2")])
-        return (np.cumsum(np.nan_to_num(result.steps("dt")) * speeds, axis=1)).max(axis=0)
+    if "steps/displacement_1" in result:
+        return np.abs([result.steps("displacement_1"), result.steps("displacement_2")]).max(axis=0)
     return max(abs(result.attrs["u1"]), abs(result.attrs["u2"])) * result.steps("time")
 
 
@@ -58,12 +57,14 @@ def _filled_by(result, side, speed, table, number):
         feature = table["synthetic"]
         centre = feature.get("position", 2.0 * feature.get("wavelength", 0.0))
         distance = centre - np.sign(speed) * leading
-    return _time_of(result, distance, speed, f"speed_{number}")
+    return _time_of(result, distance, speed, f"displacement_{number}")
 
 
 def _time_of(result, distance, speed, name):
-    """Time [s] at which a surface has travelled a distance [m], with its speeds of the steps where stored."""
+    """Time [s] at which a surface has travelled a distance [m], by its displacements if stored."""
+    if distance <= 0.0:
+        return 0.0
     if f"steps/{name}" not in result:
         return distance / abs(speed)
-    travelled = np.cumsum(np.nan_to_num(result.steps("dt")) * np.abs(result.steps(name)))
-    return float(np.interp(distance, travelled, result.steps("time"), right=np.inf))
+    furthest = np.maximum.accumulate(np.abs(result.steps(name)))
+    return float(np.interp(distance, furthest, result.steps("time"), right=np.inf))

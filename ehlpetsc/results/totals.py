@@ -1,7 +1,11 @@
 """The figures of all steps put together to those of a run, and of several runs, as their table says."""
 
-from ehlpetsc.quantities import REDUCTIONS, STEP_SCALARS
+import numpy as np
 
+from ehlpetsc.quantities import MEANS, REDUCTIONS, STEP_SCALARS
+from ehlpetsc.results.filling import both_fill
+
+OF_ALL = ("sum", "min", "max")  # reductions that mean something of several runs
 REDUCED = {name: figure for name, figure in STEP_SCALARS.items() if figure.over_run}
 
 
@@ -12,10 +16,12 @@ class Totals:
     ----------
     values : dict of str to number, optional
         Of the steps so far, keys of `REDUCED`.
+    means : dict of str to float, optional
+        Over the time in which both surfaces fill the contact, keys of `ehlpetsc.quantities.MEANS`.
     """
 
-    def __init__(self, values=()):
-        self.values = dict(values)
+    def __init__(self, values=(), means=()):
+        self.values, self.means = dict(values), dict(means)
 
     @classmethod
     def of_result(cls, result):
@@ -27,22 +33,21 @@ class Totals:
         """
         names = [name for name in REDUCED if name in result.figures]
         steps = {name: result.steps(name).tolist() for name in names}
-        return cls({n: REDUCTIONS[REDUCED[n].over_run](v) for n, v in steps.items() if v})
+        return cls({n: REDUCTIONS[REDUCED[n].over_run](v) for n, v in steps.items() if v}, means(result))
 
     @classmethod
     def of_series(cls, runs):
-        """Those of several runs.
+        """Sums and extremes of several runs.
 
         Parameters
         ----------
         runs : iterable of Totals
         """
         known = [run.values for run in runs]
-        names = [name for name in REDUCED if any(name in values for values in known)]
+        named = {name: figure.over_series or figure.over_run for name, figure in REDUCED.items()}
+        names = [n for n, how in named.items() if how in OF_ALL and any(n in values for values in known)]
         of_all = {name: [values[name] for values in known if name in values] for name in names}
-        return cls(
-            {n: REDUCTIONS[REDUCED[n].over_series or REDUCED[n].over_run](v) for n, v in of_all.items()}
-        )
+        return cls({name: REDUCTIONS[named[name]](values) for name, values in of_all.items()})
 
     def add(self, figures):
         """Take those of the next step.
@@ -57,10 +62,35 @@ class Totals:
             self.values[name] = REDUCTIONS[REDUCED[name].over_run](both)
 
     def __str__(self):
-        """Those of the summary, ``name=value``; 0 for what every run has where no step was taken."""
+        """``name=value`` of the summary, the means at its end; 0 where no step was taken."""
         shown = [
             (figure.label or name, self.values.get(name, 0), figure.summary)
             for name, figure in REDUCED.items()
             if figure.summary and (name in self.values or not figure.only)
+            if not (name in MEANS and figure.over_run == "last")
         ]
+        shown += [(name, value, ".4g") for name, value in self.means.items()]
         return " ".join(f"{label}={value:{form}}" for label, value, form in shown)
+
+
+def means(result):
+    """Means over the time in which both surfaces fill the contact, by name; a steady run has its values.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+
+    Returns
+    -------
+    dict of str to float
+        Empty where the run ends before.
+    """
+    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
+    weights = np.ones(1) if len(time) == 1 else np.where(both_fill(result, time), dt, 0.0)
+    found = {}
+    for name in MEANS if weights.any() else ():
+        values = result.steps(name).astype(float) if name in result.figures else np.full(len(time), np.nan)
+        known = np.isfinite(values)
+        if weights[known].any():
+            found[name] = float(np.average(values[known], weights=weights[known]))
+    return found

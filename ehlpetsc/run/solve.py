@@ -1,11 +1,14 @@
 """A run from its beginning, or a restart file, to its end: states are taken, kept and told of."""
 
+import contextlib
 import sys
 import time as clock
 from dataclasses import dataclass
 from functools import partial
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.totals import Totals, means
 from ehlpetsc.run.progress import Progress, summary_line
 from ehlpetsc.run.recorder import Recorder
 
@@ -125,7 +128,7 @@ class Run:
             outcome = Outcome(ExitStatus.BAD_INPUT, error, clock.monotonic() - begun)
             if self.root:
                 print(f"ehlpetsc: {error}", file=self.err, flush=True)
-            self._say(summary_line(outcome.status, self.recorder.totals, outcome.wall))
+            self._say(self._summary(outcome))
             return outcome
         outcome = Outcome(status, failure, clock.monotonic() - begun)
         if self.root:
@@ -164,7 +167,15 @@ class Run:
         self._note_unread()
         if state is not None:
             self._say(f"result: {recorder.output}")
-        self._say(summary_line(outcome.status, recorder.totals, outcome.wall))
+        self._say(self._summary(outcome))
+
+    def _summary(self, outcome):
+        """The last line, with the means of what the result file holds by now."""
+        totals = self.recorder.totals
+        if self.root and totals.values and outcome.status is not ExitStatus.BAD_INPUT:
+            with contextlib.suppress(OutputError), read_result(self.recorder.output) as result:
+                totals = Totals(totals.values, means(result))
+        return summary_line(outcome.status, totals, outcome.wall)
 
     def _say(self, *lines):
         if self.root:

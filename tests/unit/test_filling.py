@@ -78,14 +78,14 @@ def test_with_speeds_that_change_the_distance_travelled_counts(tmp_path):
         begin = filled_from(result)
     with h5py.File(path, "r+", libver="latest") as file:
         time = file["steps/time"][:]
-        file["steps/dt"][0] = 0.0
         for number, factor in ((1, 1.12), (2, 0.88)):  # 100 m/s for 10 us, then 50 m/s
-            file[f"steps/speed_{number}"] = factor * np.where(time <= 10.5e-6, 100.0, 50.0)
+            way = factor * (100.0 * np.minimum(time, 10e-6) + 50.0 * np.maximum(time - 10e-6, 0.0))
+            file[f"steps/displacement_{number}"] = way
     with read_result(path) as result:
         assert filled_from(result) == pytest.approx(begin - 10e-6, rel=1e-6)
         assert travelled(result)[-1] == pytest.approx(1.12 * (10e-6 * 100.0 + 30e-6 * 50.0), rel=1e-6)
     with h5py.File(path, "r+", libver="latest") as file:
-        file["steps/speed_1"][:] = file["steps/speed_2"][:] = 1.0
+        file["steps/displacement_1"][:] = file["steps/displacement_2"][:] = time
     with read_result(path) as result:
         assert filled_from(result) == np.inf
 

@@ -141,11 +141,10 @@ def test_summary_line_can_be_grepped_and_read_back():
             contacts=27,
             load_error=2.5e-12,
             mass_error=3e-4,
-            friction_coefficient=0.05,
-            film_central=2e-7,
-            lambda_ratio=1.5,
+            friction_coefficient=0.05,  # of the last step
             retries=3,
-        )
+        ),
+        dict(friction_coefficient=0.04, film_central=2e-7, lambda_ratio=1.5),
     )
     line = report.summary_line(ExitStatus.DONE, totals, 12.34)
     assert line.startswith("ehlpetsc: done steps=")
@@ -158,7 +157,7 @@ def test_summary_line_can_be_grepped_and_read_back():
         contacts=27,
         load_error=2.5e-12,
         mass_error=3e-4,
-        friction_coefficient=0.05,
+        friction_coefficient=0.04,
         film_central=2e-7,
         lambda_ratio=1.5,
         wall=12.3,

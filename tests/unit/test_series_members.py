@@ -4,12 +4,13 @@ import tomllib
 
 import numpy as np
 import pytest
-from made_results import make_result
+from made_results import make_result, with_solids
 
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
+from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.series.member import Member, named
@@ -134,13 +135,40 @@ def test_sums_and_extremes_of_the_whole():
     assert str(Totals.of_series([Totals()])).startswith("steps=0 newton=0 ")
 
 
+def test_a_series_has_no_value_of_one_members_last_step():
+    one = Totals(
+        dict(step=3, friction_coefficient=0.05, set_volume=1e-12, contact_share=0.1), dict(contact_share=0.02)
+    )
+    words = str(Totals.of_series([one, Totals(dict(step=4, contact_share=0.2))]))
+    assert "contact_share_max=0.2" in words and "steps=7 " in words
+    for name in ("friction_coefficient", "set_volume", " contact_share="):
+        assert name not in words
+
+
+def test_means_are_over_the_time_in_which_both_surfaces_fill_the_contact(tmp_path):
+    with read_result(with_solids(make_result(tmp_path / "r.h5", speed=50.0, rough=True))) as result:
+        filled = result.steps("time") >= filled_from(result)
+        assert 5 < filled.sum() < 41
+        found = Totals.of_result(result)
+        for name in ("contact_share", "friction_coefficient"):
+            assert found.means[name] == pytest.approx(result.steps(name)[filled].mean(), rel=1e-12)
+        line = str(found)
+        assert f" contact_share={found.means['contact_share']:.4g}" in line
+        assert f" contact_share_max={result.steps('contact_share').max():.4g}" in line
+    with read_result(with_solids(make_result(tmp_path / "s.h5", speed=1.0, rough=True))) as result:
+        assert Totals.of_result(result).means == {}  # ends before
+    with read_result(with_solids(make_result(tmp_path / "t.h5", steps=1))) as result:
+        steady = Totals.of_result(result).means
+        assert steady["contact_share"] == result.steps("contact_share")[0]
+
+
 def test_totals_of_steps_are_those_of_their_file(tmp_path):
     totals = Totals()
     with read_result(make_result(tmp_path / "r.h5")) as result:
         for row in range(len(result.steps("step"))):
             totals.add({name: result.steps(name)[row].item() for name in result.figures})
         stored = Totals.of_result(result)
-    assert str(totals) == str(stored)
+    assert str(Totals(totals.values, stored.means)) == str(stored)
     assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
 
 
