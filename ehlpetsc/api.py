@@ -125,26 +125,26 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     1.00 p0 on 1001 nodes
     """
     need_solver()
-    from ehlpetsc.run.progress import in_notebook, on_terminal
+    from ehlpetsc.run.progress import ProgressOutput, in_notebook, on_terminal
     from ehlpetsc.run.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
-    from ehlpetsc.run.solve import record
+    from ehlpetsc.run.solve import solve as hand_to
 
     simulation = Simulation(case, comm, options)
     refuse_passes(simulation.case)
     if progress is None:
         progress = on_terminal(sys.stdout) or in_notebook()
-    stream = sys.stdout if progress and simulation.comm.rank == 0 else None
     recorder = Recorder(simulation, output)
     with simulation.options, recorder:
         recorder.reserve(restart, overwrite)
         if restart is not None:
             recorder.resume(restart)
-        _, failure = record(simulation, recorder, stream=stream)
+        shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []
+        _, failure = hand_to(simulation, [recorder, *shown])
     if failure:
         raise failure
     if output is None:
-        return Result(h5py.File(io.BytesIO(recorder.image()), "r"), Path("memory.h5"))
+        return Result(h5py.File(io.BytesIO(recorder.result.image()), "r"), Path("memory.h5"))
     return read_result(output)
 
 

@@ -112,6 +112,35 @@ class Progress:
         self._stream.write("\r" + bar.ljust(columns - 1))
 
 
+class ProgressOutput:
+    """Progress of a simulation as an output, from its first step on.
+
+    Parameters
+    ----------
+    simulation : run.simulation.Simulation
+    stream : file
+    """
+
+    def __init__(self, simulation, stream):
+        self._simulation, self._stream = simulation, stream
+        self._progress = None if simulation.solution is None else self._of(simulation.solution.time)
+
+    def take(self, state):
+        """Show a step; the steady start is none."""
+        if self._progress is not None:
+            self._progress.step(state.figures)
+        elif not self._simulation.finished:  # of a steady case nothing follows
+            self._progress = self._of(state.time)
+
+    def close(self, status):
+        """Show the last step."""
+        if self._progress is not None:
+            self._progress.close()
+
+    def _of(self, time):
+        return Progress(time, self._simulation.end, self._stream)
+
+
 def _scaled(figures):
     """Columns and values of those figures that the step has."""
     for name, column in _COLUMNS.items():

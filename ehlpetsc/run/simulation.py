@@ -2,6 +2,7 @@
 
 import time as clock
 from dataclasses import replace
+from functools import partial
 
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -9,7 +10,7 @@ from petsc4py import PETSc
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.errors import CaseError, NotConverged
+from ehlpetsc.errors import CaseError, NotConverged, Stopped
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.newton import NewtonSolver
@@ -63,8 +64,6 @@ class Simulation:
         The last one of this process.
     solution : stepping.time_stepping.State or None
         Its unknowns, or those of a restart file.
-    watch : callable or None
-        Called in every iteration on every rank; what it raises ends it.
 
     Raises
     ------
@@ -105,7 +104,7 @@ class Simulation:
         self.scene = Scene(case, self.scales, self.operation, positions)
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
-        self.state = self.solution = self.watch = None
+        self.state = self.solution = None
         with self.options:
             table = PETSc.Options()
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
@@ -135,8 +134,28 @@ class Simulation:
         return self.operation.remaining(self.solution.time, self.solution.travelled)
 
     def __iter__(self):
+        return self.states()
+
+    def states(self, stop=None):
+        """Accepted states up to the end.
+
+        Parameters
+        ----------
+        stop : run.stop.StopRequest, optional
+            Asked before every time step with the communicator whether to end there, and in every iteration
+            whether the step in progress is to be given up.
+
+        Raises
+        ------
+        Stopped
+        NotConverged
+        """
         while not self.finished:
-            yield self.advance()
+            begun = self.solution is not None
+            if begun and stop and stop(self.comm):
+                raise Stopped
+            asked = stop and (stop.overdue if begun else stop)
+            yield self.advance(watch=stop and partial(_end_where_asked, asked, self.comm))
 
     def resume(self, solution, baseline, positions):
         """Continue from a time level instead of from the steady solution.
@@ -158,13 +177,15 @@ class Simulation:
         m = solver.problem.content(solution.q, solution.w) if solution.m is None else solution.m
         self.solution = replace(solution, records=records, m=m)
 
-    def advance(self, dt=None):
+    def advance(self, dt=None, watch=None):
         """Solve the steady contact, afterwards one time step.
 
         Parameters
         ----------
         dt : float, optional
             Length of the step [s]; by default the case's, shorter after steps that had to be halved.
+        watch : callable, optional
+            Called in every iteration on every rank; an exception from it ends the solve.
 
         Returns
         -------
@@ -176,7 +197,7 @@ class Simulation:
             Its `state` is the last good one.
         """
         started = clock.monotonic()
-        self.stepper.solver.watch = self.watch
+        self.stepper.solver.watch = watch
         with self.options:
             try:
                 solution = self._start() if self.solution is None else self._step(dt)
@@ -211,6 +232,11 @@ class Simulation:
         """Head PETSc's own lines, where the user asked for some."""
         if self._followed:
             PETSc.Sys.Print(what, comm=self.comm)
+
+
+def _end_where_asked(asked, comm):
+    if asked(comm):
+        raise Stopped
 
 
 def _text(value):

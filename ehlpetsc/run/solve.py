@@ -1,15 +1,14 @@
-"""A run from its beginning, or a restart file, to its end: states are taken, kept and told of."""
+"""A run from its beginning, or a restart file, to its end: every state goes to the outputs."""
 
 import contextlib
 import sys
 import time as clock
 from dataclasses import dataclass
-from functools import partial
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals, means
-from ehlpetsc.run.progress import Progress, summary_line
+from ehlpetsc.run.progress import ProgressOutput, summary_line
 from ehlpetsc.run.recorder import Recorder
 
 
@@ -30,88 +29,90 @@ class Outcome:
     wall: float
 
 
-def record(simulation, recorder, stop=None, stream=None, after_first=None):
-    """Keep the states of a simulation up to its end, where it does not converge or is to stop.
+def solve(simulation, outputs, stop=None):
+    """Hand the states of a simulation to outputs, up to its end, a step that does not converge or a stop.
 
     Parameters
     ----------
     simulation : run.simulation.Simulation
-    recorder : run.recorder.Recorder
+    outputs : list
+        See :mod:`ehlpetsc.run.outputs`.
     stop : run.stop.StopRequest, optional
-        Asked before every time step with the communicator whether to end there, and in every iteration
-        whether to wait no longer for the step in hand.
-    stream : file, optional
-        Where to show progress, on rank 0.
-    after_first : callable, optional
-        Called once, after the first time step: PETSc has then read the options of its solver.
 
     Returns
     -------
     status : errors.ExitStatus
     failure : errors.NotConverged or None
     """
-    progress = status = failure = None
-    while status is None:
-        begun = simulation.solution is not None
-        asked = stop and (stop.overdue if begun else stop)
-        simulation.watch = stop and partial(_end_where_asked, asked, simulation.comm)
-        if simulation.finished:
-            status = ExitStatus.DONE
-        elif begun and stop and stop(simulation.comm):
-            status = ExitStatus.STOPPED
-        else:
-            if stream and begun and progress is None:
-                progress = Progress(simulation.solution.time, simulation.end, stream)
-            try:
-                recorder.take(simulation.advance())
-                if after_first and simulation.state.step >= 1:
-                    after_first()
-                    after_first = None
-            except NotConverged as error:
-                status, failure = ExitStatus.NOT_CONVERGED, error
-            except Stopped:
-                status = ExitStatus.STOPPED
-            if progress and status is None:
-                progress.step(simulation.state.figures)
-    if progress:
-        progress.close()
-    if status is not ExitStatus.DONE and begun:
-        recorder.checkpoint()
-    recorder.close(status)
+    status, failure = ExitStatus.DONE, None
+    try:
+        for state in simulation.states(stop):
+            for output in outputs:
+                output.take(state)
+    except NotConverged as error:
+        status, failure = ExitStatus.NOT_CONVERGED, error
+    except Stopped:
+        status = ExitStatus.STOPPED
+    for output in outputs:
+        output.close(status)
     return status, failure
 
 
-def _end_where_asked(asked, comm):
-    if asked(comm):
-        raise Stopped
+class UnusedOptions:
+    """Note on options that nobody has read, most likely misspelt, after the first time step; an output.
+
+    Parameters
+    ----------
+    options : nonlinear.defaults.RunOptions
+    show : callable
+        Prints a line.
+    """
+
+    def __init__(self, options, show):
+        self._options, self._show, self._noted = options, show, None
+
+    def take(self, state):
+        """Note them once PETSc has read the options of its solver."""
+        if state.step >= 1 and self._noted is None:
+            self.note()
+
+    def close(self, status):
+        """Nothing: at the end of a run the note belongs to its report."""
+
+    def note(self):
+        """Print those that have not been printed yet."""
+        noted = self._noted or set()
+        new = self._options.unread_so_far() - noted
+        self._noted = noted | new
+        if new:
+            self._show(f"note: options that nobody read: -{', -'.join(sorted(new))}")
 
 
 class Run:
-    """A simulation that is recorded and told of, for the command.
+    """A simulation with its outputs and messages, for the command.
 
     Parameters
     ----------
     simulation : run.simulation.Simulation
     output : path-like
-    stop : callable, optional
-        As of `record`.
+    stop : run.stop.StopRequest, optional
     out, err : file, optional
-        Where rank 0 speaks; standard output and error by default.
+        Where rank 0 prints; standard output and error by default.
     """
 
     def __init__(self, simulation, output, stop=None, out=None, err=None):
         self.simulation, self.recorder = simulation, Recorder(simulation, output)
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
-        self._noted = set()
+        self._unused = UnusedOptions(simulation.options, self._print)
 
     def run(self, restart=None, overwrite=False):
-        """Run to the end, tell how it ended.
+        """Run to the end and report how it ended.
 
         Parameters
         ----------
         restart : path-like, optional
-            Restart file to go on from.
+            Restart file to resume from.
         overwrite : bool
             As of `Recorder.reserve`.
 
@@ -121,35 +122,28 @@ class Run:
         """
         begun = clock.monotonic()
         try:
-            status, failure = self._record(restart, overwrite)
+            status, failure = self._solve(restart, overwrite)
         except OutputError as error:
             if self.simulation.state is None:  # nothing was computed yet
                 raise
             outcome = Outcome(ExitStatus.BAD_INPUT, error, clock.monotonic() - begun)
             if self.root:
                 print(f"ehlpetsc: {error}", file=self.err, flush=True)
-            self._say(self._summary(outcome))
+            self._print(self._summary(outcome))
             return outcome
         outcome = Outcome(status, failure, clock.monotonic() - begun)
         if self.root:
             self._report(outcome)
         return outcome
 
-    def _record(self, restart, overwrite):
+    def _solve(self, restart, overwrite):
         with self.simulation.options, self.recorder:
             self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
-            self._say(*(f"restart: {note}" for note in notes))
+            self._print(*(f"restart: {note}" for note in notes))
             self._looser = self.simulation.options.looser()
-            stream = self.out if self.root else None
-            return record(self.simulation, self.recorder, self.stop, stream, self._note_unread)
-
-    def _note_unread(self):
-        """Print options that nobody has read so far: most likely misspelt."""
-        ignored = self.simulation.options.unread_so_far() - self._noted
-        self._noted |= ignored
-        if ignored:
-            self._say(f"note: options that nobody read: -{', -'.join(sorted(ignored))}")
+            shown = [ProgressOutput(self.simulation, self.out), self._unused] if self.root else []
+            return solve(self.simulation, [self.recorder, *shown], self.stop)
 
     def _report(self, outcome):
         recorder, state = self.recorder, self.simulation.solution
@@ -157,17 +151,17 @@ class Run:
             saved = f". Last good state: {recorder.restart}" if state else ""
             print(f"ehlpetsc: not converged: {outcome.failure}{saved}", file=self.err, flush=True)
         elif outcome.status is ExitStatus.STOPPED and state is None:
-            self._say("ehlpetsc: stopped during the steady start; nothing to go on with")
+            self._print("ehlpetsc: stopped during the steady start; nothing to go on with")
         elif outcome.status is ExitStatus.STOPPED:
-            self._say(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
-        for line in recorder.limits:
-            self._say(f"limit: {line}")
+            self._print(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
+        for line in recorder.result.limits:
+            self._print(f"limit: {line}")
         for line in self._looser:
-            self._say(f"note: {line}")
-        self._note_unread()
+            self._print(f"note: {line}")
+        self._unused.note()
         if state is not None:
-            self._say(f"result: {recorder.output}")
-        self._say(self._summary(outcome))
+            self._print(f"result: {recorder.output}")
+        self._print(self._summary(outcome))
 
     def _summary(self, outcome):
         """The last line, with the means of what the result file holds by now."""
@@ -177,7 +171,7 @@ class Run:
                 totals = Totals(totals.values, means(result))
         return summary_line(outcome.status, totals, outcome.wall)
 
-    def _say(self, *lines):
+    def _print(self, *lines):
         if self.root:
             for line in lines:
                 print(line, file=self.out, flush=True)

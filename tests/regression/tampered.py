@@ -24,18 +24,18 @@ def tamper(accident, rank, step):
 
     advance = Simulation.advance
 
-    def with_accident(self):
+    def with_accident(self, **given):
         if self.solution and self.solution.step + 1 == step and MPI.COMM_WORLD.rank == rank:
             if accident == "raise":
                 raise ValueError("an accident")
             if accident == "late":
                 stop.clock = SimpleNamespace(monotonic=lambda: math.inf)
-                return advance(self)
+                return advance(self, **given)
             if accident == "lost":
                 shutil.rmtree("out")
-                return advance(self)
+                return advance(self, **given)
             os.kill(os.getpid(), getattr(signal, accident))
-        return advance(self)
+        return advance(self, **given)
 
     Simulation.advance = with_accident
 

@@ -13,7 +13,7 @@ from ehlpetsc.results.output_guard import Lock, check_index, check_place, inputs
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
 from ehlpetsc.results.whole_file import write_whole
-from ehlpetsc.run.recorder import on_root
+from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run

@@ -20,9 +20,9 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_index
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.whole_file import write_whole
+from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.progress import summary_line
-from ehlpetsc.run.recorder import on_root
 from ehlpetsc.run.series.member import Member, named
 from ehlpetsc.run.series.work_queue import WorkQueue
 from ehlpetsc.run.simulation import Simulation

@@ -1,0 +1,76 @@
+"""The restart file as an output: written every few minutes, when a run is stopped and when a write fails."""
+
+import contextlib
+import time as clock
+
+from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.run.on_root import on_root
+from ehlpetsc.run.restart import checkpoint
+
+
+class RestartFile:
+    """Restart file of a simulation; it is written for states only that the result file holds.
+
+    Parameters
+    ----------
+    simulation : run.simulation.Simulation
+    path : Path or None
+        None: none.
+    result : .result_file.ResultFile
+    totals : results.totals.Totals
+    """
+
+    def __init__(self, simulation, path, result, totals):
+        self.simulation, self.comm, self.path = simulation, simulation.comm, path
+        self.result, self.totals = result, totals
+        self._saved, self._stored = clock.monotonic(), None
+
+    @property
+    def stored_step(self):
+        """Last step that the result file holds with all before it, on rank 0; None: none is known."""
+        return self._stored and self._stored.state.step
+
+    def take(self, state):
+        """Remember a state that the result file holds; write the file where it is due."""
+        self.note_stored()
+        due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
+        if state.step and self.comm.bcast(due):
+            self.save()
+            self._saved = clock.monotonic()
+
+    def close(self, status):
+        """Write the file for a run that did not get to its end."""
+        if status is not ExitStatus.DONE and self.simulation.solution is not None and self.result.is_open:
+            self.save()
+
+    def save(self):
+        """Write the file for the last state."""
+        if self.path is not None:
+            on_root(self.comm, self._save)
+
+    def save_stored(self):
+        """Write the file, if that is possible, for the last state that the result file holds; on rank 0."""
+        with contextlib.suppress(OutputError):
+            if self._stored:
+                self._write(self._stored)
+
+    def note_stored(self):
+        """Remember a state to resume from that the result file on rank 0 holds with all before it."""
+        state = self.simulation.solution
+        if self.path and self.simulation.case.time and self.result.holds(state):
+            self._stored = self._now()
+
+    def _now(self):
+        return checkpoint.Checkpoint.of(
+            self.simulation, self.result.contact_count(), dict(self.totals.values)
+        )
+
+    def _save(self):
+        self.result.flush()
+        self.note_stored()
+        self._write(self._now())
+
+    def _write(self, state):
+        simulation = self.simulation
+        model = simulation.stepper.problem.model
+        checkpoint.save(self.path, state, simulation.case, simulation.scales, model)

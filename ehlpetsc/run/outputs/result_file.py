@@ -1,0 +1,128 @@
+"""The result file as an output; rank 0 alone writes it."""
+
+import mpi4py
+import numpy as np
+import petsc4py
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.nonlinear import events
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.results.hdf5.datasets import Layout
+from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.run.limits import limits
+from ehlpetsc.run.on_root import on_root
+from ehlpetsc.run.stored_surfaces import body_depths, profiles
+from ehlpetsc.stepping.step_control import on_level
+
+MESSAGE_BYTES = 2**30  # MPI counts to twice as many
+
+
+class ResultFile:
+    """Result file of a simulation, created with its first state.
+
+    Parameters
+    ----------
+    simulation : run.simulation.Simulation
+    path : Path or None
+        None: in memory.
+    totals : results.totals.Totals
+        Of the run, for the limits of the model.
+
+    Attributes
+    ----------
+    limits : list of str
+        Limits of the model that the run exceeded, known on rank 0 once it is closed.
+    """
+
+    def __init__(self, simulation, path, totals):
+        self.simulation, self.comm, self.path, self.totals = simulation, simulation.comm, path, totals
+        self.limits, self._writer, self.is_open = [], None, False
+
+    def open(self, step=None, contact_count=None):
+        """Create the file; after a restart, continue it behind `step` with its contact counts."""
+        on_root(self.comm, self._create, step, contact_count)
+        self.is_open = True
+
+    def take(self, state):
+        """Append the step and, where it is due, a frame."""
+        if not self.is_open:
+            self.open()
+        with events.OUTPUT:
+            on_root(self.comm, self._append, state)
+
+    def flush(self):
+        """Write what is buffered; on rank 0."""
+        self._writer.flush()
+
+    def close(self, status):
+        """Write what is left and how the run ended."""
+        if self.is_open:
+            on_root(self.comm, self._close, status)
+
+    def abandon(self, status):
+        """Close without agreement between ranks, which may not know of the error."""
+        if self._writer:
+            self._writer.close(status.words)
+
+    def image(self):
+        """The bytes of a result in memory, on every rank."""
+        image = self._writer.image() if self.comm.rank == 0 else None
+        if self.comm.size == 1:
+            return image
+        size = self.comm.bcast(image and len(image))
+        whole = np.frombuffer(image, "u1") if image else np.empty(size, "u1")
+        for begin in range(0, size, MESSAGE_BYTES):
+            self.comm.Bcast(whole[begin : begin + MESSAGE_BYTES])
+        return whole.tobytes()
+
+    def contact_count(self):
+        """Steps in contact of each node so far, on rank 0."""
+        return self._writer.contact_count.copy()
+
+    def holds(self, state):
+        """Whether the file on rank 0 holds a state and all before it."""
+        return self._writer is not None and self._writer.written == (state.step, state.time)
+
+    def _append(self, state):
+        every, steady = self.simulation.case.output.every, self.simulation.case.time is None
+        frame = every == 1 or steady or on_level(self.simulation.level(state.time), every)
+        self._writer.append(state.step, state.time, state.fields, state.figures, state.in_contact, frame)
+
+    def _close(self, status):
+        simulation = self.simulation
+        for side, name, depth in body_depths(simulation):
+            self._writer.put_depth(side, name, depth)
+        self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
+        self._writer.close(status.words, self.limits)
+
+    def _create(self, step, count):
+        case, scales = self.simulation.case, self.simulation.scales
+        stored = of_case(FIELDS, case)
+        attributes = {name: getattr(scales, name) for name in ("a", "p0", "u1", "u2")}
+        attributes |= {
+            "title": case.title,
+            "case": case.text,
+            "h_scale": scales.h,
+            "ranks": self.comm.size,
+            "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
+            "versions": libraries(),
+        }
+        layout = Layout(
+            x=scales.x * scales.a,
+            fields=[name for name in case.output.fields if name in stored],
+            figures=of_case(STEP_SCALARS, case),
+            precision=case.output.precision,
+            profiles=profiles(self.simulation),
+        )
+        every = case.output.every
+        self._writer = ResultWriter(
+            self.path, layout, attributes, every, resume_step=step, contact_count=count
+        )
+
+
+def libraries():
+    """Names and versions of the numerical libraries, for the result file."""
+    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
+    mpi = MPI.Get_library_version().split(",")[0].rstrip("\0")
+    return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}
