@@ -142,7 +142,7 @@ class Run:
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._looser = self.simulation.options.looser()
-            shown = [ProgressOutput(self.simulation, self.out), self._unused] if self.root else []
+            shown = [self._unused, ProgressOutput(self.simulation, self.out)] if self.root else []
             return solve(self.simulation, [self.recorder, *shown], self.stop)
 
     def _report(self, outcome):

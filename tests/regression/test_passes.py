@@ -143,7 +143,7 @@ def test_yield_pressures_that_cannot_be_are_refused(value, words):
 
 
 def test_direct_contact_does_not_yield():
-    with pytest.raises(CaseError, match="mixed contact"):
+    with pytest.raises(CaseError, match="contact.yield_pressure"):
         load(CASES / "table1_rough.toml", ["contact.yield_pressure=3e9"])
 
 
