@@ -62,18 +62,33 @@ class ConditionsTable(NamedTuple):
         values = [cubic(time) for cubic in self.cubics()]
         return self._replace(time=time, load=values[0], radius=values[1], u1=values[2], u2=values[3])
 
+    @property
+    def is_periodic(self):
+        """Whether a repeated table ends as it begins: its slopes then are those of a periodic one."""
+        return self.repeat > 1 and all(column[0] == column[-1] for column in self[1:5])
+
     def cubics(self):
         """Monotone cubics of load, radius, u1 and u2."""
         from scipy.interpolate import PchipInterpolator
 
-        return [PchipInterpolator(self.time, v) for v in (self.load, self.radius, self.u1, self.u2)]
+        time, columns = self.time, self[1:5]
+        if self.is_periodic:  # one interval more on either side
+            time = np.concatenate([[time[-2] - time[-1]], time, [time[-1] + time[1]]])
+            columns = [np.concatenate([v[-2:-1], v, v[1:2]]) for v in columns]
+        return [PchipInterpolator(time, v) for v in columns]
+
+    def integrals(self):
+        """Integrals of u1 and u2 over time, 0 at time 0."""
+        found = [cubic.antiderivative() for cubic in self.cubics()[2:]]
+        for integral in found:
+            integral.c[-1] -= integral(0.0)
+        return found
 
     def extent(self):
         """Least and largest displacement of each body over all repeats [m]: two pairs."""
-        cubics = self.cubics()[2:]
         found = []
-        for cubic in cubics:
-            way = cubic.antiderivative()(self.sampled().time)
+        for integral in self.integrals():
+            way = integral(self.sampled().time)
             total = (self.repeat - 1) * way[-1]
             found.append((float(way.min() + min(total, 0.0)), float(way.max() + max(total, 0.0))))
         return tuple(found)
@@ -136,7 +151,7 @@ class VariableOperation:
 
     @cached_property
     def _integrals(self):
-        return [cubic.antiderivative() for cubic in self._cubics[2:]]
+        return self.table.integrals()
 
     @property
     def period(self):
@@ -210,17 +225,16 @@ class VariableOperation:
     def _levels(self):
         """Time levels of one table [s], 0 and its end among them."""
         fine = self.table.sampled()
+        slopes = [cubic(fine.time, 1) for cubic in self._cubics]
         half_width = np.sqrt(8.0 * fine.load * fine.radius / (np.pi * self.modulus))
         cell = self.courant * self.dx
         with np.errstate(over="ignore"):
             rates = [
                 fine.speed / cell,  # of steps [1/s]: the faster surface moves by the Courant number
-                np.abs(np.gradient(half_width, fine.time)) / cell,  # so do the edges of the Hertz contact
+                # so do the edges of the Hertz contact
+                0.5 * half_width * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius) / cell,
             ]
-            rates += [
-                np.abs(np.gradient(u, fine.time)) / (SPEED_CHANGE * self.courant * fine.speed.max())
-                for u in (fine.u1, fine.u2)
-            ]
+            rates += [np.abs(v) / (SPEED_CHANGE * self.courant * fine.speed.max()) for v in slopes[2:]]
         rate = np.maximum.reduce(rates)
         if (rate * self.period < 1.0).any():  # nothing moves for a while
             rate = np.maximum(rate, FEWEST_STEPS / (self.courant * self.period))

@@ -2,11 +2,16 @@
 
 import numpy as np
 import pytest
-from driving import CASES
+from driving import CASES, observed_order
+from scipy.integrate import solve_ivp
 
+import ehlpetsc
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears import path_of_contact
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.stepping.time_stepping import State
 
 COARSE = {"mesh.points_per_half_width": 50, "mesh.inlet": -2.5, "mesh.outlet": 1.5}
 
@@ -88,3 +93,169 @@ def test_a_body_that_reverses_shows_the_same_points_on_its_way_back():
     assert there == pytest.approx(back, rel=1e-9)
     np.testing.assert_allclose(fast.height(x - there), fast.height(x - back), atol=1e-12)
     assert fast.height(x).std() > 0.5e-7 and fast.s[0] <= x[0] - moved(1e-4)[0]
+
+
+def test_a_load_step_is_a_restart_under_the_other_load():
+    """On one mesh, the state after some steps under one load continues under the other."""
+    heavy, light, dt, before, after = 527e3, 0.64 * 527e3, 5e-7, 12, 25
+    step = dt * before
+    table = {
+        "operation.time": [0.0, step, step + 1e-12, 1e-4],
+        "operation.load": [light, light, heavy, heavy],
+        "time": None,
+    }
+    stepped = Simulation(load(CASES / "table1_smooth.toml", COARSE | table))
+    restarted = Simulation(load(CASES / "table1_smooth.toml", COARSE | {"time.travel": 5.0}))
+    stepped.advance()
+    for _ in range(before):
+        stepped.advance(dt)
+    restarted.solution = stepped.solution
+    for _ in range(after):
+        one, other = stepped.advance(dt), restarted.advance(dt)
+        assert one.load == pytest.approx(heavy, rel=1e-10)
+        np.testing.assert_allclose(one.film_thickness, other.film_thickness, rtol=1e-9)
+        np.testing.assert_allclose(one.pressure, other.pressure, atol=1.0)
+
+
+def test_after_a_load_step_the_contact_settles_as_after_a_restart_from_a_file(tmp_path):
+    """A restart file scales the film with the contact; once that film has left, both agree."""
+    heavy, light, a, u_1 = 527e3, 0.64 * 527e3, 0.33568e-3, 5.625
+    mesh = {"mesh.points_per_half_width": 32, "mesh.inlet": -3.5, "mesh.outlet": 2.0}
+    step = a / u_1
+    end = step + 6.0 * a / u_1
+    table = {"operation.time": [0.0, step, step + 1e-8, end], "operation.load": [light, light, heavy, heavy]}
+    stepped = ehlpetsc.solve(load(CASES / "table1_smooth.toml", mesh | table | {"time": None}))
+    first = Simulation(
+        load(CASES / "table1_smooth.toml", mesh | {"contact.load": light, "time.travel": 1.0 / 0.8})
+    )
+    with Recorder(first, tmp_path / "light.h5") as recorder:
+        for state in first:
+            recorder.take(state)
+        recorder.checkpoint()
+    under_heavy = load(CASES / "table1_smooth.toml", mesh | {"time.travel": end * u_1 / a})
+    restarted = ehlpetsc.solve(
+        under_heavy, restart=tmp_path / "light.restart.h5", output=tmp_path / "heavy.h5"
+    )
+    assert (np.asarray(stepped.steps.retries) == 0).all()
+    for name in ("h_min", "p_max", "film_central", "friction"):
+        one, other = (np.asarray(getattr(result.steps, name))[-1] for result in (stepped, restarted))
+        assert one == pytest.approx(other, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_half_strokes_of_oscillating_entrainment_mirror_each_other():
+    n, stroke, u = 32, 8.0, 5.0
+    half = u * np.cos(np.pi * np.arange(n) / n)
+    half[n // 2] = 0.0
+    speed = np.concatenate([half, -half, half[:1]])
+    period = np.pi * stroke * 0.33568e-3 / u
+    table = {
+        "operation.time": np.arange(2 * n + 1) / (2 * n) * period,
+        "operation.speed_1": speed,
+        "operation.speed_2": 0.8 * speed,
+        "operation.repeat": 2,
+        "mesh.points_per_half_width": 25,
+        "mesh.inlet": -4.0,
+        "mesh.outlet": 4.0,
+        "time": None,
+    }
+    simulation = Simulation(load(CASES / "table1_smooth.toml", table))
+    states = list(simulation)
+    steps = simulation.operation.step_count(None) // 2
+    assert len(states) == 2 * steps + 1 and steps % 4 == 0
+    assert not any(state.retries for state in states)
+    steady = states[0]  # begins with the largest speed
+    last = states[-steps:]
+    for k in range(steps // 2):
+        there, back = last[k], last[k + steps // 2]
+        np.testing.assert_allclose(back.film_thickness, there.film_thickness[::-1], rtol=1e-6)
+        np.testing.assert_allclose(back.pressure, there.pressure[::-1], atol=1e-6 * simulation.scales.p0)
+    assert max(state.load_error for state in states) < 1e-12
+    assert max(state.mass_error for state in states) < 1e-3
+    assert np.median([state.mass_error for state in states]) <= 1e-4
+    reversal = [state.h_min for state in last if abs(state.speed_1) < 0.5 * u]
+    assert min(reversal) < 0.6 * steady.h_min
+    assert min(state.h_min for state in last) == min(reversal)
+
+
+def harmonic(quantity, steps):
+    """Film and pressure in the window after three quarters of a period of a changing quantity."""
+    base = {
+        "mesh.points_per_half_width": 32,
+        "mesh.inlet": -1.75,
+        "mesh.outlet": 1.5,
+        "contact.load": 130e3,
+        "motion.entrainment_speed": 25.0,
+        "surface": None,
+        "time": None,
+    }
+    case = load(CASES / "ridge.toml", base | {"time.travel": 1.0})
+    s = Scales.of(case)
+    period = 4.0 * s.a / s.u
+    phase = np.arange(65) / 64
+    factor = 1.0 - 0.1 * (1.0 - np.cos(2.0 * np.pi * phase))
+    columns = {
+        "load": {"load": s.load},
+        "radius": {"radius": s.R},
+        "speed": {"speed_1": s.u1, "speed_2": s.u2},
+    }[quantity]
+    table = {"operation.time": phase * period} | {
+        f"operation.{name}": value * factor for name, value in columns.items()
+    }
+    simulation = Simulation(load(CASES / "ridge.toml", base | table), options={"snes_atol": 1e-11})
+    simulation.advance()
+    for _ in range(steps):
+        assert simulation.advance(0.75 * period / steps).retries == 0
+    window = (simulation.scales.x >= -1.0) & (simulation.scales.x <= 0.5)
+    return simulation.solution.h[window], simulation.solution.p[window]
+
+
+@pytest.mark.parametrize("quantity", ["load", "radius", "speed"])
+def test_second_order_in_time_under_harmonic_conditions(quantity):
+    solutions = [harmonic(quantity, steps) for steps in (40, 80, 160, 320)]
+    for field in (0, 1):
+        pairs = zip(solutions, solutions[1:], strict=False)
+        differences = [np.sqrt(np.mean((one[field] - other[field]) ** 2)) for one, other in pairs]
+        assert observed_order(differences) >= 1.8
+
+
+def test_squeeze_film_of_an_approaching_cylinder():
+    r"""A cylinder at rest sinks as the rigid one does: :math:`p=6\eta VR(1/h^2-1/h_L^2)`, h_L at both ends.
+
+    On an infinite domain :math:`h_0^{-1/2}` grows by :math:`w't/(6\sqrt2\pi\eta R^{3/2})` (closed form).
+    The film is 200 a^2/R, so that deflection changes it by 0.5 %.
+    """
+    oil = {
+        "fluid.viscosity": 1.0,
+        "fluid.law": "barus",
+        "fluid.pressure_viscosity": 1e-12,
+        "fluid.density": "incompressible",
+    }
+    oil |= dict.fromkeys([f"fluid.{key}" for key in ("kappa", "chi", "gamma", "lambda", "eyring_stress")])
+    mesh = {"mesh.points_per_half_width": 4, "mesh.inlet": -100.0, "mesh.outlet": 100.0, "time": None}
+    s = Scales.of(load(CASES / "table1_smooth.toml", oil | mesh))
+    load_, radius, first = s.load, s.R, 200.0 * s.h
+    rate = load_ / (6.0 * np.sqrt(2.0) * np.pi * radius**1.5)
+    end = (np.sqrt(2.0) - 1.0) / (rate * np.sqrt(first))  # half the film is left
+    rest = {"operation.time": [0.0, end, 2.0 * end]}
+    rest |= {"operation.speed_1": [0.0, 0.0, 1.0], "operation.speed_2": [0.0, 0.0, 1.0]}
+    simulation = Simulation(load(CASES / "table1_smooth.toml", oil | mesh | rest))
+    x, y = simulation.scales.x, simulation.scales.x * s.a
+    film = 200.0 + 0.5 * x**2
+    pressure = (200.0 / film) ** 2
+    pressure *= 0.5 * np.pi / (pressure.sum() * (x[1] - x[0]))
+    model = simulation.stepper.problem.model
+    simulation.solution = State(pressure, model.w_from_film(film), 200.0, p=pressure, h=film, m=film.copy())
+
+    def sinking(_, h):
+        gap = h[0] + y**2 / (2.0 * radius)
+        return [-load_ / (s.dx * (6.0 * radius * (gap**-2 - gap[0] ** -2)).sum())]
+
+    exact = solve_ivp(sinking, (0.0, end), [first], rtol=1e-9, atol=1e-12, dense_output=True).sol
+    dt = end / 64
+    for _ in range(64):
+        state = simulation.advance(dt)
+        assert state.h_min == pytest.approx(exact(simulation.solution.time)[0], rel=5e-3)
+    assert state.h_min < 0.51 * first
+    grown = (state.h_min**-0.5 - first**-0.5) / (rate * simulation.solution.time)
+    assert grown == pytest.approx(1.0, rel=1e-2)
