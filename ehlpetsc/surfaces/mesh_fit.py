@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from ehlpetsc.surfaces.measured.filters import levelled
 from ehlpetsc.surfaces.profile import SHORT
 
 SPIKE = 4.0  # Rq beside its surroundings that make a point one of a spike
 WIDEST = (
     129  # points of a window whose median is sought in all of them: the work grows as points times window
 )
-TILTED = 0.8  # of the height variance in a straight line that calls for a warning
 SHARE = 0.01  # of the height variance in such wavelengths that calls for a warning
 
 
@@ -32,19 +30,8 @@ def mesh_warnings(rough, scales):
                 f"points_per_half_width = {_needed(profile, scales)} brings that under {100 * SHARE:.0f} %"
             )
         if profile and profile.given.measured:
-            notes += _tilt_warning(side, profile.given) + _spike_warning(side, profile.given, scales.dx)
+            notes += _spike_warning(side, profile.given, scales.dx)
     return notes
-
-
-def _tilt_warning(side, given):
-    line = given.z - levelled(given.X, given.z)
-    share = line.var() / given.z.var() if np.ptp(given.z) > 0.0 else 0.0
-    if share < TILTED:
-        return []
-    return [
-        f"surface.{side}: {100 * share:.0f} % of the height variance is a straight line "
-        f"({1e6 * np.ptp(line):.3g} um over {1e3 * given.length:.3g} mm); level = true takes it off"
-    ]
 
 
 def _spike_warning(side, given, dx):
