@@ -7,10 +7,11 @@ usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n on 2 ranks where they are worth it, else on 1
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
+./run_mpi.sh plot|post|summary|compare|study ...    the same as ehlpetsc plot ..., each with -h
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
-./run_mpi.sh --commands FOLDER                      put the commands ehlpetsc (on one rank), ehlpetsc-post, -plot,
-                                                    -compare and -study into a folder of your PATH, as ~/.local/bin
+./run_mpi.sh --commands FOLDER                      put the command ehlpetsc (on one rank; ehlpetsc plot,
+                                                    post ...) into a folder of your PATH, as ~/.local/bin
 
 A python3 on the PATH that has everything is used. Else it is Debian's, and what is missing is installed from
 Debian's packages: by itself as root, else the command is shown.
@@ -336,6 +337,10 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
+    plot | post | summary | compare | study | ensemble | collisions | contacts | explain | keys | template | python)
+        prepare "$run_modules" "$drawing"
+        exec "$python" -m ehlpetsc "$@"
+        ;;
     test)
         prepare "$run_modules $testing"
         run_tests "${@:2}"

@@ -169,4 +169,6 @@ def ended(error, asked):
 
 
 if __name__ == "__main__":
-    sys.exit(guarded(sys.argv))
+    from ehlpetsc.commands import dispatch
+
+    sys.exit(dispatch(lambda: guarded(sys.argv)))

@@ -1,42 +1,103 @@
-"""The commands that pip installs: ``ehlpetsc``, ``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study``.
+"""The program ``ehlpetsc`` and its subcommands, and the commands of earlier releases that pip installs.
 
+``ehlpetsc CASE.toml`` runs a case, ``ehlpetsc plot RESULT.h5`` draws, and so on: `SUBCOMMANDS`. The names
+``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study`` and ``python3 -m ehlpetsc.post`` ... stay.
 ``python3 -m ehlpetsc.commands NAME ...`` is the one of that name: so ``run_mpi.sh`` starts them.
 """
 
 import importlib
+import os
 import shlex
 import sys
 
 from ehlpetsc.environment import NUMERICS, missing
 
+DRAWING = (*NUMERICS, "matplotlib")
+SUBCOMMANDS = {  # name: module, function, what it needs, what it does
+    "plot": ("ehlpetsc.plot.__main__", "main", DRAWING, "pictures of results, of a series or of a case"),
+    "post": ("ehlpetsc.post.command", "command", NUMERICS, "subsurface stresses, fatigue damage, statistics"),
+    "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
+    "compare": ("ehlpetsc.compare", "main", NUMERICS, "two results field by field"),
+    "study": ("ehlpetsc.study.__main__", "main", DRAWING, "accuracy, speed, robustness"),
+    "ensemble": (
+        "ehlpetsc.analysis.ensemble",
+        "main",
+        NUMERICS,
+        "means over runs of several seeds",
+    ),
+    "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),
+    "contacts": ("ehlpetsc.analysis.contact_statistics", "main", NUMERICS, "counts and lengths of contact"),
+}
+OF_A_CASE = {
+    "explain": "--explain",
+    "keys": "--keys",
+    "template": "--template",
+}  # names of the solver's options
+COMPLETION = """_ehlpetsc() {{
+    local words="{words}"
+    if [ "$COMP_CWORD" = 1 ]; then
+        mapfile -t COMPREPLY < <(compgen -W "$words" -- "$2"; compgen -f -X '!*.toml' -- "$2")
+    fi
+}}
+complete -o default -F _ehlpetsc ehlpetsc
+"""
+
 
 def solver():
-    """``ehlpetsc CASE.toml [options]``: run a case."""
-    return _command("ehlpetsc.__main__").guarded(sys.argv)
+    """``ehlpetsc CASE.toml [options]``: run a case; or a subcommand."""
+    return dispatch(lambda: importlib.import_module("ehlpetsc.__main__").guarded(sys.argv))
 
 
 def post():
     """``ehlpetsc-post RESULT.h5 ...``: damage, statistics and pictures."""
-    return _command("ehlpetsc.post.command", NUMERICS).command()
+    return _start("post")
 
 
 def plot():
     """``ehlpetsc-plot RESULT.h5 ...``: pictures."""
-    return _command("ehlpetsc.plot.__main__", (*NUMERICS, "matplotlib")).main()
+    return _start("plot")
 
 
 def compare():
     """``ehlpetsc-compare A.h5 B.h5``: two results field by field."""
-    return _command("ehlpetsc.compare", NUMERICS).main()
+    return _start("compare")
 
 
 def study():
     """``ehlpetsc-study CASE.toml``: accuracy, speed, robustness."""
-    return _command("ehlpetsc.study.__main__", (*NUMERICS, "matplotlib")).main(sys.argv[1:])
+    return _start("study")
 
 
-def _command(module, needed=()):
-    """The module of a command, once what it needs is known to be there (else exit 2)."""
+def dispatch(run):
+    """Start the subcommand that the first word names, else what runs a case; returns the exit status."""
+    first = sys.argv[1] if len(sys.argv) > 1 else ""
+    if first in OF_A_CASE:
+        sys.argv[1] = OF_A_CASE[first]
+    elif first == "run":
+        del sys.argv[1]
+    elif first == "python":
+        return _python(sys.argv[2:])
+    elif first == "completion":
+        print(COMPLETION.format(words=" ".join(["run", *SUBCOMMANDS, *OF_A_CASE, "python"])), end="")
+        return 0
+    elif first in SUBCOMMANDS:
+        program = "ehlpetsc" if os.path.basename(sys.argv[0]) == "ehlpetsc" else "python3 -m ehlpetsc"
+        sys.argv = [f"{program} {first}", *sys.argv[2:]]
+        return _start(first)
+    return run()
+
+
+def _python(words):
+    """Run a script, or Python itself, where ``import ehlpetsc`` works."""
+    from ehlpetsc.environment import prepare
+
+    prepare()
+    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
+    os.execv(sys.executable, [sys.executable, *words])
+
+
+def _start(name):
+    module, function, needed, _ = SUBCOMMANDS[name]
     lacks = missing(needed)
     if lacks:
         print(
@@ -45,7 +106,7 @@ def _command(module, needed=()):
             file=sys.stderr,
         )
         sys.exit(2)
-    return importlib.import_module(module)
+    return getattr(importlib.import_module(module), function)()
 
 
 BY_NAME = {

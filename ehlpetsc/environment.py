@@ -89,9 +89,11 @@ def program(module):
     Returns
     -------
     str
-        ``ehlpetsc-post`` or ``python3 -m ehlpetsc.post``.
+        ``ehlpetsc post``, ``ehlpetsc-post`` or ``python3 -m ehlpetsc.post``.
     """
     name = module.replace(".", "-")
+    if re.fullmatch(r"(python3 -m )?ehlpetsc \w+", sys.argv[0]):  # a subcommand
+        return sys.argv[0]
     return name if Path(sys.argv[0]).name == name else f"python3 -m {module}"
 
 

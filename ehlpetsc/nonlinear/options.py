@@ -71,6 +71,8 @@ def help_text():
         "  --keys [TABLE or TABLE.KEY]: print the keys of a case file with units, bounds, defaults",
         "  --template: print a commented case to begin from",
         "With a case, -help also lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",
+        "Other commands, each with -h: ehlpetsc plot, post, summary, compare, study, ensemble, collisions,",
+        "  contacts; ehlpetsc explain CASE.toml, keys, template, python SCRIPT.py, completion (for bash)",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
     ]
     return "\n".join(lines)

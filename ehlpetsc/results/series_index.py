@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.command_parser import CommandParser
+from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 
@@ -75,7 +76,7 @@ def command(name, about, report, arguments):
     int
         Exit status: 0 done, 2 bad input.
     """
-    parser = CommandParser(prog=f"python3 -m {name}", description=about)
+    parser = CommandParser(prog=program(name), description=about)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     try:
         with contextlib.ExitStack() as stack:

@@ -56,7 +56,7 @@ def arguments():
     return parser
 
 
-def main(argv):
+def main(argv=None):
     """Run the command; returns its exit status."""
     parser = arguments()
     chosen = parser.parse_args(argv)

@@ -44,7 +44,7 @@ MAY_IMPORT = {
     "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
     "compare": {"analysis"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
-    "__main__": {"run", "case"},
+    "__main__": {"run", "case", "commands"},
     "commands": set(),  # starts each command by its name
 } | {name: set() for name in GROUND}
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}

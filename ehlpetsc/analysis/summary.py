@@ -1,0 +1,114 @@
+"""Means, percentiles and extremes of every scalar of runs, as CSV.
+
+``ehlpetsc summary RESULT.h5 [...]``, or the index of a series or of passes
+
+One line for each result and scalar, over the time in which both surfaces fill the contact; of a run that ends
+before, over all of it (column ``from_s``). SI units. Means and percentiles weigh each step by its length.
+"""
+
+import contextlib
+import csv
+import io
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.command_parser import CommandParser
+from ehlpetsc.environment import program
+from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.filling import both_fill
+from ehlpetsc.results.output_guard import check_derived
+from ehlpetsc.results.series_index import in_order, open_all, series_values, told_apart
+from ehlpetsc.results.whole_file import write_whole
+
+LEFT_OUT = ("step", "time", "dt", "wall", "approach")
+PERCENTILES = (5.0, 50.0, 95.0)
+HEAD = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
+
+
+def weighted_percentiles(values, weights, percentiles):
+    """Percentiles of values, each of which counts by its weight.
+
+    Parameters
+    ----------
+    values, weights : ndarray, shape (n,)
+    percentiles : sequence of float
+    """
+    order = np.argsort(values)
+    reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
+    return np.interp(percentiles, reached, values[order])
+
+
+def statistics(result):
+    """Statistics of each scalar of a result.
+
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+
+    Returns
+    -------
+    list of tuple
+        As `HEAD` from "scalar" on.
+    """
+    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
+    kept = both_fill(result, time)
+    kept = kept if kept.any() else np.ones(len(time), bool)
+    weights = np.ones(len(time)) if len(time) == 1 else dt
+    rows = []
+    for name in [name for name in STEP_SCALARS if name in result.figures and name not in LEFT_OUT]:
+        values = result.steps(name).astype(float)
+        known = kept & np.isfinite(values) & (weights > 0.0)
+        if known.any():
+            v, w = values[known], weights[known]
+            spread = weighted_percentiles(v, w, PERCENTILES)
+            found = (np.average(v, weights=w), *spread, v.min(), v.max(), v[-1])
+            unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
+            begin = (time - dt)[known][0]
+            rows.append((name, unit, *(f"{x:.6g}" for x in found), f"{begin:.6g}", int(known.sum())))
+    return rows
+
+
+def table(results):
+    """Rows of all results, the head first."""
+    key, values = series_values(results)
+    cases = [f"{key} = {v:g}" for v in values] if key else told_apart(results)
+    cases = cases or [str(result.attrs["title"]) for result in results]
+    rows = [HEAD]
+    for result, case in zip(results, cases, strict=True):
+        rows += [(result.path.name, case, *row) for row in statistics(result)]
+    return rows
+
+
+def main(arguments=None):
+    """Run the command; returns its exit status: 0 done, 2 bad input."""
+    about = "Means, percentiles and extremes of every scalar of runs, as CSV."
+    parser = CommandParser(prog=program("ehlpetsc.summary"), description=about)
+    parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
+    parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
+    chosen = parser.parse_args(arguments)
+    try:
+        with contextlib.ExitStack() as stack:
+            results = in_order(open_all(chosen.results, stack))
+            text = io.StringIO()
+            csv.writer(text, lineterminator="\n").writerows(table(results))
+            if chosen.output:
+                read = [*map(Path, chosen.results), *(result.path for result in results)]
+                check_derived(chosen.output, read, {".csv": ",".join(HEAD[:4]).encode()})
+                write_whole(chosen.output, text.getvalue().encode())
+                print(chosen.output)
+            else:
+                print(text.getvalue(), end="")
+    except OutputError as error:
+        print(f"ehlpetsc.summary: {error}", file=sys.stderr)
+        return ExitStatus.BAD_INPUT
+    except OSError as error:
+        print(f"ehlpetsc.summary: {chosen.output}: not written, {error.strerror}", file=sys.stderr)
+        return ExitStatus.BAD_INPUT
+    return ExitStatus.DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())
