@@ -99,11 +99,17 @@ STEP_SCALARS = {
     ),
     "approach": Figure("m", "undeformed separation h00", compared=True),
     "friction": Figure("N/m", "friction force on the slow solid", compared=True),
-    "friction_coefficient": Figure("1", "friction force over load", over_run="last", summary=".4g"),
+    "friction_1": Figure("N/m", "friction force on the fast solid, in +x", compared=True),
+    "friction_coefficient": Figure(
+        "1", "mean friction force of both walls over load", over_run="last", summary=".4g"
+    ),
     "film_central": Figure(
         "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"
     ),
-    "lambda_ratio": Figure("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
+    "lambda_ratio": Figure(
+        "1", "expected smooth minimum film over the combined Rq", over_run="last", summary=".4g"
+    ),
+    "mean_gap_ratio": Figure("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
     "oil_pressure": Figure(
         "Pa", "greatest pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
     ),

@@ -66,19 +66,28 @@ def asperity_separation(pressure, decay, prefactor):
     return prefactor * math.exp(-1.0) * decay / pressure
 
 
-@compiled
 def asperity_pressures(h, decay, prefactor):
-    """Arrays of :func:`asperity_pressure`."""
-    pressure, derivative = np.empty_like(h), np.empty_like(h)
+    """Arrays of :func:`asperity_pressure`, of the shape of h."""
+    pressure, derivative = _pressures(np.ravel(h), decay, prefactor)
+    return pressure.reshape(np.shape(h)), derivative.reshape(np.shape(h))
+
+
+@compiled
+def _pressures(h, decay, prefactor):
+    pressure, derivative = np.empty(len(h)), np.empty(len(h))
     for i in range(len(h)):
         pressure[i], derivative[i] = asperity_pressure(h[i], decay, prefactor)
     return pressure, derivative
 
 
-@compiled
 def asperity_separations(pressure, decay, prefactor):
-    """Array of :func:`asperity_separation`."""
-    h = np.empty_like(pressure)
+    """Array of :func:`asperity_separation`, of the shape of the pressure."""
+    return _separations(np.ravel(pressure), decay, prefactor).reshape(np.shape(pressure))
+
+
+@compiled
+def _separations(pressure, decay, prefactor):
+    h = np.empty(len(pressure))
     for i in range(len(h)):
         h[i] = asperity_separation(pressure[i], decay, prefactor)
     return h

@@ -4,8 +4,11 @@ Dimensionless groups of a line contact: :math:`U=\eta_0u/(E'R)`, :math:`G=\alpha
 u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=(h/R)(2U)^{-1/2}`.
 """
 
+import math
+
 import numpy as np
 
+MINIMUM = 0.75  # minimum over central film of an incompressible oil
 FAR, STEPS = 100.0, 1000  # half widths that stand for infinity in Grubin's integral, its nodes
 
 
@@ -28,6 +31,38 @@ def moes_central_film(M, L):
     isoviscous = (rigid ** (7.0 / 3.0) + elastic ** (7.0 / 3.0)) ** (3.0 * s / 7.0)
     piezoviscous = (rigid_piezo**-3.5 + elastic_piezo**-3.5) ** (-2.0 * s / 7.0)
     return (isoviscous + piezoviscous) ** (1.0 / s)
+
+
+def smooth_films(fluid, modulus, conditions):
+    r"""Expected central and minimum film of the smooth, flooded contact [m].
+
+    .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
+       h_{min}=0.75\,h_{Moes}\left(\frac{\rho_0}{\rho(p_0)}\right)^{1/4}.
+
+    The inlet draws in the mass of an incompressible oil, which the contact carries at its density under p0;
+    the constriction at the exit is under less pressure. Both are within 4 % of computed films, compressible
+    and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_exact_solutions.py`), where
+    :math:`h_{Moes}` alone is 22 to 27 % too thick for the centre.
+
+    Parameters
+    ----------
+    fluid : case.tables.schema.Fluid
+    modulus : float
+        E' [Pa].
+    conditions : physics.operation.Conditions
+    """
+    from ehlpetsc.physics.rheology import density
+    from ehlpetsc.physics.scales import hertz_line, moes_groups
+
+    load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)
+    if speed == 0.0:
+        return 0.0, 0.0
+    alpha = fluid.pressure_viscosity
+    M, L = moes_groups(fluid.viscosity, speed, alpha, load, radius, modulus)
+    unit = radius * math.sqrt(2.0 * fluid.viscosity * speed / (modulus * radius))
+    incompressible = unit * moes_central_film(M, L)
+    ratio = 1.0 / float(density(np.array([hertz_line(load, radius, modulus)[1]]), fluid)[0][0])
+    return incompressible * ratio, MINIMUM * incompressible * ratio**0.25
 
 
 def waviness_ratio(r):

@@ -13,7 +13,7 @@ COLUMNS = 3
 SHOWN = {  # figure: label, factor from SI units
     "friction_coefficient": ("friction coefficient", 1.0),
     "film_central": ("mean central film [µm]", 1e6),
-    "lambda_ratio": ("lambda ratio", 1.0),
+    "mean_gap_ratio": ("mean gap over the combined Rq", 1.0),
     "h_min": ("least film [µm]", 1e6),
     "p_max": ("largest pressure [GPa]", 1e-9),
     "contacts": ("nodes in contact", 1.0),

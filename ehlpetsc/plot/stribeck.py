@@ -1,4 +1,4 @@
-"""Stribeck curve of a series over the entrainment speed: friction, share on the solids, lambda ratio.
+"""Stribeck curve of a series over the entrainment speed: friction, share on the solids, mean gap ratio.
 
 Means over the time in which both surfaces fill the contact, with the scatter over that time as a band.
 """
@@ -21,7 +21,7 @@ SIZE = (8.5, 7.5)  # inches
 QUANTITIES = {
     "friction_coefficient": "friction coefficient",
     "contact_share": "share of the load\non the solids",
-    "lambda_ratio": "lambda ratio",
+    "mean_gap_ratio": "mean gap over\nthe combined Rq",
 }
 
 
@@ -135,7 +135,7 @@ def stribeck_points(results):
 
 
 def draw_stribeck(results, _options):
-    """Figure of friction, share on the solids and lambda ratio against the speed."""
+    """Figure of friction, share on the solids and mean gap ratio against the speed."""
     points, short = stribeck_points(results)
     figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
@@ -151,7 +151,7 @@ def draw_stribeck(results, _options):
             panel.text(0.5, 0.5, "not in these results", transform=panel.transAxes, ha="center", va="center")
     _references(axes[0], points, speeds)
     axes[1].set_ylim(-0.02, 1.02)
-    if np.isfinite([p.figures["lambda_ratio"].mean for p in points]).any():
+    if np.isfinite([p.figures["mean_gap_ratio"].mean for p in points]).any():
         axes[2].set_yscale("log")
     axes[2].set_xlabel(UNITS[SPEED])
     band = f"{BAND[0]:g} to {BAND[1]:g} % of the time"

@@ -5,6 +5,7 @@ import time as clock
 import numpy as np
 
 from ehlpetsc.effects.effect import Solution, Step
+from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.traction import shear_stresses
 
 MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
@@ -33,11 +34,9 @@ def observe(scene, problem, effects, state, started):
     loads = problem.model.surface_loads(state.q, state.w, state.h, state.imbalance)
     fields, touching = _fields(case, s, conditions, problem, state, loads), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
-    load, friction, film = (
-        s.dx * pressure.sum(),
-        s.dx * fields["shear_stress_slow"].sum(),
-        mean_film(s, state.h),
-    )
+    load, film = s.dx * pressure.sum(), mean_film(s, state.h)
+    friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("fast", "slow"))
+    smooth_film = smooth_films(case.fluid, s.E, conditions)[1] if case.fluid else np.nan
     figures = {
         "dt": state.dt or 0.0,
         "newton": state.newton,
@@ -49,10 +48,12 @@ def observe(scene, problem, effects, state, started):
         "load_error": abs(load / conditions.load - 1.0),
         "mass_error": mass_error(problem, state),
         "approach": state.h00 * s.h,
-        "friction": friction,
-        "friction_coefficient": friction / load,
+        "friction": friction_2,
+        "friction_1": friction_1,
+        "friction_coefficient": 0.5 * (friction_2 - friction_1) / load,
         "film_central": film,
-        "lambda_ratio": film / rq if rq else np.nan,
+        "lambda_ratio": smooth_film / rq if rq else np.nan,
+        "mean_gap_ratio": film / rq if rq else np.nan,
         "wall": clock.monotonic() - started,
     }
     if case.conditions is not None:

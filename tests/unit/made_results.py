@@ -128,7 +128,8 @@ def with_solids(path, share=0.3, coefficient=0.08, scatter=0.2):
         for name, value in (
             ("friction_coefficient", coefficient),
             ("contact_share", share),
-            ("lambda_ratio", 1.0 / max(share, 1e-3)),
+            ("lambda_ratio", 0.5),
+            ("mean_gap_ratio", 1.0 / max(share, 1e-3)),
         ):
             if name in steps:
                 del steps[name]

@@ -1,14 +1,17 @@
 """The reference solutions are solutions, and the formulas give what was computed independently."""
 
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from ehlpetsc.case.loading import load
 from ehlpetsc.physics import exact_solutions, film_formulas, published_values
-from ehlpetsc.physics.scales import hertz_line, moes_groups, reduced_modulus
+from ehlpetsc.physics.scales import Scales, hertz_line, moes_groups, reduced_modulus
 
+CASES = Path(__file__).parents[2] / "cases"
 E = reduced_modulus((207e9, 207e9), (0.3, 0.3))
 R = 0.0191
 LOAD = 527e3
@@ -98,6 +101,30 @@ def test_moes_fit_is_near_the_computed_films_and_meets_its_asymptotes():
     assert film_formulas.moes_central_film(1e-4, 1e-6) == pytest.approx(3e4, rel=0.01)
     elastic = 1.311 * 1e5**-0.125 * 30**0.75
     assert film_formulas.moes_central_film(1e5, 30.0) == pytest.approx(elastic, rel=0.1)
+
+
+def test_expected_films_are_the_computed_ones_within_four_percent():
+    """Of the compressible Table 1 oil, and of the incompressible Barus one; further films by a/400."""
+    for film in published_values.SMOOTH_FILMS:
+        given = ["motion.slide_roll_ratio=0.25", f"fluid.viscosity={film.viscosity}"]
+        case = load(CASES / "table1_smooth.toml", [*given, f"motion.entrainment_speed={film.speed}"])
+        scales = Scales.of(case)
+        central, minimum = film_formulas.smooth_films(case.fluid, scales.E, scales.conditions)
+        assert central * 1e6 == pytest.approx(film.h_central, rel=0.025)
+        assert minimum * 1e6 == pytest.approx(film.h_min, rel=0.04)
+    for viscosity, speed, h_min, h_central in (  # computed on a/400
+        (0.005, 1.0, 0.04698, 0.05328),
+        (0.02, 20.0, 0.94910, 1.10198),
+    ):
+        given = [f"fluid.viscosity={viscosity}", f"motion.entrainment_speed={speed}"]
+        case = load(CASES / "table1_smooth.toml", given)
+        scales = Scales.of(case)
+        central, minimum = film_formulas.smooth_films(case.fluid, scales.E, scales.conditions)
+        assert central * 1e6 == pytest.approx(h_central, rel=0.025)
+        assert minimum * 1e6 == pytest.approx(h_min, rel=0.04)
+    for point in published_values.MOES_POINTS:
+        film = film_formulas.moes_central_film(point.M, point.L)
+        assert film_formulas.MINIMUM * film == pytest.approx(point.h_min, rel=0.04)
 
 
 def test_smooth_films_follow_the_moes_fit():

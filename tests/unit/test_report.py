@@ -144,7 +144,7 @@ def test_summary_line_can_be_grepped_and_read_back():
             friction_coefficient=0.05,  # of the last step
             retries=3,
         ),
-        dict(friction_coefficient=0.04, film_central=2e-7, lambda_ratio=1.5),
+        dict(friction_coefficient=0.04, film_central=2e-7, lambda_ratio=0.5, mean_gap_ratio=1.5),
     )
     line = report.summary_line(ExitStatus.DONE, totals, 12.34)
     assert line.startswith("ehlpetsc: done steps=")
@@ -159,6 +159,7 @@ def test_summary_line_can_be_grepped_and_read_back():
         mass_error=3e-4,
         friction_coefficient=0.04,
         film_central=2e-7,
-        lambda_ratio=1.5,
+        lambda_ratio=0.5,
+        mean_gap_ratio=1.5,
         wall=12.3,
     )

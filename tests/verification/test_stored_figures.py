@@ -163,13 +163,16 @@ def test_friction_and_films(run):
     dx, steps = spacing(result), result.steps
     friction = dx * result.shear_stress_slow.sum(axis=1)
     np.testing.assert_allclose(steps.friction, friction, rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(steps.friction_coefficient, friction / steps.load, rtol=1e-9, atol=1e-15)
+    other = dx * result.shear_stress_fast.sum(axis=1)
+    np.testing.assert_allclose(steps.friction_1, other, rtol=1e-9, atol=1e-9)
+    coefficient = 0.5 * (friction - other) / steps.load
+    np.testing.assert_allclose(steps.friction_coefficient, coefficient, rtol=1e-9, atol=1e-15)
     middle = np.abs(result.x) <= 0.5 * of.a * (1.0 + 1e-9)
     film = result.film_thickness[:, middle].mean(axis=1)
     np.testing.assert_allclose(steps.film_central, film, rtol=1e-6, atol=1e-12)
     heights = [result.profile(side) for side in ("fast", "slow")]
     if not any(heights):
-        assert np.isnan(steps.lambda_ratio).all()
+        assert np.isnan(steps.lambda_ratio).all() and np.isnan(steps.mean_gap_ratio).all()
 
 
 def test_figures_of_the_oil_and_of_thin_films(run):

@@ -13,7 +13,11 @@ from ehlpetsc.results.post_result import damage_beside
 FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
 STEADY = 1e-9  # relative change over a run that is none
 ERRORS = {"load_error", "mass_error"}  # relative: those of rounding are as good as none
-LEAST = {"h_min", "film_central", "lambda_ratio"}  # of several steps the least one counts, else the greatest
+LEAST = {
+    "h_min",
+    "film_central",
+    "mean_gap_ratio",
+}  # of several steps the least counts, else the greatest
 SHOWN_IN = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
 UNSHOWN = {"step", "time", "load", "wall"}
 

@@ -5,11 +5,11 @@ import tomllib
 
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import members
+from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.preview.forecast import (
     begin_time,
-    dowson_higginson,
     file_size,
     run_time,
     steps,
@@ -65,11 +65,12 @@ def _contact(s):
 def _film(case, s, rough):
     if case.fluid is None:
         return ["Film: none, dry contact"]
-    h_min = dowson_higginson(s, case.fluid.pressure_viscosity)
+    central, least = smooth_films(case.fluid, s.E, s.conditions)
     lines = [
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
-        f"Expected smooth minimum film (Dowson & Higginson): {h_min * 1e6:.3g} um",
+        f"Expected smooth film (Moes, and the density under p0): central {central * 1e6:.3g} um, "
+        f"minimum {least * 1e6:.3g} um",
     ]
     return [*lines, *lambda_line(case, s, rough)]
 

@@ -22,23 +22,9 @@ FULL_FILM = 3.0  # lambda ratio from which on they do not
 STEADY = 20  # iterations of a steady solution
 
 
-def dowson_higginson(scales, alpha):
-    """Minimum film of the smooth line contact [m], after `ehlpetsc.physics.film_formulas.dowson_higginson`.
-
-    Parameters
-    ----------
-    scales : scales.Scales
-    alpha : float
-        Pressure-viscosity coefficient [1/Pa].
-    """
-    speed = scales.eta0 * scales.u / (scales.E * scales.R)
-    load = scales.load / (scales.E * scales.R)
-    return scales.R * film_formulas.dowson_higginson(speed, alpha * scales.E, load)
-
-
 def lambda_ratio(case, s, rough):
-    """Expected smooth film over the combined root mean square height."""
-    film = dowson_higginson(s, case.fluid.pressure_viscosity)
+    """Expected smooth minimum film over the combined root mean square height."""
+    film = film_formulas.smooth_films(case.fluid, s.E, s.conditions)[1]
     return film / rough.rq if rough.rq > 0 else math.inf
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from ehlpetsc.run.preview.forecast import FULL_FILM, dowson_higginson, lambda_ratio
+from ehlpetsc.run.preview.forecast import FULL_FILM, lambda_ratio
 from ehlpetsc.surfaces.arrival import arrival
 
 
@@ -31,10 +31,10 @@ def lambda_line(case, s, rough):
     """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
     if case.fluid is None or not rough or rough.rq <= 0.0:
         return []
-    ratio, film = lambda_ratio(case, s, rough), dowson_higginson(s, case.fluid.pressure_viscosity)
+    ratio = lambda_ratio(case, s, rough)
     return [
-        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * film:.3g} um (Dowson & Higginson) over the "
-        f"combined Rq {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
+        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rough.rq:.3g} um over the combined Rq "
+        f" {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
     ]
 
 

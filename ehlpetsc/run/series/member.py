@@ -3,11 +3,12 @@
 import re
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.preview.forecast import dowson_higginson, steps
+from ehlpetsc.run.preview.forecast import steps
 
 LONGEST = 60  # characters of a name
 
@@ -98,7 +99,7 @@ class Member:
     def weight(self):
         """For beginning with the longest: nodes times steps; of equals, the thinner film."""
         scales = Scales.of(self.case)
-        film = dowson_higginson(scales, self.case.fluid.pressure_viscosity) if self.case.fluid else 0.0
+        film = smooth_films(self.case.fluid, scales.E, scales.conditions)[1] if self.case.fluid else 0.0
         return scales.nx * (steps(scales) if self.case.time else 1), -film
 
     def totals(self):
