@@ -15,7 +15,9 @@ def allowed(field):
     field : pydantic.fields.ModelField
     """
     info = field.field_info
-    text = ("a number or " if info.extra.get("one_for_both") else "") + _kind(field)
+    text = _kind(field)
+    if info.extra.get("one_for_both"):
+        text = f"{text}, or a list of two of them" if text.startswith("one of") else f"a number or {text}"
     text += _bounds(item_type(field))
     if "unit" in info.extra:
         text += f" [{info.extra['unit']}]"
@@ -23,9 +25,11 @@ def allowed(field):
 
 
 def _kind(field):
+    one_for_both = field.field_info.extra.get("one_for_both")
     several = field.shape != 1
-    choices = getattr(field.type_, "__args__", ())
+    choices = getattr(item_type(field) if one_for_both else field.type_, "__args__", ())
     if choices and all(isinstance(c, str) for c in choices):
+        several = several and not one_for_both
         return ("a list of " if several else "one of ") + ", ".join(f'"{c}"' for c in choices)
     type_ = item_type(field)
     names = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
@@ -102,7 +106,9 @@ def describe(error, model, data, where=""):
             faults.append(f"{unknown}; {hint}")
         elif isinstance(cause, Needs):
             faults.append(f"{key} = {show(value)}: needs {cause}")
-        elif isinstance(value, dict) and not issubclass(field.type_, dict):
+        elif isinstance(value, dict) and not (
+            isinstance(field.type_, type) and issubclass(field.type_, dict)
+        ):
             faults.append(f"{key}: a table here; allowed: {allowed(field)}")
         else:
             faults.append(f"{key} = {show(value)}: allowed: {allowed(field)}{slip(field, value)}")

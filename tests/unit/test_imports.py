@@ -15,6 +15,7 @@ GROUND = {
     "environment",
     "command_parser",
     "streams",
+    "materials",
 }  # every room may stand on these; they import nothing of ours
 MAY_IMPORT = {
     "physics": set(),

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from ehlpetsc.case.tables.table import Needs, Table
 from ehlpetsc.case.tables.validation import Field, confloat, constr, root_validator, validator
+from ehlpetsc.materials import STEELS
 from ehlpetsc.quantities import FIELDS, STORED
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
@@ -24,6 +25,7 @@ DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
 ROELANDS_PRESSURE = 1.96e8  # Pa
 ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
 
+SteelName = Literal[tuple(STEELS)]
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
 Pressure = confloat(ge=1e6, le=1e18)
@@ -35,11 +37,22 @@ class Contact(Table):
 
     radius: float = Field(..., ge=1e-9, le=100, unit="m", description="radius of relative curvature")
     load: float = Field(..., ge=1e-3, le=1e10, unit="N/m", description="load per length of contact")
+    material: tuple[SteelName, SteelName] | None = Field(
+        None,
+        one_for_both=True,
+        description="steel of both solids, or of each: elastic and fatigue constants, and the pressure at "
+        "which it yields",
+    )
     youngs_modulus: tuple[Modulus, Modulus] = Field(
-        ..., unit="Pa", one_for_both=True, description="of both solids, or of surface fast and slow"
+        ...,
+        unit="Pa",
+        one_for_both=True,
+        description="of both solids, or of surface fast and slow; with material left out",
     )
     poisson_ratio: tuple[Ratio, Ratio] = Field(
-        ..., one_for_both=True, description="of both solids, or of surface fast and slow"
+        ...,
+        one_for_both=True,
+        description="of both solids, or of surface fast and slow; with material left out",
     )
     boundary_friction: float = Field(
         0.0, ge=0, le=2, description="boundary friction coefficient: shear stress over pressure of the solids"
@@ -78,8 +91,8 @@ class Contact(Table):
         None,
         unit="Pa",
         one_for_both=True,
-        description="mixed contact: pressure at which solids yield, of both or of surface fast and slow; "
-        "left out: elastic",
+        description="mixed contact: pressure at which solids yield, of both or of surface fast and slow, or "
+        '"material": that of contact.material; left out: elastic',
     )
 
     @property
@@ -124,7 +137,7 @@ class Contact(Table):
             raise Needs('contact.model = "direct"')
         return value
 
-    @validator("youngs_modulus", "poisson_ratio", "yield_pressure", pre=True)
+    @validator("material", "youngs_modulus", "poisson_ratio", "yield_pressure", pre=True)
     def _of_both(cls, value):
         return value if value is None or isinstance(value, (list, tuple)) else [value, value]
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.case.solids import fatigue_constants, named_steels
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
@@ -47,8 +48,10 @@ def read_settings(case):
         return {name: value for name, value in values.items() if value is not None}
 
     materials = [
-        Material(modulus, ratio, **given(Material.__dataclass_fields__))
-        for modulus, ratio in zip(contact.youngs_modulus, contact.poisson_ratio, strict=True)
+        Material(modulus, ratio, **fatigue_constants(steel, post.dict()))
+        for modulus, ratio, steel in zip(
+            contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True
+        )
     ]
     try:
         criteria = Criteria(**given(Criteria.__dataclass_fields__))

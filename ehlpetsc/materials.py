@@ -1,0 +1,136 @@
+r"""Steels by name: elastic constants, hardness, cyclic and strain-life constants, and the pressure they bear.
+
+A case names one steel for both solids or one for each (``contact.material``); the fatigue constants and the
+pressure at which solids yield then belong to the same steel. Constants that tests have given are quoted; for
+the others those of Roessle and Fatemi (2000), Int. J. Fatigue 22, 495, from the Brinell hardness HB of 150 to
+700, an estimate that tests of the very steel replace:
+
+.. math::
+    \sigma_f' = (4.25\,HB + 225)\ \mathrm{MPa}, \quad
+    \varepsilon_f' = \frac{0.32\,HB^2 - 487\,HB + 191000}{E/\mathrm{MPa}}, \quad b = -0.09, \quad c = -0.56
+
+with :math:`n'=b/c` and :math:`K'=\sigma_f'/\varepsilon_f'^{n'}`, so that both curves agree.
+"""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+PLASTIC_STRAIN = 0.002  # at which the cyclic yield stress is read
+FLOW_FACTOR = (2 + pi) / sqrt(3)  # 2.97
+HRC_60 = 654  # HB of 60 HRC, ASTM E140
+ISO_MODULUS = 206e9  # Pa, ISO 6336-2
+CASE_HARDENED = "case-hardened surface of 60 HRC (ISO 6336-5: 58 to 64); constants from hardness"
+
+
+@dataclass(frozen=True)
+class Steel:
+    """A steel in one condition, SI units.
+
+    Attributes
+    ----------
+    source : str
+        Condition, and where the constants are from.
+    youngs_modulus, poisson_ratio : float
+    hardness : float or None
+        Brinell, HB; None: not published with the constants.
+    fatigue_strength, fatigue_ductility, b, c : float
+        sigma_f' [Pa], eps_f', b, c of the strain-life curve.
+    cyclic_hardening, cyclic_strength : float
+        n' and K' [Pa] of the cyclic stress-strain curve.
+    """
+
+    source: str
+    youngs_modulus: float
+    poisson_ratio: float
+    hardness: float | None
+    fatigue_strength: float
+    fatigue_ductility: float
+    b: float
+    c: float
+    cyclic_hardening: float
+
+    @property
+    def cyclic_strength(self):
+        """K' [Pa] that makes both curves agree."""
+        return cyclic_strength(self.fatigue_strength, self.fatigue_ductility, self.cyclic_hardening)
+
+    @property
+    def yield_pressure(self):
+        """Pressure [Pa] at which a solid of it yields, see :func:`flow_pressure`."""
+        return flow_pressure(self.cyclic_strength, self.cyclic_hardening)
+
+
+def cyclic_strength(fatigue_strength, fatigue_ductility, cyclic_hardening):
+    """K' = sigma_f'/eps_f'^n' [Pa], by which the cyclic and the strain-life curve agree."""
+    return fatigue_strength / fatigue_ductility**cyclic_hardening
+
+
+def cyclic_yield_stress(strength, hardening):
+    """Cyclic yield stress K' 0.002^n' [Pa] at 0.2 % plastic strain."""
+    return strength * PLASTIC_STRAIN**hardening
+
+
+def flow_pressure(strength, hardening):
+    r"""Mean pressure [Pa] under which a half plane flows: :math:`(2+\pi)\,Y/\sqrt3 = 2.97\,Y`.
+
+    Prandtl's slip lines with von Mises' shear yield stress (Johnson (1985), Contact Mechanics, section 6.2),
+    Y the cyclic yield stress of :func:`cyclic_yield_stress`.
+
+    Parameters
+    ----------
+    strength, hardening : float
+        K' [Pa] and n'.
+    """
+    return FLOW_FACTOR * cyclic_yield_stress(strength, hardening)
+
+
+def steel_of_hardness(hardness, youngs_modulus, source, poisson_ratio=0.3):
+    """Steel with the constants of Roessle and Fatemi (2000).
+
+    Parameters
+    ----------
+    hardness : float
+        HB, 150 to 700.
+    youngs_modulus : float
+        Pa.
+    source : str
+    poisson_ratio : float
+
+    Raises
+    ------
+    ValueError
+        A hardness outside of the tests.
+    """
+    if not 150 <= hardness <= 700:
+        raise ValueError(f"hardness = {hardness:g} HB: allowed: 150 to 700")
+    ductility = (0.32 * hardness**2 - 487 * hardness + 191000) / (1e-6 * youngs_modulus)
+    strength = 1e6 * (4.25 * hardness + 225)
+    return Steel(
+        source, youngs_modulus, poisson_ratio, hardness, strength, ductility, -0.09, -0.56, 0.09 / 0.56
+    )
+
+
+STEELS = {
+    "16MnCr5": steel_of_hardness(HRC_60, ISO_MODULUS, CASE_HARDENED),
+    "18CrNiMo7-6": steel_of_hardness(HRC_60, ISO_MODULUS, CASE_HARDENED),
+    "100Cr6": steel_of_hardness(
+        HRC_60, 207e9, "hardened to 60 HRC (bearings: 58 to 65); constants from hardness"
+    ),
+    "42CrMo4": steel_of_hardness(
+        295,
+        ISO_MODULUS,
+        "quenched and tempered to 1000 MPa (EN ISO 683-2), 295 HB by ISO 18265; constants from hardness",
+    ),
+    "SAE4340": Steel(
+        "Holmes, Qiao, Evans and Snidle (2005), Table 1; n' as in the paper, K' from both curves",
+        207e9,
+        0.3,
+        None,
+        2.0e9,
+        0.48,
+        -0.091,
+        -0.60,
+        0.15,
+    ),
+}
+DEFAULT = "SAE4340"

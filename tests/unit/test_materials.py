@@ -1,0 +1,110 @@
+"""One material a case: published constants, the limit of pressure that follows, single keys instead."""
+
+import math
+
+import pytest
+from post_result_file import Scene, write
+
+from ehlpetsc.case.loading import load, stored_case
+from ehlpetsc.case.tables.post import Post
+from ehlpetsc.errors import CaseError
+from ehlpetsc.materials import STEELS, flow_pressure, steel_of_hardness
+from ehlpetsc.post import Material
+from ehlpetsc.post.inputs.settings import read_settings
+from ehlpetsc.post.run import Job, run
+from ehlpetsc.results.post_result import PostResult
+
+RUNNING_IN = "cases/running_in.toml"
+
+
+def test_the_papers_steel_bears_2_6_gpa():
+    """K' 0.002^n' = 879 MPa; a half plane flows under (2 + pi)/sqrt(3) times that."""
+    steel = STEELS["SAE4340"]
+    assert steel.cyclic_strength == pytest.approx(2.0e9 / 0.48**0.15)
+    assert steel.yield_pressure == pytest.approx(2.61e9, rel=1e-3)
+    assert flow_pressure(1e9, 0.0) == pytest.approx(1e9 * (2 + math.pi) / math.sqrt(3))
+
+
+def test_constants_from_hardness():
+    """Roessle and Fatemi (2000) at 400 HB and 200 GPa, worked out by hand."""
+    steel = steel_of_hardness(400, 200e9, "")
+    assert steel.fatigue_strength == pytest.approx(1925e6)
+    assert steel.fatigue_ductility == pytest.approx(47_400 / 200_000)
+    assert steel.cyclic_hardening == pytest.approx(steel.b / steel.c)
+    with pytest.raises(ValueError, match="150 to 700"):
+        steel_of_hardness(720, 200e9, "")
+
+
+@pytest.mark.parametrize("name", STEELS)
+def test_both_curves_of_every_steel_agree_and_fit_the_schema(name):
+    """Where plastic strain amplitudes of both curves are equal, so are stress amplitudes; n' = b/c."""
+    steel = STEELS[name]
+    assert steel.cyclic_strength * steel.fatigue_ductility**steel.cyclic_hardening == pytest.approx(
+        steel.fatigue_strength
+    )
+    assert steel.cyclic_hardening == pytest.approx(steel.b / steel.c, rel=0.02)
+    assert 1.5e9 < steel.yield_pressure < 6e9
+    keys = ("fatigue_strength", "fatigue_ductility", "b", "c", "cyclic_hardening", "cyclic_strength")
+    Post(**{key: getattr(steel, key) for key in keys})
+
+
+def with_material(**keys):
+    keys = {"material": "16MnCr5", "youngs_modulus": None, "poisson_ratio": None, **keys}
+    return load(RUNNING_IN, {f"contact.{key}": value for key, value in keys.items()})
+
+
+def test_a_steel_gives_elastic_constants_and_its_limit():
+    case = with_material(yield_pressure="material")
+    assert case.contact.youngs_modulus == (206e9, 206e9) and case.contact.poisson_ratio == (0.3, 0.3)
+    assert case.contact.yield_pressure == pytest.approx([STEELS["16MnCr5"].yield_pressure] * 2)
+    case = with_material(material=["16MnCr5", "42CrMo4"], yield_pressure="material")
+    assert case.contact.yield_pressure[1] == pytest.approx(STEELS["42CrMo4"].yield_pressure)
+    assert stored_case(case.text).contact == case.contact
+
+
+def test_single_keys_replace_those_of_the_steel():
+    assert with_material(youngs_modulus=210e9).contact.youngs_modulus == (210e9, 210e9)
+    assert with_material().contact.yield_pressure == (3e9, 3e9)  # of the case
+    keys = {"contact.material": "100Cr6", "contact.yield_pressure": "material", "post.cyclic_strength": 2e9}
+    case = load(RUNNING_IN, keys)
+    assert case.contact.yield_pressure[0] == pytest.approx(flow_pressure(2e9, 0.09 / 0.56))
+    assert read_settings(case).slow.hardening_coefficient == 2e9
+    strength = load(RUNNING_IN, {"contact.material": "100Cr6", "post.fatigue_strength": 1e9})
+    assert read_settings(strength).slow.hardening_coefficient == pytest.approx(
+        1e9 / STEELS["100Cr6"].fatigue_ductility ** (0.09 / 0.56)
+    )
+
+
+def test_without_a_steel_fatigue_is_that_of_the_paper():
+    material = read_settings(load(RUNNING_IN)).fast
+    assert material == Material(207e9, 0.3, cyclic_strength=Material().hardening_coefficient)
+
+
+@pytest.mark.parametrize(
+    "keys, words",
+    [
+        (
+            {"material": "16MnCr"},
+            'one of "16MnCr5", "18CrNiMo7-6", "100Cr6", "42CrMo4", "SAE4340", or a list',
+        ),
+        ({"material": ["16MnCr5"]}, "contact.material"),
+        ({"material": None}, "contact.youngs_modulus is missing"),
+        ({"material": None, "youngs_modulus": 2e11, "yield_pressure": "material"}, "yield_pressure"),
+    ],
+)
+def test_unknown_steels_and_missing_ones_are_named(keys, words):
+    with pytest.raises(CaseError, match="(?s).*".join(words.split("*"))):
+        with_material(**keys)
+
+
+def test_a_harder_steel_has_less_damage(tmp_path):
+    found = {}
+    for name in ("42CrMo4", "16MnCr5"):
+
+        def edit(file, name=name):
+            file.attrs["case"] = file.attrs["case"].replace("[contact]", f'[contact]\nmaterial = "{name}"')
+
+        path = write(tmp_path / f"{name}.h5", Scene(per_width=20, travel=9.0), depths=(0.0,), edit=edit)
+        run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("slow",)))
+        found[name] = PostResult(tmp_path / "o.h5").passed("slow").max()
+    assert found["16MnCr5"] < 0.01 * found["42CrMo4"]
