@@ -24,7 +24,7 @@ END
 declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3-petsc4py-real [mpirun]=openmpi-bin
     [xdist]=python3-pytest-xdist)
 run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
-drawing="matplotlib xarray h5netcdf" # pictures, and the reading example of ehlpetsc/results/README.md
+drawing="matplotlib xarray h5netcdf pint" # pictures, reading of results, values with units
 testing="$drawing pytest xdist hypothesis pip hatchling"
 
 commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"

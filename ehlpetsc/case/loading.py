@@ -24,6 +24,7 @@ from ehlpetsc.case.tables.surface import Surface
 from ehlpetsc.case.tables.table import Table, is_plain
 from ehlpetsc.case.tables.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.case.toml_text import plain, toml_text
+from ehlpetsc.case.units import in_si
 from ehlpetsc.errors import CaseError
 
 DICT = "case"  # what faults call a case that is no file
@@ -129,6 +130,10 @@ def load(case, overrides=None):
     data = plain(case) if text is None else parse_toml(path, text)
     from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
     settings, faults = _override(path, data, overrides)
+    converted, wrong = in_si(data, Case)
+    if wrong:
+        raise CaseError([*faults, *(f"{path}: {line}" for line in wrong)])
+    settings += converted
     faults += _faults(path, data)
     if not faults:
         faults += series_faults(path, data, lambda member: _faults(path, member))

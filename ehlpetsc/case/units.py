@@ -1,0 +1,127 @@
+"""Values with a unit, as in ``load = "350 N/mm"``: turned into SI numbers before a case is checked.
+
+Only keys with a unit take them. The package pint converts; it is imported when a case has such a value.
+"""
+
+import importlib
+import re
+from functools import cache
+
+from ehlpetsc.case.tables.surface import SYNTHETIC
+from ehlpetsc.case.tables.table import Table
+
+VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
+TEXT_UNITS = {"half widths": None, "half-widths": None, "boundary films": None, "1": None}  # not convertible
+DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
+
+
+class UnitFault(ValueError):
+    """A value with a unit that cannot be converted; the text says why."""
+
+
+def in_si(data, model):
+    """Values with a unit in the tables of a case, in SI units.
+
+    Parameters
+    ----------
+    data : dict
+        Tables; these values are replaced in them.
+    model : type
+        Of the case.
+
+    Returns
+    -------
+    settings : list of (list of str, value)
+        What was replaced: keys taken apart and the number.
+    faults : list of str
+        One line each.
+    """
+    settings, faults = [], []
+    for keys, table, name, unit in list(_texts(data, model)):
+        try:
+            table[name] = converted(table[name], unit)
+            settings.append((keys, table[name]))
+        except UnitFault as error:
+            faults.append(f"{'.'.join(keys)} = {error}")
+    return settings, faults
+
+
+def converted(value, unit):
+    """A text with a unit, or a list with such texts, in `unit`; anything else as it is.
+
+    Raises
+    ------
+    UnitFault
+    """
+    if isinstance(value, list):
+        return [converted(item, unit) for item in value]
+    found = VALUE.fullmatch(value) if isinstance(value, str) else None
+    if not found:
+        return value
+    number, given = float(found[1]), re.sub(r"(?<=[a-zA-Zµ])(\d)", r"**\1", found[2])
+    registry, errors = _registry()
+    wanted = re.sub(r"(?<=[a-zA-Z])(\d)", r"**\1", unit)
+    try:
+        try:
+            quantity = registry.Quantity(number, given)  # offsets, as of degC
+        except Exception:
+            quantity = number * registry.parse_expression(given)  # 1/GPa
+        return float(f"{quantity.to(wanted).magnitude:.{DIGITS}g}")
+    except errors.DimensionalityError:
+        raise UnitFault(f'"{value}": not a unit of this key; allowed: one of {unit}') from None
+    except Exception:  # pint raises what it likes on texts that are no units
+        raise UnitFault(f'"{value}": unknown unit; allowed: a number in {unit}, or with a unit') from None
+
+
+@cache
+def _registry():
+    try:
+        pint = importlib.import_module("pint")
+    except ImportError:
+        raise UnitFault(
+            "a value with a unit: needs the package pint (python3-pint of Debian, or pip install pint)"
+        ) from None
+    return pint.UnitRegistry(cache_folder=None), pint.errors
+
+
+def _texts(data, model, above=()):
+    """Values that hold text where a number with a unit is expected: keys, their table, name and unit."""
+    for field in model.__fields__.values():
+        name, value = field.alias, data.get(field.alias) if isinstance(data, dict) else None
+        keys, unit = [*above, name], field.field_info.extra.get("unit")
+        if isinstance(value, dict):
+            inner = SYNTHETIC.get(value.get("kind")) if name == "synthetic" else field.type_
+            if isinstance(inner, type) and issubclass(inner, Table):
+                yield from _texts(value, inner, keys)
+        elif unit and unit not in TEXT_UNITS and _has_text(value):
+            yield keys, data, name, unit
+    if not above and isinstance(data.get("series"), dict):
+        yield from _of_series(data["series"], model)
+
+
+def _of_series(series, model):
+    keys = [series["key"]] if "key" in series else series.get("keys") or []
+    values = series.get("values")
+    for number, key in enumerate(keys):
+        unit = _unit_of(key, model)
+        if unit is None or not isinstance(values, list) or number >= len(values):
+            continue
+        if "key" in series and _has_text(values):
+            yield ["series", "values"], series, "values", unit
+        elif "keys" in series and _has_text(values[number]):
+            yield ["series", "values", str(number)], values, number, unit
+
+
+def _unit_of(key, model):
+    field = None
+    for name in str(key).split("."):
+        field = next((f for f in getattr(model, "__fields__", {}).values() if f.alias == name), None)
+        if field is None:
+            return None
+        model = field.type_
+    unit = field.field_info.extra.get("unit")
+    return None if unit in TEXT_UNITS else unit
+
+
+def _has_text(value):
+    return isinstance(value, str) or isinstance(value, list) and any(_has_text(item) for item in value)
