@@ -35,10 +35,10 @@ EXAMPLE = {
 }
 PAGE = """# Every key of a case file
 
-`ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys contact.load` one key,
+`ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys contact.load` a key,
 `ehlpetsc template` a commented case to begin from. Numbers are in SI units; a value may also be written with
-its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"` (this needs the package pint). Unknown keys, values out
-of bounds, nan and inf are rejected. A key whose default is "none" is required where its table is. Made
+its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"` (this needs the package pint). Unknown keys, values
+out of bounds, nan and inf are rejected. A key whose default is "none" is required where its table is. Made
 from the schema by `python3 -m ehlpetsc.case.key_page > cases/keys.md`.
 """
 
