@@ -1,7 +1,8 @@
-"""Path of contact of a spur gear pair: ``python3 -m ehlpetsc.gears CASE.toml``.
+"""Path of contact of a spur gear pair: ``python3 -m ehlpetsc.gears CASE.toml``, or of a run, ``RESULT.h5``.
 
-Prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table and draws them
-along the path. ``--csv FILE`` writes the path as a table for ``[operation]``.
+Of a case, prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table and
+draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. Of a result, prints
+friction and losses of the mesh and draws pressure, films and friction along the path.
 """
 
 import argparse
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from ehlpetsc import environment
 from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.errors import CaseError, ExitStatus, not_written
+from ehlpetsc.errors import CaseError, ExitStatus, OutputError, not_written
 
 
 def arguments():
@@ -21,7 +22,7 @@ def arguments():
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("case", help="case file with a [gears] table")
+    parser.add_argument("case", help="case file with a [gears] table, or a result of one")
     parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
     parser.add_argument("--csv", metavar="FILE", help="the path as a table for [operation]")
@@ -35,6 +36,8 @@ def main(argv=None):
         run(chosen)
     except CaseError as error:
         print("\n".join(error.faults), file=sys.stderr)
+    except OutputError as error:
+        print(f"ehlpetsc.gears: {error}", file=sys.stderr)
     except (OSError, ValueError) as error:
         told = not_written(error) if isinstance(error, OSError) else str(error)
         print(f"ehlpetsc.gears: {told}", file=sys.stderr)
@@ -48,6 +51,8 @@ def run(chosen):
     from ehlpetsc.gears.path import path_of_contact
     from ehlpetsc.gears.table import csv, hertz, rows
 
+    if Path(chosen.case).suffix == ".h5":
+        return _run_of(chosen)
     case = _read(chosen.case)
     if not isinstance(case.get("gears"), dict):
         raise CaseError([f"{chosen.case}: no [gears] table; allowed: a case with one"])
@@ -68,6 +73,19 @@ def run(chosen):
         target = chosen.output or f"{Path(chosen.case).stem}.gears.png"
         _check_target(target, chosen.case)
         draw(path, stresses, target, str(case.get("title", chosen.case)))
+        print(target)
+
+
+def _run_of(chosen):
+    """Print and draw a result along its path of contact."""
+    from ehlpetsc.gears.along_path import GearRun
+
+    found = GearRun(chosen.case)
+    print("\n".join(found.lines()))
+    if not chosen.no_picture:
+        target = chosen.output or f"{Path(chosen.case).stem}.gears.png"
+        _check_target(target, chosen.case)
+        found.draw(target)
         print(target)
 
 

@@ -35,6 +35,7 @@ SHORT = {
     "fig5": QUICK,
     "fig6": (*QUICK, MESHES),
     "fig7": (*QUICK, MESHES, "output.every=10"),
+    "fzg": ("mesh.points_per_half_width=25", "time.travel=1.0"),
     "moes": (),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.slow.synthetic.position=0.0"),

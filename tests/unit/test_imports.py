@@ -22,7 +22,7 @@ MAY_IMPORT = {
     "surfaces": set(),
     "effects": {"surfaces", "physics"},
     "quantities": {"effects"},
-    "gears": {"physics"},
+    "gears": {"physics", "results"},
     "case": {"gears", "surfaces", "physics", "quantities"},
     "results": {"quantities"},
     "discretisation": {"physics"},

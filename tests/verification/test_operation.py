@@ -8,6 +8,8 @@ from scipy.integrate import solve_ivp
 import ehlpetsc
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears import path_of_contact
+from ehlpetsc.gears.__main__ import main as gears
+from ehlpetsc.gears.along_path import GearRun
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
@@ -259,3 +261,30 @@ def test_squeeze_film_of_an_approaching_cylinder():
     assert state.h_min < 0.51 * first
     grown = (state.h_min**-0.5 - first**-0.5) / (rate * simulation.solution.time)
     assert grown == pytest.approx(1.0, rel=1e-2)
+
+
+def test_a_gear_run_that_was_stopped_resumes_as_if_it_had_not_been(tmp_path, capsys):
+    short = {"mesh.points_per_half_width": 25, "time.travel": 2.0, "output.every": 10}
+    case = load(CASES / "fzg.toml", short)
+    whole = ehlpetsc.solve(case)
+    simulation = Simulation(case)
+    with Recorder(simulation, tmp_path / "gear.h5") as recorder:
+        for _ in range(43):
+            recorder.take(simulation.advance())
+        recorder.checkpoint()
+    resumed = ehlpetsc.solve(case, tmp_path / "gear.h5", restart=tmp_path / "gear.restart.h5")
+    assert len(resumed.steps.time) == len(whole.steps.time) > 90
+    for name in ("time", "h_min", "p_max", "friction", "radius", "displacement_2", "contact_share"):
+        one, other = (np.asarray(getattr(result.steps, name)) for result in (resumed, whole))
+        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())
+    np.testing.assert_allclose(resumed.pressure[:], whole.pressure[:], atol=1.0)
+    np.testing.assert_allclose(resumed.film_thickness[:], whole.film_thickness[:], rtol=1e-9)
+    resumed.close()
+    assert gears([str(tmp_path / "gear.h5"), "-o", str(tmp_path / "gear.png")]) == 0
+    printed = capsys.readouterr().out
+    assert "mean friction coefficient 0.0" in printed and (tmp_path / "gear.png").stat().st_size > 10_000
+    run = GearRun(tmp_path / "gear.h5")
+    radius = np.interp(run.rho, run.path.rho, run.path.radius)
+    np.testing.assert_allclose(radius, np.asarray(whole.steps.radius), rtol=1e-4)
+    a_to_c = run.path.pair.points["C"] - run.path.pair.points["A"]
+    assert -a_to_c < run.position[0] < -0.95 * a_to_c

@@ -70,8 +70,9 @@ def save(path, checkpoint, case, scales, model):
     arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *checkpoint.baseline)
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     if state.earlier:
-        ways, q, w = (np.array(part) for part in zip(*state.earlier, strict=True))
-        arrays |= {"earlier_travelled": ways} | _fields(model, "earlier_", q, w)
+        arrays["earlier_travelled"] = np.array([level.travelled for level in state.earlier])
+        levels = [_fields(model, "earlier_", level.q, level.w) for level in state.earlier]
+        arrays |= {name: np.array([level[name] for level in levels]) for name in levels[0]}
     numbers = {"time": state.time, "dt": state.dt or 0.0, "h00": state.h00}
     numbers |= {"a": scales.a, "p0": scales.p0, "h_scale": scales.h, "u1": scales.u1, "u2": scales.u2}
     numbers |= dict(zip(("travelled_fast", "travelled_slow"), state.travelled, strict=True))
@@ -176,7 +177,11 @@ def _pass_number(attributes):
 def _earlier(model, arrays):
     if "earlier_travelled" not in arrays:
         return ()
-    return tuple(map(TimeLevel, arrays["earlier_travelled"], *_unknowns(model, arrays, "earlier_")))
+    stored = {name: values for name, values in arrays.items() if name.startswith("earlier_")}
+    levels = [{name: values[k] for name, values in stored.items()} for k in range(len(stored["earlier_q"]))]
+    return tuple(
+        TimeLevel(level["earlier_travelled"], *_unknowns(model, level, "earlier_")) for level in levels
+    )
 
 
 def _misfit(arrays, attributes, earlier, case, scales):

@@ -1,0 +1,109 @@
+"""A gear run along its path of contact: pressure, film, friction and losses, as text and as a picture."""
+
+import tomllib
+
+import numpy as np
+
+from ehlpetsc.errors import CaseError
+from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction
+from ehlpetsc.gears.path import path_of_contact
+from ehlpetsc.results.reader import read_result
+
+ROWS = (  # name among the scalars of the steps, factor, label
+    ("p_max", 1e-9, "largest pressure\n[GPa]"),
+    ("film_central", 1e6, "mean film of the\ncontact [um]"),
+    ("h_min", 1e6, "least film [um]"),
+    ("lambda_ratio", 1.0, "lambda ratio"),
+    ("friction_coefficient", 1.0, "friction coefficient"),
+    ("contact_share", 1.0, "share of the load\non the solids"),
+    ("film_temperature", 1.0, "highest film\ntemperature [K]"),
+)
+WINDOW = 0.02  # of the path, over which the thick line averages
+COLOUR = "#1f4e79"
+
+
+class GearRun:
+    """Scalars of a result along the path of contact of its gear pair.
+
+    Parameters
+    ----------
+    file : path-like
+        Result of a case with a ``[gears]`` table.
+
+    Attributes
+    ----------
+    path : ehlpetsc.gears.path.Path
+    position : ndarray, shape (nsteps,)
+        Of each step on the line of action from the pitch point [m].
+    scalars : dict of str to ndarray
+        Rows of the picture that the result has.
+
+    Raises
+    ------
+    CaseError
+        The result is none of a gear pair.
+    """
+
+    def __init__(self, file):
+        with read_result(file) as result:
+            tables = tomllib.loads(str(result.attrs["case"]))
+            if "gears" not in tables:
+                raise CaseError([f"{file}: its case has no [gears] table; allowed: a gear run"])
+            self.path, self.title = path_of_contact(tables["gears"]), str(result.attrs["title"])
+            self.time, rolling = result.steps("time")[:], result.steps("speed_1")[:]
+            self.scalars = {name: result.steps(name)[:] for name, _, _ in ROWS if name in result.figures}
+            sheared = result.steps("friction")[:]
+            self.load, sliding = result.steps("load")[:], rolling - result.steps("speed_2")[:]
+        self.rho = rolling / self.path.pair.angular_speeds[0]
+        self.position = self.rho - self.path.pair.points["C"]
+        # friction on the solids of surface 2 has the sign of the sliding
+        self.friction = np.where(sliding == 0.0, 0.0, np.abs(sheared)) / self.load
+
+    def friction_on_path(self):
+        """Friction coefficient at the samples of the path; beyond the ends of the run that of its ends."""
+        return np.interp(self.path.rho, self.rho, self.friction)
+
+    def lines(self):
+        """Lines of text: extremes and losses."""
+        friction = self.friction_on_path()
+        found = [
+            f"gear loss factor H_V {gear_loss_factor(self.path):.4f} of the load sharing",
+            f"mean friction coefficient {mean_friction(self.path, friction):.4f}",
+            f"power lost over power transmitted {1e2 * loss(self.path, friction):.3f} %",
+        ]
+        for name, factor, label in ROWS:
+            values = self.scalars.get(name)
+            if values is not None and np.isfinite(values).any():
+                low, high = (factor * f(values) for f in (np.nanmin, np.nanmax))
+                found.append(f"{' '.join(label.split())}: {low:.4g} to {high:.4g}")
+        return found
+
+    def averaged(self, values):
+        """Means over `WINDOW` of the path around each step."""
+        reach = 0.5 * WINDOW * (self.rho[-1] - self.rho[0])
+        total = np.append(0.0, np.cumsum(np.nan_to_num(values)))
+        first = np.searchsorted(self.rho, self.rho - reach)
+        last = np.searchsorted(self.rho, self.rho + reach, side="right")
+        return (total[last] - total[first]) / (last - first)
+
+    def draw(self, target):
+        """Draw the scalars along the line of action into a file."""
+        from matplotlib.figure import Figure
+
+        rows = [row for row in ROWS if row[0] in self.scalars and np.isfinite(self.scalars[row[0]]).any()]
+        figure = Figure(figsize=(7.0, 1.0 + 1.5 * len(rows)), layout="constrained")
+        axes = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
+        points, c = self.path.pair.points, self.path.pair.points["C"]
+        for axis, (name, factor, label) in zip(axes, rows, strict=True):
+            values = factor * self.scalars[name]
+            axis.plot(1e3 * self.position, values, color=COLOUR, alpha=0.3, linewidth=0.5)
+            axis.plot(1e3 * self.position, self.averaged(values), color=COLOUR, linewidth=1.5)
+            axis.set_ylabel(label, fontsize=8)
+            axis.grid(alpha=0.3)
+            for rho in points.values():
+                axis.axvline(1e3 * (rho - c), color="0.7", linewidth=0.8)
+        for name, rho in points.items():
+            axes[0].annotate(name, (1e3 * (rho - c), 1.02), xycoords=("data", "axes fraction"), ha="center")
+        axes[-1].set_xlabel("position on the line of action from the pitch point [mm]")
+        figure.suptitle(self.title, fontsize=10)
+        figure.savefig(target, dpi=120)
