@@ -18,6 +18,7 @@ from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.solids import with_material
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.operation import Operation
+from ehlpetsc.case.tables.heat import Heat
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time, Wear
 from ehlpetsc.case.tables.surface import Surface
@@ -54,6 +55,7 @@ class Case(Table):
     operation: Operation | None = Field(None, description="left out: constant conditions")
     gears: Gears | None = Field(None, description="left out: constant conditions")
     wear: Wear | None = Field(None, description="left out: no wear")
+    heat: Heat | None = Field(None, description="left out: isothermal")
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
     petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
@@ -67,6 +69,12 @@ class Case(Table):
         contact, time = values.get("contact"), values.get("time")
         if value is not None and contact is not None and (contact.model != "mixed" or time is None):
             raise ValueError('needs contact.model = "mixed" and [time]')
+        return value
+
+    @validator("heat")
+    def _of_surfaces_in_motion(cls, value, values):
+        if value is not None and values.get("motion") is None:
+            raise ValueError("needs [motion]")
         return value
 
     @validator("petsc")

@@ -50,6 +50,8 @@ class StepInputs:
         Length of the step [s]; None: steady.
     contact : contact.model.ContactModel or None
         Contact model of the solve; None: that of the problem.
+    heat : physics.heat_film.FilmHeat or None
+        Data of the film's temperature; None: isothermal.
     """
 
     phi: np.ndarray
@@ -60,6 +62,7 @@ class StepInputs:
     load_share: float = 1.0
     dt: float | None = None
     contact: ContactModel | None = None
+    heat: object = None
 
     def mirrored(self):
         """The same step seen from the other side: x, the speeds and all arrays over nodes turned round."""

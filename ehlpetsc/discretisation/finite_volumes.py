@@ -25,6 +25,8 @@ H = 2  # film [m]
 M, M_Q, M_H = 3, 4, 5  # film content rho h (1 - theta) in a^2/R, and its derivatives by q and h
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
+LN_ETA_H = 10  # d ln(eta)/dh in R/a^2, through the film's temperature; 0 in isothermal films
+PROPERTIES = 11
 
 
 @compiled
@@ -60,7 +62,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
 
     Parameters
     ----------
-    at : ndarray, shape (10, nodes)
+    at : ndarray, shape (11, nodes)
     left : int
     per_length, per_film : float
         p0 over the spacing [Pa/m]; a^2/R [m].
@@ -85,15 +87,17 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
     by_state_l = at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
     by_state_r = at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
     by_p_l, by_p_r = half * by_state_l - by_difference, half * by_state_r + by_difference
+    by_film_l = by_film + half * at[LN_ETA_H, left] * rho_l * mobility_l[3]
+    by_film_r = by_film + half * at[LN_ETA_H, right] * rho_r * mobility_r[3]
     couette, by_left, by_behind = entrainment * couette, entrainment * by_left, entrainment * by_behind
     return (
         couette - mean * gradient,
         by_behind * at[M_Q, behind],
         by_behind * at[M_H, behind],
         by_left * at[M_Q, left] - by_p_l * at[DP, left],
-        by_left * at[M_H, left] - by_film,
+        by_left * at[M_H, left] - by_film_l,
         -by_p_r * at[DP, right],
-        -by_film,
+        -by_film_r,
     )
 
 
@@ -103,7 +107,7 @@ def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
 
     Parameters
     ----------
-    at : ndarray, shape (10, nodes)
+    at : ndarray, shape (11, nodes)
         One node at least on either side of the cells.
     first : int
         Node of the first cell.

@@ -21,10 +21,12 @@ from ehlpetsc.discretisation.contact.node_state import ROUNDING, full_of_oil
 from ehlpetsc.discretisation.finite_volumes import (
     DP,
     FLUIDITY,
+    LN_ETA_H,
     LN_ETA_P,
     M_H,
     M_Q,
     OWN,
+    PROPERTIES,
     RHO,
     RHO_P,
     STENCIL,
@@ -99,7 +101,7 @@ class Reynolds:
         self.rows = slice(max(first, 1), last)
         self.has_inlet, self.has_outlet = first == 0, last == n
         nodes = slice(max(self.rows.start - 2, 0), min(last + 1, n))  # all that the local rows need
-        self.given = slice(nodes.start - start, nodes.stop - start)
+        self.nodes, self.given = nodes, slice(nodes.start - start, nodes.stop - start)
         self.row_in_given = self.rows.start - nodes.start
         self.dx = scales.x[1] - scales.x[0]
         self.columns = self._columns(np.arange(first, last), n)
@@ -120,13 +122,23 @@ class Reynolds:
         r"""Film content :math:`\rho h(1-\theta)` of the nodes."""
         return self.content(q, h, fluid)[0]
 
-    def _at(self, q, h, fluid):
-        """Properties of the nodes that the local rows need."""
-        q, h = q[self.given], h[self.given]
+    def properties(self, q, h, inputs):
+        """Properties of the nodes that the local rows need, rows as in :mod:`.finite_volumes`."""
+        q, h, fluid = q[self.given], h[self.given], inputs.fluid
         s, laws = self.scales, (rheology.viscosity_constants(fluid), rheology.density_constants(fluid))
-        at = np.empty((LN_ETA_P + 1, len(q) + self.has_outlet))
+        at = np.empty((PROPERTIES, len(q) + self.has_outlet))
         nodal(q, h, *laws, s.p0, s.h, 1.0 / (s.u * s.h), 1.0 / fluid.viscosity, at)
+        if inputs.heat is not None:
+            from ehlpetsc.discretisation.film_heat import heat_nodes
+
+            heat_nodes(q, at, inputs.heat.part(self.nodes), s.p0, s.h)
         return at
+
+    def face_law(self, inputs):
+        """Constants of :func:`.finite_volumes.flux_through`."""
+        s, tau0, now = self.scales, inputs.fluid.eyring_stress, inputs.conditions
+        eyring = np.inf if tau0 is None else tau0
+        return s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
 
     def evaluate(self, q, h, inputs):
         """Imbalance F of the local rows and its derivatives.
@@ -143,11 +155,8 @@ class Reynolds:
         derivatives : ndarray, shape (local nodes, 8)
             With respect to the unknowns of `columns`, h the second one of a node.
         """
-        s, rows, fluid, history = self.scales, self.rows, inputs.fluid, inputs.history
-        at, first = self._at(q, h, fluid), self.row_in_given
-        eyring = np.inf if fluid.eyring_stress is None else fluid.eyring_stress
-        now = inputs.conditions
-        law = s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
+        rows, history, law = self.rows, inputs.history, self.face_law(inputs)
+        at, first = self.properties(q, h, inputs), self.row_in_given
         then = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
             then = history.m[rows], history.carried[rows], history.k, self.dx / history.dt
@@ -190,7 +199,7 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
         1/(u film) [s/m^2].
     fluidity : float
         1/eta0 [1/(Pa s)].
-    at : ndarray, shape (10, nodes)
+    at : ndarray, shape (11, nodes)
         One node more is beyond the outlet: same film, no pressure.
     """
     nodes = len(q)
@@ -204,3 +213,4 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
         at[M_Q, i] = (rho_p * p0 if full else 1.0) * gap
         at[RHO, i], at[RHO_P, i] = unit * rho, unit * p0 * rho_p
         at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
+        at[LN_ETA_H, i] = 0.0

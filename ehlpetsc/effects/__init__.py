@@ -3,11 +3,12 @@
 An effect is one module with a class derived from :class:`.effect.Effect` and one entry in `EFFECTS`.
 """
 
+from ehlpetsc.effects.heat import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
 from ehlpetsc.effects.roughness import RoughSurfaces
 from ehlpetsc.effects.wear import Wear
 
-EFFECTS = (RoughSurfaces, PlasticDeformation, Wear)
+EFFECTS = (RoughSurfaces, PlasticDeformation, Wear, Heat)
 
 
 def effects_of(scene, records=()):

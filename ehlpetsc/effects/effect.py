@@ -80,10 +80,13 @@ class Solution(NamedTuple):
         Pressure, film and plastic deformation of the step.
     contact_pressure : ndarray
         Pressure of the solids in p0; zero in direct contact.
+    loads : discretisation.contact.node_state.SurfaceLoads
+        Pressures, film and friction on the surfaces.
     """
 
     nodes: object
     contact_pressure: np.ndarray
+    loads: object = None
 
 
 class NoRecord(NamedTuple):
@@ -162,6 +165,14 @@ class Effect:
         step : Step
         """
         return record
+
+    def is_settled(self, before, after):
+        """Whether a steady solution is one with the record after it too; else it is solved again."""
+        return True
+
+    def log_viscosity(self, record, pressure):
+        """ln(eta/eta0) of the oil under a pressure [Pa], shape (nx,); None: that of the isothermal law."""
+        return None
 
     def observe(self, record, solution, step):
         """Fields and scalars in SI units, by the names of `fields` and `scalars`."""

@@ -158,11 +158,12 @@ def _mobility(h, per_film, fluidity, eyring, slip, factors):
     )
 
 
-def wall_shear(h, gradient, ln_eta, fluid, sliding):
+def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
     r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
 
     :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
-    (Conry, Wang & Cusano 1987); Newtonian: :math:`\tau_m=\eta(u_1-u_2)/h`.
+    (Conry, Wang & Cusano 1987); Newtonian: :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress
+    :math:`\tau_m` is limited to :math:`\Lambda p`, see :func:`.thermal_viscosity.limited_shear`.
 
     Returns
     -------
@@ -173,6 +174,7 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding):
     half = h * gradient / 2.0
     if fluid.eyring_stress is None:
         mean = fluid.viscosity * np.exp(ln_eta) * rate
+        mean = _limited_mean(mean, fluid, p)
         return mean - half, mean + half
     tau0 = fluid.eyring_stress
     sigma = np.abs(half) / tau0
@@ -186,5 +188,15 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding):
         ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - spread
     large = ln_argument > 20.0
     asinh = np.where(large, ln_argument + np.log(2.0), np.arcsinh(np.exp(np.minimum(ln_argument, 20.0))))
-    mean = tau0 * np.sign(sliding) * asinh
+    mean = _limited_mean(tau0 * np.sign(sliding) * asinh, fluid, p)
     return mean - half, mean + half
+
+
+def _limited_mean(mean, fluid, p):
+    """Mean shear stress under the limiting one of the fluid, if it has one."""
+    if getattr(fluid, "limiting_shear", None) is None:
+        return mean
+    size, limit = np.abs(mean), fluid.limiting_shear * p
+    least, ratio = np.minimum(size, limit), np.ones_like(mean)
+    np.divide(least, np.maximum(size, limit), out=ratio, where=np.maximum(size, limit) > 0.0)
+    return np.sign(mean) * least * (1.0 + ratio**4) ** -0.25

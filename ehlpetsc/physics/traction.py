@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.physics import rheology
 
 
-def shear_stresses(case, dx, sliding, oil, solids, h, sheared):
+def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
     """Shear stress in +x on the fast (upper) and the slow (lower) solid.
 
     In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, times the fraction of
@@ -26,6 +26,8 @@ def shear_stresses(case, dx, sliding, oil, solids, h, sheared):
         Film [m].
     sheared : ndarray, shape (nx,)
         Fraction of the gap in which oil is sheared: 1 less the void fraction, 0 without a film.
+    ln_eta : ndarray, shape (nx,), optional
+        ln(eta/eta0); by default that of the isothermal law.
 
     Returns
     -------
@@ -36,7 +38,8 @@ def shear_stresses(case, dx, sliding, oil, solids, h, sheared):
     fast = -slow
     if case.fluid is None:
         return fast, slow
-    ln_eta, _ = rheology.viscosity(oil, case.fluid)
+    if ln_eta is None:
+        ln_eta, _ = rheology.viscosity(oil, case.fluid)
     film = np.where(sheared > 0.0, h, 1.0)
-    lower, upper = rheology.wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding)
+    lower, upper = rheology.wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding, oil)
     return fast - upper * sheared, slow + lower * sheared

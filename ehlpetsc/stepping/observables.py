@@ -32,7 +32,9 @@ def observe(scene, problem, effects, state, started):
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
     loads = problem.model.surface_loads(state.q, state.w, state.h, state.imbalance)
-    fields, touching = _fields(case, s, conditions, problem, state, loads), loads.contact_mask
+    found = (e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case))
+    ln_eta = next((values for values in found if values is not None), None)
+    fields, touching = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, film = s.dx * pressure.sum(), mean_film(s, state.h)
     friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("fast", "slow"))
@@ -64,7 +66,7 @@ def observe(scene, problem, effects, state, started):
         figures |= _of_oil(loads, s)
     figures |= problem.model.diagnostics(loads, s, case.output.thin_film)
     step = Step(state.time, state.dt, state.travelled, conditions)
-    solution = Solution(problem.model.state(state.q, state.w), loads.contact_pressure)
+    solution = Solution(problem.model.state(state.q, state.w), loads.contact_pressure, loads)
     for effect in effects:
         if effect.is_in(case):
             more = effect.observe(state.records[effect.name], solution, step)
@@ -72,12 +74,12 @@ def observe(scene, problem, effects, state, started):
     return figures, fields, touching
 
 
-def _fields(case, s, conditions, problem, state, loads):
+def _fields(case, s, conditions, problem, state, loads, ln_eta):
     """Fields in SI units that every case has."""
     void = np.zeros_like(loads.film) if problem.fluid is None else np.maximum(-state.q, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
-    fast, slow = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared)
+    fast, slow = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared, ln_eta)
     return {
         "pressure": loads.pressure * s.p0,
         "contact_pressure": loads.contact_pressure * s.p0,

@@ -179,6 +179,9 @@ class Fluid(Table):
         description=f"below gamma; {TEXTBOOKS} gamma = 2.3e-9 and lambda = 1.7e-9, the defaults",
     )
     eyring_stress: float | None = Field(None, ge=1e3, le=1e12, unit="Pa", description="left out: Newtonian")
+    limiting_shear: float | None = Field(
+        None, ge=1e-4, le=1, description="limiting shear stress over pressure; left out: none"
+    )
     inlet_film: float | None = Field(
         None, ge=1e-10, le=1e-2, unit="m", description="oil film at the inlet; left out: fully flooded"
     )

@@ -1,0 +1,162 @@
+r"""Heat in the film: its temperature in the Reynolds equation, dissipation, and transport along the film.
+
+In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.physics.heat_film`, whose derivatives are
+part of those of the viscosity. Of an accepted solution the transport with the surfaces' mean speed u is
+upwind and implicit,
+
+.. math:: m_o(T_i-T_i^{old})\frac{\Delta x}{\Delta t}+(um)_{i-1/2}(T_i-T_{i-1})
+   =\frac{\Delta x}{\rho c}[\ldots],
+
+:math:`m_o` the film content that the mass balance carries over. It produces no new extremes. With the mass
+balance it is a balance of heat in which oil that the pressure turns back in the inlet leaves with the
+temperature at which it turns.
+"""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.finite_volumes import (
+    DP,
+    FLUIDITY,
+    LN_ETA_H,
+    LN_ETA_P,
+    RHO,
+    H,
+    M,
+    P,
+    positive_extrapolation,
+)
+from ehlpetsc.physics.heat_film import _log_viscosity, film_temperature
+from ehlpetsc.physics.rheology import mobilities
+
+SWEEPS = 50
+STILL = 1e-11  # of the temperatures: change in a sweep that ends it
+
+
+@compiled
+def heat_nodes(q, at, heat, p0, film):
+    """Replace viscosities by those at the film's temperature, and their derivatives.
+
+    Parameters
+    ----------
+    q : ndarray, shape (nodes,)
+    at : ndarray, shape (11, nodes)
+        As of :func:`.reynolds.nodal`, changed in place; one node more may be beyond the outlet.
+    heat : FilmHeat
+        Of these nodes.
+    p0, film : float
+        Scales of pressure [Pa] and film [m].
+    """
+    nodes, law = len(q), heat.law
+    for i in range(nodes):
+        p, left = p0 * at[P, i], 1.0 + min(q[i], 0.0)
+        walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
+        t, t_p, t_h, _, _, _ = film_temperature(
+            heat.guess[i], p, at[H, i], left, heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
+        )
+        ln_eta, by_p, by_t = _log_viscosity(p, t, law.pressure_law, law.thermal_law)
+        at[FLUIDITY, i] = np.exp(-ln_eta) / law.eta0
+        at[LN_ETA_P, i] = p0 * (by_p + by_t * t_p)
+        at[LN_ETA_H, i] = film * by_t * t_h
+        if i == nodes - 1 and at.shape[1] > nodes:
+            ln_eta, by_p, _ = _log_viscosity(0.0, t, law.pressure_law, law.thermal_law)
+            at[FLUIDITY, nodes], at[LN_ETA_P, nodes] = np.exp(-ln_eta) / law.eta0, p0 * by_p
+
+
+@compiled
+def faces(at, law, flow, couette, pressure_heat, spread, gradient):
+    r"""Mass flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
+
+    Parameters
+    ----------
+    at : ndarray, shape (11, nodes + 1)
+    law : tuple
+        Of :func:`.finite_volumes.flux_through`.
+    flow, couette : ndarray, shape (nodes + 1,)
+        Filled in: mass flow through the faces i-1/2, and that of the surfaces' mean speed, in u a^2/R.
+    pressure_heat : ndarray, shape (nodes,)
+        Filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node.
+    spread : ndarray, shape (nodes,)
+        Filled in: :math:`\ln(\sinh\Sigma/\Sigma)` of the nodes.
+    gradient : ndarray, shape (nodes,)
+        Filled in: central :math:`dp/dx` [Pa/m].
+    """
+    nodes = at.shape[1] - 1
+    per_length, _, eyring, slip, entrainment = law
+    pressure_heat[:] = 0.0
+    slope = 0.0
+    for i in range(nodes):
+        behind = max(i - 1, 0)
+        drawn = positive_extrapolation(at[M, i], at[M, behind], 0.5 if i > 0 else 0.0)[0]
+        before, slope = slope, per_length * (at[P, i + 1] - at[P, i])
+        left, right = mobilities(
+            0.5 * (at[H, i] + at[H, i + 1]), slope, at[FLUIDITY, i], at[FLUIDITY, i + 1], eyring, slip
+        )
+        mean = 0.5 * (at[RHO, i] * left[0] + at[RHO, i + 1] * right[0])
+        couette[i + 1] = entrainment * drawn
+        flow[i + 1] = couette[i + 1] - mean * slope
+        if i == nodes - 1:  # the node beyond the outlet is a mirror of it
+            slope = 0.0
+        heat = 0.25 * (left[0] + right[0]) * slope * slope
+        pressure_heat[i] += heat
+        if i < nodes - 1:
+            pressure_heat[i + 1] += heat
+        gradient[i] = 0.5 * (before + slope)
+        sigma = abs(at[H, i] * gradient[i]) * (0.5 / eyring)
+        small = sigma < 0.1
+        spread[i] = sigma * sigma / 6.0 - sigma**4 / 180.0 if small else sigma + np.log(
+            0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma
+        )
+    flow[0], couette[0] = flow[1], couette[1]
+
+
+@compiled
+def transport(t, p, h, left, old, stored, flow, inlet, heat, t_new, q1, q2, shear_heat):
+    """Temperatures of the film and heat fluxes of a solution, sweeping along the film and back.
+
+    Parameters
+    ----------
+    t : ndarray, shape (nodes,)
+        First guess [K].
+    p, h, left : ndarray, shape (nodes,)
+        Pressure of the oil [Pa], film [m], fraction of the gap full of oil.
+    old : ndarray, shape (nodes,)
+        Temperatures of the previous level [K].
+    stored : ndarray, shape (nodes,)
+        Heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
+    flow : ndarray, shape (nodes + 1,)
+        Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
+    inlet : float
+        Temperature of the oil that enters [K].
+    heat : FilmHeat
+        Its `a` and `b` are not used.
+    t_new, q1, q2, shear_heat : ndarray, shape (nodes,)
+        Filled in.
+
+    Returns
+    -------
+    int
+        Sweeps.
+    """
+    nodes, law = len(t), heat.law
+    t_new[:] = t
+    for sweep in range(SWEEPS):
+        change, backward = 0.0, sweep % 2 == 1
+        back_flow = False
+        for k in range(nodes):
+            i = nodes - 1 - k if backward else k
+            from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
+            back_flow = back_flow or from_right > 0.0
+            before = t_new[i - 1] if i > 0 else inlet
+            after = t_new[i + 1] if i < nodes - 1 else inlet
+            a = stored[i] + from_left + from_right
+            b = stored[i] * old[i] + from_left * before + from_right * after
+            walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
+            value, _, _, q1[i], q2[i], shear_heat[i] = film_temperature(
+                t_new[i], p[i], h[i], left[i], a, b, heat.g[i], heat.spread[i], walls, law
+            )
+            change = max(change, abs(value - t_new[i]))
+            t_new[i] = value
+        if not back_flow or change < STILL * inlet:
+            return sweep + 1
+    return SWEEPS

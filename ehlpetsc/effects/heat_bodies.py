@@ -1,0 +1,159 @@
+"""Temperatures of both bodies at the nodes, by sums of exponentials kept on cells of each body."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
+
+PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
+LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
+SLOW = 1e-3  # m^2 over the diffusivity: history of a body that hardly moves, at most [s]
+
+
+class BodyHeat(NamedTuple):
+    """Heat of one body.
+
+    Attributes
+    ----------
+    first : int
+        Position of the first cell in the body, in cells.
+    terms : ndarray, shape (cells, terms)
+        :math:`A_m` [J/m^2].
+    flux : ndarray, shape (cells,)
+        Heat flux at the time level [W/m^2].
+    rates, weights : ndarray, shape (terms,)
+        Of the sum of exponentials.
+    """
+
+    first: int
+    terms: np.ndarray
+    flux: np.ndarray
+    rates: np.ndarray
+    weights: np.ndarray
+
+
+class BodyStep(NamedTuple):
+    """One body at the end of a step, but for the flux there.
+
+    Attributes
+    ----------
+    body : BodyHeat
+        Its terms with the flux of the begin of the step.
+    history : ndarray, shape (nx,)
+        Temperature above bulk at the nodes without the flux at the end of the step [K].
+    response : float
+        Temperature per flux at the end of the step [m^2 K/W].
+    end : ndarray, shape (terms,)
+        Contribution of that flux to the terms [s].
+    fraction : float
+        Fraction of a cell by which the nodes are ahead of the cells.
+    """
+
+    body: BodyHeat
+    history: np.ndarray
+    response: float
+    end: np.ndarray
+    fraction: float
+
+
+class Body:
+    """Conduction into one body.
+
+    Parameters
+    ----------
+    solid : physics.half_space_conduction.Solid
+    speed : float
+        Of its surface at the start [m/s].
+    scales : physics.scales.Scales
+    dt : float
+        Nominal time step [s].
+    """
+
+    def __init__(self, solid, speed, scales, dt):
+        self.solid, self.n, self.dx = solid, scales.nx, scales.dx
+        chi, speed = solid.diffusivity, abs(speed)
+        length = self.n * self.dx
+        slow = SLOW / chi
+        longest = min(length / speed + LONGEST * chi / speed**2, slow) if speed > 0.0 else slow
+        self.rates, self.weights = map(np.array, exponentials(dt, max(longest, 2.0 * dt)))
+        self.dt = dt
+        reach = PADDING * chi / speed / self.dx if speed > 0.0 else self.n
+        self.padding = int(min(np.ceil(reach), self.n)) + 2
+
+    def steady(self, flux, speed):
+        """Temperatures above bulk [K] at the nodes under a steady flux, and the terms of the cells."""
+        q = np.pad(flux, (self.padding, self.padding + 1))
+        terms = np.empty((len(q), len(self.rates)))
+        moving_terms(q, self.rates, self.solid.diffusivity, speed, self.dx, terms)
+        rise = terms @ self.weights / self.solid.effusivity + self._tail * q
+        return rise[self.padding : self.padding + self.n], terms
+
+    @property
+    def _tail(self):
+        step = StepWeights.of(self.rates, self.weights, self.dt, self.solid.effusivity)
+        return step.response - self.weights @ step.end / self.solid.effusivity
+
+    def record(self, flux, terms):
+        """Record of a steady flux."""
+        q = np.pad(flux, (self.padding, self.padding + 1))
+        return BodyHeat(-self.padding, terms, q, self.rates, self.weights)
+
+    def cold(self):
+        """Record of a body without heat."""
+        cells = self.n + 1 + 2 * self.padding
+        zeros = np.zeros((cells, len(self.rates)))
+        return BodyHeat(-self.padding, zeros, np.zeros(cells), self.rates, self.weights)
+
+    def advance(self, body, travelled, dt):
+        """The body at the end of a step.
+
+        Parameters
+        ----------
+        body : BodyHeat
+            At its begin.
+        travelled : float
+            Distance travelled at the end [m].
+        dt : float
+            [s]
+
+        Returns
+        -------
+        BodyStep
+        """
+        cells = len(body.flux)
+        position = -travelled / self.dx
+        base = int(np.floor(position))
+        padding = (cells - self.n - 1) // 2
+        shift = base - padding - body.first
+        terms, flux = shifted(body.terms, shift), shifted(body.flux, shift)
+        step = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
+        given = step.decay * terms + flux[:, None] * step.begin
+        new = np.empty_like(given)
+        diffuse(given, self.solid.diffusivity * dt / self.dx**2, new)
+        body = body._replace(first=base - padding, terms=new, flux=flux)
+        fraction = position - base
+        rise = new @ body.weights / self.solid.effusivity
+        at = slice(padding, padding + self.n)
+        history = (1.0 - fraction) * rise[at] + fraction * rise[at.start + 1 : at.stop + 1]
+        return BodyStep(body, history, step.response, step.end, fraction)
+
+    def accept(self, step, flux):
+        """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""
+        body, cells = step.body, np.zeros_like(step.body.flux)
+        padding = (len(cells) - self.n - 1) // 2
+        cells[padding : padding + self.n] = (1.0 - step.fraction) * flux
+        cells[padding + 1 : padding + self.n + 1] += step.fraction * flux
+        return body._replace(terms=body.terms + cells[:, None] * step.end, flux=cells)
+
+
+def shifted(values, cells):
+    """Values of cells counted from `cells` on, zero beyond the ends."""
+    if cells == 0:
+        return values
+    out, n = np.zeros_like(values), len(values)
+    if 0 < cells < n:
+        out[: n - cells] = values[cells:]
+    elif -n < cells < 0:
+        out[-cells:] = values[:cells]
+    return out

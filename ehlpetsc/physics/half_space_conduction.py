@@ -1,0 +1,261 @@
+r"""Conduction of heat into a moving half-space, with diffusion along its surface, by sums of exponentials.
+
+The surface temperature under a flux q is, in the frame of the body,
+
+.. math:: T(s,t)=\frac{1}{\sqrt{k\rho c}}\int_0^t\frac{e^{\chi t'\partial_{ss}}q(s,t-t')}{\sqrt{\pi t'}}dt',
+   \qquad\frac1{\sqrt{\pi t}}=\frac1\pi\int_{-\infty}^{\infty}e^{y/2}e^{-e^yt}\,dy
+   \approx\sum_mw_me^{-\lambda_mt},
+
+:math:`\chi=k/(\rho c)` (Carslaw & Jaeger 1959, sections 2.9 and 10.3). Each term obeys
+:math:`\dot A_m=-\lambda_mA_m+\chi\partial_{ss}A_m+q`, and :math:`T=\sum w_mA_m/\sqrt{k\rho c}`, so that no
+history is stored.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+
+STEP = 1.2  # of the trapezoidal rule in y: its relative error is 2 |Gamma(1/2 + 2 pi i/STEP)|/sqrt(pi) = 8e-4
+FASTEST = 30.0  # rate of the fastest term times the time step
+SLOWEST = 0.2  # rate of the slowest term but the lumped one times the longest time
+
+
+class Solid(NamedTuple):
+    """Thermal properties of a body.
+
+    Attributes
+    ----------
+    conductivity : float
+        k [W/(m K)].
+    density : float
+        rho [kg/m^3].
+    heat_capacity : float
+        c [J/(kg K)].
+    """
+
+    conductivity: float
+    density: float
+    heat_capacity: float
+
+    @property
+    def diffusivity(self):
+        """Thermal diffusivity k/(rho c) [m^2/s]."""
+        return self.conductivity / (self.density * self.heat_capacity)
+
+    @property
+    def effusivity(self):
+        """Thermal effusivity sqrt(k rho c) [W s^(1/2)/(m^2 K)]."""
+        return (self.conductivity * self.density * self.heat_capacity) ** 0.5
+
+
+@lru_cache
+def exponentials(shortest, longest):
+    r"""Rates [1/s] and weights [1/s^(1/2)] of a sum of exponentials for :math:`1/\sqrt{\pi t}`.
+
+    Trapezoidal rule in y with the step `STEP`. All terms slower than the slowest one are one more term of
+    their total weight and their mean rate.
+
+    Parameters
+    ----------
+    shortest, longest : float
+        Range of t [s].
+
+    Returns
+    -------
+    rates, weights : tuple of float
+    """
+    high, low = np.log(FASTEST / shortest), np.log(SLOWEST / longest)
+    count = max(int(np.ceil((high - low) / STEP)), 1) + 1
+    y = high - STEP * np.arange(count)
+    rates, weights = np.exp(y), STEP / np.pi * np.exp(0.5 * y)
+    # geometric series of the weights and of the first moments of all slower terms
+    half, whole = np.exp(-0.5 * STEP), np.exp(-1.5 * STEP)
+    weight = weights[-1] * half / (1.0 - half)
+    rate = rates[-1] * whole / (1.0 - whole) * (1.0 - half) / half
+    return tuple(np.append(rates, rate)), tuple(np.append(weights, weight))
+
+
+@dataclass(frozen=True)
+class StepWeights:
+    r"""Coefficients of one time step, flux linear in time over it.
+
+    Attributes
+    ----------
+    decay : ndarray, shape (terms,)
+        :math:`e^{-\lambda\Delta t}`.
+    begin, end : ndarray, shape (terms,)
+        Contributions of the flux at the begin and at the end of the step to A [s].
+    response : float
+        Temperature at the end of the step per flux there [m^2 K/W], without lateral diffusion.
+    """
+
+    decay: np.ndarray
+    begin: np.ndarray
+    end: np.ndarray
+    response: float
+
+    @classmethod
+    def of(cls, rates, weights, dt, effusivity):
+        """Coefficients of a step of `dt` [s]."""
+        rates, weights = np.asarray(rates), np.asarray(weights)
+        z = rates * dt
+        decay = np.exp(-z)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = np.where(z > 1e-4, -np.expm1(-z) / z, 1.0 - z / 2.0)  # of the kernel over the step
+            first = np.where(z > 1e-2, (mean - decay) / z, 0.5 - z / 3.0 + z * z / 8.0)
+        begin, end = dt * first, dt * (mean - first)
+        # the terms faster than the fastest one act at the end of the step only
+        tail = 4.0 / 3.0 * np.sqrt(dt / np.pi) - weights @ end
+        return cls(decay, begin, end, (weights @ end + tail) / effusivity)
+
+
+@compiled
+def diffuse(a, ratio, out):
+    r"""Diffuse the terms along the surface for one step: :math:`(1-\theta Z)^{-1}(1+(1-\theta)Z)`.
+
+    Z is the second difference times `ratio`; theta = 1/2 is second order and used where that keeps
+    temperatures positive, for longer steps theta rises towards 1. No heat passes the ends of the cells.
+
+    Parameters
+    ----------
+    a : ndarray, shape (cells, terms)
+    ratio : float
+        chi dt/dx^2.
+    out : ndarray, shape (cells, terms)
+    """
+    cells, terms = a.shape
+    theta = max(0.5, 1.0 - 0.5 / ratio) if ratio > 0.0 else 0.5
+    implicit, explicit = theta * ratio, (1.0 - theta) * ratio
+    upper = np.empty(cells)
+    for i in range(cells):
+        left = implicit if i > 0 else 0.0
+        right = implicit if i < cells - 1 else 0.0
+        pivot = 1.0 + left + right - (left * upper[i - 1] if i > 0 else 0.0)
+        upper[i] = right / pivot
+        before, after = max(i - 1, 0), min(i + 1, cells - 1)
+        for m in range(terms):
+            value = a[i, m] + explicit * (a[before, m] - 2.0 * a[i, m] + a[after, m])
+            if i > 0:
+                value += left * out[i - 1, m]
+            out[i, m] = value / pivot
+    for i in range(cells - 2, -1, -1):
+        for m in range(terms):
+            out[i, m] += upper[i] * out[i + 1, m]
+
+
+@compiled
+def moving_terms(q, rates, diffusivity, speed, dx, out):
+    r"""Steady terms under a flux at rest, of a body that moves past: :math:`uA'=-\lambda A+\chi A''+q`.
+
+    Exact for a flux that is linear between the nodes and zero beyond them:
+    :math:`A(x)=\int q(s)e^{-r_\pm|x-s|}ds/\sqrt{u^2+4\chi\lambda}`,
+    :math:`r_\pm=(\sqrt{u^2+4\chi\lambda}\mp u)/(2\chi)` behind and ahead of s.
+
+    Parameters
+    ----------
+    q : ndarray, shape (nodes,)
+    rates : ndarray, shape (terms,)
+    diffusivity, speed : float
+        chi [m^2/s], u [m/s], signed.
+    dx : float
+        Spacing of the nodes [m].
+    out : ndarray, shape (nodes, terms)
+    """
+    n = len(q)
+    for m in range(len(rates)):
+        root = np.sqrt(speed * speed + 4.0 * diffusivity * rates[m])
+        # without cancellation: the product of both exponents is rate/diffusivity
+        steep = (root + abs(speed)) / (2.0 * diffusivity)
+        flat = rates[m] / (diffusivity * steep)
+        behind, ahead = (flat, steep) if speed >= 0.0 else (steep, flat)
+        near, far = _linear_weights(behind * dx)
+        decay, total = np.exp(-behind * dx), 0.0
+        out[0, m] = 0.0
+        for i in range(1, n):
+            total = decay * total + dx * (far * q[i - 1] + near * q[i])
+            out[i, m] = total
+        near, far = _linear_weights(ahead * dx)
+        decay, total = np.exp(-ahead * dx), 0.0
+        for i in range(n - 2, -1, -1):
+            total = decay * total + dx * (far * q[i + 1] + near * q[i])
+            out[i, m] += total
+        for i in range(n):
+            out[i, m] /= root
+
+
+@compiled
+def _linear_weights(z):
+    """Integrals of exp(-z s) (1 - s) and exp(-z s) s over 0 < s < 1."""
+    if z < 1e-3:
+        return 0.5 - z / 6.0 + z * z / 24.0, 0.5 - z / 3.0 + z * z / 8.0
+    decay = np.exp(-z)
+    mean = (1.0 - decay) / z
+    far = (mean - decay) / z
+    return mean - far, far
+
+
+def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
+    r"""Steady surface temperature by Jaeger's integral.
+
+    :math:`T(x)=\frac1{\pi k}\int q(s)e^{U(x-s)}K_0(U|x-s|)\,ds`, :math:`U=u/(2\chi)` (Jaeger 1942),
+    q constant over the cells of equally spaced x.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [m]
+    flux : ndarray, shape (n,)
+        [W/m^2]
+    diffusivity, conductivity, speed : float
+    subdivisions : int
+        Gauss points in each half cell.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [K]
+    """
+    from scipy.special import k0e
+
+    dx, u = x[1] - x[0], speed / (2.0 * diffusivity)
+    points, weights = np.polynomial.legendre.leggauss(subdivisions)
+    s = 0.5 * (1.0 + points)  # s^3 clusters the points at the logarithm of K0
+    offsets = 0.5 * dx * s**3
+    lengths = 0.5 * dx * 0.5 * weights * 3.0 * s**2
+    n = len(x)
+    lag = np.arange(-(n - 1), n) * dx
+    kernel = np.zeros(2 * n - 1)
+    for sign in (1.0, -1.0):
+        for offset, length in zip(offsets, lengths, strict=True):
+            r = lag + sign * offset
+            kernel += length * np.exp(u * r - abs(u) * np.abs(r)) * k0e(abs(u) * np.abs(r))
+    return np.convolve(flux, kernel)[n - 1 : 2 * n - 1] / (np.pi * conductivity)
+
+
+def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
+    r"""Largest flash temperature of a line contact [K] by Blok's formula.
+
+    :math:`T=1.11\,\frac{\mu w'|u_1-u_2|}{(e_1\sqrt{|u_1|}+e_2\sqrt{|u_2|})\sqrt{2a}}` (Blok 1937, as in
+    ISO/TS 6336-20), e the thermal effusivities :math:`\sqrt{k\rho c}`.
+
+    Parameters
+    ----------
+    friction : float
+        Coefficient of friction mu.
+    load : float
+        w' [N/m].
+    sliding, u1, u2 : float
+        [m/s]
+    a : float
+        Hertz half-width [m].
+    effusivities : (float, float)
+        [W s^(1/2)/(m^2 K)]
+    """
+    carried = sum(e * abs(u) ** 0.5 for e, u in zip(effusivities, (u1, u2), strict=True))
+    if sliding == 0.0 or carried == 0.0:
+        return 0.0
+    return 1.11 * friction * load * abs(sliding) / (carried * (2.0 * a) ** 0.5)

@@ -1,0 +1,212 @@
+r"""Temperature of the film at a node, with both surfaces, as a law of pressure and film.
+
+With one temperature T of the film, a parabola across it, and both surfaces' response :math:`R_i` to the
+present flux,
+
+.. math:: aT-b=\Phi(T)+G-q_1-q_2,\qquad q_{1,2}=\frac{k_f}{h}\Big[6(T-T_w)\pm(T_2-T_1)\Big],\qquad
+   T_i=W_i+R_iq_i,
+
+:math:`T_w=(T_1+T_2)/2`, :math:`\Phi=\tau_m|u_1-u_2|`. The fluxes are linear in T: with
+:math:`r=h/k_f`, :math:`T=\alpha+\kappa(q_1+q_2)`,
+
+.. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r+R_1+R_2}\Big],\qquad
+   \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r+R_1+R_2)},
+
+regular at r = 0. What is left is one equation for T, monotone because the shear stress falls with T; the
+derivatives follow from the implicit function theorem.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.physics import thermal_viscosity
+
+LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
+ITERATIONS = 100
+ACCURACY = 1e-10  # K
+
+_log_viscosity = compiled(thermal_viscosity.log_viscosity)
+_limited = compiled(thermal_viscosity.limited_shear)
+
+
+class FilmLaw(NamedTuple):
+    """Constants of the oil in a step.
+
+    Attributes
+    ----------
+    pressure_law, thermal_law : tuple
+        Of :func:`.thermal_viscosity.log_viscosity`.
+    eta0 : float
+        Viscosity at ambient pressure and reference temperature [Pa s].
+    eyring : float
+        Eyring stress [Pa]; infinite: Newtonian.
+    limit : float
+        Limiting shear stress over pressure; infinite: none.
+    conductivity : float
+        k_f at ambient pressure [W/(m K)].
+    conductivity_pressure : float
+        Its relative increase with pressure [1/Pa].
+    sliding : float
+        |u1 - u2| [m/s].
+    """
+
+    pressure_law: tuple
+    thermal_law: tuple
+    eta0: float
+    eyring: float
+    limit: float
+    conductivity: float
+    conductivity_pressure: float
+    sliding: float
+
+
+@compiled
+def shear_stress(ln_eta, h, p, spread, law):
+    r"""Mean shear stress of the film :math:`\tau_m` [Pa].
+
+    :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
+    Wang & Cusano 1987), limited by :func:`.thermal_viscosity.limited_shear`.
+
+    Parameters
+    ----------
+    ln_eta, h, p : float
+        ln(eta/eta0), film [m], pressure [Pa].
+    spread : float
+        s.
+    law : FilmLaw
+
+    Returns
+    -------
+    tau, by_ln_eta, by_p : float
+        `by_p` at constant viscosity.
+    """
+    _, _, eta0, eyring, limit, _, _, sliding = law
+    if sliding == 0.0 or h <= 0.0:
+        return 0.0, 0.0, 0.0
+    if eyring == np.inf:
+        tau = eta0 * np.exp(min(ln_eta, 600.0)) * sliding / h
+        by_ln_eta = tau
+    else:
+        argument = np.log(sliding * eta0 / (eyring * h)) + ln_eta - spread
+        if argument > 20.0:
+            tau, by_ln_eta = eyring * (argument + 0.6931471805599453), eyring
+        else:
+            x = np.exp(argument)
+            root = np.sqrt(1.0 + x * x)
+            tau, by_ln_eta = eyring * np.log(x + root) if x > 1e-4 else eyring * x, eyring * x / root
+    if limit == np.inf:
+        return tau, by_ln_eta, 0.0
+    tau, by_tau, by_limit = _limited(tau, limit * p)
+    return tau, by_ln_eta * by_tau, by_limit * limit
+
+
+@compiled
+def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
+    r"""Temperature of the film at one node.
+
+    Parameters
+    ----------
+    guess : float
+        Start of the iteration [K].
+    p, h, left : float
+        Pressure [Pa], film [m], fraction of the gap full of oil.
+    a, b : float
+        Storage and transport per temperature [W/(m^2 K)], and their known part [W/m^2].
+    g : float
+        Heat that does not depend on the temperature [W/m^2].
+    spread : float
+        As of :func:`shear_stress`.
+    walls : tuple of 4 floats
+        W1, W2 [K], R1, R2 [m^2 K/W].
+    law : FilmLaw
+
+    Returns
+    -------
+    temperature : float
+        [K]
+    by_p, by_h : float
+        Derivatives [K/Pa], [K/m].
+    q1, q2 : float
+        Heat fluxes into both surfaces [W/m^2].
+    shear_heat : float
+        Phi [W/m^2].
+    """
+    pressure_law, thermal_law = law[0], law[1]
+    conductivity, sliding = law[5] * (1.0 + law[6] * p), law[7]
+    w1, w2, r1, r2 = walls
+    left = max(left, 1e-6)
+    r = h / (conductivity * left)
+    total, difference = r + r1 + r2, r1 - r2
+    kappa = r / 12.0 + 0.25 * (r1 + r2 - difference * difference / total)
+    alpha = 0.5 * (w1 + w2) - 0.5 * difference * (w1 - w2) / total
+    slope = a + 1.0 / kappa
+    known = b + g + alpha / kappa
+    ln_eta, eta_p, eta_t = _log_viscosity(p, guess, pressure_law, thermal_law)
+    low = known / slope
+    t = low
+    high = np.inf
+    tau, by_ln_eta, by_p = 0.0, 0.0, 0.0
+    if sliding > 0.0:
+        t = max(guess, low)
+        for _ in range(ITERATIONS):
+            ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+            tau, by_ln_eta, by_p = shear_stress(ln_eta, h, p, spread, law)
+            f = slope * t - known - left * sliding * tau
+            if f > 0.0:
+                high = min(high, t)
+            else:
+                low = max(low, t)
+            step = f / (slope - left * sliding * by_ln_eta * eta_t)
+            new = t - step
+            if new >= high or new <= low:
+                new = 0.5 * (low + high) if high < np.inf else new
+                new = max(new, low)
+            change = abs(new - t)
+            t = new
+            if change < ACCURACY * max(1.0, 1e-3 * abs(t)):
+                break
+    ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+    tau, by_ln_eta, by_p = shear_stress(ln_eta, h, p, spread, law)
+    heat = left * sliding
+    f_t = slope - heat * by_ln_eta * eta_t
+    kappa_r = 1.0 / 12.0 + 0.25 * difference * difference / (total * total)
+    alpha_r = 0.5 * difference * (w1 - w2) / (total * total)
+    flow = (t - alpha) / kappa
+    f_r = -(alpha_r + flow * kappa_r) / kappa
+    f_h = f_r / (conductivity * left) + (heat * by_ln_eta / h if h > 0.0 else 0.0)
+    f_p = -f_r * r * law[6] / (1.0 + law[6] * p) - heat * (by_ln_eta * eta_p + by_p)
+    exchange = -(2.0 * (w1 - w2) + difference * flow) / total
+    q1, q2 = 0.5 * (flow + exchange), 0.5 * (flow - exchange)
+    return t, -f_p / f_t, -f_h / f_t, q1, q2, heat * tau
+
+
+class FilmHeat(NamedTuple):
+    """What the film's temperature depends on besides the unknowns, fixed in a solve; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    law : FilmLaw
+    a, b, g, spread
+        As of :func:`film_temperature`.
+    w1, w2, r1, r2
+        Of both surfaces.
+    guess
+        Temperature to start from [K].
+    """
+
+    law: FilmLaw
+    a: np.ndarray
+    b: np.ndarray
+    g: np.ndarray
+    spread: np.ndarray
+    w1: np.ndarray
+    w2: np.ndarray
+    r1: np.ndarray
+    r2: np.ndarray
+    guess: np.ndarray
+
+    def part(self, nodes):
+        """The same for a slice of the nodes."""
+        return FilmHeat(self.law, *(array[nodes] for array in self[1:]))
