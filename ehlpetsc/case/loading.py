@@ -17,8 +17,8 @@ from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.solids import with_material
 from ehlpetsc.case.tables.gears import Gears
-from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.heat import Heat
+from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time, Wear
 from ehlpetsc.case.tables.surface import Surface
@@ -55,7 +55,7 @@ class Case(Table):
     operation: Operation | None = Field(None, description="left out: constant conditions")
     gears: Gears | None = Field(None, description="left out: constant conditions")
     wear: Wear | None = Field(None, description="left out: no wear")
-    heat: Heat | None = Field(None, description="left out: isothermal")
+    heat: Heat | None = Field(None, description="left out: isothermal; needs [motion]")
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
     petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")

@@ -73,6 +73,8 @@ class StepInputs:
                 turned[name] = mirrored(value)
         if self.history is not None:
             turned["history"] = self.history.mirrored()
+        if self.heat is not None:
+            turned["heat"] = self.heat.mirrored()
         return replace(self, **turned)
 
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.finite_volumes import (
-    DP,
     FLUIDITY,
     LN_ETA_H,
     LN_ETA_P,
@@ -64,7 +63,7 @@ def heat_nodes(q, at, heat, p0, film):
 
 
 @compiled
-def faces(at, law, flow, couette, pressure_heat, spread, gradient):
+def faces(at, law, oil, flow, couette, pressure_heat, spread, gradient):
     r"""Mass flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
 
     Parameters
@@ -72,6 +71,8 @@ def faces(at, law, flow, couette, pressure_heat, spread, gradient):
     at : ndarray, shape (11, nodes + 1)
     law : tuple
         Of :func:`.finite_volumes.flux_through`.
+    oil : ndarray of bool, shape (nodes,)
+        Nodes where the Reynolds equation holds: what flows beside others has no meaning.
     flow, couette : ndarray, shape (nodes + 1,)
         Filled in: mass flow through the faces i-1/2, and that of the surfaces' mean speed, in u a^2/R.
     pressure_heat : ndarray, shape (nodes,)
@@ -97,15 +98,18 @@ def faces(at, law, flow, couette, pressure_heat, spread, gradient):
         flow[i + 1] = couette[i + 1] - mean * slope
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
-        heat = 0.25 * (left[0] + right[0]) * slope * slope
+        known = oil[i] and oil[min(i + 1, nodes - 1)]
+        heat = 0.25 * (left[0] + right[0]) * slope * slope if known else 0.0
         pressure_heat[i] += heat
         if i < nodes - 1:
             pressure_heat[i + 1] += heat
         gradient[i] = 0.5 * (before + slope)
         sigma = abs(at[H, i] * gradient[i]) * (0.5 / eyring)
         small = sigma < 0.1
-        spread[i] = sigma * sigma / 6.0 - sigma**4 / 180.0 if small else sigma + np.log(
-            0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma
+        spread[i] = (
+            sigma * sigma / 6.0 - sigma**4 / 180.0
+            if small
+            else sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)
         )
     flow[0], couette[0] = flow[1], couette[1]
 

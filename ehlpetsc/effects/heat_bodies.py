@@ -4,33 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.effects.heat import BodyHeat
 from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
 SLOW = 1e-3  # m^2 over the diffusivity: history of a body that hardly moves, at most [s]
-
-
-class BodyHeat(NamedTuple):
-    """Heat of one body.
-
-    Attributes
-    ----------
-    first : int
-        Position of the first cell in the body, in cells.
-    terms : ndarray, shape (cells, terms)
-        :math:`A_m` [J/m^2].
-    flux : ndarray, shape (cells,)
-        Heat flux at the time level [W/m^2].
-    rates, weights : ndarray, shape (terms,)
-        Of the sum of exponentials.
-    """
-
-    first: int
-    terms: np.ndarray
-    flux: np.ndarray
-    rates: np.ndarray
-    weights: np.ndarray
 
 
 class BodyStep(NamedTuple):

@@ -207,6 +207,10 @@ class FilmHeat(NamedTuple):
     r2: np.ndarray
     guess: np.ndarray
 
+    def mirrored(self):
+        """The same with the order of the nodes turned round."""
+        return self.part(slice(None, None, -1))
+
     def part(self, nodes):
         """The same for a slice of the nodes."""
-        return FilmHeat(self.law, *(array[nodes] for array in self[1:]))
+        return FilmHeat(self.law, *(np.ascontiguousarray(array[nodes]) for array in self[1:]))

@@ -32,7 +32,9 @@ def observe(scene, problem, effects, state, started):
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
     loads = problem.model.surface_loads(state.q, state.w, state.h, state.imbalance)
-    found = (e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case))
+    found = (
+        e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case)
+    )
     ln_eta = next((values for values in found if values is not None), None)
     fields, touching = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]

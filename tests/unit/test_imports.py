@@ -20,7 +20,7 @@ GROUND = {
 MAY_IMPORT = {
     "physics": set(),
     "surfaces": set(),
-    "effects": {"surfaces", "physics"},
+    "effects": {"discretisation", "surfaces", "physics"},
     "quantities": {"effects"},
     "gears": {"physics", "results"},
     "case": {"gears", "surfaces", "physics", "quantities"},

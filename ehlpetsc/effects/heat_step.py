@@ -1,0 +1,209 @@
+"""Temperatures of one step: before the solve what they depend on, after it what they are."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.discretisation.film_heat import faces, transport
+from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.effects.heat_bodies import Body
+from ehlpetsc.effects.heat_steady import mixing
+from ehlpetsc.physics.half_space_conduction import Solid
+from ehlpetsc.physics.heat_film import FilmHeat
+from ehlpetsc.physics.heat_laws import film_law
+
+NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
+HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
+MIN_RESPONSE = 0.01  # of the largest one
+
+
+class Film(NamedTuple):
+    """Film of a solution; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    pressure, thickness
+        Of the oil [Pa]; [m], 0 where the solids are in direct contact.
+    left
+        Fraction of the gap that is full of oil.
+    old
+        Temperature at the begin of the step [K].
+    stored
+        Heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
+    couette, flow : ndarray, shape (nx + 1,)
+        Heat capacity that the mean speed of the surfaces, and all flow, move through the faces, per cell
+        [W/(m^2 K)].
+    """
+
+    pressure: np.ndarray
+    thickness: np.ndarray
+    left: np.ndarray
+    old: np.ndarray
+    stored: np.ndarray
+    couette: np.ndarray
+    flow: np.ndarray
+
+
+class Temperatures(NamedTuple):
+    """Temperatures [K], heat fluxes and heat of shear [W/m^2] at the nodes, and records of both bodies."""
+
+    film: np.ndarray
+    walls: list
+    fluxes: list
+    shear: np.ndarray
+    bodies: list
+    responses: list
+
+
+class HeatStep:
+    """Steps of one scene.
+
+    Parameters
+    ----------
+    scene : effects.effect.Scene
+    """
+
+    def __init__(self, scene):
+        case, self.scales = scene.case, scene.scales
+        self.heat, self.fluid, self.friction = case.heat, case.fluid, case.contact.boundary_friction
+        s, self.bulk, self.inlet = self.scales, case.heat.bulk_temperature, case.heat.oil_inlet_temperature
+        solids = map(Solid, self.heat.conductivity, self.heat.density, self.heat.heat_capacity)
+        dt = s.dt or 0.5 * s.dx / s.u_max
+        self.bodies = [Body(solid, u, s, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
+        self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
+        self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
+        self._inputs = self._heat = self._stored = self._moved = None
+
+    def prepare(self, record, inputs, step):
+        """Inputs of the solve with the data of the film's temperature.
+
+        Parameters and result of :meth:`.effect.Effect.inputs`. The first steady solution is isothermal.
+        """
+        n = self.scales.nx
+        self._moved, self._stored = None, np.zeros(n)
+        if step.dt is None:
+            responses = [record.response_1, record.response_2]
+            pairs = (record.wall_1, record.flux_1), (record.wall_2, record.flux_2)
+            walls = [w - r * q for (w, q), r in zip(pairs, responses, strict=True)]
+        else:
+            both = zip(self.bodies, (record.body_1, record.body_2), step.travelled, strict=True)
+            self._moved = [body.advance(one, way, step.dt) for body, one, way in both]
+            walls = [bulk + one.history for bulk, one in zip(self.bulk, self._moved, strict=True)]
+            responses = [np.full(n, one.response) for one in self._moved]
+            if inputs.history is not None:
+                self._stored = self.capacity * self.scales.h * inputs.history.carried / step.dt
+        flow, t = record.flow, record.film
+        left, right = np.maximum(flow[:-1], 0.0), np.maximum(-flow[1:], 0.0)
+        a = self._stored + left + right
+        b = self._stored * t + left * np.append(self.inlet, t[:-1]) + right * np.append(t[1:], self.inlet)
+        law = film_law(self.fluid, self.heat, step.conditions.sliding)
+        self._heat = FilmHeat(law, a, b, record.source, record.spread, *walls, *responses, t)
+        if record.solved and self.fluid is not None:
+            inputs = replace(inputs, heat=self._heat)
+        self._inputs = inputs
+        return inputs
+
+    def solve(self, record, solution, step):
+        """Temperatures and heat of an accepted solution.
+
+        Returns
+        -------
+        Temperatures
+        Film
+        source, spread : ndarray, shape (nx,)
+            See :class:`.heat.HeatRecord`.
+        """
+        s, loads = self.scales, solution.loads
+        source = self.friction * loads.friction_pressure * s.p0 * abs(step.conditions.sliding)
+        pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
+        if self.fluid is None:
+            thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
+            no_flow = np.zeros(s.nx + 1)
+            film = Film(blank, thickness, np.ones(s.nx), record.film, blank, no_flow, no_flow)
+            spread = blank
+        else:
+            q = solution.nodes.reynolds_unknown
+            couette, flow, pressure_heat, spread, gradient = self._flow(
+                q, solution.nodes.film, loads.oil_mask
+            )
+            unit = self.capacity * s.u * s.h / s.dx
+            thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
+            left = 1.0 + np.minimum(q, 0.0)
+            film = Film(pressure, thickness, left, record.film, self._stored, unit * couette, unit * flow)
+            source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
+            source = source + self._compression(record, film, gradient, step)
+        heat = self._heat._replace(g=source, spread=spread)
+        found = self._steady(record, heat, film, step) if self._moved is None else self._moving(heat, film)
+        return found, film, source, spread
+
+    def _flow(self, q, h, oil):
+        """Mass flows, heat of the pressure flow, `spread` and pressure gradient, see `film_heat.faces`."""
+        n, inputs = self.scales.nx, self._inputs
+        backward = inputs.conditions.entrainment < 0.0
+        if backward:  # the first node is the inlet
+            inputs, q, h, oil = inputs.mirrored(), q[::-1], h[::-1], np.ascontiguousarray(oil[::-1])
+        flow, couette = np.zeros(n + 1), np.zeros(n + 1)
+        pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
+        at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs)
+        faces(at, self.reynolds.face_law(inputs), oil, flow, couette, pressure_heat, spread, gradient)
+        if backward:
+            return -couette[::-1], -flow[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
+        return couette, flow, pressure_heat, spread, gradient
+
+    def _compression(self, record, film, gradient, step):
+        r"""Heat of compression :math:`\beta_vTh(\partial_t+u\partial_x)p` [W/m^2]."""
+        if not self.heat.thermal_expansion:
+            return 0.0
+        rate = step.conditions.entrainment * gradient
+        if step.dt:
+            rate = rate + (film.pressure - record.pressure) / step.dt
+        return self.heat.thermal_expansion * film.old * film.thickness * film.left * rate
+
+    def _nodes(self, heat, film, guess):
+        """Film temperatures, both fluxes and the heat of shear."""
+        out = [np.empty(len(guess)) for _ in range(4)]
+        transport(guess, *film[:-1], self.inlet, heat, *out)
+        return out
+
+    def _moving(self, heat, film):
+        t, *fluxes, shear = self._nodes(heat, film, film.old)
+        responses = [heat.r1, heat.r2]
+        walls = [w + r * q for w, r, q in zip((heat.w1, heat.w2), responses, fluxes, strict=True)]
+        kept = zip(self.bodies, self._moved, fluxes, strict=True)
+        return Temperatures(t, walls, fluxes, shear, [b.accept(one, q) for b, one, q in kept], responses)
+
+    def _steady(self, record, heat, film, step):
+        """Temperatures of a steady solution: those of film and surfaces made to agree."""
+        speeds = step.conditions.u1, step.conditions.u2
+        heated = (np.abs(self.scales.x) < HEATED) * 1.0
+        responses = [b.steady(heated, u)[0] for b, u in zip(self.bodies, speeds, strict=True)]
+        responses = [np.maximum(r, r.max() * MIN_RESPONSE) for r in responses]
+        found = None
+
+        def fluxes(values):
+            nonlocal found
+            q = np.split(values, 2)
+            risen = [b.steady(one, u) for b, one, u in zip(self.bodies, q, speeds, strict=True)]
+            walls = [bulk + rise for bulk, (rise, _) in zip(self.bulk, risen, strict=True)]
+            known = [w - r * one for w, r, one in zip(walls, responses, q, strict=True)]
+            now = heat._replace(w1=known[0], w2=known[1], r1=responses[0], r2=responses[1])
+            t, *new, shear = self._nodes(now, film, record.film if found is None else found.film)
+            bodies = [b.record(one, terms) for b, one, (_, terms) in zip(self.bodies, q, risen, strict=True)]
+            found = Temperatures(t, walls, new, shear, bodies, responses)
+            return np.concatenate(new)
+
+        mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
+        return found
+
+    def balance(self, found, film, source):
+        """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it."""
+        rise, was = found.film - self.inlet, film.old - self.inlet
+        carried = film.couette
+        # oil that the pressure moves takes its heat along from where it turns
+        turned = (np.diff(film.flow - film.couette) * rise).sum()
+        out = max(carried[-1], 0.0) * rise[-1] + max(-carried[0], 0.0) * rise[0] + turned
+        storage = ((film.stored - np.diff(film.flow)) * rise - film.stored * was).sum()
+        total = (found.shear + source).sum()
+        missing = total - sum(q.sum() for q in found.fluxes) - storage - out
+        return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0

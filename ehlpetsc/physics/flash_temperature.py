@@ -1,0 +1,66 @@
+"""Closed forms of surface temperatures under heated contacts: Jaeger's moving band, Blok's formula."""
+
+import numpy as np
+
+
+def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
+    r"""Steady surface temperature by Jaeger's integral.
+
+    :math:`T(x)=\frac1{\pi k}\int q(s)e^{U(x-s)}K_0(U|x-s|)\,ds`, :math:`U=u/(2\chi)` (Jaeger 1942),
+    q constant over the cells of equally spaced x.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [m]
+    flux : ndarray, shape (n,)
+        [W/m^2]
+    diffusivity, conductivity, speed : float
+    subdivisions : int
+        Gauss points in each half cell.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [K]
+    """
+    from scipy.special import k0e
+
+    dx, u = x[1] - x[0], speed / (2.0 * diffusivity)
+    points, weights = np.polynomial.legendre.leggauss(subdivisions)
+    s = 0.5 * (1.0 + points)  # s^3 clusters the points at the logarithm of K0
+    offsets = 0.5 * dx * s**3
+    lengths = 0.5 * dx * 0.5 * weights * 3.0 * s**2
+    n = len(x)
+    lag = np.arange(-(n - 1), n) * dx
+    kernel = np.zeros(2 * n - 1)
+    for sign in (1.0, -1.0):
+        for offset, length in zip(offsets, lengths, strict=True):
+            r = lag + sign * offset
+            kernel += length * np.exp(u * r - abs(u) * np.abs(r)) * k0e(abs(u) * np.abs(r))
+    return np.convolve(flux, kernel)[n - 1 : 2 * n - 1] / (np.pi * conductivity)
+
+
+def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
+    r"""Largest flash temperature of a line contact [K] by Blok's formula.
+
+    :math:`T=1.11\,\frac{\mu w'|u_1-u_2|}{(e_1\sqrt{|u_1|}+e_2\sqrt{|u_2|})\sqrt{2a}}` (Blok 1937, as in
+    ISO/TS 6336-20), e the thermal effusivities :math:`\sqrt{k\rho c}`.
+
+    Parameters
+    ----------
+    friction : float
+        Coefficient of friction mu.
+    load : float
+        w' [N/m].
+    sliding, u1, u2 : float
+        [m/s]
+    a : float
+        Hertz half-width [m].
+    effusivities : (float, float)
+        [W s^(1/2)/(m^2 K)]
+    """
+    carried = sum(e * abs(u) ** 0.5 for e, u in zip(effusivities, (u1, u2), strict=True))
+    if sliding == 0.0 or carried == 0.0:
+        return 0.0
+    return 1.11 * friction * load * abs(sliding) / (carried * (2.0 * a) ** 0.5)

@@ -1,0 +1,135 @@
+"""Conduction into a half-space against closed forms: uniform flux, sinusoid, Jaeger's moving band."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ehlpetsc.effects.heat_bodies import Body
+from ehlpetsc.physics.flash_temperature import blok_flash_temperature, moving_band
+from ehlpetsc.physics.half_space_conduction import Solid, StepWeights, diffuse, exponentials
+
+STEEL = Solid(46.0, 7850.0, 470.0)
+FLUX = 1e9  # W/m^2
+
+
+def test_sum_of_exponentials():
+    rates, weights = map(np.array, exponentials(1e-8, 1e-3))
+    t = np.geomspace(1e-8, 1e-3, 200)
+    ratio = np.exp(-np.outer(t, rates)) @ weights * np.sqrt(np.pi * t)
+    assert len(rates) <= 16
+    np.testing.assert_allclose(ratio, 1.0, rtol=1e-3)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 30, 1000])
+def test_uniform_flux(steps):
+    time, dt = 1e-5, 1e-5 / steps
+    rates, weights = map(np.array, exponentials(dt, 1e-3))
+    step = StepWeights.of(rates, weights, dt, STEEL.effusivity)
+    terms = np.zeros(len(rates))
+    for _ in range(steps):
+        begun = step.decay * terms + step.begin * FLUX
+        rise = begun @ weights / STEEL.effusivity + step.response * FLUX
+        terms = begun + step.end * FLUX
+    assert rise == pytest.approx(2.0 * FLUX * np.sqrt(time / np.pi) / STEEL.effusivity, rel=1e-3)
+
+
+def body(speed, spacing, nodes, dt=None):
+    scales = SimpleNamespace(nx=nodes, dx=spacing)
+    return Body(STEEL, speed, scales, dt or 0.5 * spacing / speed)
+
+
+@pytest.mark.parametrize("peclet", [0.1, 1.0, 10.0, 100.0])
+def test_moving_band(peclet):
+    """Jaeger's band, its Peclet number u b/(2 chi), by the steady solution that a run starts from."""
+    half, nodes = 1e-4, 301
+    dx, speed = half / 50, 2.0 * STEEL.diffusivity * peclet / half
+    x = dx * np.arange(-(nodes // 2), nodes // 2 + 1)
+    flux = np.where(np.abs(x) < half - 0.5 * dx, FLUX, np.where(np.abs(x) < half + 0.5 * dx, 0.5 * FLUX, 0.0))
+    exact = moving_band(x, flux, STEEL.diffusivity, STEEL.conductivity, speed)
+    rise, _ = body(speed, dx, nodes).steady(flux, speed)
+    np.testing.assert_allclose(rise, exact, atol=0.01 * exact.max())
+
+
+@pytest.mark.parametrize("peclet", [1.0, 10.0, 100.0])
+def test_moving_flux_in_time(peclet):
+    """Steps through a body that is cold at first arrive at Jaeger's integral of the same flux."""
+    half, nodes = 1e-4, 301
+    dx, speed = half / 50, 2.0 * STEEL.diffusivity * peclet / half
+    x = dx * np.arange(-(nodes // 2), nodes // 2 + 1)
+    flux = FLUX * np.sqrt(np.maximum(1.0 - (x / half) ** 2, 0.0))
+    exact = moving_band(x, flux, STEEL.diffusivity, STEEL.conductivity, speed)
+    one = body(speed, dx, nodes)
+    record = one.cold()
+    for step in range(1, 1000 if peclet < 5.0 else 500):
+        moved = one.advance(record, 0.5 * step * dx, 0.5 * dx / speed)
+        record = one.accept(moved, flux)
+        rise = moved.history + moved.response * flux
+    np.testing.assert_allclose(rise, exact, atol=0.01 * exact.max())
+    begun = one.record(flux, one.steady(flux, speed)[1])
+    moved = one.advance(begun, 0.5 * dx, 0.5 * dx / speed)
+    np.testing.assert_allclose(moved.history + moved.response * flux, exact, atol=0.01 * exact.max())
+
+
+def test_heat_comes_in_from_the_side_that_a_body_moves_from():
+    dx, nodes, speed = 2e-6, 101, 5.0
+    flux = np.zeros(nodes)
+    flux[50] = FLUX
+    forward, backward = (body(abs(u), dx, nodes).steady(flux, u)[0] for u in (speed, -speed))
+    np.testing.assert_allclose(forward, backward[::-1], rtol=1e-12)
+    assert forward[60] > 50.0 * forward[40]
+
+
+@pytest.mark.parametrize("ratio", [0.1, 2.0, 400.0])
+def test_a_sinusoid_along_the_surface(ratio):
+    r"""Flux cos(ks) on a body at rest from time 0: T = q erf(sqrt(chi k^2 t))/(k conductivity)."""
+    from scipy.special import erf
+
+    nodes, wave = 257, 2.0 * np.pi / 64
+    dx, steps = 1e-6, 40
+    dt = ratio * dx**2 / STEEL.diffusivity
+    flux = FLUX * (1.0 + np.cos(wave * np.arange(nodes)))
+    rates, weights = map(np.array, exponentials(dt, 100 * dt))
+    step = StepWeights.of(rates, weights, dt, STEEL.effusivity)
+    terms = np.zeros((nodes, len(rates)))
+    for _ in range(steps):
+        given, new = step.decay * terms + flux[:, None] * step.begin, np.empty_like(terms)
+        diffuse(given, ratio, new)
+        rise = new @ weights / STEEL.effusivity + step.response * flux
+        terms = new + flux[:, None] * step.end
+    swing = 0.5 * (rise[128] - rise[128 + 32])
+    k = wave / dx
+    exact = FLUX * erf(k * np.sqrt(STEEL.diffusivity * steps * dt)) / (k * STEEL.conductivity)
+    # steps longer than the wave's own diffusion time are not resolved: their flux acts without diffusion
+    resolved = k * k * STEEL.diffusivity * dt < 0.05
+    assert swing == pytest.approx(exact, rel=0.01 if resolved else 3.0)
+    assert swing > 0.99 * exact
+
+
+@pytest.mark.parametrize("fraction", [0.0, 0.3])
+def test_cells_of_the_body_take_all_heat(fraction):
+    one = body(5.0, 2e-6, 60)
+    moved = one.advance(one.cold(), -fraction * 2e-6, 2e-7)
+    flux = np.random.default_rng(1).uniform(0.0, FLUX, 60)
+    assert one.accept(moved, flux).flux.sum() == pytest.approx(flux.sum(), rel=1e-14)
+
+
+def test_temperatures_stay_above_bulk_at_any_step():
+    rng = np.random.default_rng(2)
+    for ratio in (0.1, 1.0, 50.0, 1e4):
+        terms, new = rng.uniform(0.0, 1.0, (40, 3)) ** 8, np.empty((40, 3))
+        diffuse(terms, ratio, new)
+        assert new.min() >= 0.0
+        np.testing.assert_allclose(new.sum(axis=0), terms.sum(axis=0), rtol=1e-12)
+
+
+def test_blok_is_the_largest_temperature_of_a_fast_hertz_band():
+    """Blok's 1.11 of a parabolic or elliptic flux under two fast bodies, which share the heat."""
+    a, load, friction, u1, u2 = 3.36e-4, 527e3, 0.05, 31.25, 18.75
+    dx = a / 200
+    x = dx * np.arange(-600, 601)
+    total = friction * (u1 - u2) * 2.0 * load / (np.pi * a) * np.sqrt(np.maximum(1.0 - (x / a) ** 2, 0.0))
+    share = np.sqrt(u1) / (np.sqrt(u1) + np.sqrt(u2))
+    rise = moving_band(x, share * total, STEEL.diffusivity, STEEL.conductivity, u1)
+    flash = blok_flash_temperature(friction, load, u1 - u2, u1, u2, a, (STEEL.effusivity,) * 2)
+    assert rise.max() == pytest.approx(flash, rel=0.03)

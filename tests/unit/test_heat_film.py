@@ -1,0 +1,106 @@
+"""Temperature of the film at a node: its equations and derivatives, and those of the Reynolds rows."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.physics.heat_film import FilmHeat, FilmLaw, film_temperature
+from ehlpetsc.physics.heat_laws import film_law
+from ehlpetsc.physics.scales import Scales
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
+THERMAL = (1, 0.04, 0.0, 363.0)
+LAW = FilmLaw((4.0, 0.196e9, 0.6), THERMAL, 0.02, 10e6, np.inf, 0.14, 0.0, 12.5)
+WALLS = (372.0, 368.0, 1.4e-8, 1.9e-8)
+A, B, G, SPREAD = 2e4, 2e4 * 365.0, 3e7, 2.0
+
+
+def solved(p=0.8e9, h=3e-7, left=0.9, walls=WALLS, law=LAW, guess=370.0):
+    return film_temperature(guess, p, h, left, A, B, G, SPREAD, walls, law)
+
+
+LAWS = {
+    "eyring": LAW,
+    "newtonian": LAW._replace(eyring=np.inf),
+    "limited": LAW._replace(limit=0.06),
+    "conducting": LAW._replace(conductivity_pressure=1e-9),
+    "roelands": LAW._replace(thermal_law=(2, 1.1, 0.0, 363.0)),
+}
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_balance_and_fluxes(law):
+    t, _, _, q1, q2, shear = solved(law=law)
+    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:], (q1, q2), strict=True)]
+    exchange = 0.14 * (1.0 + law.conductivity_pressure * 0.8e9) * 0.9 / 3e-7
+    mean = 6.0 * (t - 0.5 * sum(walls))
+    assert q1 == pytest.approx(exchange * (mean + walls[1] - walls[0]), rel=1e-10)
+    assert q2 == pytest.approx(exchange * (mean + walls[0] - walls[1]), rel=1e-10)
+    assert A * t - B == pytest.approx(shear + G - q1 - q2, abs=1e-7 * shear)
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+@pytest.mark.parametrize("p, h", [(0.8e9, 3e-7), (0.05e9, 5e-6), (2.5e9, 2e-8)])
+def test_derivatives(law, p, h):
+    _, by_p, by_h, *_ = solved(p, h, law=law)
+    step = 1e-5
+    low, high = (solved(p * factor, h, law=law)[0] for factor in (1 - step, 1 + step))
+    numeric_p = (high - low) / (2 * step * p)
+    low, high = (solved(p, h * factor, law=law)[0] for factor in (1 - step, 1 + step))
+    numeric_h = (high - low) / (2 * step * h)
+    assert by_p == pytest.approx(numeric_p, rel=1e-4, abs=1e-12)
+    assert by_h == pytest.approx(numeric_h, rel=1e-4)
+
+
+@pytest.mark.parametrize("guess", [150.0, 363.0, 5000.0])
+def test_the_temperature_does_not_depend_on_the_guess(guess):
+    for law in LAWS.values():
+        if law.thermal_law[0] != 2 or guess > 160.0:
+            assert solved(law=law, guess=guess)[0] == pytest.approx(solved(law=law)[0], abs=1e-6)
+
+
+def test_surfaces_in_contact_have_one_temperature():
+    t, _, _, q1, q2, shear = solved(h=0.0, left=1.0)
+    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:], (q1, q2), strict=True)]
+    assert walls[0] == pytest.approx(walls[1], abs=1e-9)
+    assert t == pytest.approx(walls[0], abs=1e-9)
+    assert shear == 0.0
+
+
+@pytest.mark.parametrize("ends", [(0, None), (20, 60)])
+def test_derivatives_of_reynolds_rows(ends):
+    mesh = ["mesh.points_per_half_width=32", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
+    case = load(CASE, [*mesh, "heat.bulk_temperature=363.0"])
+    scales = Scales.of(case)
+    n, rng = scales.nx, np.random.default_rng(5)
+    q, h = 0.6 * rng.uniform(0.2, 1.0, n), 5e-4 * rng.uniform(0.3, 3.0, n)
+    q[3 * n // 4 :] = rng.uniform(-0.8, -0.1, n - 3 * n // 4)
+    first, last = ends[0], ends[1] or n
+    reynolds = Reynolds(scales, 5e-4, first, last)
+    arrays = [1e4 * rng.uniform(0.0, 2.0, n), 1e4 * 363.0 * rng.uniform(0.0, 2.0, n)]
+    arrays += [1e7 * rng.uniform(0.0, 1.0, n), rng.uniform(0.0, 3.0, n)]
+    arrays += [363.0 + 20.0 * rng.uniform(0.0, 1.0, n) for _ in range(2)]
+    arrays += [1e-8 * rng.uniform(0.5, 1.0, n) for _ in range(2)]
+    heat = FilmHeat(film_law(case.fluid, case.heat, scales.conditions.sliding), *arrays, np.full(n, 370.0))
+    inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
+    thermal = replace(inputs, heat=heat)
+    values = reynolds.evaluate(q, h, thermal)[1]
+    assert np.abs(values - reynolds.evaluate(q, h, inputs)[1]).max() > 1.0
+    for side, vector in enumerate((q, h)):
+        for node in range(max(first - 2, 0), min(last + 1, n)):
+            changed, step = [], 1e-6 * abs(vector[node])
+            for sign in (1, -1):
+                kept, vector[node] = vector[node], vector[node] + sign * step
+                changed.append(reynolds.evaluate(q, h, thermal)[0])
+                vector[node] = kept
+            numeric = (changed[0] - changed[1]) / (2.0 * step)
+            for row in range(last - first):
+                column = np.flatnonzero(reynolds.columns[row] == 2 * node + side)
+                exact = values[row, column[0]] if len(column) else 0.0
+                scale = np.abs(values[row]).max()
+                assert numeric[row] == pytest.approx(exact, abs=2e-5 * scale)

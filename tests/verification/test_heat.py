@@ -1,0 +1,133 @@
+"""Film and surface temperatures: values of an independent solver, energy balance, limits, dry friction."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import CaseError, load
+from ehlpetsc.physics.flash_temperature import blok_flash_temperature, moving_band
+from ehlpetsc.physics.half_space_conduction import Solid
+from ehlpetsc.run.simulation import Simulation
+
+CASES = Path(__file__).parents[2] / "cases"
+BULK = 363.0
+HEAT = f"heat.bulk_temperature={BULK}"
+THICK = ["fluid.viscosity=0.02", "motion.entrainment_speed=10.0", "motion.slide_roll_ratio=0.5"]
+WIDE = ["mesh.inlet=-3.0", "mesh.outlet=1.5"]
+COARSE = ["mesh.points_per_half_width=50", "mesh.inlet=-2.0", "mesh.outlet=1.5"]
+
+
+def solved(name, *keys):
+    simulation = Simulation(load(CASES / name, list(keys)))
+    return simulation, list(simulation)
+
+
+def friction_of_both(simulation, state):
+    """Mean of both walls' friction over the load."""
+    shear = 0.5 * (state.shear_stress_slow - state.shear_stress_fast)
+    return shear.sum() * simulation.scales.dx / state.load
+
+
+# smooth and steady, by an independent dense solver: central and least film [um], friction coefficient,
+# largest temperatures of film, surfaces 1 and 2 above bulk [K]; the first one on a/100, the second on a/200
+@pytest.mark.parametrize(
+    "keys, values",
+    [
+        (["mesh.points_per_half_width=100"], (0.1591, 0.1367, 0.01003, 6.83, 5.37, 5.68)),
+        ([*THICK, "mesh.points_per_half_width=200"], (0.5709, 0.4630, 0.00983, 31.7, 13.16, 16.16)),
+    ],
+    ids=["5 m/s", "10 m/s"],
+)
+def test_values_of_an_independent_solver(keys, values):
+    simulation, [state] = solved("table1_smooth.toml", HEAT, *WIDE, *keys)
+    figures = state.figures
+    middle = np.argmin(np.abs(simulation.scales.x))
+    rises = [figures[f"{name}_max"] - BULK for name in ("film_temperature", "temperature_1", "temperature_2")]
+    films = 1e6 * state.film_thickness[middle], 1e6 * state.h_min
+    found = *films, friction_of_both(simulation, state), *rises
+    assert found == pytest.approx(values, rel=0.006)
+    assert figures["heat_error"] < 1e-9
+
+
+def test_a_steady_solution_stays_as_it_is_in_time():
+    simulation, states = solved("table1_smooth.toml", HEAT, *THICK, *COARSE, "time.travel=0.4")
+    begin, end = states[0], states[-1]
+    assert end.h_min == pytest.approx(begin.h_min, rel=1e-4)
+    np.testing.assert_allclose(end.film_temperature, begin.film_temperature, atol=0.1)
+    np.testing.assert_allclose(end.temperature_1, begin.temperature_1, atol=0.05)
+    np.testing.assert_allclose(end.temperature_2, begin.temperature_2, atol=0.05)
+    assert max(state.figures["heat_error"] for state in states) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["table1_rough.toml", "table1_mixed.toml", "table1_damage.toml"])
+def test_energy_balance_of_rough_contacts(name):
+    """Every step balances; the heat is the work of friction and, on slopes, of pressure."""
+    simulation, states = solved(name, HEAT, *COARSE, "mesh.inlet=-1.5", "time.travel=3.0")
+    assert max(state.figures["heat_error"] for state in states) < 1e-6
+    assert min(state.film_temperature.min() for state in states) > BULK - 1e-6
+    assert min(min(state.temperature_1.min(), state.temperature_2.min()) for state in states) > BULK - 1e-6
+    sliding = simulation.scales.u1 - simulation.scales.u2
+    for state in states[1:]:
+        work = abs(friction_of_both(simulation, state) * state.load * sliding)
+        assert work * (1.0 - 1e-6) < state.figures["heat"] < 3.0 * work
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.25, 1.0, 1.9, 2.0, -0.5])
+def test_slide_roll_ratios(ratio):
+    _, [state] = solved("table1_smooth.toml", HEAT, *COARSE, f"motion.slide_roll_ratio={ratio}")
+    rises = state.temperature_1.max() - BULK, state.temperature_2.max() - BULK
+    assert min(rises) >= 0.0 and state.film_temperature.min() >= BULK - 1e-9
+    if ratio in (0.25, 1.0, 1.9, 2.0):
+        assert rises[1] > rises[0]  # the slower surface is the hotter one
+    if ratio == -0.5:
+        _, [mirror] = solved("table1_smooth.toml", HEAT, *COARSE, "motion.slide_roll_ratio=0.5")
+        np.testing.assert_allclose(state.temperature_1, mirror.temperature_2, rtol=1e-9)
+        assert state.h_min == pytest.approx(mirror.h_min, rel=1e-9)
+
+
+@pytest.mark.parametrize("speed, viscosity", [(0.001, 5.0), (100.0, 0.001)])
+def test_speeds(speed, viscosity):
+    keys = [f"motion.entrainment_speed={speed}", f"fluid.viscosity={viscosity}"]
+    _, [state] = solved("table1_smooth.toml", HEAT, *COARSE, *keys)
+    rise = state.film_temperature.max() - BULK
+    assert (0.0 < rise < 0.1) if speed < 1.0 else (20.0 < rise < 300.0)
+
+
+def test_a_heavy_load():
+    """Hertz' pressure of 3 GPa."""
+    _, [state] = solved("table1_smooth.toml", HEAT, *COARSE, "contact.load=4743e3", "fluid.law=barus")
+    assert state.p_max > 2.9e9
+    assert 20.0 < state.film_temperature.max() - BULK < 500.0
+
+
+def test_dry_friction():
+    """Frictional heat of a dry Hertz contact: its division between the surfaces, and Blok's temperature."""
+    keys = ["contact.boundary_friction=0.1", "motion.entrainment_speed=10.0", "motion.slide_roll_ratio=0.4"]
+    simulation, [state] = solved("dry_hertz.toml", HEAT, *keys)
+    s, steel = simulation.scales, Solid(46.0, 7850.0, 470.0)
+    assert state.figures["heat"] == pytest.approx(0.1 * state.load * (s.u1 - s.u2), rel=1e-9)
+    carries = state.pressure > 1e-3 * s.p0
+    np.testing.assert_allclose(state.temperature_1[carries], state.temperature_2[carries], rtol=1e-9)
+    rise = moving_band(s.x * s.a, state.heat_flux_2, steel.diffusivity, steel.conductivity, s.u2)
+    np.testing.assert_allclose(state.temperature_2 - BULK, rise, atol=0.01 * rise.max())
+    flash = blok_flash_temperature(0.1, state.load, s.u1 - s.u2, s.u1, s.u2, s.a, (steel.effusivity,) * 2)
+    assert state.temperature_1.max() - BULK == pytest.approx(flash, rel=0.03)
+
+
+def test_isothermal_without_dependence_on_temperature():
+    """With beta = 0 the film is the isothermal one to the last iteration's digits."""
+    keys = [*COARSE, "motion.slide_roll_ratio=0.5"]
+    _, [heated] = solved("table1_smooth.toml", HEAT, "heat.viscosity_temperature=0.0", *keys)
+    _, [cold] = solved("table1_smooth.toml", *keys)
+    assert heated.h_min == pytest.approx(cold.h_min, rel=1e-9)
+    assert heated.friction == pytest.approx(cold.friction, rel=1e-9)
+
+
+def test_faults():
+    with pytest.raises(CaseError, match="bulk_temperature"):
+        load(CASES / "table1_smooth.toml", ["heat.conductivity=46.0"])
+    with pytest.raises(CaseError, match="roelands_s0"):
+        load(CASES / "table1_smooth.toml", [HEAT, "heat.roelands_s0=1.1", "heat.viscosity_temperature=0.03"])
+    with pytest.raises(CaseError, match="motion"):
+        load(CASES / "dry_hertz.toml", [HEAT])
