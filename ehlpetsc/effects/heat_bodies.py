@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.effects.heat import BodyHeat
+from ehlpetsc.effects.heat_record import BodyHeat
 from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it

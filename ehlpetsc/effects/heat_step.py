@@ -112,7 +112,7 @@ class HeatStep:
         Temperatures
         Film
         source, spread : ndarray, shape (nx,)
-            See :class:`.heat.HeatRecord`.
+            See :class:`.heat_record.HeatRecord`.
         """
         s, loads = self.scales, solution.loads
         source = self.friction * loads.friction_pressure * s.p0 * abs(step.conditions.sliding)
