@@ -129,7 +129,7 @@ class Reynolds:
         at = np.empty((PROPERTIES, len(q) + self.has_outlet))
         nodal(q, h, *laws, s.p0, s.h, 1.0 / (s.u * s.h), 1.0 / fluid.viscosity, at)
         if inputs.heat is not None:
-            from ehlpetsc.discretisation.film_heat import heat_nodes
+            from ehlpetsc.discretisation.heat.film import heat_nodes
 
             heat_nodes(q, at, inputs.heat.part(self.nodes), s.p0, s.h)
         return at

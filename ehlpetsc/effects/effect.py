@@ -22,12 +22,15 @@ class Scene:
     operation : physics.operation.ConstantOperation
     positions : surfaces.roughness.SurfacePositions
         Of both surfaces at the begin of the run.
+    heat_transfer : callable or None
+        Of the scene: its `discretisation.heat.step.HeatStep`; None where nothing is solved.
     """
 
     case: object
     scales: object
     operation: object
     positions: object
+    heat_transfer: object = None
 
     @cached_property
     def roughness(self):

@@ -9,15 +9,62 @@ holds in every step.
 """
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.heat_record import HeatRecord
+from ehlpetsc.physics.half_space_conduction import BodyHeat
 from ehlpetsc.quantity import Field, Figure
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
 LEAST_RISE = 1e-3  # K
+
+
+class HeatRecord(NamedTuple):
+    """Temperatures and heat at a time level; arrays of shape (nx,) but for `flow`, (nx + 1,).
+
+    Attributes
+    ----------
+    film, wall_1, wall_2
+        Temperatures [K].
+    flux_1, flux_2
+        Heat fluxes into both bodies [W/m^2].
+    source
+        Heat that does not depend on the film's temperature in a step [W/m^2].
+    spread
+        Of :func:`ehlpetsc.physics.heat_film.shear_stress`.
+    flow
+        Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
+    response_1, response_2
+        Of the surfaces to their flux, in a steady solve [m^2 K/W].
+    pressure
+        Of the oil [Pa].
+    body_1, body_2 : BodyHeat
+    heat : float
+        Dissipated [W/m].
+    error : float
+        Its imbalance over it.
+    solved : int
+        Number of solutions before this level; 0: none yet.
+    """
+
+    film: np.ndarray
+    wall_1: np.ndarray
+    wall_2: np.ndarray
+    flux_1: np.ndarray
+    flux_2: np.ndarray
+    source: np.ndarray
+    spread: np.ndarray
+    flow: np.ndarray
+    response_1: np.ndarray
+    response_2: np.ndarray
+    pressure: np.ndarray
+    body_1: BodyHeat
+    body_2: BodyHeat
+    heat: float
+    error: float
+    solved: int
 
 
 def _temperature(name, over_run):
@@ -59,9 +106,7 @@ class Heat(Effect):
 
     @cached_property
     def _steps(self):
-        from ehlpetsc.effects.heat_step import HeatStep
-
-        return HeatStep(self.scene)
+        return self.scene.heat_transfer(self.scene)
 
     def start(self, before=None):
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""

@@ -52,6 +52,28 @@ class Solid(NamedTuple):
         return (self.conductivity * self.density * self.heat_capacity) ** 0.5
 
 
+class BodyHeat(NamedTuple):
+    """Heat of one body.
+
+    Attributes
+    ----------
+    first : int
+        Position of the first cell in the body, in cells.
+    terms : ndarray, shape (cells, terms)
+        :math:`A_m` [J/m^2].
+    flux : ndarray, shape (cells,)
+        Heat flux at the time level [W/m^2].
+    rates, weights : ndarray, shape (terms,)
+        Of the sum of exponentials.
+    """
+
+    first: int
+    terms: np.ndarray
+    flux: np.ndarray
+    rates: np.ndarray
+    weights: np.ndarray
+
+
 @lru_cache
 def exponentials(shortest, longest):
     r"""Rates [1/s] and weights [1/s^(1/2)] of a sum of exponentials for :math:`1/\sqrt{\pi t}`.

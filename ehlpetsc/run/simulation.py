@@ -101,7 +101,7 @@ class Simulation:
         positions = replace(positions, profile_offsets=(one, other + shift))
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
-        self.scene = Scene(case, self.scales, self.operation, positions)
+        self.scene = Scene(case, self.scales, self.operation, positions, _heat_transfer)
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
         self.state = self.solution = None
@@ -237,6 +237,13 @@ class Simulation:
 def _end_where_asked(asked, comm):
     if asked(comm):
         raise Stopped
+
+
+def _heat_transfer(scene):
+    """Steps of the temperatures of a scene."""
+    from ehlpetsc.discretisation.heat.step import HeatStep
+
+    return HeatStep(scene)
 
 
 def _text(value):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ehlpetsc.effects.heat_bodies import Body
+from ehlpetsc.discretisation.heat.bodies import Body
 from ehlpetsc.physics.flash_temperature import blok_flash_temperature, moving_band
 from ehlpetsc.physics.half_space_conduction import Solid, StepWeights, diffuse, exponentials
 

@@ -20,7 +20,7 @@ GROUND = {
 MAY_IMPORT = {
     "physics": set(),
     "surfaces": set(),
-    "effects": {"discretisation", "surfaces", "physics"},
+    "effects": {"surfaces", "physics"},
     "quantities": {"effects"},
     "gears": {"physics", "results"},
     "case": {"gears", "surfaces", "physics", "quantities"},

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.effects.heat_record import BodyHeat
-from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
+from ehlpetsc.physics.half_space_conduction import BodyHeat, StepWeights, diffuse, exponentials, moving_terms
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.discretisation.film_heat import faces, transport
+from ehlpetsc.discretisation.heat.bodies import Body
+from ehlpetsc.discretisation.heat.film import faces, transport
+from ehlpetsc.discretisation.heat.mixing import mixing
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.effects.heat_bodies import Body
-from ehlpetsc.effects.heat_steady import mixing
 from ehlpetsc.physics.half_space_conduction import Solid
 from ehlpetsc.physics.heat_film import FilmHeat
 from ehlpetsc.physics.heat_laws import film_law
@@ -78,7 +78,8 @@ class HeatStep:
     def prepare(self, record, inputs, step):
         """Inputs of the solve with the data of the film's temperature.
 
-        Parameters and result of :meth:`.effect.Effect.inputs`. The first steady solution is isothermal.
+        Parameters and result of :meth:`ehlpetsc.effects.effect.Effect.inputs`. The first steady solution is
+        isothermal.
         """
         n = self.scales.nx
         self._moved, self._stored = None, np.zeros(n)
@@ -112,7 +113,7 @@ class HeatStep:
         Temperatures
         Film
         source, spread : ndarray, shape (nx,)
-            See :class:`.heat_record.HeatRecord`.
+            See :class:`ehlpetsc.effects.heat.HeatRecord`.
         """
         s, loads = self.scales, solution.loads
         source = self.friction * loads.friction_pressure * s.p0 * abs(step.conditions.sliding)
@@ -138,7 +139,7 @@ class HeatStep:
         return found, film, source, spread
 
     def _flow(self, q, h, oil):
-        """Mass flows, heat of the pressure flow, `spread` and pressure gradient, see `film_heat.faces`."""
+        """Mass flows, heat of the pressure flow, `spread` and pressure gradient, see `film.faces`."""
         n, inputs = self.scales.nx, self._inputs
         backward = inputs.conditions.entrainment < 0.0
         if backward:  # the first node is the inlet
