@@ -45,6 +45,13 @@ def arguments(argv=None):
     add("--surface", choices=("both", *SURFACES), default="both")
     add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
     add(
+        "--set",
+        action="append",
+        default=[],
+        metavar="post.KEY=VALUE",
+        help="a key of [post], or contact.material, instead of that of the case; may be repeated",
+    )
+    add(
         "--count",
         choices=CHANNELS,
         default="max3",
@@ -61,9 +68,8 @@ def arguments(argv=None):
     add(
         "--strain",
         choices=STRAINS,
-        default="direct",
-        help="how the elastic range enters the cyclic stress-strain curve: as it is (default, as in the "
-        "paper), by Neuber's or by Glinka's rule",
+        help="how the elastic range enters the cyclic stress-strain curve: by Neuber's or by Glinka's rule, "
+        "or as it is, as in the paper (default: that of [post], neuber)",
     )
     add(
         "--criterion",
@@ -114,6 +120,9 @@ def arguments(argv=None):
         parser.error("-o names one file: give one RESULT.h5, or leave it out")
     if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):
         parser.error(f"--point {chosen.point[0]:g} {chosen.point[1]:g}: the depth z/a must be 0 or more")
+    for setting in chosen.set:
+        if not setting.startswith(("post.", "contact.material=")):
+            parser.error(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")
     if chosen.passes and len(chosen.results) < 2:
         parser.error("--passes: give the results of two passes or more")
     if not 0 <= chosen.within < math.inf:

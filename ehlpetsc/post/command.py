@@ -60,11 +60,21 @@ def _process(path, chosen):
     open_for_reading(path).close()
     check_output(output, chosen.results)
     surfaces = SURFACES if chosen.surface == "both" else (chosen.surface,)
-    counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress, chosen.strain)
+    counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress)
     depths = None if chosen.depths is None else tuple(chosen.depths)
     criteria = tuple(name for name in CRITERIA if name in chosen.criterion)
+    strain = () if chosen.strain is None else (f'post.strain="{chosen.strain}"',)
     job = Job(
-        path, output, surfaces, depths, counting, chosen.regression, chosen.jobs, criteria, chosen.within
+        path,
+        output,
+        surfaces,
+        depths,
+        counting,
+        chosen.regression,
+        chosen.jobs,
+        criteria,
+        chosen.within,
+        (*chosen.set, *strain),
     )
     start = time.perf_counter()
     run(job, lambda text: say(text if text.startswith(output) else f"{path}: {text}"), Progress(path))
@@ -78,14 +88,20 @@ def _summary(output, wall):
         print(
             f"z/a={z:<6g}"
             + "".join(f" {surface}: D_max={result.largest(surface, k):.3e}" for surface in result.surfaces)
-            + f" weibull alpha={result.fits[k].alpha:.4g} beta={result.fits[k].beta:.4g}"
-            f" r2={result.fits[k].r_squared:.4f}"
+            + _weibull(result.fits[k])
         )
     points = " ".join(f"{name}={result.complete[name].sum()}" for name in result.surfaces)
     print(
         f"ehlpetsc.post: done {output} points {points} depths={len(result.z)} "
         f"asperities={len(result.height)} wall={wall:.2f}"
     )
+
+
+def _weibull(fit):
+    """Distribution over the asperities, where there are enough of them."""
+    if not fit.beta > 0:
+        return ""
+    return f" weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}"
 
 
 def _passes_file(chosen):

@@ -13,6 +13,7 @@ from ehlpetsc.post.inputs.settings import Settings, read_settings
 from ehlpetsc.post.stresses.body_points import body_points, passage
 
 MAX_POINTS = 5_000_000
+FEW_POINTS = 30  # fewer decide nothing about a surface
 MIN_SPEED = 1e-3  # of the faster surface's speed: nobody waits for less
 EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
@@ -119,21 +120,32 @@ def _warn(loads, gaps, motions, whole, report):
             "at z/a = 0.01, more where damage is largest"
         )
     _report_gaps(loads, gaps, motions, whole, report)
-    for surface, motion in motions.items():
-        if not motion.complete.any():
+    for surface, motion in whole.items():
+        passed = np.count_nonzero(motion.complete)
+        if not motions[surface].complete.any():
             report(
                 f"warning: no point of the {surface} surface passed the whole contact: its damage is nan"
-                f"{_travel_needed(loads, surface)}"
+                f"{_travel_needed(loads, surface, 'lets some through')}"
+            )
+        elif passed < FEW_POINTS:
+            report(
+                f"warning: only {passed} point{'s' if passed > 1 else ''} of the {surface} surface passed "
+                "the whole contact, and its damage is theirs"
+                f"{_travel_needed(loads, surface, 'lets a half width through', 1.0)}"
             )
 
 
-def _travel_needed(loads, surface):
-    """What lets points of a surface go from one end of the mesh to the other; empty if it stands still."""
-    speed, fastest = abs(loads.speeds[surface]), max(map(abs, loads.speeds.values()))
-    if speed < MIN_SPEED * fastest:
+def _travel_needed(loads, surface, why, passed=0.0):
+    """Travel with which `passed` half widths of a surface cross the mesh; empty if it stands still."""
+    way, longest = (abs(w[-1] - w[0]) for w in (loads.travelled[surface], _longest(loads)))
+    if way < MIN_SPEED * longest:
         return ""
-    width = (loads.x[-1] - loads.x[0]) / loads.a
-    return f"; time.travel = {np.ceil(10 * width * fastest / speed + 0.5) / 10:g} or more lets some through"
+    width = (loads.x[-1] - loads.x[0]) / loads.a + passed
+    return f"; time.travel = {np.ceil(10 * width * longest / way + 0.5) / 10:g} or more {why}"
+
+
+def _longest(loads):
+    return max(loads.travelled.values(), key=lambda way: abs(way[-1] - way[0]))
 
 
 def _report_gaps(loads, gaps, motions, whole, report):

@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.case.solids import FATIGUE_KEYS
 from ehlpetsc.errors import OutputError, PostError
+from ehlpetsc.materials import DEFAULT
 from ehlpetsc.post.counters import PAPER, Counters, columns
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
@@ -27,7 +29,8 @@ DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
 class Job(NamedTuple):
     """One result file and the choices of how it is processed.
 
-    `depths` replaces those of the case, `settings` ("table.key=value") other keys of it.
+    `depths` replaces those of the case, `settings` ("table.key=value") other keys of it; the strain rule of
+    `counting` is that of the case.
     """
 
     path: str
@@ -81,12 +84,14 @@ def run(job, report=None, progress=None):
     job.counting.check()
     check_output(job.output, [job.path])
     with Loads(job.path, job.overrides()) as loads:
+        job = job._replace(counting=job.counting._replace(strain=loads.case.post.strain))
         prepared = prepare(loads, job.surfaces, report)
         choices = job.counting, job.regression, job.criteria, job.within
         mark = fingerprint(prepared.digest, job.surfaces, prepared.settings, *choices)
         if stored_fingerprint(job.output) == mark:
             report(f"{job.output}: already there, of the same file and options")
             return
+        _note_material(loads.case, job.criteria, report)
         if prepared.settings.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
             report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
         if job.counting.ranges == "window":
@@ -99,6 +104,17 @@ def run(job, report=None, progress=None):
                 cache.remove()  # unlike after an interruption there is nothing to continue from
                 raise
             cache.remove()
+
+
+def _note_material(case, criteria, report):
+    """Which steel counts where the case names none, and on what Dang Van's limit rests."""
+    if case.contact.material is None and all(getattr(case.post, key) is None for key in FATIGUE_KEYS):
+        report(f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel")
+    if "dang-van" in criteria:
+        report(
+            "note: dang-van holds where the steel has shaken down to elastic cycles; torsion_limit and "
+            "bending_limit left out are those of bearing steel (ISO 281)"
+        )
 
 
 def _compute(job, prepared, cache, progress):
@@ -165,4 +181,5 @@ def _store(job, prepared, cache, mark, report):
         contents.add(surface, np.stack([cache.load(surface, d) for d in prepared.settings.depths]))
     for note in contents.notes:
         report(note)
-    write_result(job.output, contents.datasets, contents.attributes(mark, job.counting), contents.groups)
+    attributes = contents.attributes(mark, job.counting, job.settings)
+    write_result(job.output, contents.datasets, attributes, contents.groups)

@@ -1,18 +1,12 @@
 """Criteria against closed cases: pure shear, uniaxial, hydrostatic, proportional; and against all planes."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from ehlpetsc.post import (
-    Criteria,
-    Material,
-    critical_plane,
-    cycles_to_failure,
-    damage,
-    dang_van,
-    strain_range,
-    stress,
-)
+from ehlpetsc import post
+from ehlpetsc.post import Criteria, Material, cycles_to_failure, dang_van, strain_range, stress
 from ehlpetsc.post.criteria.critical_plane import plane_damage
 from ehlpetsc.post.criteria.dang_van import smallest_ball
 from ehlpetsc.post.criteria.planes import (
@@ -25,6 +19,7 @@ from ehlpetsc.post.criteria.planes import (
 from ehlpetsc.post.criteria.search import KINDS, PlaneCounter
 
 STEEL = Material()
+damage, critical_plane = (partial(call, strain="direct") for call in (post.damage, post.critical_plane))
 WAVE = np.sin(np.linspace(0, 2 * np.pi, 41))  # reversed, its peaks among the samples
 PULSE = np.sin(np.linspace(0, np.pi, 41)) ** 2
 NONE = 0 * WAVE

@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from post_result_file import Scene, write
 
+from ehlpetsc.case.loading import load
 from ehlpetsc.post import Material, cycles_to_failure, damage, rainflow, strain_range
+from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, repeat_points, widest
 from ehlpetsc.post.fatigue.strain_life import equivalent_range, local_range
+from ehlpetsc.results.post_result import PostResult
 
 STEEL = Material()
 RANGES = np.logspace(7, 10.5, 30)
@@ -114,3 +118,40 @@ def test_loops_of_a_reversed_history_are_the_same_instants():
 
     backwards = {frozenset(series.size - 1 - k for k in loop) for loop in loops(series[::-1].copy())}
     assert backwards == set(loops(series))
+
+
+def test_neubers_rule_is_the_default():
+    """Of the function, of a case and of the command; the case of the paper keeps the direct entry."""
+    wave = 1e9 * np.sin(np.linspace(0, 2 * np.pi, 41))
+    found = [damage(0 * wave, wave, 0 * wave, STEEL, **rule).damage for rule in ({}, {"strain": "neuber"})]
+    assert found[0] == found[1] < 0.5 * damage(0 * wave, wave, 0 * wave, STEEL, strain="direct").damage
+    assert load("cases/running_in.toml").post.strain == "neuber"
+    assert load("cases/table1_damage.toml").post.strain == "direct"
+
+
+def test_the_command_changes_the_rule_and_the_steel_of_a_case(tmp_path, capsys):
+    path, worst = str(write(tmp_path / "a.h5", Scene(per_width=20, travel=9.0), depths=(0.0,))), {}
+    for options in ((), ("--strain", "direct"), ("--set", "contact.material=16MnCr5")):
+        assert main([path, *options]) == 0
+        result = PostResult(tmp_path / "a.post.h5")
+        worst[options] = result.passed("slow").max()
+        assert result.attrs["strain"] == ("direct" if "direct" in options else "neuber")
+    assert result.attrs["material"] == "16MnCr5, 16MnCr5"
+    neuber, direct, hard = worst.values()
+    assert direct > 1.2 * neuber and hard < 0.1 * neuber
+    assert "fatigue constants of SAE4340" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main([path, "--set", "mesh.inlet=-3"])
+    assert main([path, "--set", "post.b=0.3"]) == 2
+    assert "post.b = 0.3: allowed: a number > -2 and < 0" in capsys.readouterr().err
+
+
+def test_few_points_are_warned_of(tmp_path, capsys):
+    """Of 6.05 half widths of travel the slow surface covers 4.03: one node more than the mesh is wide."""
+    scene = Scene(per_width=20, ratio=0.4, travel=6.05)
+    path = write(tmp_path / "a.h5", scene, depths=(0.0,))
+    assert main([str(path)]) == 0
+    said = capsys.readouterr()
+    assert "only 1 point of the slow surface passed the whole contact" in said.err
+    assert "time.travel = 7.6 or more" in said.err and "of the fast" not in said.err
+    assert "nan" not in said.out

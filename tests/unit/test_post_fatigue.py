@@ -2,14 +2,17 @@
 
 import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
 
-from ehlpetsc.post import Material, cycles_to_failure, damage, equivalent_range, strain_range
+from ehlpetsc import post
+from ehlpetsc.post import Material, cycles_to_failure, equivalent_range, strain_range
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
 
 STEEL = Material()
+damage = partial(post.damage, strain="direct")
 RANGES = np.array([1e9, 1.5e9, 2e9, 3e9, 4e9])
 
 

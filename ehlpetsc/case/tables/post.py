@@ -1,5 +1,7 @@
 """`[post]` of a case file: what the fatigue of both surfaces is worked out with."""
 
+from typing import Literal
+
 from ehlpetsc.case.tables.table import Table, is_of
 from ehlpetsc.case.tables.validation import Field, confloat, validator
 
@@ -18,6 +20,10 @@ class Post(Table):
     fatigue_ductility: float | None = Field(None, ge=1e-6, le=100, description="eps_f'")
     cyclic_strength: float | None = Field(
         None, ge=1e6, le=1e12, unit="Pa", description="K'; left out: sigma_f'/eps_f'^n'"
+    )
+    strain: Literal["neuber", "glinka", "direct"] = Field(
+        "neuber",
+        description="rule from elastic stress ranges to strains; direct: none, as in the paper",
     )
     residual_stress: list[tuple[Depth, Residual]] | None = Field(
         None, min_items=1, description="[[z/a, Pa], ...] along the surface, depths rising"

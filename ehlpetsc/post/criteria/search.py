@@ -11,6 +11,7 @@ from ehlpetsc.post.criteria.dang_van import utilisation
 from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
 from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
 from ehlpetsc.post.fatigue.cycles import RESIDUES, workspace
+from ehlpetsc.post.fatigue.elastic_plastic import DEFAULT_STRAIN
 from ehlpetsc.post.fatigue.evaluate import evaluate
 from ehlpetsc.post.fatigue.loops import equivalent_points
 
@@ -115,7 +116,7 @@ def critical_plane(
     criterion="fatemi-socie",
     constants=None,
     residue="closed",
-    strain="direct",
+    strain=DEFAULT_STRAIN,
     residual_stress=0.0,
 ):
     """Damage of one pass of each history on its worst plane, planes in three dimensions.

@@ -8,7 +8,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
-from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
+from ehlpetsc.post.fatigue.elastic_plastic import DEFAULT_STRAIN, STRAINS
 from ehlpetsc.post.fatigue.evaluate import evaluate
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, repeat_points, widest
@@ -34,7 +34,7 @@ class Counting(NamedTuple):
     residue: str = "closed"
     ranges: str = "reversals"
     mean_stress: str = "none"
-    strain: str = "direct"
+    strain: str = DEFAULT_STRAIN
 
     def check(self):
         """Raise ValueError for a choice that does not exist."""
@@ -156,7 +156,7 @@ def damage(
     residue="closed",
     ranges="reversals",
     mean_stress="none",
-    strain="direct",
+    strain=DEFAULT_STRAIN,
     residual_stress=0.0,
 ):
     """Damage of one pass of each history.
@@ -185,7 +185,7 @@ def damage(
         -dsv/2. Without the floor the pressure of the contact itself would lengthen lives by decades.
     strain : {"direct", "neuber", "glinka"}
         How the elastic range enters the cyclic stress-strain curve (13): as it is, as in the paper, or by
-        Neuber's or Glinka's rule (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
+        Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
     residual_stress : float
         Residual stress along the surface, the same in x and y, none in z, Pa: it adds twice itself to the
         mean of Morrow's term and changes nothing without one.

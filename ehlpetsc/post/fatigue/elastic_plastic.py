@@ -22,6 +22,7 @@ from math import exp, log
 from ehlpetsc.compiled import compiled
 
 STRAINS = ("direct", "neuber", "glinka")
+DEFAULT_STRAIN = "neuber"
 
 
 @compiled(error_model="python", nogil=True)

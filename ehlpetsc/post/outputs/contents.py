@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ehlpetsc.materials import DEFAULT
 from ehlpetsc.post.fatigue.passes import largest_near
 from ehlpetsc.post.fatigue.statistics import asperities, log_life, rank_correlation, weibull_fit
 from ehlpetsc.post.fatigue.weibull import LEVEL, weibull_bounds, weibull_likelihood
@@ -91,7 +92,7 @@ class Contents:
     def _put(self, group, inner, **values):
         self.datasets |= {f"{group}/{inner}{name}": value for name, value in values.items()}
 
-    def attributes(self, mark, counting):
+    def attributes(self, mark, counting, settings=()):
         """Root attributes: where the result comes from and how it was computed."""
         loads = self.prepared.loads
         mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
@@ -99,6 +100,8 @@ class Contents:
             "title": loads.title,
             "case": loads.case_text,
             "source": str(loads.path),
+            "material": ", ".join(loads.case.contact.material or (DEFAULT,)),
+            "settings": "\n".join(settings),
             "fingerprint": mark,
             "a": loads.a,
             "p0": loads.p0,

@@ -157,7 +157,7 @@ def _aligned(result, surface, results):
 def field_picture(path, result, frame):
     """Pressure, and stresses in the solid of the result's main surface, at one stored frame."""
     surface = result.main
-    with Loads(path) as loads:
+    with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
         frame = loads.time.size // 2 if frame is None else frame
         if not 0 <= frame < loads.time.size:
             raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
@@ -196,7 +196,7 @@ def history_picture(path, result, point):
     surface = result.main
     s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
     _check_passed(result, surface, s)
-    with Loads(path) as loads:
+    with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
         material = getattr(read_settings(loads.case), surface)
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
     step = time[1] - time[0]
