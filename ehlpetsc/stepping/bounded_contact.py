@@ -81,12 +81,12 @@ def bounded_start(problem, film, inputs, smoothing):
     depth = np.where(p < limit, 0.0, np.maximum(lowest - gap - h00, 0.0))
     if problem.fluid is None:
         carried = p + depth / model.compliance
-        return np.zeros_like(p), model.w_from_state(gap + h00 + depth, carried), h00
+        return *model.dry_start(carried, gap + h00 + depth), h00
     edge = problem.x[p > 0.0].max()
     if smoothing:
         p = smoothed(p, smoothing * film ** (2.0 / 3.0) / problem.dx)
     depth[p < limit * (1.0 - 1e-9)] = 0.0
     h = np.maximum(problem.film(p, h00, undeformed_gap(problem, inputs)) + depth, lowest)
     behind = (problem.x > edge) & (p < AMBIENT)
-    q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(p + depth / model.compliance, AMBIENT))
-    return q, model.w_from_film(h), h00
+    oil, w = model.oil_start(p + depth / model.compliance, h)
+    return np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(oil, AMBIENT)), w, h00

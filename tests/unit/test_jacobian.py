@@ -35,6 +35,14 @@ SCENES = {
     "dry, yielding": ("dry_hertz.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
     "compliant": ("table1_smooth.toml", ["contact.model='mixed'", "contact.asperity_height=2e-9"]),
     "dry, compliant": ("dry_hertz.toml", ["contact.model='mixed'", "contact.asperity_height=2e-9"]),
+    "compliant, yielding": (
+        "table1_smooth.toml",
+        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.yield_pressure=1.05e9"],
+    ),
+    "dry, compliant, yielding": (
+        "dry_hertz.toml",
+        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.yield_pressure=1.05e9"],
+    ),
     "starved": ("table1_smooth.toml", ["fluid.inlet_film=1e-7"]),
     "dry": ("dry_hertz.toml", []),
 }

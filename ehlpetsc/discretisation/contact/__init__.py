@@ -1,6 +1,7 @@
 """Contact models: what oil and solids do at a node, one module a law, behind one interface."""
 
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
+from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
 from ehlpetsc.discretisation.contact.direct import DirectContact, DryContact
 from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.yielding import YieldingContact
@@ -37,7 +38,10 @@ def contact_model(case, scales, film_scale):
     if contact.model == "direct":
         return (DryContact if case.fluid is None else DirectContact)(contact.minimum_film / scales.h)
     if contact.asperity_height is not None:
-        return CompliantContact(Layer.of(contact, scales, GAMMA))
+        layer = Layer.of(contact, scales, GAMMA)
+        if contact.yield_pressure is None:
+            return CompliantContact(layer)
+        return CompliantYieldingContact(layer, min(contact.yield_pressure) / scales.p0, film_scale)
     boundary_film, stiffness = contact.boundary_film / scales.h, 1.0 / film_scale
     if contact.yield_pressure is None:
         return MixedContact(boundary_film, stiffness)

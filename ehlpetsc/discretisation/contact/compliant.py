@@ -112,7 +112,8 @@ class CompliantContact(SeparatedContact):
 
     def dry_start(self, pressure, gap):
         """See :class:`.model.ContactModel`."""
-        return np.zeros_like(pressure), gap + self._separation(pressure)
+        film = np.maximum(gap, asperity_separation(LOWEST, *self.law))
+        return np.zeros_like(pressure), np.where(pressure > 0.0, self._separation(pressure), film)
 
     def start_film(self, film):
         """See :class:`.model.ContactModel`; at least the film at which the asperities carry p0."""

@@ -25,7 +25,36 @@ ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method lo
 HARDENING = 1.0
 
 
-class YieldingContact(MixedContact):
+class Hardening:
+    """Linearisation of models whose nodes may all yield at once."""
+
+    def linearised(self, state, own, ranks_sum):
+        """See :class:`.model.ContactModel`.
+
+        Where all nodes that carry yield, no pressure depends on any unknown: the solids are then taken to
+        harden a little, by which the next iteration reaches nodes that do not carry yet.
+        """
+        yielding, elastic = ranks_sum(self.yielding_and_elastic(state, own))
+        if not self.is_all_yielding(yielding, elastic):
+            return state
+        y, per_depth = state.plastic, HARDENING / self.compliance
+        return state._replace(
+            p_q=state.p_q + per_depth * y.depth_q,
+            p_w=state.p_w + per_depth * y.depth_w,
+            plastic=y._replace(hardening=HARDENING),
+        )
+
+    def yielding_and_elastic(self, state, nodes):
+        """Numbers of nodes that yield, and that carry without yielding."""
+        yielding, pressure = state.plastic.yielding[nodes], state.pressure[nodes]
+        return yielding.sum(), (~yielding & (pressure > CARRIES * self.yield_pressure)).sum()
+
+    def is_all_yielding(self, yielding, elastic):
+        """Whether next to no node that carries is elastic, by the numbers of nodes."""
+        return yielding > 0 and elastic < ELASTIC_NODES
+
+
+class YieldingContact(Hardening, MixedContact):
     """Mixed contact of solids that yield.
 
     Parameters
@@ -70,31 +99,6 @@ class YieldingContact(MixedContact):
             p_w=np.where(yielding, 0.0, elastic.p_w),
             plastic=plastic,
         )
-
-    def linearised(self, state, own, ranks_sum):
-        """See :class:`.model.ContactModel`.
-
-        Where all nodes that carry yield, no pressure depends on any unknown: the solids are then taken to
-        harden a little, by which the next iteration reaches nodes that do not carry yet.
-        """
-        yielding, elastic = ranks_sum(self.yielding_and_elastic(state, own))
-        if not self.is_all_yielding(yielding, elastic):
-            return state
-        y, per_depth = state.plastic, HARDENING / self.compliance
-        return state._replace(
-            p_q=state.p_q + per_depth * y.depth_q,
-            p_w=state.p_w + per_depth * y.depth_w,
-            plastic=y._replace(hardening=HARDENING),
-        )
-
-    def yielding_and_elastic(self, state, nodes):
-        """Numbers of nodes that yield, and that carry without yielding."""
-        yielding, pressure = state.plastic.yielding[nodes], state.pressure[nodes]
-        return yielding.sum(), (~yielding & (pressure > CARRIES * self.yield_pressure)).sum()
-
-    def is_all_yielding(self, yielding, elastic):
-        """Whether next to no node that carries is elastic, by the numbers of nodes."""
-        return yielding > 0 and elastic < ELASTIC_NODES
 
     def contact_pressure(self, w):
         """Pressure of the solids in p0, at most the yield pressure."""

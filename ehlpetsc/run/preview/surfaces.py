@@ -33,8 +33,8 @@ def lambda_line(case, s, rough):
         return []
     ratio = lambda_ratio(case, s, rough)
     return [
-        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rough.rq:.3g} um over the combined Rq "
-        f" {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
+        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rough.rq:.3g} um over the combined "
+        f"Rq {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
     ]
 
 

@@ -1,0 +1,198 @@
+r"""Compliant layer on elastic and perfectly plastic solids: the total pressure is bounded.
+
+.. math:: p\le p_y,\quad\delta\ge0,\quad(p_y-p)\,\delta=0,\qquad h=g+\delta,
+
+as in :mod:`.yielding`, the pressure of the solids being :math:`p_c(h)`. Unknowns (q, w): elastic nodes have
+w = h. Of yielding ones
+
+* with oil, w = h and q carries the depth, :math:`\delta=D(q+p_c(w)-p_y)`; the pressure of the oil is
+  :math:`p_y-p_c(w)`;
+* without oil or under a void, :math:`p_c(h_y)=p_y` alone holds the film at :math:`h_y`, and w is the
+  separation, :math:`\delta=h_y-w`.
+"""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.band import BandEntries
+from ehlpetsc.discretisation.contact.compliant import FREE_RISE, CompliantContact
+from ehlpetsc.discretisation.contact.node_state import (
+    PRESSURE_AFTER_REFILL,
+    ROUNDING,
+    PlasticState,
+    limit_cavitation,
+)
+from ehlpetsc.discretisation.contact.yielding import Hardening
+from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
+
+
+class CompliantYieldingContact(Hardening, CompliantContact):
+    """Compliant layer on solids that yield.
+
+    Parameters
+    ----------
+    layer : compliant.Layer
+    yield_pressure : float
+        p_y in p0, of the softer surface.
+    compliance : float
+        D, a^2/R per p0: a scale of the unknown that carries the depth, which no answer depends on.
+    """
+
+    def __init__(self, layer, yield_pressure, compliance):
+        super().__init__(layer)
+        self.yield_pressure, self.compliance = yield_pressure, compliance
+        self.smallest = asperity_separation(yield_pressure, *self.law)
+        self.minimum_film = max(self.minimum_film, self.smallest)
+
+    def elastic(self):
+        """See :class:`.model.ContactModel`."""
+        return CompliantContact(self.layer)
+
+    def contact_pressure(self, w):
+        """Pressure of the asperities in p0, at most the yield pressure."""
+        return super().contact_pressure(np.maximum(w, self.smallest))
+
+    def pressure(self, q, w):
+        """Total pressure in p0, at most the yield pressure."""
+        return np.minimum(np.maximum(q, 0.0) + self.contact_pressure(w), self.yield_pressure)
+
+    def state(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        elastic = super().state(q, np.maximum(w, self.smallest))
+        closed, oil, one = w < self.smallest, np.maximum(q, 0.0), np.ones_like(w)
+        excess = elastic.pressure - self.yield_pressure
+        by_oil = (excess > 0.0) & (q > ROUNDING) & ~closed
+        yielding = by_oil | closed
+        solids = elastic.pressure - oil
+        plastic = PlasticState(
+            np.where(closed, self.smallest - w, np.where(by_oil, self.compliance * excess, 0.0)),
+            yielding,
+            np.where(by_oil, self.compliance, 0.0),
+            np.where(closed, -1.0, np.where(by_oil, self.compliance * elastic.p_w, 0.0)),
+            np.where(by_oil, 0.0, 1.0),
+            np.where(by_oil, -elastic.p_w, 0.0),
+        )
+        return elastic._replace(
+            reynolds_unknown=np.where(by_oil, self.yield_pressure - solids, q),
+            pressure=np.minimum(elastic.pressure, self.yield_pressure),
+            p_q=np.where(yielding, 0.0, elastic.p_q),
+            p_w=np.where(yielding, 0.0, elastic.p_w),
+            h_w=np.where(closed, 0.0, one),
+            plastic=plastic,
+        )
+
+    def reset_yielding(self, q, w):
+        """See :class:`.model.ContactModel`."""
+        w = np.maximum(w, self.smallest)
+        return np.minimum(q, self.yield_pressure - self.contact_pressure(w)), w
+
+    def dry_start(self, pressure, gap):
+        """See :class:`.model.ContactModel`; what exceeds the yield pressure is the depth over D."""
+        excess = np.maximum(pressure - self.yield_pressure, 0.0)
+        q, w = super().dry_start(np.minimum(pressure, self.yield_pressure), gap)
+        return q, np.where(excess > 0.0, self.smallest - self.compliance * excess, w)
+
+    def pressure_change(self, now, step):
+        """See :class:`.model.ContactModel`."""
+        return pressure_change(now, step, self.law, self.yield_pressure, self.smallest)
+
+    def clip_step(self, now, step, film_after_release):
+        """See :class:`.model.ContactModel`."""
+        limit_steps(now, step, self.law, self.yield_pressure, self.smallest, self.compliance)
+
+    def band_entries(self, state, derivatives, stencil):
+        """Pairs of :class:`.compliant.CompliantContact`; where solids yield (e, h) or (e, q).
+
+        e is the excess over p_y, which the depth follows.
+        """
+        entries, y = super().band_entries(state, derivatives, stencil), state.plastic
+        if not y.yielding.any():
+            return entries
+        by_oil, closed = self._plastic_kinds(state)
+        p_first = np.where(y.yielding, y.hardening, entries.p_first)
+        separation_first = np.where(y.yielding, -self.compliance, entries.separation_first)
+        separation_second = np.where(closed, 0.0, np.where(by_oil, 1.0, entries.separation_second))
+        old_q, old_h = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+        by_first, by_second = (
+            firsts_of_rows(entries.reynolds_derivatives),
+            seconds_of_rows(entries.reynolds_derivatives),
+        )
+        slope = np.where(by_oil, y.reynolds_w, 0.0)[stencil]
+        by_oil, closed = by_oil[stencil], closed[stencil]
+        by_second[:] = np.where(by_oil, old_h + old_q * slope, np.where(closed, old_q, by_second))
+        by_first[:] = np.where(by_oil | closed, 0.0, by_first)
+        return BandEntries(p_first, separation_first, separation_second, entries.reynolds_derivatives)
+
+    def _plastic_kinds(self, state):
+        """Masks of yielding nodes with oil, and of those without."""
+        by_oil = state.plastic.depth_q > 0.0
+        return by_oil, state.plastic.yielding & ~by_oil
+
+    def from_band(self, state, local, solution):
+        """See :class:`.model.ContactModel`."""
+        first, second = solution[:, 0].copy(), solution[:, 1].copy()
+        super().from_band(state, local, solution)
+        by_oil, closed = (kind[local] for kind in self._plastic_kinds(state))
+        slope = -state.plastic.reynolds_w[local]
+        solution[:, 0] = np.where(by_oil, first - slope * second, np.where(closed, second, solution[:, 0]))
+        solution[:, 1] = np.where(by_oil, second, np.where(closed, -self.compliance * first, solution[:, 1]))
+
+
+@compiled
+def pressure_change(now, step, law, limit, smallest):
+    """Largest change of total pressure; where it stays at `limit`, of the pressure of the solids."""
+    largest = 0.0
+    for i in range(len(now)):
+        q, w, new_q = now[i, 0], now[i, 1], now[i, 0] - step[i, 0]
+        solids, slope = asperity_pressure(max(w, smallest), law[0], law[1])
+        rise = 0.0 if w < smallest else -slope * step[i, 1]
+        total = min(max(q, 0.0) + solids, limit)
+        new_total = min(max(new_q, 0.0) + solids + rise, limit)
+        change = abs(new_total - total)
+        if total == limit and new_total == limit:
+            change = abs(min(solids + rise, limit) - solids)
+        largest = max(largest, change)
+    return largest
+
+
+@compiled
+def limit_steps(now, step, law, limit, smallest, compliance):
+    """Limit steps in place as in elastic contact, and where solids begin or cease to yield.
+
+    Both stop just beyond; the depth then changes as the linearised excess does.
+    """
+    tiny = PRESSURE_AFTER_REFILL
+    for i in range(len(now)):
+        q, w = now[i, 0], now[i, 1]
+        closed = w < smallest
+        solids, slope = asperity_pressure(max(w, smallest), law[0], law[1])
+        by_oil = not closed and q > ROUNDING and q + solids > limit
+        new_q, new_w = q - limit_cavitation(q, step[i, 0]), w - step[i, 1]
+        if not closed:
+            new_w = max(new_w, asperity_separation(max(2.0 * solids, FREE_RISE), law[0], law[1]))
+        new_solids = asperity_pressure(max(new_w, smallest), law[0], law[1])[0]
+        edge = asperity_separation(limit - 2.0 * tiny, law[0], law[1])
+        if by_oil:
+            excess = q + solids - limit - step[i, 0] + slope * (new_w - w)
+            if excess <= 0.0:
+                new_w = max(new_w, edge)
+                new_solids = asperity_pressure(new_w, law[0], law[1])[0]
+                new_q = limit - tiny - new_solids
+            elif new_solids < limit - tiny:
+                new_q = limit + excess - new_solids
+            else:
+                new_q, new_w = -tiny, smallest - compliance * excess
+        elif closed:
+            if new_w >= smallest:
+                new_q, new_w = min(new_q, tiny), edge
+            elif new_q > ROUNDING:
+                new_q, new_w = (smallest - new_w) / compliance + 2.0 * tiny, edge
+        elif max(new_q, 0.0) + new_solids > limit:
+            if new_q <= ROUNDING:
+                new_w = smallest - compliance * tiny
+            elif new_solids < limit - tiny:
+                new_q = limit + tiny - new_solids
+            else:
+                new_q, new_w = 3.0 * tiny, edge
+        step[i, 0], step[i, 1] = q - new_q, w - new_w
