@@ -13,6 +13,7 @@ from ehlpetsc.case.conditions import (
     with_reference_state,
 )
 from ehlpetsc.case.faults import describe, shortened, show
+from ehlpetsc.case.measured_layer import resolve_measured_layer
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.solids import with_material
@@ -141,7 +142,10 @@ def load(case, overrides=None):
     converted, wrong = in_si(data, Case)
     if wrong:
         raise CaseError([*faults, *(f"{path}: {line}" for line in wrong)])
-    settings += converted
+    measured, unresolved = resolve_measured_layer(path, data)
+    settings, faults = settings + converted + measured, faults + [f"{path}: {line}" for line in unresolved]
+    if unresolved:
+        raise CaseError(faults)
     faults += _faults(path, data)
     if not faults:
         faults += series_faults(path, data, lambda member: _faults(path, member))

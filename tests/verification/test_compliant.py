@@ -1,4 +1,4 @@
-"""Mixed contact through a compliant layer: convergence, balance, limits, and the range of speeds."""
+"""Mixed contact through a compliant layer: law, balance, convergence, limits, range of speeds, restart."""
 
 from pathlib import Path
 
@@ -10,38 +10,146 @@ petsc4py.init([])
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.asperities import GAMMA
+from ehlpetsc.surfaces.samples import samples
 
 CASES = Path(__file__).parents[2] / "cases"
 SIGMA = 20e-9
-RESOLVED = ["mesh.inlet=-1.5", "mesh.outlet=1.3", "time.travel=5.0"]
+RESOLVED = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "time.travel": 5.0}
+SMOOTH = {"surface": None, "time": None}
 
 
-def case(*overrides, sigma=SIGMA, file="resolved_mixed.toml", yield_pressure=None):
+def case(more=(), sigma=SIGMA, file="resolved_mixed.toml"):
     """A case of mixed contact with a compliant layer."""
-    loaded = load(CASES / file, list(overrides))
-    layer = {"model": "mixed", "boundary_film": None, "asperity_height": sigma}
-    layer |= {"asperity_stiffness": 1.0, "asperity_slope": 0.1, "boundary_friction": 0.1}
-    if yield_pressure is not None:
-        layer["yield_pressure"] = (yield_pressure, yield_pressure)
-    return loaded.copy(update={"contact": loaded.contact.copy(update=layer), "series": None})
+    layer = {"contact.model": "mixed", "contact.boundary_film": None, "contact.asperity_height": sigma}
+    return load(CASES / file, layer | dict(more))
 
 
-def layer_pressure(state, solids, sigma=SIGMA):
+def layer_pressure(state, simulation, sigma=SIGMA):
     """The law at the films of a state [Pa]."""
-    modulus = 0.5 * solids.scales.E
-    return modulus * np.exp(-state.film_thickness / (GAMMA * sigma))
+    return 0.5 * simulation.scales.E * np.exp(-state.film_thickness / (GAMMA * sigma))
+
+
+def run(more, **kind):
+    """All states of a case but the fields: per-step scalars by name, and the time the contact is filled."""
+    simulation, rows = ehlpetsc.Simulation(case(more, **kind)), []
+    names = ("contact_share", "friction_coefficient", "contact_length", "newton", "retries", "load_error")
+    names += ("mass_error", "contact_length_10mpa", "contact_length_100mpa")
+    for state in simulation:
+        rows.append([state.time, *(getattr(state, name) for name in names)])
+    rows, s = np.array(rows), simulation.scales
+    found = dict(zip(("time", *names), rows.T, strict=True))
+    found["filled"] = found["time"] >= (s.x[-1] - s.x[0] - (s.x[-1] - 1.0)) * s.a / s.u2
+    return found
 
 
 @pytest.mark.parametrize("speed", [20.0, 5.0, 1.0, 0.2, 0.05, 0.01, 1e-3, 1e-4])
 def test_steady_contacts_converge_at_every_speed(speed):
-    simulation = ehlpetsc.Simulation(case(f"motion.entrainment_speed={speed}"))
+    simulation = ehlpetsc.Simulation(case(SMOOTH | {"motion.entrainment_speed": speed}))
     state = simulation.advance()
-    carried = state.contact_pressure
-    np.testing.assert_allclose(carried, layer_pressure(state, simulation), rtol=1e-9, atol=1e-3)
+    found, law = state.contact_pressure, layer_pressure(state, simulation)
+    np.testing.assert_allclose(found, law, rtol=1e-9, atol=1e-3)
     assert state.load_error < 1e-10 and state.mass_error < 1e-6
     if speed <= 1e-3:
         assert state.contact_share > 0.9998
         assert state.friction_coefficient == pytest.approx(0.1, abs=1e-4)
     if speed >= 20.0:
         assert state.contact_share < 1e-4
+
+
+@pytest.mark.parametrize("speed", [5.0, 0.2, 1e-3])
+def test_rough_contacts_converge_at_every_speed(speed):
+    """On a mesh half as fine as the coarsest one of the convergence study below."""
+    found = run(RESOLVED | {"motion.entrainment_speed": speed, "mesh.points_per_half_width": 50})
+    assert found["retries"].sum() <= 0.01 * len(found["time"])
+    assert found["newton"][1:].mean() < 10.0
+    assert found["load_error"].max() < 1e-10 and found["mass_error"].max() < 1e-6
+
+
+@pytest.mark.slow
+def test_share_friction_and_lengths_converge():
+    """Order from the differences of a/100, a/200 and a/400; the limit by Richardson's extrapolation."""
+    runs = [run(RESOLVED | {"mesh.points_per_half_width": points}) for points in (100, 200, 400)]
+    for found in runs:
+        assert found["retries"].sum() == 0 and found["newton"][1:].mean() < 7.0
+        assert found["load_error"].max() < 1e-10 and found["mass_error"].max() < 1e-6
+    for name, limit, tolerance in (
+        ("contact_share", 0.163, 0.15),
+        ("friction_coefficient", 0.0250, 0.07),
+        ("contact_length_10mpa", 0.2515, 0.05),
+        ("contact_length_100mpa", 0.186, 0.05),
+    ):
+        means = [found[name][found["filled"]].mean() for found in runs]
+        if name.startswith("contact_length"):
+            means = [mean / A for mean in means]
+        assert means[0] > means[1] > means[2]
+        assert means[2] == pytest.approx(limit, rel=tolerance), name
+
+
+A = 0.335682e-3  # m, half width
+
+
+def test_a_thin_layer_tends_to_rigid_contact():
+    """A layer of vanishing height carries at a film of zero, rigid contact at one of 0.1 nm."""
+    given = RESOLVED | {"mesh.points_per_half_width": 50, "time.travel": 3.0, "motion.entrainment_speed": 1.0}
+    *_, last = ehlpetsc.Simulation(
+        load(CASES / "resolved_mixed.toml", given | {"contact.boundary_film": 1e-10})
+    )
+    apart = []
+    for sigma in (4e-9, 1e-9, 2.5e-10):
+        *_, state = ehlpetsc.Simulation(case(given, sigma=sigma))
+        apart.append(abs(state.pressure - last.pressure).mean() / last.pressure.mean())
+    assert apart[0] > apart[1] > apart[2]
+    assert apart[2] < 0.01
+
+
+def test_contact_length_is_the_integral_of_the_real_area():
+    from scipy.special import erf
+
+    state = ehlpetsc.Simulation(given := case(SMOOTH | {"motion.entrainment_speed": 1.0})).advance()
+    scales = ehlpetsc.Simulation(given).scales
+    modulus = 0.5 * scales.E * 0.1
+    area = erf(np.sqrt(np.pi) * state.contact_pressure / modulus)
+    assert state.contact_length == pytest.approx(scales.dx * area.sum(), rel=1e-9)
+    assert state.contact_length_10mpa == pytest.approx(scales.dx * (state.contact_pressure > 10e6).sum())
+    assert state.contact_length_100mpa == pytest.approx(scales.dx * (state.contact_pressure > 100e6).sum())
+    np.testing.assert_array_equal(state.in_contact, state.contact_pressure > 10e6)
+
+
+@pytest.mark.parametrize("limit", [5e9, 1.2e9, 0.9e9, 0.6e9])
+@pytest.mark.parametrize("fluid", [True, False])
+def test_solids_under_the_layer_yield(limit, fluid):
+    """p <= p_y, the law at elastic nodes, load and oil balance, from slight to full plasticity."""
+    more = SMOOTH | {"contact.yield_pressure": limit} | ({} if fluid else {"fluid": None})
+    simulation = ehlpetsc.Simulation(case(more))
+    state = simulation.advance()
+    assert state.pressure.max() <= limit * (1.0 + 1e-9)
+    assert state.load_error < 1e-10 and state.mass_error < 1e-6
+    np.testing.assert_allclose(state.contact_pressure, layer_pressure(state, simulation), rtol=1e-6, atol=1.0)
+    assert (state.yielding > 0) == (limit < 1.0e9)
+
+
+def test_rough_solids_under_the_layer_yield():
+    more = RESOLVED | {"mesh.points_per_half_width": 50, "contact.yield_pressure": 2.6e9}
+    simulation = ehlpetsc.Simulation(case(more))
+    yielded = 0
+    for state in simulation:
+        assert state.pressure.max() <= 2.6e9 * (1.0 + 1e-9)
+        assert state.load_error < 1e-10 and state.mass_error < 1e-6
+        yielded += state.yielding
+    assert yielded > 20 and state.set_volume > 0.0
+
+
+def test_the_measured_height_is_what_the_short_cutoff_removes():
+    alone = {"surface.fast.short_cutoff": 8e-6, "surface.slow": None}
+    given = case(alone | {"surface.fast.scale": 0.5}, "measured")
+    spec = given.surface.fast
+    before = samples(CASES, spec.copy(update={"short_cutoff": None})).z
+    expected = np.sqrt(np.mean((before - samples(CASES, spec).z - before.mean()) ** 2))
+    assert given.contact.asperity_height == pytest.approx(expected, rel=1e-3)
+    both = case({"surface.fast.short_cutoff": 8e-6, "surface.slow.short_cutoff": 8e-6}, "measured")
+    ratio = both.contact.asperity_height / case(alone, "measured").contact.asperity_height
+    assert ratio == pytest.approx(np.sqrt(2.0), rel=1e-4)
+    with pytest.raises(CaseError, match="short_cutoff"):
+        case({"surface.fast.short_cutoff": None, "surface.slow.short_cutoff": None}, "measured")

@@ -14,6 +14,8 @@ EQUATIONS = {
     "Contact.boundary_friction": "|q| = boundary_friction p_c",
     "Contact.model": "direct: h >= 0, F >= 0, h F = 0, F what leaving Reynolds' equation out makes up; "
     "mixed: p = p_oil + p_c, h >= h_b, p_c >= 0, p_c (h - h_b) = 0",
+    "Contact.asperity_height": "p_c = beta E* exp(-h/(0.5 sigma)), E* = E'/2, sigma = asperity_height",
+    "Contact.asperity_slope": "A/A0 = erf(sqrt(pi) p_c/(E* asperity_slope))",
     "Contact.yield_pressure": "p <= p_y, d >= 0, (p_y - p) d = 0, d what a step adds to the permanent set",
     "Fluid.law": "seed: ln(eta/eta0) = ln(eta0/kappa) ((1 + chi p)^Z - 1), Z = alpha/(chi ln(eta0/kappa)); "
     "barus: ln(eta/eta0) = alpha p; roelands: ln(eta/eta0) = (alpha pr/z) ((1 + p/pr)^z - 1)",

@@ -66,7 +66,8 @@ class Contact(Table):
         le=1e-6,
         unit="m",
         description="mixed contact: rms height of the roughness finer than the mesh, whose asperities carry "
-        "beta E* exp(-2 h/asperity_height); instead of boundary_film",
+        'beta E* exp(-2 h/asperity_height), instead of boundary_film; "measured": of what short_cutoff '
+        "removes, both surfaces together",
     )
     asperity_stiffness: float | None = Field(
         None,
@@ -113,21 +114,21 @@ class Contact(Table):
             return None
         if values.get("asperity_height") is not None:
             if value is not None:
-                raise ValueError("asperity_height replaces it; leave one of them out")
+                raise Needs("asperity_height left out")
             return None
         return BOUNDARY_FILM if value is None else value
 
     @validator("asperity_height")
     def _of_mixed_contact_as_well(cls, value, values):
         if value is not None and values.get("model") != "mixed":
-            raise ValueError("for mixed contact")
+            raise Needs('contact.model = "mixed"')
         return value
 
     @validator("asperity_stiffness", "asperity_slope", always=True)
     def _of_asperities(cls, value, values, field):
         if values.get("asperity_height") is None:
             if value is not None:
-                raise ValueError("for asperity_height")
+                raise Needs("asperity_height")
             return None
         return ASPERITIES[field.name] if value is None else value
 
