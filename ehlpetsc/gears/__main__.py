@@ -2,7 +2,8 @@
 
 Of a case, prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table and
 draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. Of a result, prints
-friction and losses of the mesh and draws pressure, films and friction along the path.
+friction and losses of the mesh and draws pressure, films and friction along the path; where it has been
+post-processed, RESULT.post.h5, also the damage along both flanks.
 """
 
 import argparse
@@ -79,6 +80,7 @@ def run(chosen):
 def _run_of(chosen):
     """Print and draw a result along its path of contact."""
     from ehlpetsc.gears.along_path import GearRun
+    from ehlpetsc.gears.flanks import FlankDamage
 
     found = GearRun(chosen.case)
     print("\n".join(found.lines()))
@@ -87,6 +89,14 @@ def _run_of(chosen):
         _check_target(target, chosen.case)
         found.draw(target)
         print(target)
+    post = Path(chosen.case).with_suffix(".post.h5")
+    if post.exists():
+        damage = FlankDamage(post, found.begins)
+        print("\n".join(damage.lines()))
+        if not chosen.no_picture:
+            flanks = Path(target).with_suffix(".flanks.png")
+            damage.draw(found.path.pair, flanks, found.title)
+            print(flanks)
 
 
 def _read(path):

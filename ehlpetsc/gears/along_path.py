@@ -35,6 +35,8 @@ class GearRun:
     path : ehlpetsc.gears.path.Path
     position : ndarray, shape (nsteps,)
         Of each step on the line of action from the pitch point [m].
+    friction : ndarray, shape (nsteps,)
+        Magnitude of the friction coefficient, mean of both walls.
     scalars : dict of str to ndarray
         Rows of the picture that the result has.
 
@@ -50,14 +52,16 @@ class GearRun:
             if "gears" not in tables:
                 raise CaseError([f"{file}: its case has no [gears] table; allowed: a gear run"])
             self.path, self.title = path_of_contact(tables["gears"]), str(result.attrs["title"])
-            self.time, rolling = result.steps("time")[:], result.steps("speed_1")[:]
+            rolling = result.steps("speed_1")[:]
             self.scalars = {name: result.steps(name)[:] for name, _, _ in ROWS if name in result.figures}
-            sheared = result.steps("friction")[:]
-            self.load, sliding = result.steps("load")[:], rolling - result.steps("speed_2")[:]
+            self.friction = np.abs(result.steps("friction_coefficient")[:])
         self.rho = rolling / self.path.pair.angular_speeds[0]
         self.position = self.rho - self.path.pair.points["C"]
-        # friction on the solids of surface 2 has the sign of the sliding
-        self.friction = np.where(sliding == 0.0, 0.0, np.abs(sheared)) / self.load
+
+    @property
+    def begins(self):
+        """Arc lengths of both flanks at the begin of the run, from A [m]."""
+        return tuple(float(arc) for arc in self.path.pair.flank_arcs(self.rho[0]))
 
     def friction_on_path(self):
         """Friction coefficient at the samples of the path; beyond the ends of the run that of its ends."""

@@ -2,13 +2,15 @@
 
 import math
 
+import h5py
 import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError
+from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.__main__ import main
+from ehlpetsc.gears.flanks import FlankDamage
 from ehlpetsc.gears.load_sharing import relief_ratio
 from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
@@ -233,3 +235,25 @@ def test_the_command_prints_the_table_and_writes_picture_and_csv(case, tmp_path,
     assert rows[0, 0] == 0.0 and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1] > 0).all()
     assert main(["no.toml"]) == 2
     assert "cannot be read" in capsys.readouterr().err
+
+
+def test_damage_of_flanks_is_found_by_arc_length_and_depth(tmp_path):
+    path = path_of_contact(FZG)
+    with h5py.File(tmp_path / "run.post.h5", "w") as file:
+        file.attrs["a"] = 0.25e-3
+        s = np.linspace(-8e-3, 0.0, 81)
+        file["damage/s"], file["damage/z_over_a"] = s, [0.0, 0.1]
+        damage = np.full((2, 81), np.nan)
+        damage[1, 20] = 2e-3  # s = -6 mm
+        damage[0, 60] = 1e-3
+        file["damage/1"], file["damage/slow"] = damage, 0.5 * damage
+    found = FlankDamage(tmp_path / "run.post.h5", (1e-5, 5e-5))
+    assert found.arcs[0][0] == pytest.approx(1e-5) and (np.diff(found.arcs[1]) > 0).all()
+    pinion, wheel = found.lines()
+    assert "pinion: 0.002 at an arc length of 6.010 mm from A, 25.0 um deep" in pinion
+    assert "wheel: 0.001 at an arc length of 6.050 mm from A, 25.0 um deep" in wheel
+    found.draw(path.pair, tmp_path / "flanks.png", "made")
+    assert (tmp_path / "flanks.png").stat().st_size > 10_000
+    (tmp_path / "bad.post.h5").write_bytes(b"no HDF5")
+    with pytest.raises(OutputError, match="bad.post.h5"):
+        FlankDamage(tmp_path / "bad.post.h5", (0.0, 0.0))

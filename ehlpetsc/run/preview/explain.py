@@ -7,6 +7,7 @@ from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.preview.forecast import (
     begin_time,
@@ -78,6 +79,8 @@ def _film(case, s, rough):
 def _motion(case, s):
     if case.motion is None:
         return ["Motion: none"]
+    if case.conditions is not None:
+        return _variable(case, s)
     line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; fast {s.u1:g} m/s, slow {s.u2:g} m/s"
     if case.time is None:
         return [line, "Time: steady"]
@@ -85,6 +88,27 @@ def _motion(case, s):
         line,
         f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
         f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
+    ]
+
+
+def _variable(case, s):
+    """Ranges of conditions that change with time, beside the reference state of the lines above."""
+    table, operation = case.conditions, operation_of(case, s)
+    origin = "gear pair" if case.gears else "table"
+
+    def of(values, unit):
+        low, high = values.min(), values.max()
+        return f"{low:.4g} {unit}" if low == high else f"{low:.4g} to {high:.4g} {unit}"
+
+    repeats = f", {table.repeat} times" if table.repeat > 1 else ""
+    moved = 1e3 * s.a * case.time.travel
+    return [
+        f"Conditions of a {origin}{repeats}: load {of(1e-3 * table.load, 'kN/m')}, "
+        f"radius {of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
+        f"Motion: mean {of(table.entrainment, 'm/s')}; fast {of(table.u1, 'm/s')}, "
+        f"slow {of(table.u2, 'm/s')}",
+        f"Time: {1e3 * operation.duration:.4f} ms, the faster surface moves {moved:.3f} mm; "
+        f"{operation.step_count(s.dt)} steps",
     ]
 
 

@@ -1,0 +1,92 @@
+"""Fatigue damage of both flanks by arc length, from a post-processed gear run."""
+
+import h5py
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+
+FLANKS = (("pinion", ("1", "fast")), ("wheel", ("2", "slow")))  # with their names in files
+SHOWN = 4  # depths in the picture
+
+
+class FlankDamage:
+    """Damage of one engagement along both flanks.
+
+    Parameters
+    ----------
+    file : path-like
+        Result of post-processing, ``RESULT.post.h5``.
+    begins : (float, float)
+        Arc lengths from A at which both flanks are at x = 0 at time 0 [m].
+
+    Attributes
+    ----------
+    depths : ndarray, shape (nz,)
+        [m].
+    arcs : pair of ndarray
+        Arc lengths from A along the flanks of pinion and wheel [m], increasing.
+    damage : pair of ndarray or None, shape (nz, ns)
+        nan where a point did not pass the whole contact; None of a flank that was left out.
+
+    Raises
+    ------
+    OutputError
+        The file cannot be read.
+    """
+
+    def __init__(self, file, begins):
+        try:
+            with h5py.File(file) as stored:
+                group = stored["damage"]
+                self.depths = group["z_over_a"][:] * float(stored.attrs["a"])
+                names = [next((name for name in found if name in group), None) for _, found in FLANKS]
+                self.damage = [None if name is None else group[name][:][:, ::-1] for name in names]
+                self.arcs = [begin - group["s"][:][::-1] for begin in begins]
+        except (OSError, KeyError, RuntimeError) as error:
+            raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
+
+    def lines(self):
+        """Lines of text: largest damage of each flank, where and how deep."""
+        found = []
+        for (flank, _), damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
+            if damage is None or not np.isfinite(damage).any():
+                continue
+            depth, point = np.unravel_index(np.nanargmax(damage), damage.shape)
+            found.append(
+                f"largest damage of the {flank}: {damage[depth, point]:.3g} at an arc length of "
+                f"{1e3 * arc[point]:.3f} mm from A, {1e6 * self.depths[depth]:.1f} um deep"
+            )
+        return found
+
+    def draw(self, pair, target, title):
+        """Draw the damage along both flanks into a file.
+
+        Parameters
+        ----------
+        pair : ehlpetsc.gears.geometry.GearPair
+        target : path-like
+        title : str
+        """
+        import matplotlib as mpl
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+        chosen = np.unique(np.linspace(0, len(self.depths) - 1, SHOWN).round().astype(int))
+        for k, axis in enumerate(figure.subplots(2, 1)):
+            for number, depth in enumerate(chosen):
+                if self.damage[k] is not None:
+                    colour = mpl.colormaps["viridis"](0.9 * number / max(len(chosen) - 1, 1))
+                    label = f"{1e6 * self.depths[depth]:.0f} um deep"
+                    axis.semilogy(
+                        1e3 * self.arcs[k], self.damage[k][depth], color=colour, linewidth=0.7, label=label
+                    )
+            for name, rho in pair.points.items():
+                arc = 1e3 * float(pair.flank_arcs(rho)[k])
+                axis.axvline(arc, color="0.7", linewidth=0.8)
+                axis.annotate(name, (arc, 1.02), xycoords=("data", "axes fraction"), ha="center")
+            axis.set_ylabel(f"damage of an engagement,\n{FLANKS[k][0]}")
+            axis.set_xlabel("arc length along the flank from A [mm]")
+            axis.grid(alpha=0.3)
+        figure.axes[0].legend(fontsize=8)
+        figure.suptitle(title, fontsize=10)
+        figure.savefig(target, dpi=120)
