@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
@@ -116,6 +117,9 @@ def arguments(argv=None):
         chosen.results = [str(file) for path in chosen.results for file in files_of(path)]
     except OutputError as fault:
         parser.error(str(fault))
+    for path in chosen.results:
+        if not Path(path).name:
+            parser.error(f"{path!r}: not the name of a result file")
     if chosen.output and len(chosen.results) > 1:
         parser.error("-o names one file: give one RESULT.h5, or leave it out")
     if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):

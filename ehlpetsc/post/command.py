@@ -17,7 +17,7 @@ from ehlpetsc.post.outputs.result_file import check_output
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.subprocess_guard import SubprocessGuard
 from ehlpetsc.results.hdf5.opening import open_for_reading
-from ehlpetsc.results.post_result import SURFACES, PostResult
+from ehlpetsc.results.post_result import SURFACES, PostResult, post_path
 
 SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.STOPPED)
 
@@ -52,7 +52,7 @@ def say(text):
 
 
 def _output(path, chosen):
-    return chosen.output or str(Path(path).with_suffix("")) + ".post.h5"
+    return chosen.output or str(post_path(path))
 
 
 def _process(path, chosen):

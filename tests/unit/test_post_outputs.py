@@ -1,6 +1,7 @@
 """What is written and what never is: over other files, by two runs at once, half. Signals, crashes, hangs."""
 
 import faulthandler
+import gzip
 import importlib.util
 import os
 import resource
@@ -8,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -174,6 +176,77 @@ def test_points_above_the_surface_are_refused(result, capsys):
     with pytest.raises(SystemExit) as ended:
         main([str(result), "--pictures", "--point", "-3", "-0.1"])
     assert ended.value.code == 2 and "0 or more" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["/", "", ".", "//"])
+def test_a_name_that_is_none(name, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([name])
+    assert ended.value.code == ExitStatus.BAD_INPUT
+    assert "not the name of a result file" in capsys.readouterr().err
+
+
+def test_a_restart_file_and_a_folder_are_no_results(tmp_path, capsys):
+    packed = ROOT / "tests" / "data" / "older" / "direct.restart.h5.gz"
+    (tmp_path / "r.restart.h5").write_bytes(gzip.decompress(packed.read_bytes()))
+    assert "not a result of ehlpetsc" in refused(capsys, tmp_path / "r.restart.h5")
+    assert "no such file" in refused(capsys, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["r.restart.h5"]
+
+
+@pytest.mark.parametrize("name", ["first", "passes.pass1"])
+def test_results_of_earlier_versions_are_processed(name, tmp_path, capsys):
+    """Or refused for their travel, not for their age."""
+    for packed in (ROOT / "tests" / "data" / "older").glob(f"{name}.h5.gz"):
+        (tmp_path / f"{name}.h5").write_bytes(gzip.decompress(packed.read_bytes()))
+    status = main([str(tmp_path / f"{name}.h5"), "--depths", "0.05"])
+    said = capsys.readouterr().err
+    if name == "first":
+        assert status == ExitStatus.BAD_INPUT and "raise time.travel" in said
+    else:
+        assert status == ExitStatus.DONE
+        assert PostResult(tmp_path / f"{name}.post.h5").passed("slow").max() == pytest.approx(2e-10, rel=0.1)
+
+
+@pytest.mark.parametrize("title", ["lone \udc80 surrogate", np.bytes_(b"raw byte \xff")])
+def test_a_title_that_is_no_utf_8(title, scene, tmp_path, capsys):
+    def edit(file):
+        raw = title if isinstance(title, bytes) else title.encode(errors="surrogateescape")
+        file.attrs["title"] = np.bytes_(raw)
+
+    path = write(tmp_path / "a.h5", scene, depths=(0.5,), edit=edit)
+    assert main([str(path), "--pictures", str(tmp_path / "p")]) == ExitStatus.DONE
+    assert "\ufffd" in PostResult(tmp_path / "a.post.h5").title
+    capsys.readouterr().out.encode()
+
+
+def test_a_contact_one_node_wide(tmp_path, capsys):
+    """All of the load on one node that travels with the slow surface: damage where it passes."""
+    scene = Scene(per_width=20, ratio=0.5, travel=9.0)
+
+    def pressure(k):
+        p = 0 * scene.x
+        p[(k * 3 // 8) % p.size] = 527e3 / scene.dx
+        return p
+
+    scene.pressures = np.array([pressure(k) for k in range(scene.time.size)])
+    path = write(tmp_path / "a.h5", scene, depths=(0.0, 0.1))
+    assert main([str(path), "--pictures", str(tmp_path / "p")]) == ExitStatus.DONE
+    result = PostResult(tmp_path / "a.post.h5")
+    assert np.isfinite(result.passed("slow")).all() and result.passed("slow").max() > 1e-3
+
+
+@pytest.mark.slow
+def test_full_disk_at_the_pictures_leaves_whole_ones(result, tmp_path):
+    """Pictures are written beside and renamed: what is there can be opened."""
+    assert main([str(result)]) == 0
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (150_000, 150_000))
+    words = [*COMMAND, result, "--pictures", tmp_path / "p"]
+    ended = subprocess.run(words, cwd=ROOT, preexec_fn=limit, capture_output=True, text=True)
+    assert ended.returncode == 2 and "not written" in ended.stderr and "Traceback" not in ended.stderr
+    for path in (tmp_path / "p").iterdir():
+        assert path.suffix in (".png", ".svg") and path.stat().st_size < 150_000
+        assert path.read_bytes().rstrip().endswith((b"IEND\xaeB`\x82", b"</svg>"))
 
 
 @pytest.fixture

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from post_result_file import Scene, write
 
-from ehlpetsc.errors import ExitStatus
+from ehlpetsc.errors import ExitStatus, PostError
 from ehlpetsc.post import fold, largest_near, pass_statistics
 from ehlpetsc.post.command import main
+from ehlpetsc.post.outputs.passes_file import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 
@@ -110,3 +111,32 @@ def test_an_index_that_is_none_is_refused(tmp_path, capsys):
         with pytest.raises(SystemExit) as ended:
             main([str(bad)])
         assert ended.value.code == ExitStatus.BAD_INPUT and words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("shift", [7.0, 7.4], ids=["whole spacings", "between points"])
+def test_passes_that_are_shifted_against_each_other(shift, tmp_path):
+    """The slow surface enters further on in the second pass: the same points lie elsewhere in s."""
+    scenes = [Scene(per_width=20, ratio=0.5, travel=12.0) for _ in range(2)]
+    step = shift * scenes[0].dx
+    s, z = scenes[0].profiles["slow"]
+    scenes[1].profiles["slow"] = s + step, z
+
+    def edit(file):
+        time = f"passes = 2\npass_shift = {step}\ntravel"
+        file.attrs["case"] = file.attrs["case"].replace("travel", time)
+
+    paths = [
+        str(write(tmp_path / f"{k}.h5", scene, depths=(0.1,), edit=edit)) for k, scene in enumerate(scenes)
+    ]
+    assert main([*paths, "--passes", "slow"]) == ExitStatus.DONE
+    results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
+    points, damages = same_points(results, "slow")
+    k = points.size // 2
+    j = np.argmin(np.abs(results[1].s - points[k] - step))
+    assert abs(results[1].s[j] - points[k] - step) <= 0.51 * scenes[0].dx
+    assert damages[1, :, k] == pytest.approx(results[1].damage["slow"][:, j], rel=1e-12)
+    with pytest.raises(PostError, match="profiles of the fast surface differ"):
+        scenes[1].profiles["fast"] = scenes[1].profiles["slow"]
+        write(paths[1], scenes[1], depths=(0.1,), edit=edit)
+        assert main([paths[1]]) == ExitStatus.DONE
+        same_points([results[0], PostResult(tmp_path / "1.post.h5")], "fast")

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ehlpetsc.case.loading import stored_case
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.fatigue.passes import pass_statistics
 from ehlpetsc.post.outputs.result_file import check_output, fingerprint, write_result
@@ -12,6 +13,9 @@ SAME = 1e-3  # of a spacing of body points; of the profile's height
 def same_points(results, surface):
     """s (m) of the points that passed in every result, and their damage (results, nz, points).
 
+    Between passes that are shifted against each other (``time.pass_shift``) a point is matched with the
+    nearest one, at most half a node spacing away.
+
     Raises
     ------
     PostError
@@ -19,36 +23,48 @@ def same_points(results, surface):
     """
     first = results[0]
     spacing = first.s[1] - first.s[0]
-    for other in results[1:]:
+    firsts = []  # of the points of each result, in spacings from the first point of the first one
+    for other in results:
         if other.z.shape != first.z.shape or not np.allclose(other.z, first.z):
             raise PostError("the results have different depths: give --depths")
-        offset = (other.s[0] - first.s[0]) / spacing
-        other_spacing = other.s[1] - other.s[0]
-        if abs(other_spacing / spacing - 1) > 1e-6 or abs(offset - round(offset)) > SAME:
+        shift = _shift_of_profile(first, other, surface)
+        offset = (other.s[0] - first.s[0] - shift) / spacing
+        is_on_grid = shift or abs(offset - round(offset)) <= SAME
+        if abs((other.s[1] - other.s[0]) / spacing - 1) > 1e-6 or not is_on_grid:
             raise PostError("the results have different body points: passes need one mesh")
-        _check_profile(first, other, surface)
-    kept = {}
-    for result in results:
-        places = np.rint((result.s - first.s[0]) / spacing).astype(int)[result.complete[surface]]
-        for place in places:
-            kept[place] = kept.get(place, 0) + 1
-    places = np.array(sorted(place for place, count in kept.items() if count == len(results)), int)
+        firsts.append(round(offset))
+    passed = [
+        set(start + np.flatnonzero(r.complete[surface])) for start, r in zip(firsts, results, strict=True)
+    ]
+    places = np.array(sorted(set.intersection(*passed)), int)
     if not places.size:
         raise PostError(f"no point of the {surface} surface passed the whole contact in all of the results")
-    rows = [r.damage[surface][:, places - int(np.rint((r.s[0] - first.s[0]) / spacing))] for r in results]
+    rows = [r.damage[surface][:, places - start] for start, r in zip(firsts, results, strict=True)]
     return first.s[0] + spacing * places, np.stack(rows)
 
 
-def _check_profile(first, other, surface):
+def _shift_of_profile(first, other, surface):
+    """Distance in s (m) by which the profile of another pass is shifted; PostError if it is another one."""
     if (surface in first.profiles) != (surface in other.profiles):
         raise PostError(f"the {surface} surface is smooth in one result and rough in another")
     if surface not in first.profiles:
-        return
-    (s, z), (other_s, other_z) = first.profiles[surface], other.profiles[surface]
-    inside = (s >= other_s[0]) & (s <= other_s[-1])
-    apart = np.abs(np.interp(s[inside], other_s, other_z) - z[inside])
-    if not inside.any() or apart.max() > SAME * np.ptp(z):
-        raise PostError(f"the profiles of the {surface} surface differ: these are not passes of one body")
+        return 0.0
+    time = stored_case(first.attrs["case"]).time
+    step, passes = (time.pass_shift, time.passes) if time else (0.0, 1)
+    counts = sorted(range(1 - passes, passes), key=abs) if step else [0]
+    for shift in (count * step for count in counts):
+        if _is_same_profile(first.profiles[surface], other.profiles[surface], shift):
+            return shift
+    raise PostError(f"the profiles of the {surface} surface differ: these are not passes of one body")
+
+
+def _is_same_profile(one, other, shift):
+    (s, z), (other_s, other_z) = one, other
+    inside = (s + shift >= other_s[0]) & (s + shift <= other_s[-1])
+    if np.count_nonzero(inside) < 2:
+        return False
+    apart = np.abs(np.interp(s[inside] + shift, other_s, other_z) - z[inside])
+    return apart.max() <= SAME * np.ptp(z)
 
 
 def store_passes(path, results, surface):
