@@ -48,9 +48,11 @@ def _check(results, kind, options):
 
 
 def _parser():
-    about = "Draw results, or a series by its index."
+    about = "Draw results, a series by its index, or the profiles of a case as they will be used."
     parser = CommandParser(prog=program("ehlpetsc.plot"), description=about)
-    parser.add_argument("results", nargs="+", metavar="RESULT.h5")
+    parser.add_argument("results", nargs="+", metavar="RESULT.h5", help="results, an index; or one CASE.toml")
+    settings = "of a case: a key set, as in a run"
+    parser.add_argument("-ehl_set", action="append", metavar="TABLE.KEY=VALUE", help=settings)
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()
     instant.add_argument("--step", type=int, help="number of the time step [largest share on solids]")
@@ -92,6 +94,21 @@ def draw(results, kind, options, output):
             figure.savefig(beside, dpi=DPI)
 
 
+def _draw_case(options, cases):
+    """Picture of the profiles of one case file; returns the exit status."""
+    from ehlpetsc.plot.case_picture import draw_case
+
+    if len(options.results) > 1:
+        raise OutputError(f"{cases[0]}: a case is drawn alone, without results")
+    output = options.output or Path(Path(cases[0]).stem + ".case.png")
+    check_derived(output, [Path(cases[0])], PICTURES)
+    figure = draw_case(cases[0], options.ehl_set or ())
+    with replacing(output, keep_ending=True) as beside:
+        figure.savefig(beside, dpi=DPI)
+    print(output)
+    return 0
+
+
 def _stem(paths):
     """Name of a picture without its ending: of one result its own, of several both or how many more."""
     first, *others = (re.sub(r"(\.(series|passes)\.json|\.h5)$", "", path) for path in map(str, paths))
@@ -106,7 +123,10 @@ def main(arguments=None):
     kind = next((k for k in (*FIGURES, *ENDINGS) if getattr(options, k) not in (None, False)), None)
     ending = ENDINGS.get(kind, f".{kind}.png" if kind else ".png")
     output = options.output or Path(_stem(options.results) + ending)
+    cases = [path for path in options.results if path.endswith(".toml")]
     try:
+        if cases:
+            return _draw_case(options, cases)
         with contextlib.ExitStack() as stack:
             results = in_order(open_all(options.results, stack))
             inputs = [*map(Path, options.results), *(r.path for r in results)]

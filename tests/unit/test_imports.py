@@ -40,7 +40,7 @@ MAY_IMPORT = {
         "quantities",
     },
     "analysis": {"results", "quantities"},
-    "plot": {"analysis", "results", "physics", "quantities"},
+    "plot": {"analysis", "results", "physics", "quantities", "case", "surfaces"},
     "post": {"case", "results", "physics", "quantities"},
     "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
     "compare": {"analysis"},

@@ -58,8 +58,8 @@ def _profile(case, s, profile):
         lines.insert(1, size)
         if profile.travelled > given.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
-        elif case.time is not None and profile.enters:
-            lines.append(_part_in_contact(case, s, profile))
+        if case.time is not None and profile.enters:
+            lines += _part_in_contact(case, s, profile)
     arrives = arrival(profile, s)
     if arrives:
         reaches, fills = arrives
@@ -73,9 +73,11 @@ def _part_in_contact(case, s, profile):
     arrives, length = arrival(profile, s)[0], profile.given.length
     slower = s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - arrives - 2.0 * slower) / slower
+    if through >= length:
+        return []
     needed = arrives + (2.0 + length / s.a) * slower
     part = f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
-    return f"of {1e3 * length:.4g} mm {part}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"
+    return [f"of {1e3 * length:.4g} mm {part}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"]
 
 
 def height_lines(rough, s):

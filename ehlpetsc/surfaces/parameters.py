@@ -1,0 +1,88 @@
+r"""Roughness parameters of a profile and its Abbott curve.
+
+Ra, Rq, Rsk and Rz after ISO 4287, over the whole profile and, for Rz, as the mean over five equal sampling
+lengths; Rk, Rpk and Rvk after ISO 13565-2 from the material ratio curve.
+"""
+
+import numpy as np
+
+SAMPLING_LENGTHS = 5
+SECANT = 0.4  # of the material ratio: width of the secant whose least slope defines the core
+POINTS = 4001  # of the curve
+
+
+def abbott_curve(X, z):
+    """Material ratio curve: heights over the share of the profile's length that lies above them.
+
+    Parameters
+    ----------
+    X, z : ndarray, shape (n,)
+        Abscissas, increasing, and heights [m].
+
+    Returns
+    -------
+    ratio, height : ndarray, shape (POINTS,)
+        Ratio from 0 to 1, heights falling [m].
+    """
+    even = np.interp(np.linspace(X[0], X[-1], max(len(X), POINTS)), X, z)
+    ratio = np.linspace(0.0, 1.0, POINTS)
+    return ratio, np.quantile(even, 1.0 - ratio)
+
+
+def core(ratio, height):
+    r"""Core roughness after ISO 13565-2.
+
+    The secant over 40 % of the material ratio with the least slope, continued to 0 and 100 %, bounds the
+    core: :math:`R_k` is its height. :math:`R_{pk}` and :math:`R_{vk}` are the heights of triangles as large
+    as the areas of peaks above and valleys below it.
+
+    Parameters
+    ----------
+    ratio, height : ndarray
+        As of :func:`abbott_curve`.
+
+    Returns
+    -------
+    dict
+        "rk", "rpk", "rvk" [m], "mr1", "mr2" (1), "top", "bottom" of the core [m].
+    """
+    width = round(SECANT * (len(ratio) - 1))
+    begin = int(np.argmin(height[:-width] - height[width:]))
+    slope = (height[begin + width] - height[begin]) / SECANT
+    top = height[begin] - slope * ratio[begin]
+    bottom = top + slope
+    step = ratio[1] - ratio[0]
+    above, below = np.maximum(height - top, 0.0).sum() * step, np.maximum(bottom - height, 0.0).sum() * step
+    mr1 = float(np.interp(-top, -height, ratio))
+    mr2 = float(np.interp(-bottom, -height, ratio))
+    return {
+        "rk": float(top - bottom),
+        "rpk": float(2.0 * above / mr1) if mr1 > 0.0 else 0.0,
+        "rvk": float(2.0 * below / (1.0 - mr2)) if mr2 < 1.0 else 0.0,
+        "mr1": mr1,
+        "mr2": mr2,
+        "top": float(top),
+        "bottom": float(bottom),
+    }
+
+
+def roughness_parameters(X, z):
+    """Ra, Rq, Rz, Rk, Rpk, Rvk [m] and Rsk (1) of a profile, by lower-case name.
+
+    Parameters
+    ----------
+    X, z : ndarray, shape (n,)
+        Abscissas, increasing, and heights [m].
+    """
+    deviation = z - z.mean()
+    rq = float(np.sqrt((deviation**2).mean()))
+    edges = np.linspace(X[0], X[-1], SAMPLING_LENGTHS + 1)
+    parts = [z[(X >= low) & (X <= high)] for low, high in zip(edges, edges[1:], strict=False)]
+    found = core(*abbott_curve(X, z))
+    return {
+        "ra": float(np.abs(deviation).mean()),
+        "rq": rq,
+        "rz": float(np.mean([np.ptp(part) for part in parts if part.size])),
+        "rsk": float((deviation**3).mean() / rq**3) if rq > 0.0 else 0.0,
+        **{name: found[name] for name in ("rk", "rpk", "rvk")},
+    }
