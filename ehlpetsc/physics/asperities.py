@@ -30,6 +30,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 
 GAMMA = 0.5  # decay length of the pressure over the rms height
+CONTACT_PRESSURE = 10e6  # Pa: places whose asperities carry more count as in contact
 KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, at light load
 
 

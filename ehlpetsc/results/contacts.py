@@ -1,8 +1,12 @@
 """Where a result's surfaces touch, whatever it stores and whatever bound its film has."""
 
+import tomllib
+
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
+from ehlpetsc.physics.scales import reduced_modulus
 
 ROUNDING = 1e-6  # of the bound: films may be stored in single precision
 
@@ -11,14 +15,25 @@ def film_at_contact(result):
     """Film [m] between surfaces that touch; -inf if none ever do.
 
     The least film of the steps with contacts: in direct contact ``contact.minimum_film``, in mixed contact
-    ``contact.boundary_film``, given in the case or not.
+    ``contact.boundary_film``, given in the case or not; of a compliant layer, the film at which its
+    asperities carry the pressure from which nodes count as in contact.
 
     Parameters
     ----------
     result : ehlpetsc.results.reader.Result
     """
+    contact = tomllib.loads(result.attrs["case"]).get("contact", {})
+    if "asperity_height" in contact:
+        return layer_film(contact)
     touching = result.steps("contacts") > 0
     return float(result.steps("h_min")[touching].min()) if touching.any() else -np.inf
+
+
+def layer_film(contact):
+    """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; contact: table of a stored case."""
+    modulus = 0.5 * reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])
+    prefactor = contact.get("asperity_stiffness", 1.0) * modulus
+    return asperity_separation(CONTACT_PRESSURE, GAMMA * contact["asperity_height"], prefactor)
 
 
 def in_contact(result, frames, nodes=slice(None)):

@@ -20,6 +20,7 @@ from ehlpetsc.discretisation.contact.mixed import SeparatedContact
 from ehlpetsc.discretisation.contact.node_state import NodeState, full_of_oil, limit_cavitation
 from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
 from ehlpetsc.physics.asperities import (
+    CONTACT_PRESSURE,
     asperity_pressure,
     asperity_pressures,
     asperity_separation,
@@ -27,7 +28,6 @@ from ehlpetsc.physics.asperities import (
     real_area_fraction,
 )
 
-CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
 HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes

@@ -1,0 +1,69 @@
+"""Runs of a compliant layer through restart, passes, a series, post-processing and --explain."""
+
+import json
+
+import numpy as np
+import pytest
+from running import ROOT, run, settings
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.reader import read_result
+
+QUICK = ("mesh.inlet=-1.4", "mesh.points_per_half_width=50", "time.travel=0.6", "output.every=1")
+
+
+@pytest.fixture(scope="module")
+def case(tmp_path_factory):
+    """A case of one speed: the file of the Stribeck curve without its series."""
+    given = load(ROOT / "cases" / "stribeck.toml", {"series": None, "motion.entrainment_speed": 0.5})
+    text = given.text.replace('"profiles/', f'"{ROOT}/cases/profiles/')
+    path = tmp_path_factory.mktemp("case") / "layer.toml"
+    path.write_text(text)
+    return path
+
+
+def test_restart_gives_the_same_run(case, tmp_path):
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    for folder in (whole, parts):
+        folder.mkdir()
+    words = [case, *settings(*QUICK)]
+    assert run(*words, cwd=whole).returncode == 0
+    stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, 40))
+    assert stopped.returncode == 4, stopped.stderr
+    done = run(*words, "-ehl_restart", "layer.restart.h5", cwd=parts)
+    assert done.returncode == 0, done.stderr
+    with read_result(whole / "layer.h5") as one, read_result(parts / "layer.h5") as other:
+        assert len(one.time) == len(other.time) > 50
+        for name in ("pressure", "contact_pressure", "film_thickness"):
+            largest = np.abs(one[name][:]).max()
+            np.testing.assert_allclose(one[name][:], other[name][:], rtol=0, atol=1e-9 * largest)
+        share = one.steps("contact_share")
+        np.testing.assert_allclose(other.steps("contact_share"), share, rtol=1e-9)
+        assert share.max() > 0.1
+        stored = np.asarray(one["in_contact"][:], dtype=bool)
+        np.testing.assert_array_equal(stored, one["contact_pressure"][:] > 10e6)
+
+
+def test_contacts_follow_from_stored_films_alone(case, tmp_path):
+    fields = 'output.fields=["film_thickness", "contact_pressure"]'
+    words = settings(*QUICK[:2], "time.travel=0.1", "output.every=1", fields)
+    assert run(case, *words, cwd=tmp_path).returncode == 0
+    with read_result(tmp_path / "layer.h5") as result:
+        found = in_contact(result, slice(0, len(result.time)))
+        np.testing.assert_array_equal(found, result["contact_pressure"][:] > 10e6)
+        assert found.any() and not found.all()
+
+
+def test_passes_add_plastic_deformation(case, tmp_path):
+    words = settings(*QUICK[:3], "time.travel=1.2", "time.passes=2", "contact.yield_pressure=1.1e9")
+    done = run(case, *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rows = json.loads((tmp_path / "layer.passes.json").read_text())["passes"]
+    assert len(rows) == 2 and rows[0]["added"] > rows[1]["added"] >= 0.0
+
+
+def test_explain_names_no_fault(case, tmp_path):
+    done = run("--explain", case, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "Refused" not in done.stdout
