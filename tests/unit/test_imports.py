@@ -24,7 +24,7 @@ MAY_IMPORT = {
     "quantities": {"effects"},
     "gears": {"physics", "results"},
     "case": {"gears", "surfaces", "physics", "quantities"},
-    "results": {"quantities"},
+    "results": {"quantities", "physics"},
     "discretisation": {"physics"},
     "nonlinear": {"discretisation", "physics"},
     "stepping": {"nonlinear", "discretisation", "physics", "effects"},
