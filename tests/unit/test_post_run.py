@@ -18,7 +18,7 @@ from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.outputs.passes_file import same_points
-from ehlpetsc.post.pictures import gallery
+from ehlpetsc.post.pictures import gallery, plots
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.results.post_result import PostResult
@@ -443,3 +443,52 @@ def test_residual_stress_without_a_mean_stress_term_is_told(scene, tmp_path, cap
 )
 def test_faults_in_residual_stress_and_criteria(post, text, scene, tmp_path, capsys):
     assert text in fault(capsys, write(tmp_path / "a.h5", scene, post=post))
+
+
+def test_pictures_are_drawn_over_the_surfaces_own_abscissa(result, capsys):
+    """In mm from the point that was at the inlet at time 0, where a profile begins, and in um deep."""
+    assert main([str(result), "--depths", "0", "0.05", "0.5"]) == 0
+    found = PostResult(result.with_name("run.post.h5"))
+    passed = found.s[found.complete["slow"]]
+    with h5py.File(result) as file:
+        inlet, a = file["x"][0], file.attrs["a"]
+    top, bottom, *_ = gallery.damage_picture(found, "slow").axes
+    assert bottom.get_xlim() == pytest.approx([1e3 * (inlet - passed[-1]), 1e3 * (inlet - passed[0])])
+    (beside,) = bottom.child_axes
+    assert [text.get_text() for text in beside.get_yticklabels()] == ["0", f"{5e4 * a:.3g}", f"{5e5 * a:.3g}"]
+    s, z = found.worst_point("slow")
+    assert f"at {1e3 * (inlet - s):.4g} mm, z/a = {z:g}" in top.get_title()
+    line = top.lines[-1].get_xydata()
+    profile_s, profile_z = found.profiles["slow"]
+    np.testing.assert_allclose(line[:, 1], 1e6 * np.interp(inlet - 1e-3 * line[:, 0], profile_s, profile_z))
+    found.attrs["speed_slow"] = -1.0
+    outlet = found.attrs["outlet"]
+    assert plots.along_body(found, "slow", outlet + 2e-3) == pytest.approx(2.0)
+
+
+def test_the_depth_of_the_largest_von_mises_stress_is_marked(result):
+    """Under Hertz's pressure with friction 0.05 and a small ripple: at 0.79 a in a smooth contact."""
+    assert main([str(result)]) == 0
+    found = PostResult(result.with_name("run.post.h5"))
+    axes = next(
+        a for a in gallery.field_picture(str(result), found, None).axes if "largest" in a.get_title("left")
+    )
+    (mark,) = axes.lines
+    (x,), (z,) = mark.get_data()
+    assert 0 < z < 1.0 and abs(x) < 1.0 and f"{1e6 * z * found.a:.3g} µm deep" in axes.get_title("left")
+
+
+def test_a_smooth_surface_has_no_panel_for_its_profile(scene, tmp_path):
+    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface/slow"))
+    run(Job(str(path), str(tmp_path / "o.h5")))
+    found = PostResult(tmp_path / "o.h5")
+    counts = [len(gallery.damage_picture(found, side).axes) for side in ("slow", "fast")]
+    assert counts == [2, 3]  # with the scale of colours
+
+
+def test_cycles_that_add_nothing_are_left_out_of_their_picture():
+    axes = Figure().subplots()
+    cycles = np.array([[2.0, 0, 1, 0, 1], [1.0, 0, 1, 0, 1], [1e-3, 0, 1, 0, 1]])
+    plots.cycle_histogram(axes, cycles, np.array([1e-3, 1e-9, 1e-30]))
+    assert axes.collections[0].get_offsets()[:, 0].tolist() == [2.0, 1.0]
+    assert "1 cycles of less than 1e-12" in axes.get_title("left") and axes.get_ylim()[0] > 1e-12

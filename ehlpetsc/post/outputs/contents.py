@@ -104,6 +104,8 @@ class Contents:
             "settings": "\n".join(settings),
             "fingerprint": mark,
             "a": loads.a,
+            "inlet": loads.x[0],
+            "outlet": loads.x[-1],
             "p0": loads.p0,
             "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
             "regression": self.regression,

@@ -23,12 +23,11 @@ def criteria_picture(result, surface):
     figure = Figure(figsize=(10, 1.4 + 1.75 * (len(names) + 1)), layout="constrained")
     heights = (0.5, *[1] * (len(names) + 1))
     axes = figure.subplots(len(names) + 2, 2, height_ratios=heights, width_ratios=(2.6, 1))
-    length = plots.shown_length(result, surface, SECTION)
+    ends = plots.stretch(result, surface, SECTION)
     paper = result.damage[surface]
     levels = plots.decades(np.nanmax(paper))
-    plots.profile(axes[0, 0], result, surface, length)
-    first = plots.first_passed(result, surface)
-    axes[0, 0].set_xlim(first, first + length)
+    plots.profile(axes[0, 0], result, surface, ends)
+    axes[0, 0].set_xlim(*ends)
     axes[0, 0].set_title(
         f"{surface} surface, slide/roll ratio {result.ratio:.3g}; profile and criteria",
         fontsize=9,
@@ -36,38 +35,38 @@ def criteria_picture(result, surface):
     )
     for place in (axes[0, 1], axes[1, 1]):
         place.axis("off")
-    contours = _map(axes[1, 0], result, surface, paper, length, levels, "the paper's, von Mises ranges")
+    contours = _map(axes[1, 0], result, surface, paper, ends, levels, "von Mises ranges")
     for row, name in zip(axes[2:], names, strict=True):
         values = result.criteria[name][surface]
-        _row(figure, row, result, surface, name, values, length, levels)
+        _row(figure, row, result, surface, name, values, ends, levels)
     if contours is not None:
         maps = [axes[1, 0], *(axes[k + 2, 0] for k, name in enumerate(names) if name != "dang-van")]
         bar = figure.colorbar(contours, ax=maps, label="damage D of one pass", pad=0.01, aspect=40)
         bar.ax.yaxis.set_major_formatter(lambda power, place: f"$10^{{{power:.0f}}}$")
-    axes[-1, 0].set_xlabel("s/a")
-    axes[-1, 1].set_xlabel("the paper's D")
+    axes[-1, 0].set_xlabel(plots.body_label(surface))
+    axes[-1, 1].set_xlabel("D of von Mises ranges")
     _depth_colours(figure, axes[1, 1], result)
     return figure
 
 
-def _map(axes, result, surface, values, length, levels, title):
+def _map(axes, result, surface, values, ends, levels, title):
     shown = result.with_damage(surface, values)
-    contours = plots.damage_contours(axes, shown, surface, length, levels, gap=0.1)
+    contours = plots.damage_contours(axes, shown, surface, ends, levels, gap=0.1)
     axes.set_title(title, fontsize=8, loc="left", pad=2)
     return contours
 
 
-def _row(figure, row, result, surface, name, values, length, levels):
+def _row(figure, row, result, surface, name, values, ends, levels):
     left, right = row
     complete = result.complete[surface]
     paper = result.damage[surface]
     if name == "dang-van":
         title = f"{NAMES[name]}: share of the fatigue limit; line: 1"
-        plots.utilisation_contours(figure, left, result, surface, values, length)
+        plots.utilisation_contours(figure, left, result, surface, values, ends)
         left.set_title(title, fontsize=8, loc="left", pad=2)
         right.axhline(1, color="0.6", lw=0.7)
     else:
-        _map(left, result, surface, values, length, levels, NAMES[name])
+        _map(left, result, surface, values, ends, levels, NAMES[name])
     for k, colour in enumerate(_colours(result.z)):
         x, y = paper[k, complete], values[k, complete]
         there = (x > 0) & (y > 0)

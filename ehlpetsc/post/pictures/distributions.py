@@ -17,13 +17,14 @@ TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hu
 def depth_picture(result):
     """Distributions of damage at the asperities of one surface, by depth (figure 10).
 
-    Bands: 90 % of the fits to asperities drawn anew; dashes: the fit of the largest likelihood.
+    Bands: 90 % bootstrap confidence limits of the fit by median ranks.
     """
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
     for k, color in enumerate(_colours(len(result.z))):
         _curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
         _sureness(axes, result.under[k], result.attrs["regression"], color)
+    _explain_marks(axes)
     _finish(
         axes, f"{result.height.size} asperities, {result.main} surface, slide/roll ratio {result.ratio:.3g}"
     )
@@ -70,6 +71,17 @@ def _sureness(axes, under, regression, color):
     low, high = np.quantile(drawn, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
     axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
     axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
+
+
+def _explain_marks(axes):
+    """Entries of the legend for dots, lines, dashes and bands."""
+    for style, words in (
+        (dict(marker=".", ls=""), "asperities"),
+        (dict(lw=1.2), "Weibull, median ranks"),
+        (dict(lw=0.8, ls="--"), "Weibull, largest likelihood"),
+    ):
+        axes.plot([], [], color="0.3", label=words, **style)
+    axes.fill_between([], [], color="0.3", alpha=0.15, lw=0, label=f"{100 * LEVEL:g} % bootstrap limits")
 
 
 def _finish(axes, title):

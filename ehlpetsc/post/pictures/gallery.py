@@ -108,17 +108,22 @@ def _bar(figure, contours, axes):
 
 def damage_picture(result, surface):
     """Damage under the profile (figure 8 of Holmes et al. 2005)."""
-    figure = Figure(figsize=(8, 4.2), layout="constrained")
-    top, main = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2.4))
-    length = plots.shown_length(result, surface)
+    rough = surface in result.profiles
+    figure = Figure(figsize=(8, 4.2 if rough else 3.2), layout="constrained")
+    axes = list(figure.subplots(2, 1, sharex=True, height_ratios=(1, 2.4))) if rough else [figure.subplots()]
+    ends = plots.stretch(result, surface)
     largest = max(result.largest(surface, k) for k in range(len(result.z)))
-    plots.profile(top, result, surface, length)
-    top.set_title(
-        f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g}", fontsize=9
+    if rough:
+        plots.profile(axes[0], result, surface, ends)
+    s, z = result.worst_point(surface)
+    axes[0].set_title(
+        f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g} at "
+        f"{plots.along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})",
+        fontsize=9,
     )
-    _bar(figure, plots.damage_contours(main, result, surface, length, plots.decades(largest)), [top, main])
-    main.set_xlabel("body coordinate s/a")
-    figure.align_ylabels([top, main])
+    _bar(figure, plots.damage_contours(axes[-1], result, surface, ends, plots.decades(largest)), axes)
+    axes[-1].set_xlabel(plots.body_label(surface))
+    figure.align_ylabels(axes)
     return figure
 
 
@@ -127,16 +132,16 @@ def stacked_picture(results, surface):
     count = len(results)
     figure = Figure(figsize=(8, 1.2 + 1.7 * count), layout="constrained")
     axes = figure.subplots(count + 1, 1, sharex=True, height_ratios=(0.7, *[1] * count))
-    length = min(plots.shown_length(result, surface, SECTION) for result in results)
     levels = plots.decades(max(r.largest(surface, k) for r in results for k in range(len(r.z))))
     start = [_aligned(result, surface, results) for result in results]
-    plots.profile(axes[0], start[0], surface, length)
+    ends = plots.stretch(start[0], surface, SECTION)
+    plots.profile(axes[0], start[0], surface, ends)
     contours = None
     for row, result in zip(axes[1:], start, strict=True):
-        drawn = plots.damage_contours(row, result, surface, length, levels, LAYER, gap=0.1)
+        drawn = plots.damage_contours(row, result, surface, ends, levels, LAYER, gap=0.1)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
-    axes[-1].set_xlabel(f"body coordinate s/a of the {surface} surface")
+    axes[-1].set_xlabel(plots.body_label(surface))
     _bar(figure, contours, list(axes))
     figure.align_ylabels(axes)
     return figure
@@ -165,7 +170,7 @@ def field_picture(path, result, frame):
         nu = getattr(read_settings(loads.case), surface).poisson_ratio
         z = FIELD_DEPTH * np.linspace(0, 1, 121) ** 2
         fields = plots.stress_fields(*stress(loads.x, z * loads.a, p, q, nu), nu)
-        x, time = loads.x / loads.a, loads.time[frame]
+        x, time, width = loads.x / loads.a, loads.time[frame], loads.a
     figure = Figure(figsize=(8, 9), layout="constrained")
     top, *axes = figure.subplots(5, 1, sharex=True, height_ratios=(0.7, 1, 1, 1, 1))
     top.plot(x, p / 1e9, color=plots.DARK, lw=0.9)
@@ -173,6 +178,8 @@ def field_picture(path, result, frame):
     top.set_title(f"solid of the {surface} surface, t = {time * 1e6:.4g} µs", fontsize=9)
     for row, (name, values) in zip(axes, fields.items(), strict=True):
         mesh = plots.stress_field(row, x, z, values, name)
+        if name == plots.VON_MISES:
+            plots.mark_largest(row, x, z, values, width)
         figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.ticks_within(mesh.levels))
     axes[-1].set_xlabel("x/a")
     return figure
@@ -212,8 +219,9 @@ def history_picture(path, result, point):
     top.set_xlabel("time [µs]")
     marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
     top.set_title(
-        f"{surface} surface, s/a = {s / result.a:.4g}, z/a = {z:g}: {len(cycles)} cycles of "
-        f"{plots.COMPONENTS[channel]}, {marked} marked, damage {damages.sum():.3g}",
+        f"{surface} surface, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "
+        f"{z:g}: {len(cycles)} cycles of {plots.COMPONENTS[channel]}, {marked} marked, damage "
+        f"{damages.sum():.3g}",
         fontsize=9,
     )
     plots.cycle_histogram(bottom, cycles, damages)

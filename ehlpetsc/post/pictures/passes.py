@@ -15,7 +15,7 @@ def passes_picture(results, surface):
     worst = int(found.mean.max(axis=1).argmax())
     figure = Figure(figsize=(8, 5.4), layout="constrained")
     top, bottom = figure.subplots(2, 1, height_ratios=(1.3, 1))
-    x = s / results[0].a
+    x = plots.along_body(results[0], surface, s)
     top.fill_between(
         x,
         damages[:, worst].min(axis=0),
@@ -27,7 +27,7 @@ def passes_picture(results, surface):
     )
     top.plot(x, found.mean[worst], color=plots.DARK, lw=0.8, label="mean D of a pass")
     top.set_yscale("log")
-    top.set_xlabel("s/a")
+    top.set_xlabel(plots.body_label(surface))
     top.set_ylabel("D of a pass")
     first, scatter = found.life[worst].min(), np.median((found.deviation / found.mean)[worst])
     top.set_title(

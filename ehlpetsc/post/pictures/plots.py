@@ -9,6 +9,7 @@ from ehlpetsc.post.stresses.half_plane import von_mises
 
 DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
 COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
+VON_MISES = r"$\sigma_{vM}$"
 MARKED = 12  # cycles in the picture of a history
 DARK = "#222222"
 
@@ -21,63 +22,73 @@ def decades(largest):
     return np.arange(top - DECADES, top + 1)
 
 
-def profile(axes, result, surface, length):
-    """The profile over the points that passed, heights in um; s/a runs over `length` half widths."""
+def along_body(result, surface, s):
+    """Abscissa [mm] on the surface's own profile: distance from the point that was at the inlet at time 0."""
+    passed = result.s[result.complete[surface]]
+    if result.attrs.get(f"speed_{surface}", 1.0) < 0:
+        return 1e3 * (s - result.attrs.get("outlet", passed[0]))
+    return 1e3 * (result.attrs.get("inlet", passed[-1]) - s)
+
+
+def body_label(surface):
+    """Label of an axis of :func:`along_body`."""
+    return f"along the {surface} surface [mm]"
+
+
+def stretch(result, surface, longest=None):
+    """Ends [mm] of the points that passed, or of the first `longest` half widths of them."""
+    low, high = np.sort(along_body(result, surface, result.s[result.complete[surface]][[0, -1]]))
+    return low, min(high, low + 1e3 * result.a * (longest or np.inf))
+
+
+def profile(axes, result, surface, ends):
+    """The profile between two ends in mm, heights in um."""
     axes.set_ylabel("z [µm]")
     axes.axhline(0, color="0.8", lw=0.6)
     axes.yaxis.set_major_locator(MaxNLocator(3))
     if surface in result.profiles:
         s, z = result.profiles[surface]
-        x, first = s / result.a, first_passed(result, surface)
-        shown = (x >= first) & (x <= first + length)
+        x = along_body(result, surface, s)
+        shown = (x >= ends[0]) & (x <= ends[1])
         axes.plot(x[shown], z[shown] * 1e6, color=DARK, lw=0.8)
 
 
-def first_passed(result, surface):
-    """s/a of the first body point that passed."""
-    return result.s[result.complete[surface]][0] / result.a
+def _under_surface(axes, result, surface, ends, depths, gap):
+    """Axes of a map under a surface, in mm, z/a and um; abscissae of the points that passed and depths."""
+    depth, ticks = _depth_axis(depths, gap)
+    axes.set_yticks(depth[ticks], [f"{z:g}" for z in depths[ticks]])
+    axes.set_ylim(depth[-1], depth[0])
+    axes.set_xlim(*ends)
+    axes.set_ylabel("z/a")
+    if len(depth) > 1:
+        beside = axes.secondary_yaxis("right")
+        beside.set_yticks(depth[ticks], [f"{1e6 * z * result.a:.3g}" for z in depths[ticks]])
+        beside.set_ylabel("z [µm]")
+    return along_body(result, surface, result.s[result.complete[surface]]), depth
 
 
-def shown_length(result, surface, longest=None):
-    """Length in half widths of the points that passed."""
-    passed = result.s[result.complete[surface]]
-    length = (passed[-1] - passed[0]) / result.a
-    return min(length, longest) if longest else length
-
-
-def damage_contours(axes, result, surface, length, levels, deepest=np.inf, gap=0.07):
+def damage_contours(axes, result, surface, ends, levels, deepest=np.inf, gap=0.07):
     """Filled contours of log10 D over body point and depth, whose axis shows the root of the depth.
 
     Ticks are `gap` of the axis or more apart.
     """
-    complete = result.complete[surface]
     z = result.z[result.z <= max(deepest, result.z[:2].max())]
-    x, values = result.s[complete] / result.a, result.damage[surface][: z.size, complete]
-    depth, ticks = _depth_axis(z, gap)
-    axes.set_yticks(depth[ticks], [f"{place:g}" for place in z[ticks]])
-    axes.set_ylim(depth[-1], depth[0])
-    axes.set_xlim(first_passed(result, surface), first_passed(result, surface) + length)
-    axes.set_ylabel("z/a")
+    x, depth = _under_surface(axes, result, surface, ends, z, gap)
     if levels is None or len(depth) < 2:
         axes.text(
             0.5, 0.5, "no damage" if levels is None else "one depth", transform=axes.transAxes, ha="center"
         )
         return None
-    shown = np.log10(np.maximum(values, 10.0 ** (levels[0] - 1.0)))
+    shown = np.log10(np.maximum(result.passed(surface)[: z.size], 10.0 ** (levels[0] - 1.0)))
     return axes.contourf(x, depth, shown, levels=levels, cmap="inferno_r", extend="min")
 
 
-def utilisation_contours(figure, axes, result, surface, values, length):
+def utilisation_contours(figure, axes, result, surface, values, ends):
     """Filled contours of the utilisation of a fatigue limit, and the line where it is used up."""
-    complete = result.complete[surface]
-    x, shown = result.s[complete] / result.a, values[:, complete]
-    depth, ticks = _depth_axis(result.z, 0.1)
-    axes.set_yticks(depth[ticks], [f"{place:g}" for place in result.z[ticks]])
-    axes.set_ylim(depth[-1], depth[0])
-    axes.set_xlim(first_passed(result, surface), first_passed(result, surface) + length)
-    axes.set_ylabel("z/a")
+    x, depth = _under_surface(axes, result, surface, ends, result.z, 0.1)
     if len(depth) < 2:
         return
+    shown = values[:, result.complete[surface]]
     levels = MaxNLocator(10).tick_values(0, np.quantile(shown, 0.999))
     mesh = axes.contourf(x, depth, shown, levels=levels, cmap="viridis", extend="max")
     if shown.min() < 1 < shown.max():
@@ -122,6 +133,17 @@ def stress_field(axes, x, z, values, label):
     return mesh
 
 
+def mark_largest(axes, x, z, values, a):
+    """A cross at the largest von Mises stress, its depth beside the name of the picture; z in half widths."""
+    k, j = np.unravel_index(values.argmax(), values.shape)
+    axes.plot(x[j], z[k], "x", color="#cc3311", ms=6)
+    axes.set_title(
+        f"{VON_MISES}, largest {values[k, j]:.3g} GPa at z/a = {z[k]:.3g}, {1e6 * z[k] * a:.3g} µm deep",
+        fontsize=9,
+        loc="left",
+    )
+
+
 def ticks_within(levels):
     """About five round values between the ends of `levels`."""
     ticks = MaxNLocator(5).tick_values(levels[0], levels[-1])
@@ -130,7 +152,7 @@ def ticks_within(levels):
 
 def stress_fields(sx, sz, txz, nu):
     """The four stresses of the picture, GPa, by label."""
-    names = (*COMPONENTS, r"$\sigma_{vM}$")
+    names = (*COMPONENTS, VON_MISES)
     stresses = (sx, sz, txz, von_mises(sx, sz, txz, nu))
     return {name: values / 1e9 for name, values in zip(names, stresses, strict=True)}
 
@@ -152,13 +174,15 @@ def history(axes, time, values, channel):
 
 
 def cycle_histogram(axes, cycles, damages):
-    """Each cycle's range and what it adds to the damage."""
-    shown = damages > 0
+    """Each cycle's range and what it adds to the damage; none that adds less than 1e-12 of the largest."""
+    shown = damages > 1e-12 * damages.max(initial=0.0)
     axes.scatter(cycles[shown, 0], damages[shown], s=10, color="#cc3311")
     axes.set_yscale("log")
-    if shown.any():
-        top = damages[shown].max()
-        axes.set_ylim(top * 1e-12, top * 10)
+    left_out = np.count_nonzero(~shown)
+    if left_out:
+        axes.set_title(
+            f"{left_out} cycles of less than 1e-12 of the largest left out", fontsize=8, loc="left"
+        )
     axes.set_xlabel("range of the counted stress [GPa]")
     axes.set_ylabel("1/N of the cycle")
     axes.grid(color="0.92")
