@@ -100,7 +100,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
         Restart file to go on from.
     overwrite : bool
         Whether to replace whatever stands in the place of `output`; else only the complete result of the
-        very same case is made again.
+        very same case is made again, and an unfinished run of it continued from its restart file.
     progress : bool, optional
         Whether to show progress; by default on a terminal and in a notebook.
 
@@ -136,7 +136,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
         progress = on_terminal(sys.stdout) or in_notebook()
     recorder = Recorder(simulation, output)
     with simulation.options, recorder:
-        recorder.reserve(restart, overwrite)
+        restart = recorder.reserve(restart, overwrite)
         if restart is not None:
             recorder.resume(restart)
         shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []

@@ -10,8 +10,7 @@ from pathlib import Path
 import h5py
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.hdf5.attributes import plain
-from ehlpetsc.results.hdf5.opening import open_for_reading, open_result
+from ehlpetsc.results.hdf5.opening import open_for_reading
 
 WAIT = "wait for it, or give another -ehl_output"
 WAYS = "give another -ehl_output, or -ehl_overwrite to lose it"
@@ -94,36 +93,6 @@ def stands(path):
         return path.exists()
     except OSError as error:
         raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
-
-
-def check_replaceable(path, restart, case_text):
-    """Refuse to replace anything but the complete result of the very same case.
-
-    Parameters
-    ----------
-    path, restart : Path
-        The result file and the restart file beside it.
-    case_text : str
-
-    Raises
-    ------
-    OutputError
-        With the options to choose from.
-    """
-    waiting = restart.exists() and f"go on with -ehl_restart {restart}, {WAYS}"
-    if not path.exists():
-        if waiting:
-            raise OutputError(f"{restart}: a restart file waits there; {waiting}")
-        return
-    try:
-        with open_result(path) as file:
-            status, case = plain(file.attrs.get("status")), plain(file.attrs.get("case"))
-    except OutputError:
-        raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {WAYS}") from None
-    if status != "done":
-        raise OutputError(f"{path}: holds a run that is {status}, not done; {waiting or WAYS}")
-    if case != case_text:
-        raise OutputError(f"{path}: holds the result of another case, or of other -ehl_set; {WAYS}")
 
 
 def check_index(path, rows, files=()):

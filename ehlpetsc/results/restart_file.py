@@ -12,6 +12,8 @@ import h5py
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5 import attributes
+from ehlpetsc.results.hdf5.opening import open_result
+from ehlpetsc.results.output_guard import WAYS
 from ehlpetsc.results.whole_file import plain_reason, write_whole
 
 VERSION = 3
@@ -88,3 +90,55 @@ def _check(path, whole):
         raise OutputError(f"{path}: a restart file of version {shown}, this ehlpetsc reads {VERSION}")
     if whole[:HEAD] != _head(memoryview(whole)[HEAD:]):
         raise OutputError(f"{path}: damaged restart file: its content does not agree with its checksum")
+
+
+def restart_of_same(path, restart, case_text):
+    """Restart file from which the same command continues an unfinished run; None: it begins anew.
+
+    Begun anew are the complete result of the very same case, and a run of it that was killed before its first
+    restart file. Anything else in the place of the result is refused.
+
+    Parameters
+    ----------
+    path, restart : Path
+        The result file and the restart file beside it.
+    case_text : str
+
+    Returns
+    -------
+    Path or None
+
+    Raises
+    ------
+    OutputError
+        With the options to choose from.
+    """
+    status = _status_of_same(path, case_text) if path.exists() else None
+    if status == "done" or not restart.exists():
+        return None
+    try:
+        same = load_restart(restart)[1]["case"] == case_text
+    except (OutputError, KeyError) as error:
+        raise OutputError(f"{error}; remove it, {WAYS}") from None
+    if not same or status is None:
+        which = "whose result is gone" if same else "of another case, or of other -ehl_set"
+        way = f"go on with -ehl_restart {restart}, {WAYS}"
+        raise OutputError(f"{restart}: a restart file waits there, {which}; {way}")
+    return restart
+
+
+def _status_of_same(path, case_text):
+    """Status of a result; OutputError where it is none, or of another case."""
+    try:
+        with open_result(path) as file:
+            status, case = (
+                attributes.plain(file.attrs.get("status")),
+                attributes.plain(file.attrs.get("case")),
+            )
+    except OutputError:
+        raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {WAYS}") from None
+    if case != case_text:
+        unfinished = "" if status == "done" else f" that is {status}, not done"
+        what = f"a run{unfinished}" if unfinished else "the result"
+        raise OutputError(f"{path}: holds {what} of another case, or of other -ehl_set; {WAYS}")
+    return status

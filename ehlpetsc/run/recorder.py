@@ -4,7 +4,8 @@ import contextlib
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus, OutputError
-from ehlpetsc.results.output_guard import Lock, check_place, check_replaceable, inputs_of
+from ehlpetsc.results.output_guard import Lock, check_place, inputs_of
+from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.whole_file import remove_left
 from ehlpetsc.run.on_root import on_root
@@ -64,12 +65,18 @@ class Recorder:
         overwrite : bool
             Whether existing files may be replaced.
 
+        Returns
+        -------
+        path-like or None
+            Restart file to resume from: that given, else that of an unfinished run of the very same case.
+
         Raises
         ------
         OutputError
         """
-        if self.output is not None:
-            on_root(self.comm, self._reserve, restart, overwrite)
+        if self.output is None:
+            return restart
+        return self.comm.bcast(on_root(self.comm, self._reserve, restart, overwrite))
 
     def _reserve(self, restart, overwrite):
         case = self.simulation.case
@@ -80,8 +87,9 @@ class Recorder:
         self._lock.take()
         for path in (self.output, self.restart):
             remove_left(path)
-        if not (restart or overwrite):
-            check_replaceable(self.output, self.restart, case.text)
+        if restart or overwrite:
+            return restart
+        return restart_of_same(self.output, self.restart, case.text)
 
     def resume(self, path):
         """Put the simulation where a restart file was written, and continue its result.

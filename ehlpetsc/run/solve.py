@@ -138,7 +138,7 @@ class Run:
 
     def _solve(self, restart, overwrite):
         with self.simulation.options, self.recorder:
-            self.recorder.reserve(restart, overwrite)
+            restart = self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._looser = self.simulation.options.looser()
@@ -153,7 +153,8 @@ class Run:
         elif outcome.status is ExitStatus.STOPPED and state is None:
             self._print("ehlpetsc: stopped during the steady start; nothing to go on with")
         elif outcome.status is ExitStatus.STOPPED:
-            self._print(f"ehlpetsc: stopped at step {state.step}; go on with -ehl_restart {recorder.restart}")
+            way = f"go on with -ehl_restart {recorder.restart} or the same command"
+            self._print(f"ehlpetsc: stopped at step {state.step}; {way}")
         for line in recorder.result.limits:
             self._print(f"limit: {line}")
         for line in self._looser:

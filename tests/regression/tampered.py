@@ -1,7 +1,7 @@
 """The program with an accident at one step of one rank: ``tampered.py ACCIDENT RANK STEP arguments``.
 
 ACCIDENT is "raise", an error in the code, "late", the end of the time limit, "lost", the folder "out" removed
-with all that is in it, or the name of a signal that the rank gets during the step.
+with all that is in it, or the name of a signal that the rank gets during the step; "SIGKILL@2": of pass 2.
 """
 
 import math
@@ -23,9 +23,11 @@ def tamper(accident, rank, step):
     from ehlpetsc.run.simulation import Simulation
 
     advance = Simulation.advance
+    accident, _, of_pass = accident.partition("@")
 
     def with_accident(self, **given):
-        if self.solution and self.solution.step + 1 == step and MPI.COMM_WORLD.rank == rank:
+        of_this = not of_pass or self.pass_number == int(of_pass)
+        if of_this and self.solution and self.solution.step + 1 == step and MPI.COMM_WORLD.rank == rank:
             if accident == "raise":
                 raise ValueError("an accident")
             if accident == "late":

@@ -1,6 +1,5 @@
 """The batch script, with a stand-in for Slurm: stopped in time, queued again, it goes on and ends."""
 
-import os
 import signal
 import subprocess
 
@@ -15,40 +14,79 @@ JOB = ["/bin/bash", ROOT / "cases" / "batch.slurm", ROOT / "cases" / "table1_rou
 def slurm(folder):
     """The environment of a job, and a scontrol that notes what it is told."""
     scontrol = folder / "bin" / "scontrol"
-    scontrol.parent.mkdir()
+    scontrol.parent.mkdir(exist_ok=True)
     scontrol.write_text('#!/bin/sh\necho "$@" >>requeued\n')
     scontrol.chmod(0o755)
     path = f"{scontrol.parent}:{BARE['PATH']}"
     return BARE | {"PATH": path, "SLURM_JOB_ID": "17", "SLURM_NTASKS": "1", "SLURM_SUBMIT_DIR": str(ROOT)}
 
 
-@pytest.mark.slow
-def test_a_job_stopped_before_its_time_is_over_goes_on_when_queued_again(tmp_path):
-    result, restart = tmp_path / "table1_rough.h5", tmp_path / "table1_rough.restart.h5"
+def job(folder, case, *keys):
+    words = ["/bin/bash", ROOT / "cases" / "batch.slurm", ROOT / "cases" / case, *settings(*keys)]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    environment = slurm(tmp_path)
-    job = subprocess.Popen(
-        [*JOB, *settings("time.travel=30.0")], cwd=tmp_path, env=environment, start_new_session=True, **pipes
-    )
-    wait_for(result, job)
-    job.send_signal(signal.SIGUSR1)
-    text, _ = job.communicate(timeout=120)
-    assert job.returncode == 4, text
-    assert (tmp_path / "requeued").read_text() == "requeue 17\n"
-    assert restart.exists()
-    with read_result(result) as first:
-        stopped_at = int(first.steps("step")[-1])
-    assert 0 <= stopped_at < 2400
-    shorter = [*JOB, *settings("time.travel=0.5")]
-    again = subprocess.run(shorter, cwd=tmp_path, env=environment, timeout=120, **pipes)
-    assert again.returncode == 0, again.stdout
-    assert f"step {stopped_at}, " in again.stdout
-    assert not restart.exists()
-    with read_result(result) as whole:
-        assert whole.attrs["restarts"] == 1
-        assert whole.attrs["status"] == "done"
-        assert int(whole.steps("step")[-1]) == max(40, stopped_at)
-    assert os.path.getsize(tmp_path / "requeued") == len("requeue 17\n")
+    return subprocess.Popen(words, cwd=folder, env=slurm(folder), start_new_session=True, **pipes)
+
+
+def requeued(folder):
+    return (folder / "requeued").read_text().splitlines() if (folder / "requeued").exists() else []
+
+
+PASSES = (
+    "mesh.points_per_half_width=20",
+    "time.travel=1.2",
+    "time.passes=2",
+    "contact.yield_pressure=0.95e9",
+)
+MEMBERS = ("mesh.points_per_half_width=20", "time.travel=2.0", "series.values=[5.0,1.0]", "output.every=10")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "case, keys, first, results",
+    [
+        ("table1_rough.toml", (*SHORT, "time.travel=6.0"), "table1_rough.h5", ["table1_rough.h5"]),
+        ("running_in.toml", PASSES, "running_in.pass2.h5", ["running_in.pass1.h5", "running_in.pass2.h5"]),
+        (
+            "stribeck.toml",
+            MEMBERS,
+            "stribeck_entrainment_speed_1.0.h5",
+            ["stribeck_entrainment_speed_1.0.h5", "stribeck_entrainment_speed_5.0.h5"],
+        ),
+    ],
+    ids=["one run", "passes", "series"],
+)
+def test_a_job_stopped_before_its_time_is_over_continues_when_queued_again(
+    tmp_path, case, keys, first, results
+):
+    """The second job is the same command: it ends, and nothing that was done is computed again."""
+    stopped = job(tmp_path, case, *keys)
+    wait_for(tmp_path / first, stopped)
+    stopped.send_signal(signal.SIGUSR1)
+    text, _ = stopped.communicate(timeout=120)
+    assert stopped.returncode == 4, text
+    assert requeued(tmp_path) == ["requeue 17"]
+    with read_result(tmp_path / first) as begun:
+        assert begun.attrs["status"] == "stopped"
+        stopped_at = int(begun.steps("step")[-1])
+    again = job(tmp_path, case, *keys)
+    text, _ = again.communicate(timeout=200)
+    assert again.returncode == 0, text
+    assert requeued(tmp_path) == ["requeue 17"]
+    assert f"step {stopped_at}, " in text
+    for name in results:
+        with read_result(tmp_path / name) as whole:
+            assert whole.attrs["status"] == "done"
+            assert whole.attrs["restarts"] == (name == first)
+            assert list(whole.steps("step")) == list(range(len(whole.steps("step"))))
+
+
+@pytest.mark.slow
+def test_a_job_that_never_gets_to_its_first_step_is_not_queued_for_ever(tmp_path):
+    environment = slurm(tmp_path) | {"SLURM_RESTART_COUNT": "20"}
+    words = [*JOB, "-ehl_time_limit", "1e-6"]
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 4 and requeued(tmp_path) == []
+    assert "queued 20 times" in done.stderr
 
 
 def test_the_modules_of_a_cluster_are_loaded_before_the_run(tmp_path):

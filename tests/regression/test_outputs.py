@@ -42,14 +42,49 @@ def test_a_run_that_waits_for_its_restart_is_not_lost(tmp_path):
     stopped = run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5))
     assert stopped.returncode == 4
     before = (tmp_path / "r.h5").read_bytes()
-    refused = run(*case, cwd=tmp_path)
+    other = [*case, *settings("fluid.viscosity=0.004")]
+    refused = run(*other, cwd=tmp_path)
     assert refused.returncode == 2 and (tmp_path / "r.h5").read_bytes() == before
-    assert (
-        "r.h5: holds a run that is stopped, not done; go on with -ehl_restart r.restart.h5" in refused.stderr
-    )
+    assert "r.h5: holds a run that is stopped, not done of another case" in refused.stderr
     (tmp_path / "r.h5").unlink()
+    refused = run(*other, cwd=tmp_path)
+    assert (
+        refused.returncode == 2 and "r.restart.h5: a restart file waits there, of another" in refused.stderr
+    )
+
+
+def test_the_same_command_continues_a_run(tmp_path):
+    case = [*LONG[:-2], *settings("time.travel=0.2"), "-ehl_output", "r.h5"]
+    assert run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5)).returncode == 4
+    done = run(*case, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "restart: r.restart.h5, step 5, " in done.stdout
+    with read_result(tmp_path / "r.h5") as result:
+        assert result.attrs["restarts"] == 1 and list(result.steps("step")) == list(range(17))
+    again = run(*case, cwd=tmp_path)  # done by now: made again, whatever restart file is left
+    assert again.returncode == 0 and "restart: " not in again.stdout
+
+
+def test_the_same_command_begins_anew_where_a_run_was_killed_before_its_first_checkpoint(tmp_path):
+    case = [*LONG[:-2], *settings("time.travel=0.2"), "-ehl_output", "r.h5"]
+    assert run(*case, cwd=tmp_path, tampered=("SIGKILL", 0, 5)).returncode == -9
+    assert sorted(path.name for path in tmp_path.iterdir() if path.name.endswith(".h5")) == ["r.h5"]
+    done = run(*case, cwd=tmp_path)
+    assert done.returncode == 0 and "restart: " not in done.stdout
+    with read_result(tmp_path / "r.h5") as result:
+        assert result.attrs["status"] == "done"
+
+
+def test_a_damaged_restart_file_is_refused_and_left(tmp_path):
+    case = [*LONG, "-ehl_output", "r.h5"]
+    assert run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5)).returncode == 4
+    raw = bytearray((tmp_path / "r.restart.h5").read_bytes())
+    raw[2000] ^= 1
+    (tmp_path / "r.restart.h5").write_bytes(raw)
     refused = run(*case, cwd=tmp_path)
-    assert refused.returncode == 2 and "r.restart.h5: a restart file waits there" in refused.stderr
+    assert refused.returncode == 2
+    assert "r.restart.h5: damaged restart file" in refused.stderr and "; remove it, " in refused.stderr
+    assert (tmp_path / "r.restart.h5").read_bytes() == raw
 
 
 def make_fifo(folder):

@@ -75,7 +75,7 @@ def test_an_index_that_cannot_be_written_ends_the_run_in_words(tmp_path, monkeyp
     told = "r.passes.json: index not written, No space left on device; r.pass1.h5 is whole"
     with pytest.raises(OutputError, match=told):
         Passes(MPI.COMM_SELF, case, tmp_path / "r.h5").run()
-    assert [path.name for path in tmp_path.iterdir()] == ["r.pass1.h5"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["r.pass1.h5", "r.pass1.restart.h5"]
     with read_result(tmp_path / "r.pass1.h5") as result:
         assert result.attrs["status"] == "done"
 
@@ -162,3 +162,83 @@ def test_a_body_that_moves_less_than_a_point_of_its_profile(tmp_path):
         assert [len(values) for values in points] == [2, 2, 2]
         moved = result.attrs["u2"] * result.steps("time")[-1]
         assert moved < np.diff(points[0])[0]
+
+
+BRIEF = settings(*SHORT, "mesh.points_per_half_width=20", "time.travel=0.6", "contact.yield_pressure=0.95e9")
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    """Folder of two passes of 24 steps each."""
+    folder = tmp_path_factory.mktemp("passes")
+    done = run(CASE, *BRIEF, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def assert_as_uninterrupted(folder, whole):
+    one, other = (json.loads((place / "running_in.passes.json").read_text()) for place in (folder, whole))
+    assert one["case"] == other["case"] and [row["pass"] for row in one["passes"]] == [1, 2]
+    for row, expected in zip(one["passes"], other["passes"], strict=True):
+        assert row["set_volume"] == pytest.approx(expected["set_volume"], rel=1e-9) and row["added"] > 0.0
+        with read_result(folder / row["file"]) as a, read_result(whole / row["file"]) as b:
+            np.testing.assert_allclose(a.pressure, b.pressure, rtol=0.0, atol=1e-9 * a.attrs["p0"])
+            assert a.attrs["status"] == "done" and list(a.step) == list(b.step)
+
+
+@pytest.mark.parametrize(
+    "accident", [("SIGKILL@2", 0, 3), ("SIGKILL@1", 0, 9), ("SIGTERM@1", 0, 9), ("SIGINT@2", 0, 5)]
+)
+def test_the_same_command_continues_passes_wherever_they_ended(tmp_path, uninterrupted, accident):
+    often = settings("output.checkpoint=1e-5") if accident[0] == "SIGKILL@1" else []
+    ended = run(CASE, *BRIEF, *often, cwd=tmp_path, tampered=accident)
+    assert ended.returncode == (4 if accident[0][:7] != "SIGKILL" else -9)
+    done = run(CASE, *BRIEF, *often, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    restarted = done.stdout.index("restart: running_in.pass")
+    assert ("pass 1 of 2" in done.stdout) == (accident[0] != "SIGINT@2")
+    assert restarted < done.stdout.index("ehlpetsc: done")
+    if not often:
+        assert_as_uninterrupted(tmp_path, uninterrupted)
+
+
+def test_a_pass_killed_before_its_first_checkpoint_continues_from_the_pass_before(tmp_path, uninterrupted):
+    assert run(CASE, *BRIEF, cwd=tmp_path, tampered=("SIGKILL@2", 0, 3)).returncode == -9
+    with read_result(tmp_path / "running_in.pass2.h5") as begun:
+        assert begun.attrs["status"] == "running"
+    done = run(CASE, *BRIEF, "-ehl_restart", "running_in.pass1.restart.h5", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert_as_uninterrupted(tmp_path, uninterrupted)
+
+
+def copied(folder, place, *left_out):
+    for path in folder.iterdir():
+        if path.name not in left_out:
+            (place / path.name).write_bytes(path.read_bytes())
+
+
+def test_an_index_that_is_lost_is_written_again(tmp_path, uninterrupted):
+    copied(uninterrupted, tmp_path, "running_in.passes.json")
+    done = run(CASE, *BRIEF, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "restart: running_in.pass1.restart.h5, step 24, " in done.stdout
+    assert_as_uninterrupted(tmp_path, uninterrupted)
+
+
+def test_a_restart_file_whose_result_is_gone_is_kept(tmp_path, uninterrupted):
+    copied(uninterrupted, tmp_path, "running_in.pass2.h5")
+    before = (tmp_path / "running_in.pass2.restart.h5").read_bytes()
+    refused = run(CASE, *BRIEF, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "running_in.pass2.restart.h5: a restart file waits there, whose result is gone" in refused.stderr
+    assert (tmp_path / "running_in.pass2.restart.h5").read_bytes() == before
+
+
+def test_more_passes_continue_from_the_last_one(tmp_path, uninterrupted):
+    copied(uninterrupted, tmp_path)
+    more = [*BRIEF, *settings("time.passes=3"), "-ehl_restart", "running_in.pass2.restart.h5"]
+    done = run(CASE, *more, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rows = json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
+    assert [row["pass"] for row in rows] == [1, 2, 3]
+    assert rows[2]["set_volume"] > rows[1]["set_volume"]

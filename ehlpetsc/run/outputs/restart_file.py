@@ -39,8 +39,10 @@ class RestartFile:
             self._saved = clock.monotonic()
 
     def close(self, status):
-        """Write the file for a run that did not get to its end."""
-        if status is not ExitStatus.DONE and self.simulation.solution is not None and self.result.is_open:
+        """Write the file for a run that did not get to its end, and for a pass, for the next one."""
+        time = self.simulation.case.time
+        needed = status is not ExitStatus.DONE or time is not None and time.passes > 1
+        if needed and self.simulation.solution is not None and self.result.is_open:
             self.save()
 
     def save(self):

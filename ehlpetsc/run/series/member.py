@@ -75,13 +75,12 @@ class Member:
         What is damaged is computed again: a result anywhere, a restart file by its checksum.
         """
         try:
-            if self.output.exists():
-                with read_result(self.output) as result:
-                    if result.attrs["case"] != self.case.text:
-                        return "waiting"
-                    result.check()
-                    if result.attrs["status"] == "done":
-                        return "done"
+            with read_result(self.output) as result:
+                if result.attrs["case"] != self.case.text:
+                    return "waiting"
+                result.check()
+                if result.attrs["status"] == "done":
+                    return "done"
             if load_restart(self.restart)[1]["case"] == self.case.text:
                 return "begun"
         except (OutputError, KeyError):

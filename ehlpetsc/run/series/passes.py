@@ -4,6 +4,7 @@ Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUT
 each has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
 """
 
+import contextlib
 import json
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.output_guard import Lock, check_index, check_place, inputs_of
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
 from ehlpetsc.results.whole_file import write_whole
 from ehlpetsc.run.on_root import on_root
@@ -42,8 +44,19 @@ class Passes:
         """Result file of a pass."""
         return self.stem.with_name(f"{self.stem.name}.pass{number}.h5")
 
+    def restart(self, number):
+        """Restart file of a pass."""
+        return self.file(number).with_suffix(".restart.h5")
+
     def run(self, restart=None, overwrite=False):
-        """Run every pass, or go on with one from its restart file.
+        """Run every pass that is not done; once all are, they are made again.
+
+        Parameters
+        ----------
+        restart : path-like, optional
+            Restart file of the pass to continue from; by default of the last one of the very same case.
+        overwrite : bool
+            Whether to replace existing files and begin with the first pass.
 
         Returns
         -------
@@ -65,6 +78,7 @@ class Passes:
     def _run(self, restart, overwrite):
         if not overwrite:
             on_root(self.comm, lambda: check_index(self.index, "passes"))
+            restart = restart or self.comm.bcast(on_root(self.comm, self._unfinished))
         first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
         if first > 1:
             self.rows = self.comm.bcast(on_root(self.comm, self._rows_before, first))
@@ -80,13 +94,37 @@ class Passes:
         self._tell_end()
         return status
 
+    def _unfinished(self):
+        """Restart file of the last pass that was begun; None: none was, or all are done."""
+        index, passes = self._read_index(), range(1, self.case.time.passes + 1)
+        noted = {row["pass"] for row in index["passes"]} if index["case"] == self.case.text else ()
+        begun = next((n for n in passes if n not in noted or not self._is_done(n)), None)
+        for number in range(begun or 0, 0, -1):
+            if self.file(number).exists() and self._is_of_case(self.restart(number)):
+                return self.restart(number)
+        return None
+
+    def _is_done(self, number):
+        with contextlib.suppress(OutputError), read_result(self.file(number)) as result:
+            return result.attrs["case"] == self.case.text and result.attrs["status"] == "done"
+        return False
+
+    def _is_of_case(self, path):
+        with contextlib.suppress(OutputError, KeyError):
+            return load_restart(path)[1]["case"] == self.case.text
+        return False
+
     def _rows_before(self, first):
         """Index rows of the passes before one that is gone on with; none where the index is not there."""
+        return [row for row in self._read_index()["passes"] if row["pass"] < first]
+
+    def _read_index(self):
+        """Case text and rows of the index; none where it is not there or damaged."""
         try:
-            rows = json.loads(self.index.read_text())["passes"]
-            return [row for row in rows if row["pass"] < first]
+            index = json.loads(self.index.read_text())
+            return {"case": index["case"], "passes": [row for row in index["passes"] if row["pass"] > 0]}
         except (OSError, ValueError, KeyError, TypeError):
-            return []
+            return {"case": None, "passes": []}
 
     def _note(self, number, simulation):
         with read_result(self.file(number)) as result:
