@@ -63,6 +63,7 @@ def _parser():
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--map", action="store_true", help="pressure over place and time, contacts marked")
     kind.add_argument("--contacts", action="store_true", help="contacts per millisecond along the contact")
+    parser.add_argument("--polynomial", action="store_true", help="of --contacts, order 8")
     numbers = "by their number in the list of python3 -m ehlpetsc.analysis.collisions [two best]"
     kind.add_argument("--collision", type=int, nargs="*", metavar="NUMBER", help=numbers)
     kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")

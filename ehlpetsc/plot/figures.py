@@ -11,7 +11,8 @@ from ehlpetsc.plot.running_in import draw_running_in
 from ehlpetsc.plot.stribeck import draw_stribeck
 from ehlpetsc.results.series_index import from_thick_to_thin
 
-SIZE = (8.0, 5.2)  # inches
+SIZE = (8.4, 5.6)  # inches
+TALL = 7.6  # inches: with the surfaces
 AROUND_WIDTH = 0.5  # of a view around a place, half widths
 COLLISION_WIDTH = 0.12
 POINTS = 8  # most contact points in one picture
@@ -48,14 +49,24 @@ def fill_frame(axes, results, indices, options):
         labels.series_legend(axes[0], colours, labels.with_hertz(names, results), key, more, dashed)
     else:
         frames.frame_legend(axes, results[0], indices[0], colours[0])
-    axes[0].set_title(panel_title(results, indices), fontsize="medium")
+    frames.x_in_mm(axes[0], results)
+    title = "\n".join(filter(None, [panel_title(results, indices), labels.conditions(results)]))
+    axes[0].set_title(title, fontsize="medium")
 
 
 def draw_frame(results, options):
-    """Figure of pressure and film at an instant."""
+    """Figure of pressure and film at an instant; of one rough result both deformed surfaces too."""
     indices = frames.choose_frames(results, options.step, options.time)
-    figure, axes = two_panels()
-    fill_frame(axes, results, indices, options)
+    rough = len(results) == 1 and any(results[0].profile(side) for side in ("fast", "slow"))
+    if not rough:
+        figure, axes = two_panels()
+    else:
+        figure, axes = labels.new_figure(3, 1, (SIZE[0], TALL), sharex=True)
+        frames.deformed_surfaces(axes[2], results[0], indices[0], window(results, options))
+    fill_frame(axes[:2], results, indices, options)
+    if rough:
+        axes[1].set_xlabel("")
+        axes[2].set_xlabel(frames.ACROSS)
     return figure
 
 
@@ -71,17 +82,23 @@ def draw_map(results, options):
         image = over_time.space_time_map(panel, result, view, highest)
         panel.set_title(result.attrs["title"] if len(results) == 1 else title, fontsize="medium")
     figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
+    if any(result.contact_count.any() for result in results):
+        mark = Line2D([], [], color=labels.CONTACT_COLOUR, marker="s", ls="", ms=4, label="in contact")
+        axes[0][0].legend(handles=[mark], loc="upper left", fontsize="small")
+    figure.suptitle(labels.conditions(results), fontsize="small")
     return figure
 
 
-def draw_contacts(results, _options):
-    """Figure of the contacts per millisecond along the contact."""
+def draw_contacts(results, options):
+    """Figure of the contacts per millisecond along the contact, raw and smoothed."""
     colours, names, key = labels.series_colours(results)
     figure, axes = two_panels()
-    means = over_time.contact_rates(axes, results, colours)
+    means = over_time.contact_rates(axes, results, colours, options.polynomial)
     parts = [mean / means[0] if means[0] else np.nan for mean in means]
     names = [f"{n}: {mean:.3g} ({part:.2f})" for n, mean, part in zip(names, means, parts, strict=True)]
-    labels.series_legend(axes[1], colours, names, f"{key or 'file'}:\nmean in |x| < a\n(to the first)")
+    labels.series_legend(
+        axes[1], colours, names, f"{key or 'result'}: mean in\n|x| < a [1/ms] (ratio\nto the first)"
+    )
     axes[0].set_title(panel_title(results), fontsize="medium")
     return figure
 

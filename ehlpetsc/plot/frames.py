@@ -4,13 +4,16 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from ehlpetsc.analysis import entrapment
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
-from ehlpetsc.plot.labels import CONTACT_COLOUR, SOLIDS_COLOUR, legend_beside, one_hertz
+from ehlpetsc.plot.labels import CONTACT_COLOUR, SINGLE_COLOUR, SOLIDS_COLOUR, legend_beside, one_hertz
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.filling import both_fill, travelled
 
 ACROSS = "x/a"
+LOWER_COLOUR = "#b35806"
+SIDES = ("surface 1", "surface 2")
 PRESSURE = "pressure [GPa]"
 FILM = "film thickness [µm]"
 OUTSIDE = (-1.6, 1.4)  # limits of x/a worth seeing
@@ -167,12 +170,45 @@ def _hertz(axes, results, colours, window):
         axes.plot(fine, hertz, color=colour, **HERTZ_STYLE)
 
 
+def x_in_mm(axes, results):
+    """A second axis above in mm, with the direction of flow; nothing where results differ in a."""
+    a = {float(result.attrs["a"]) for result in results}
+    if len(a) == 1:
+        scale = 1e3 * a.pop()
+        above = axes.secondary_xaxis("top", functions=(lambda x: x * scale, lambda x: x / scale))
+        above.tick_params(labelsize="small")
+        above.set_xlabel("x [mm]", fontsize="small")
+    place = dict(xy=(0.13, 0.9), xytext=(0.02, 0.9), xycoords="axes fraction", textcoords="axes fraction")
+    axes.annotate("", **place, arrowprops=dict(arrowstyle="->", color="0.35"))
+    axes.text(0.14, 0.9, "flow", transform=axes.transAxes, va="center", fontsize="small", color="0.35")
+
+
+def deformed_surfaces(axes, result, index, window):
+    """Both deformed surfaces at an instant, the lower one below, solids in grey."""
+    x = result.x / result.attrs["a"]
+    shown = (x >= window[0]) & (x <= window[1])
+    lower, upper = (1e6 * height[shown] for height in entrapment.surfaces(result, index))
+    inside = np.abs(x[shown]) <= 1.0
+    part = inside if inside.any() else np.ones(shown.sum(), bool)
+    bottom, top = lower[part].min(), upper[part].max()
+    room = 0.15 * (top - bottom)
+    for height, end, colour, name in (
+        (upper, top + room, LOWER_COLOUR, 0),
+        (lower, bottom - room, SINGLE_COLOUR, 1),
+    ):
+        axes.fill_between(x[shown], height, end, color="0.85", lw=0)
+        axes.plot(x[shown], height, color=colour, lw=0.9, label=SIDES[name])
+    axes.set_ylim(bottom - room, top + room)
+    axes.set_ylabel("surfaces [µm]")
+    legend_beside(axes)
+
+
 def frame_legend(axes, result, index, colour):
-    """Say beside the panels what the lines and marks of `pressure_and_film` mean."""
-    solids = "contact_pressure" in result
-    handles = [Line2D([], [], color=colour, lw=1.1, label="oil and solids" if solids else "pressure")]
+    """Legends beside the panels of `pressure_and_film`."""
+    solids = "contact_pressure" in result and result.frame("contact_pressure", index).any()
+    handles = [Line2D([], [], color=colour, lw=1.1, label="total pressure" if solids else "pressure")]
     if solids:
-        handles.append(Patch(color=SOLIDS_COLOUR, label="on the solids"))
+        handles.append(Patch(color=SOLIDS_COLOUR, label="of the solids"))
     handles.append(Line2D([], [], color=HERTZ_GREY, label="Hertz", **HERTZ_STYLE))
     legend_beside(axes[0], handles)
     films = [Line2D([], [], color=colour, lw=1.1, label="film")]

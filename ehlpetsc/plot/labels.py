@@ -1,5 +1,7 @@
 """Colours, labels and legends of one or several results."""
 
+import tomllib
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -63,6 +65,36 @@ def names(results):
     if len(set(titles)) == 1:
         return [result.path.stem for result in results]
     return [f"{title} ({result.path.stem})" for title, result in zip(titles, results, strict=True)]
+
+
+def conditions(results):
+    """What all results share of speed, sliding, Hertz' contact and oil, in one line.
+
+    Parameters
+    ----------
+    results : list of ehlpetsc.results.reader.Result
+    """
+    of_each = [_conditions(result) for result in results]
+    return ", ".join(part for part in of_each[0] if part and all(part in other for other in of_each))
+
+
+def _conditions(result):
+    case, attrs = tomllib.loads(str(result.attrs["case"])), result.attrs
+    motion, fluid = case.get("motion", {}), case.get("fluid", {})
+    parts = []
+    if "operation" in case or "gears" in case:
+        parts.append("conditions over time")
+    elif "entrainment_speed" in motion:
+        parts += [
+            f"u = {motion['entrainment_speed']:g} m/s",
+            f"slide/roll ratio {motion.get('slide_roll_ratio', 0.0):g}",
+        ]
+    parts += [f"a = {1e3 * attrs['a']:.3g} mm", f"p0 = {1e-9 * attrs['p0']:.3g} GPa"]
+    if "viscosity" in fluid:
+        parts.append(f"oil {1e3 * fluid['viscosity']:g} mPa s")
+    elif not fluid:
+        parts.append("dry")
+    return parts
 
 
 def one_hertz(results):

@@ -7,10 +7,12 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.frames import ACROSS
 from ehlpetsc.plot.labels import CONTACT_COLOUR
 from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.filling import travelled
 
 MAP_ROWS = 1000  # rows of pixels worth drawing in a space-time map
 FEW_CONTACTS = 3000  # nodes in contact in a map that would be lost as single pixels
 HIGHEST = 99.9  # percentile of pressure at which colours end: a few sharp peaks would darken all the rest
+WIDTH = 0.1  # half-widths of a mean along the contact
 POLYNOMIAL_ORDER = 8  # Holmes et al. 2005, figure 7 (ii)
 
 
@@ -42,8 +44,13 @@ def space_time_map(axes, result, window, highest):
     row, node = np.nonzero(touching)
     if len(row) < FEW_CONTACTS:
         axes.plot(x[node], rows[row], ".", color=CONTACT_COLOUR, ms=3, mew=0, rasterized=True)
+    scale = travelled(result)[-1] / result.attrs["a"] / max(time[-1], 1e-30)
+    constant = "steps/displacement_1" not in result
     axes.set_xlabel(ACROSS)
     axes.set_ylabel("time [µs]")
+    if constant and scale > 0.0:
+        beside = axes.secondary_yaxis("right", functions=(lambda t: t * scale, lambda way: way / scale))
+        beside.set_ylabel("travel [a]")
     axes.set_xlim(x[0], x[-1])
     axes.set_ylim(time[0], time[-1])
     return image
@@ -73,8 +80,11 @@ def _contacts(result, columns, stride):
     return np.array([in_contact(result, block, columns).any(axis=0) for block in blocks], dtype=int)
 
 
-def contact_rates(axes, results, colours):
-    """Contacts per millisecond along the contact: raw above, a polynomial of 8th order below.
+def contact_rates(axes, results, colours, polynomial=False):
+    """Contacts per millisecond along the contact: raw above, smoothed below.
+
+    Smoothed by a mean over `WIDTH` or, with `polynomial`, by a polynomial of 8th order as in Holmes et al.
+    2005, figure 7 (ii), which needs many contacts: through few of them it oscillates.
 
     Returns
     -------
@@ -91,13 +101,18 @@ def contact_rates(axes, results, colours):
     for result, colour in zip(results, colours, strict=True):
         x, rate = result.x / result.attrs["a"], result.contact_rate()
         inside = np.abs(x) <= 1.0
-        fit = np.polynomial.Polynomial.fit(x[inside], rate[inside], POLYNOMIAL_ORDER)
-        smooth = np.linspace(-1.0, 1.0, 401)
         upper.plot(x, rate, color=colour, lw=0.6)
-        lower.plot(smooth, fit(smooth), color=colour, lw=1.4)
+        if polynomial:
+            fit = np.polynomial.Polynomial.fit(x[inside], rate[inside], POLYNOMIAL_ORDER)
+            smooth = np.linspace(-1.0, 1.0, 401)
+            lower.plot(smooth, fit(smooth), color=colour, lw=1.4)
+        else:
+            count = min(max(1, round(WIDTH / np.diff(x).mean())), len(x))
+            lower.plot(x, np.convolve(rate, np.full(count, 1.0 / count), mode="same"), color=colour, lw=1.4)
         means.append(float(rate[inside].mean()))
     upper.set_ylabel("contacts per ms")
-    lower.set_ylabel(f"the same, polynomial\nof order {POLYNOMIAL_ORDER}")
+    smoothed = f"polynomial of order {POLYNOMIAL_ORDER}" if polynomial else f"mean over {WIDTH:g} a"
+    lower.set_ylabel(f"contacts per ms,\n{smoothed}")
     lower.set_xlabel(ACROSS)
     lower.set_xlim(-1.5, 1.5)
     for panel in axes:

@@ -4,6 +4,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
+from ehlpetsc.plot.frames import frame_to_show
 from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.running_in import heights, pass_figures
@@ -42,34 +43,38 @@ def draw_running_in(results, _options):
     if known:
         for row, side in zip(axes, ("fast", "slow"), strict=True):
             fatigue(row[2], damages, side)
-    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    figure.suptitle(f"{results[0].attrs['title']}\n{labels.conditions(results)}", fontsize="medium")
     return figure
 
 
 def surface(axes, results):
-    """Heights of the surface with the deepest set as made, after the first and after the last pass."""
+    """Heights of the surface with the deepest indentation before, after the first and after the last pass."""
     sides = [side for side in ("fast", "slow") if heights(results[-1], side) is not None]
     side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
     s, made, last = heights(results[-1], side)
     first = heights(results[0], side)[2]
     a = results[0].attrs["a"]
-    place = s[np.argmax(made - last)]
-    near = np.abs(s - place) <= 0.5 * STRETCH * a
+    near = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * STRETCH * a
+    forward = results[0].attrs["u1" if side == "fast" else "u2"] > 0.0
+    abscissa = 1e3 * (s.max() - s if forward else s - s.min())
     for z, colour, name, style in (
-        (made, "k", "as made", ":"),
+        (made, "k", "before", ":"),
         (first, FIRST, "after pass 1", "-"),
         (last, LAST, f"after pass {len(results)}", "-"),
     ):
-        axes.plot((s[near] - place) / a, 1e6 * z[near], style, color=colour, label=name)
-    axes.set(xlabel="along the body, from its deepest set [a]", ylabel=f"height of the {side} surface [µm]")
+        axes.plot(abscissa[near], 1e6 * z[near], style, color=colour, label=name)
+    axes.set(
+        xlabel="abscissa of the profile, around the deepest indentation [mm]",
+        ylabel=f"height of the {side} surface [µm]",
+    )
     above(axes)
 
 
 def pressure(axes, results):
-    """Pressure of the first and the last pass, at the stored instant of the first one's greatest."""
+    """Pressure of the first and the last pass, when the first has its largest share on the solids."""
     first, last = results[0], results[-1]
     common = min(len(first.time), len(last.time))
-    frame = int(np.argmax([first["pressure"][k].max() for k in range(common)]))
+    frame = min(frame_to_show(first), common - 1)
     x = first.x / first.attrs["a"]
     for result, colour, name in ((first, FIRST, "pass 1"), (last, LAST, f"pass {len(results)}")):
         axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
@@ -85,13 +90,13 @@ def above(axes, title=None):
 
 
 def added(axes, rows):
-    """What each pass adds to the set, to the first, and Ra of both surfaces."""
+    """Plastically displaced area that each pass adds, relative to the first, and Ra of both surfaces."""
     numbers = np.arange(1, len(rows) + 1)
     volumes = np.array([row["set_volume"] for row in rows])
     parts = np.diff(volumes, prepend=0.0) / volumes[0]
     axes.semilogy(numbers, np.maximum(parts, 1e-6), "o-", color=LAST)
     axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
-    axes.set(xlabel="pass", ylabel="set added, to pass 1", xticks=ticks(numbers))
+    axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=ticks(numbers))
     beside = axes.twinx()
     for side, style in (("fast", "^--"), ("slow", "v--")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:

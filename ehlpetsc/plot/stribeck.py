@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
+from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, conditions, legend_beside, new_figure
 from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.series_index import series_values
 
@@ -150,7 +151,10 @@ def draw_stribeck(results, _options):
         if not np.isfinite(mean).any():
             panel.text(0.5, 0.5, "not in these results", transform=panel.transAxes, ha="center", va="center")
     _references(axes[0], points, speeds)
-    axes[1].set_ylim(-0.02, 1.02)
+    shares = [p.figures["contact_share"].high for p in points]
+    axes[1].set_ylim(
+        0.0, min(1.02, 1.15 * np.nanmax(shares)) if np.nanmax(shares, initial=0.0) > 0.0 else 1.02
+    )
     if np.isfinite([p.figures["mean_gap_ratio"].mean for p in points]).any():
         axes[2].set_yscale("log")
     axes[2].set_xlabel(UNITS[SPEED])
@@ -159,8 +163,19 @@ def draw_stribeck(results, _options):
     legend_beside(axes[1], [*handles, Patch(color=SINGLE_COLOUR, alpha=0.2, lw=0, label=band)])
     title = results[0].attrs["title"]
     note = f"\nnot shown, ended too early: {', '.join(short)}" if short else ""
-    axes[0].set_title(title + note, fontsize="medium")
+    about = conditions(results)
+    axes[0].set_title("\n".join(filter(None, [title, about])) + note, fontsize="medium")
+    for panel in axes:
+        panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+        panel.xaxis.set_minor_formatter(NullFormatter())
+        panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
+    axes[2].yaxis.set_minor_formatter(FuncFormatter(_few))
     return figure
+
+
+def _few(value, _):
+    """Labels between powers of ten: 2 and 5 times one."""
+    return f"{value:g}" if f"{value:e}"[0] in "25" else ""
 
 
 def _references(axes, points, speeds):

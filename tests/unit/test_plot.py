@@ -74,7 +74,7 @@ MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
             "one.contacts.png",
             "made up",
             (-1.5, 1.5),
-            ["contacts per ms", "the same, polynomial\nof order 8"],
+            ["contacts per ms", "contacts per ms,\nmean over 0.1 a"],
         ),
     ],
 )
@@ -85,7 +85,13 @@ def test_what_a_picture_of_one_result_shows(
     assert capsys.readouterr().out == f"{tmp_path / name}\n"
     (figure,) = drawn
     upper = figure.axes[0]
-    assert upper.get_title() == title
+    conditions = "u = 5 m/s, slide/roll ratio 0, a = 0.336 mm, p0 = 1 GPa, oil 5 mPa s"
+    assert upper.get_title() == (f"{title}\n{conditions}" if panels == FRAME else title)
+    if panels == FRAME:
+        (mm,) = upper.child_axes
+        assert mm.get_xlabel() == "x [mm]" and "flow" in [text.get_text() for text in upper.texts]
+    if panels == MAP:
+        assert figure._suptitle.get_text() == conditions
     assert upper.get_xlim() == pytest.approx(window)
     assert [axes.get_ylabel() for axes in figure.axes] == panels
 
@@ -254,11 +260,40 @@ def test_series_is_sorted_and_labelled_by_its_swept_value(series):
 def test_polynomial_and_mean_follow_the_counts(tmp_path, result):
     _, axes = figures.two_panels()
     with read_result(result) as r:
-        (mean,) = over_time.contact_rates(axes, [r], ["k"])
+        (mean,) = over_time.contact_rates(axes, [r], ["k"], polynomial=True)
         inside = np.abs(r.x) <= A
         assert mean == pytest.approx(r.contact_rate()[inside].mean())
         fit = axes[1].lines[0].get_ydata()
         assert np.mean(fit) == pytest.approx(mean, rel=0.02)
+
+
+def test_the_running_mean_keeps_the_count(result):
+    _, axes = figures.two_panels()
+    with read_result(result) as r:
+        over_time.contact_rates(axes, [r], ["k"])
+        raw, smooth = (panel.lines[0].get_ydata() for panel in axes)
+        assert smooth.sum() == pytest.approx(raw.sum(), rel=1e-9) and smooth.max() < raw.max()
+
+
+def test_a_rough_result_is_drawn_with_both_deformed_surfaces(tmp_path, drawn):
+    path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
+    assert draw(path, "--step", 30) == 0
+    (figure,) = drawn
+    assert [axes.get_ylabel() for axes in figure.axes] == [*FRAME, "surfaces [µm]"]
+    upper, lower = (line.get_ydata() for line in figure.axes[2].lines)
+    with read_result(path) as r:
+        film = 1e6 * r.frame("film_thickness", 30)
+    np.testing.assert_allclose(upper - lower, film[(r.x / A >= -1.6) & (r.x / A <= 1.4)], atol=1e-9)
+
+
+def test_no_solids_no_entry_of_theirs(tmp_path):
+    path = with_solids(make_result(tmp_path / "m.h5"))
+    with h5py.File(path, "r+", libver="latest") as file:
+        file["contact_pressure"][:] = 0.0
+    with read_result(path) as r:
+        _, axes = figures.two_panels()
+        drawing.frame_legend(axes, r, 12, "k")
+        assert [t.get_text() for t in axes[0].get_legend().texts] == ["pressure", "Hertz"]
 
 
 def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
@@ -321,8 +356,8 @@ def test_what_the_solids_carry_is_drawn_under_the_total(tmp_path):
         drawn = solids.get_paths()[0].get_extents()
         assert drawn.ymax == pytest.approx(1e-9 * r.frame("contact_pressure", 12).max())
         assert [t.get_text() for t in axes[0].get_legend().texts] == [
-            "oil and solids",
-            "on the solids",
+            "total pressure",
+            "of the solids",
             "Hertz",
         ]
 

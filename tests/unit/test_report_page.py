@@ -13,6 +13,7 @@ from made_results import make_result, with_solids
 from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot.page import report_data
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.totals import Totals
 
 
 def unpacked(text, kind="<f4"):
@@ -64,15 +65,21 @@ def test_the_page_holds_the_fields_and_needs_no_network(tmp_path, page):
         contacts = next(f for f in data["steps"]["figures"] if f["name"] == "nodes in contact")
         np.testing.assert_array_equal(unpacked(contacts["y"]), r.steps("contacts")[1:])
         assert frames["step"][frames["first"]] == r.step[plot_first(r)]
+        facts, means = dict(data["facts"]), Totals.of_result(r).means
+        assert facts["mean friction coefficient"] == f"{means['friction_coefficient']:.4g}"
+        assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.3g} %"
+        assert facts["oil"] == "5 mPa s" and "node-steps in contact" not in facts
+    names = [figure["name"] for figure in data["steps"]["figures"]]
+    assert names[:3] == ["friction coefficient", "contact share", "greatest pressure [GPa]"]  # asked for first
     assert data["damage"] is None
     names = [figure["name"] for figure in data["steps"]["figures"]]
     assert "contact share" in names and "time step [µs]" not in names  # what does not change is left out
 
 
 def plot_first(result):
-    from ehlpetsc.plot.frames import frame_with_most_contacts
+    from ehlpetsc.plot.frames import frame_to_show
 
-    return frame_with_most_contacts(result)
+    return frame_to_show(result)
 
 
 def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):

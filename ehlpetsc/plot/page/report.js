@@ -249,8 +249,8 @@ function instantAndMap(frames) {
 
   function show(k) {
     if (upper) {
-      const series = [hertz, { name: solids ? "oil and solids" : "pressure", colour: COLOURS[0], x, y: row(pressure, k) }];
-      if (solids) series.unshift({ name: "on the solids", colour: SOLIDS, filled: true, x, y: row(solids, k) });
+      const series = [hertz, { name: solids ? "total pressure" : "pressure", colour: COLOURS[0], x, y: row(pressure, k) }];
+      if (solids) series.unshift({ name: "of the solids", colour: SOLIDS, filled: true, x, y: row(solids, k) });
       upper.show(series);
     }
     if (lower) lower.show([{ name: "film", colour: COLOURS[0], x, y: row(film, k) },

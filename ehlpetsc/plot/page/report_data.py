@@ -9,6 +9,7 @@ from ehlpetsc.plot.frames import default_window, frame_to_show
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.post_result import damage_beside
+from ehlpetsc.results.totals import means
 
 FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
 STEADY = 1e-9  # relative change over a run that is none
@@ -20,6 +21,26 @@ LEAST = {
 }  # of several steps the least counts, else the greatest
 SHOWN_IN = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
 UNSHOWN = {"step", "time", "load", "wall"}
+MEAN_WORDS = {
+    "friction_coefficient": "mean friction coefficient",
+    "film_central": "mean central film",
+    "lambda_ratio": "lambda ratio",
+    "mean_gap_ratio": "mean gap ratio",
+    "contact_share": "mean share of the load on the solids",
+}  # over the time in which both surfaces fill the contact
+MEAN_FORMS = {name: "{:.4g}".format for name in MEAN_WORDS} | {
+    "film_central": lambda film: f"{1e6 * film:.4g} µm",
+    "contact_share": lambda share: f"{100.0 * share:.3g} %",
+}
+FIRST = (
+    "friction_coefficient",
+    "contact_share",
+    "h_min",
+    "film_central",
+    "p_max",
+    "mean_gap_ratio",
+    "contacts",
+)
 
 
 def report_data(result):
@@ -44,27 +65,41 @@ def report_data(result):
     }
 
 
+def _oil(fluid):
+    words = [f"{1e3 * fluid['viscosity']:g} mPa s", str(fluid.get("law", ""))]
+    return "oil", ", ".join(filter(None, words))
+
+
 def facts(result):
     """Rows of the table at the top: what, figure."""
     attrs = result.attrs
-    motion = tomllib.loads(str(attrs["case"])).get("motion", {})
+    case = tomllib.loads(str(attrs["case"]))
+    motion, fluid, solids = (case.get(name, {}) for name in ("motion", "fluid", "contact"))
+    about = [
+        f"radius {1e3 * solids['radius']:g} mm" if "radius" in solids else None,
+        f"load {1e-3 * solids['load']:g} N/mm" if "load" in solids else None,
+        f"model {solids.get('model', 'direct')}",
+    ]
     rows = [
         ("ended as", str(attrs.get("status", "unknown"))),
+        ("contact", ", ".join(filter(None, about))),
+        _oil(fluid) if fluid else None,
         ("half width a, pressure p0", f"{1e3 * attrs['a']:.4g} mm, {1e-9 * attrs['p0']:.4g} GPa"),
-        ("speeds, fast and slow", f"{attrs['u1']:.4g} and {attrs['u2']:.4g} m/s") if motion else None,
+        ("speeds of surface 1 and 2", f"{attrs['u1']:.4g} and {attrs['u2']:.4g} m/s") if motion else None,
         ("nodes, steps", f"{len(result.x)}, {len(result.steps('time')) - 1}"),
-        ("least film", f"{1e6 * np.nanmin(result.steps('h_min')):.4g} µm"),
-        ("greatest pressure", f"{1e-9 * np.nanmax(result.steps('p_max')):.4g} GPa"),
-        ("node-steps in contact", f"{int(result.steps('contacts').sum())}"),
+        ("minimum film", f"{1e6 * np.nanmin(result.steps('h_min')):.4g} µm"),
+        ("maximum pressure", f"{1e-9 * np.nanmax(result.steps('p_max')):.4g} GPa"),
+        *((MEAN_WORDS[name], MEAN_FORMS[name](value)) for name, value in means(result).items()),
     ]
     for name, words in (
-        ("load_error", "greatest error of the load"),
-        ("mass_error", "greatest error of the oil balance"),
+        ("load_error", "largest error of the load"),
+        ("mass_error", "largest error of the oil balance"),
     ):
         values = result.steps(name)
         if np.isfinite(values).any():
             rows.append((words, f"{np.nanmax(values):.2g}"))
-    return [row for row in rows if row]
+    limits = str(attrs.get("limits", "")).strip().splitlines()
+    return [row for row in rows if row] + [("limit", line) for line in limits]
 
 
 def frames(result):
@@ -101,7 +136,7 @@ def step_figures(result):
     if len(time) < 2:
         return {"time": _packed([]), "figures": []}
     width, figures = -(-len(time) // ROWS), []
-    for name in sorted(set(result.figures) - UNSHOWN, key=lambda name: (name not in STEP_SCALARS, name)):
+    for name in sorted(set(result.figures) - UNSHOWN, key=_place):
         values = result.steps(name).astype(float)[1:]
         known = values[np.isfinite(values)]
         if not known.size or np.ptp(known) <= STEADY * max(np.abs(known).max(), name in ERRORS):
@@ -114,6 +149,16 @@ def step_figures(result):
         label = f"{words} [{unit}]" if unit else words
         figures.append({"name": label, "y": _packed(binned(factor * values, width, take))})
     return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
+
+
+def _place(name):
+    """Order of the charts: what a user asks for first, then as the table of quantities lists them."""
+    known = list(STEP_SCALARS)
+    return (
+        FIRST.index(name) if name in FIRST else len(FIRST),
+        known.index(name) if name in known else len(known),
+        name,
+    )
 
 
 def damage(result):
