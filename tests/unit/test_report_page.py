@@ -70,7 +70,7 @@ def test_the_page_holds_the_fields_and_needs_no_network(tmp_path, page):
         assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.3g} %"
         assert facts["oil"] == "5 mPa s" and "node-steps in contact" not in facts
     names = [figure["name"] for figure in data["steps"]["figures"]]
-    assert names[:3] == ["friction coefficient", "contact share", "greatest pressure [GPa]"]  # asked for first
+    assert names[:3] == ["friction coefficient", "contact share", "greatest pressure [GPa]"]
     assert data["damage"] is None
     names = [figure["name"] for figure in data["steps"]["figures"]]
     assert "contact share" in names and "time step [µs]" not in names  # what does not change is left out
