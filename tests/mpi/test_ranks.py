@@ -35,6 +35,14 @@ MODELS = {
         "contact.yield_pressure=1.5e9",
     ],
     "yielding": ["contact.model=mixed", "contact.yield_pressure=1.5e9"],
+    "reversing": [
+        "contact.model=mixed",
+        "mesh.outlet=1.2",
+        "operation.time=[0.0, 1e-5, 2e-5]",
+        "operation.load=[527e3, 500e3, 450e3]",
+        "operation.speed_1=[5.5, 0.0, -5.5]",
+        "operation.speed_2=[4.5, 0.0, -4.5]",
+    ],
 }
 
 
