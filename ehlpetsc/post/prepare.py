@@ -10,10 +10,11 @@ from ehlpetsc.post.inputs.gaps import find_gaps, frames_missed
 from ehlpetsc.post.inputs.input_checks import input_digest
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.inputs.settings import Settings, read_settings
-from ehlpetsc.post.stresses.body_points import body_points, passage
+from ehlpetsc.post.stresses.body_points import NO_FLANK, body_points, passage
 
 MAX_POINTS = 5_000_000
 FEW_POINTS = 30  # fewer decide nothing about a surface
+ENDED = 0.01  # of the duration: a last frame nearer to its end is at it
 MIN_SPEED = 1e-3  # of the faster surface's speed: nobody waits for less
 EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
@@ -95,7 +96,8 @@ def _motions(loads, surfaces):
     s = body_points(loads.x, loads.dx, ways)
     try:
         motions = {
-            surface: passage(s, loads.x, loads.dx, way) for surface, way in zip(surfaces, ways, strict=True)
+            surface: passage(s, loads.x, loads.dx, way, _flank(loads, surface))
+            for surface, way in zip(surfaces, ways, strict=True)
         }
     except ValueError as fault:
         raise PostError(str(fault)) from None
@@ -106,6 +108,17 @@ def _motions(loads, surfaces):
             f"the domain is {width:.3g} wide; raise time.travel"
         )
     return s, motions
+
+
+def _flank(loads, surface):
+    """Points of a flank between the ends of its path of contact, where the run has come to the end of it."""
+    case, number = loads.case, int(surface in ("slow", "2"))
+    if case.gears is None:
+        return NO_FLANK
+    pair, begin = case.gears.pair, case.conditions.begins[number]
+    arc = pair.flank_arcs(pair.points["E"])[number]
+    ended = loads.time[-1] > (1.0 - ENDED) * loads.operation.duration
+    return begin - arc if ended else np.inf, begin
 
 
 def _warn(loads, gaps, motions, whole, report):

@@ -14,6 +14,7 @@ from ehlpetsc.gears.flanks import FlankDamage
 from ehlpetsc.gears.load_sharing import relief_ratio
 from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.post.stresses.body_points import body_points, passage
 
 FZG = {  # type C
     "module": 4.5e-3,
@@ -257,3 +258,12 @@ def test_damage_of_flanks_is_found_by_arc_length_and_depth(tmp_path):
     (tmp_path / "bad.post.h5").write_bytes(b"no HDF5")
     with pytest.raises(OutputError, match="bad.post.h5"):
         FlankDamage(tmp_path / "bad.post.h5", (0.0, 0.0))
+
+
+def test_points_of_a_flank_pass_the_contact_from_its_begin_to_its_end():
+    x, moved = np.linspace(-3.0, 1.5, 46), np.linspace(0.0, 20.0, 100)
+    s = body_points(x, 0.1, [moved])
+    through = s[passage(s, x, 0.1, moved).complete]
+    assert (through[0], through[-1]) == pytest.approx((-18.5, -3.0))
+    flank = s[passage(s, x, 0.1, moved, (-20.0, 0.0)).complete]
+    assert (flank[0], flank[-1]) == pytest.approx((-20.0, 0.0))

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+NO_FLANK = np.inf, -np.inf
 GRID_ROUNDING = 1e-9  # nodes; a point that far from a node is at it
 
 
@@ -11,7 +12,8 @@ class Passage(NamedTuple):
     """Passage of body points through the nodes.
 
     Body point j is at node j + shift[k] + offset[k] at frame k, 0 <= offset < 1. `enter` and `leave` are its
-    first and last frames inside the nodes; `complete` where it came from outside and went out again.
+    first and last frames inside the nodes; `complete` where it came from outside and went out again, or where
+    the contact began and ended on its flank.
     """
 
     shift: np.ndarray
@@ -42,8 +44,17 @@ def body_points(x, dx, travelled):
     return x[0] + dx * np.arange(-before, x.size + after)
 
 
-def passage(s, x, dx, travelled):
+def passage(s, x, dx, travelled, flank=NO_FLANK):
     """Passage of the points s = s[0] + j dx of a body that has covered `travelled` (nt,): x = s + travelled.
+
+    Parameters
+    ----------
+    s, x : ndarray
+    dx : float
+    travelled : ndarray, shape (nt,)
+    flank : (float, float)
+        Points s at x = 0 when the contact of two teeth ends and when it begins: those between need neither
+        come from outside nor go out.
 
     Raises
     ------
@@ -55,7 +66,7 @@ def passage(s, x, dx, travelled):
     j, last = np.arange(s.size), x.size - 1
     if (np.diff(base) >= 0).all():
         enter, leave = np.searchsorted(base, -j, "left"), np.searchsorted(base, last - j, "right") - 1
-        complete = (base[0] + j <= 0) & (base[-1] + j >= last)
+        complete = ((base[0] + j <= 0) | (s <= flank[1])) & ((base[-1] + j >= last) | (s >= flank[0]))
     elif (np.diff(base) <= 0).all():
         enter, leave = np.searchsorted(-base, j - last, "left"), np.searchsorted(-base, j, "right") - 1
         complete = (base[0] + j >= last) & (base[-1] + j <= 0)
