@@ -47,8 +47,9 @@ def arguments():
         add(name, type=kind, nargs="+", default=default, metavar="N", help=f"{what} (default: {shown})")
     for name, what in SWITCHES.items():
         add(name, action="store_true", help=what)
-    models = ["direct", "mixed"]
-    add("--models", nargs="+", choices=models, default=models, help="contact models (default: both)")
+    models = ["direct", "mixed", "compliant"]
+    shown = "contact models (default: direct mixed); compliant: with --extremes"
+    add("--models", nargs="+", choices=models, default=models[:2], help=shown)
     add("--random", type=int, metavar="N", help="run N random cases of 50 steps")
     add("--seed", type=int, default=1, help="of the random cases (default: 1)")
     add("-o", "--output", help="stem of CSV file and picture (default: by what is run)")
@@ -130,6 +131,8 @@ def contact(chosen):
     from ehlpetsc.study.contact import HEAD, settings, table
     from ehlpetsc.study.runs import check_damage
 
+    if "compliant" in chosen.models:
+        raise CaseError(["--models compliant: --contact takes direct and mixed; leave it out"])
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
     case = load(chosen.case, chosen.set)
     check_outputs(HEAD, f"{stem}.csv", case=case)

@@ -27,6 +27,7 @@ HEAD = (
     "seconds",
     "reason",
 )
+LAWS, LAYER = {"compliant": "mixed"}, "contact.asperity_height=10e-9"
 COARSE = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
 SWIFT = ("time.courant=1.0",)  # of lines without a time step of their own, and of runs before: fewer steps
@@ -41,7 +42,7 @@ def lines(short=False, far=False, model=None):
     far : bool
         Instead of those at the edge of the ranges forty far beyond it.
     model : str, optional
-        Contact model of all lines that do not choose their own.
+        Contact model of all lines that do not choose their own: "direct", "mixed" or "compliant".
     """
     whole = far_lines() if far else [*steady_lines(), *time_lines()]
     if short:
@@ -50,7 +51,8 @@ def lines(short=False, far=False, model=None):
 
 
 def _of_model(line, model):
-    chosen = (f"contact.model={model}",)
+    chosen = (f"contact.model={LAWS.get(model, model)}",)
+    chosen += (LAYER,) if model == "compliant" else ()
     own = any(override.startswith("contact.model") for override in line.overrides)
     before = line.before and (*chosen, *line.before)
     return line if own else replace(line, overrides=(*chosen, *line.overrides), before=before)

@@ -67,3 +67,5 @@ def test_explain_names_no_fault(case, tmp_path):
     done = run("--explain", case, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "Refused" not in done.stdout
+    # half of 10 nm times ln(E*/p), E* = 113.7 GPa
+    assert "carry 10 MPa at a film of 46.7 nm and p0 at 23.7 nm" in done.stdout

@@ -5,6 +5,7 @@ import tomllib
 
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import members
+from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import operation_of
@@ -42,6 +43,7 @@ def explain(case):
     sections = [
         [case.title],
         _contact(scales),
+        _layer(case.contact, scales),
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
@@ -60,6 +62,18 @@ def _contact(s):
     return [
         f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
         f"Hertz: half width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
+    ]
+
+
+def _layer(contact, s):
+    """Films at which a compliant layer carries; [] without one."""
+    if contact.asperity_height is None:
+        return []
+    law = GAMMA * contact.asperity_height, contact.asperity_stiffness * 0.5 * s.E
+    films = [1e9 * asperity_separation(pressure, *law) for pressure in (CONTACT_PRESSURE, s.p0)]
+    return [
+        f"Layer: rms height {1e9 * contact.asperity_height:.3g} nm; its asperities carry "
+        f"{1e-6 * CONTACT_PRESSURE:g} MPa at a film of {films[0]:.3g} nm and p0 at {films[1]:.3g} nm"
     ]
 
 
