@@ -135,9 +135,34 @@ def stribeck_points(results):
     return points, short
 
 
+def curves(results):
+    """Results that share contact law and mesh, by a label of these; the longest curve first."""
+    groups = {}
+    for result in results:
+        case = tomllib.loads(result.attrs["case"])
+        contact, mesh = case.get("contact", {}), case.get("mesh", {})
+        key = contact.get("asperity_height"), contact.get("boundary_film"), mesh.get("points_per_half_width")
+        groups.setdefault(key, []).append(result)
+    several = len({key[2] for key in groups}) > 1
+    found = sorted(groups.items(), key=lambda item: -len(item[1]))
+    return {_label(*key, several): members for key, members in found}
+
+
+def _label(height, film, mesh, with_mesh):
+    law = f"layer of {1e9 * height:g} nm" if height else "direct contact"
+    if film and not height:
+        law = f"rigid, boundary film {1e9 * film:g} nm"
+    return f"{law}, a/{mesh}" if with_mesh else law
+
+
 def draw_stribeck(results, _options):
-    """Figure of friction, share on the solids and mean gap ratio against the speed."""
-    points, short = stribeck_points(results)
+    """Figure of friction, share on the solids and mean gap ratio against the speed.
+
+    Of results with several contact laws or meshes the longest curve has its scatter over time, the others are
+    lines of their means.
+    """
+    (main, members), *others = curves(results).items()
+    points, short = stribeck_points(members)
     figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
     for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
@@ -150,16 +175,18 @@ def draw_stribeck(results, _options):
         panel.grid(lw=0.3)
         if not np.isfinite(mean).any():
             panel.text(0.5, 0.5, "not in these results", transform=panel.transAxes, ha="center", va="center")
+    for number, (label, compared) in enumerate(others):
+        _draw_means(axes, compared, label, f"C{number + 1}")
     _references(axes[0], points, speeds)
     shares = [p.figures["contact_share"].high for p in points]
-    axes[1].set_ylim(
-        0.0, min(1.02, 1.15 * np.nanmax(shares)) if np.nanmax(shares, initial=0.0) > 0.0 else 1.02
-    )
+    highest = 0.0 if others else np.nanmax(shares, initial=0.0)
+    axes[1].set_ylim(0.0, min(1.02, 1.15 * highest) if highest > 0.0 else 1.02)
     if np.isfinite([p.figures["mean_gap_ratio"].mean for p in points]).any():
         axes[2].set_yscale("log")
     axes[2].set_xlabel(UNITS[SPEED])
     band = f"{BAND[0]:g} to {BAND[1]:g} % of the time"
-    handles = [Line2D([], [], color=SINGLE_COLOUR, marker="o", ms=3.5, lw=1.2, label="mean over time")]
+    label = f"{main}:\nmean over time" if others else "mean over time"
+    handles = [Line2D([], [], color=SINGLE_COLOUR, marker="o", ms=3.5, lw=1.2, label=label)]
     legend_beside(axes[1], [*handles, Patch(color=SINGLE_COLOUR, alpha=0.2, lw=0, label=band)])
     title = results[0].attrs["title"]
     note = f"\nnot shown, ended too early: {', '.join(short)}" if short else ""
@@ -176,6 +203,16 @@ def draw_stribeck(results, _options):
 def _few(value, _):
     """Labels between powers of ten: 2 and 5 times one."""
     return f"{value:g}" if f"{value:e}"[0] in "25" else ""
+
+
+def _draw_means(axes, results, label, colour):
+    given = [tomllib.loads(result.attrs["case"])["motion"]["entrainment_speed"] for result in results]
+    found = [stribeck_point(*pair) for pair in zip(results, given, strict=True)]
+    points = sorted(filter(None, found), key=lambda point: point.speed)
+    speeds = [abs(point.speed) for point in points]
+    for panel, name in zip(axes, QUANTITIES, strict=True):
+        means = [point.figures[name].mean for point in points]
+        panel.plot(speeds, means, "s--", color=colour, ms=3.0, lw=0.9, label=label)
 
 
 def _references(axes, points, speeds):
