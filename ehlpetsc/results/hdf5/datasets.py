@@ -111,7 +111,7 @@ def room(file, data_bytes):
         yield
         return
     descriptor, end = file.id.get_vfd_handle(), file.id.get_filesize()
-    chunks = CHUNK_BYTES * len(FIELDS) + 8 * CHUNK_STEPS * (len(STEP_SCALARS) + len(OTHERS))
+    chunks = CHUNK_BYTES * len(file) + 8 * CHUNK_STEPS * len(file.get("steps", ()))
     try:
         os.posix_fallocate(descriptor, end, data_bytes + chunks + METADATA_BYTES + RESERVE_BYTES)
     except OSError:
