@@ -69,18 +69,24 @@ class PostError(Exception):
 
 
 class SolveFailed(Exception):
-    """One solve of the discrete equations failed; `reason` is the solver's name of why.
+    """One solve of the discrete equations failed.
 
     Attributes
     ----------
+    method : str
+        That failed: SNES, the sweeps, or the check of the solution.
     reason : str
     iterations : int
         Spent on it.
     """
 
-    def __init__(self, reason, iterations):
-        super().__init__(f"SNES {reason} after {iterations} iterations")
-        self.reason, self.iterations = reason, iterations
+    def __init__(self, method, reason, iterations):
+        super().__init__(f"{method} {reason} after {iterations} iterations")
+        self.method, self.reason, self.iterations = method, reason, iterations
+
+    def after(self, iterations):
+        """The same failure, after iterations of an attempt before."""
+        return SolveFailed(self.method, self.reason, self.iterations + iterations)
 
 
 class Stopped(Exception):

@@ -109,6 +109,8 @@ class EHLProblem:
         Scale of the Reynolds rows, about the expected film, in a^2/R.
     first, last : int
         Local nodes; the rank that owns the last one owns the load row.
+    bound_tolerance : float
+        Of the active set: films this close to their bound count as on it, in a^2/R.
 
     Attributes
     ----------
@@ -116,13 +118,13 @@ class EHLProblem:
         Nodes whose unknowns the local rows are given; the local ones among them.
     """
 
-    def __init__(self, case, scales, film_scale, first, last):
+    def __init__(self, case, scales, film_scale, first, last, bound_tolerance=0.0):
         self.n, self.x, self.scales = scales.nx, scales.x, scales
         self.dx = self.x[1] - self.x[0]
         self.first, self.last, self.local = first, last, last - first
         self.fluid = case.fluid
         self.film_scale = film_scale = film_scale_of(case, scales, film_scale)
-        self.model = contact_model(case, scales, film_scale)
+        self.model = contact_model(case, scales, film_scale, bound_tolerance)
         self.deflection = Deflection(self.n, self.dx, first, last)
         self.window, self.own = self.deflection.window, self.deflection.own
         self._parabola = 0.5 * self.x[self.window] ** 2

@@ -5,7 +5,7 @@ import ctypes
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.refusals import check_options, looser, sentence
+from ehlpetsc.nonlinear.refusals import check_options, loose_tolerances, petsc_message
 
 DEFAULTS = {
     "snes_linesearch_type": "basic",
@@ -30,13 +30,6 @@ PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.pre
 # PETSc's LU and ILU do not exchange rows, and pivots of the deflection's rows come out as zero by chance
 OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
 
-OWN = {
-    *DEFAULTS.items(),
-    *PRECONDITIONER.items(),
-    *OTHERS.items(),
-    *(("snes_atol", value) for value in ATOL.values()),
-}
-
 READ_AT_THE_END = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
 
@@ -55,20 +48,47 @@ class RunOptions:
 
     Attributes
     ----------
-    views : list of str
-        ``snes_view`` and ``ksp_view``, where they are asked for without a value: held back, because PETSc
-        would repeat them at every solve.
-    users : set of str
-        Names of all that are not the program's defaults.
-    unread : set of str
-        Those of `of_case` and `given` that nobody has read yet.
+    deferred_views : list of str
+        ``snes_view`` and ``ksp_view``, where they are set without a value: kept out of PETSc's table, because
+        PETSc would repeat them at every solve.
+    given : dict of str to str
+        All that are not the program's defaults; those of PETSc's table from the first entry on.
+    unused : set of str
+        Names in `of_case` and `given` that have not been read yet.
     """
 
-    def __init__(self, law, of_case=(), given=()):
+    def __init__(self, law="direct", of_case=(), given=()):
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
-        self._of_case, self._given, self._depth = dict(of_case), dict(given), 0
-        self.views, self.unread = [], {*self._of_case, *self._given}
-        self.users = set(self.unread)
+        self._of_case, self._of_call, self._depth = dict(of_case), dict(given), 0
+        self._entered, self._saved = [], {}
+        self.given = self._of_case | self._of_call
+        self.deferred_views, self.unused = [], set(self.given)
+
+    @property
+    def user_set(self):
+        """Names of the options that are not the program's defaults."""
+        return set(self.given)
+
+    def value(self, name, default=None):
+        """Value of an option, which counts as used."""
+        if name in self.given:
+            PETSc.Options().hasName(name)
+            self.unused.discard(name)
+        return (self._defaults | self.given).get(name, default)
+
+    def real(self, name, default=None):
+        """Value of an option as a number.
+
+        Raises
+        ------
+        UsageError
+            It is none.
+        """
+        value = self.value(name, default)
+        try:
+            return float(value)
+        except ValueError:
+            raise UsageError(f"-{name} {value}: allowed: a number") from None
 
     def __enter__(self):
         if self._depth == 0:
@@ -81,27 +101,27 @@ class RunOptions:
         if self._depth == 0:
             self._leave(PETSc.Options())
 
-    def looser(self):
-        """One line for every tolerance of the user's that is looser than the program's own."""
-        return looser(float(self._defaults["snes_atol"]))
+    def loose_tolerances(self):
+        """One line for every tolerance of the user that is looser than the program's own."""
+        return loose_tolerances(self.given, float(self._defaults["snes_atol"]))
 
-    def unread_so_far(self):
-        """Names of the user's options that nobody has read by now."""
-        mine = {*dict(OWN), "snes_atol", *self.views}
-        return {*(name for name in self.unread if not (self._depth and was_read(name))), *unread()} - mine
+    def unused_so_far(self):
+        """Names of the user's options that have not been read by now."""
+        of_program = {*DEFAULTS, *PRECONDITIONER, *OTHERS, "snes_atol", *self.deferred_views}
+        mine = (name for name in self.unused if not (self._depth and was_read(name)))
+        return {*mine, *unused()} - of_program
 
     def _enter(self, table):
         there = table.getAll()
-        wanted = self._of_case | there | self._given
-        self.users = set(wanted)
+        self.given = wanted = self._of_case | there | self._of_call
         check_options(wanted, len(self._defaults) + len(PRECONDITIONER))
         own = wanted.get("pc_type", PRECONDITIONER["pc_type"]) == PRECONDITIONER["pc_type"]
         wanted = self._defaults | (PRECONDITIONER if own else OTHERS) | wanted
-        self.views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
+        self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
-        changed = [name for name in [*self._entered, *self.views] if name in there]
-        self._held = {name: table.getString(name, "") for name in changed}
-        for name in self.views:
+        changed = [name for name in [*self._entered, *self.deferred_views] if name in there]
+        self._saved = {name: table.getString(name, "") for name in changed}
+        for name in self.deferred_views:
             table.delValue(name)
         for number, name in enumerate(self._entered):
             try:
@@ -109,25 +129,25 @@ class RunOptions:
             except PETSc.Error as error:
                 for earlier in self._entered[:number]:
                     table.delValue(earlier)
-                raise UsageError(f"PETSc refuses -{name} {wanted[name]}: {sentence(error)}") from None
+                raise UsageError(f"PETSc refuses -{name} {wanted[name]}: {petsc_message(error)}") from None
 
     def _leave(self, table):
-        self.unread = {name for name in self.unread if not was_read(name)} - set(self.views)
+        self.unused = {name for name in self.unused if not was_read(name)} - set(self.deferred_views)
         for name in self._entered:
             table.delValue(name)
-        for name, value in self._held.items():
+        for name, value in self._saved.items():
             table[name] = value
             table.hasName(name)  # it has been read, for -options_left
 
 
-def unread():
-    """Names in PETSc's table that nobody has read, but for own ones and those that PETSc reads at its end."""
+def unused():
+    """Unused options in PETSc's table, without ``-ehl_*`` and those that PETSc reads at its end."""
     names = PETSc.Options().getAll()
     return sorted(n for n in names if not (n.startswith("ehl_") or n in READ_AT_THE_END or was_read(n)))
 
 
 def was_read(name):
-    """Whether anybody has asked for an option; petsc4py does not tell."""
+    """Whether an option has been read (PetscOptionsUsed, which petsc4py lacks)."""
     answer = ctypes.c_int(1)
     ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(answer))
     return bool(answer.value)

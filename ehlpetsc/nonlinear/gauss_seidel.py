@@ -30,13 +30,11 @@ operations; the loops are compiled. Ranks do not share a sweep: each does the wh
 """
 
 import numpy as np
-from petsc4py import PETSc
 
 from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.interleaving import firsts, seconds
 from ehlpetsc.errors import SolveFailed
-from ehlpetsc.nonlinear.defaults import ATOL
 from ehlpetsc.nonlinear.sweeps import DeflectionForm, Linearised, sweep
 
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
@@ -50,14 +48,14 @@ STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both 
 
 
 class GaussSeidelSolver:
-    """Solves one scene by sweeps; stands in for :class:`ehlpetsc.nonlinear.newton.NewtonSolver`.
-
-    Stops at the same residual, that of ``-snes_atol``.
+    """Solver of one scene by sweeps, with the interface of :class:`ehlpetsc.nonlinear.newton.NewtonSolver`.
 
     Parameters
     ----------
     case, scales, film_scale
         As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
+    tolerance : float
+        Of the residual, as ``-snes_atol``.
 
     Attributes
     ----------
@@ -65,12 +63,10 @@ class GaussSeidelSolver:
         Of all solves so far.
     """
 
-    watch = None  # as of NewtonSolver
-
-    def __init__(self, case, scales, film_scale):
+    def __init__(self, case, scales, film_scale, tolerance):
         self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
         self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
-        self.tolerance = PETSc.Options().getReal("snes_atol", float(ATOL["direct"]))
+        self.tolerance = tolerance
         curvature, near = self.deflection.curvature, min(NEAR, scales.nx - 1)
         self.kernel = np.concatenate([curvature[near:0:-1], curvature[: near + 1]])
         distant = curvature.copy()
@@ -90,8 +86,18 @@ class GaussSeidelSolver:
         """F of the last solution at every node, shape (nx,)."""
         return self.imbalance
 
-    def solve(self, q, h, h00, inputs, max_it=None):
-        """Solve from the given start, with `max_it` evaluations instead of the usual number at most.
+    def solve(self, q, h, h00, inputs, max_it=None, watch=None):
+        """Solve from a first guess.
+
+        Parameters
+        ----------
+        q, h : ndarray, shape (nx,)
+        h00 : float
+        inputs : ehl_problem.StepInputs
+        max_it : int, optional
+            Limit of evaluations in place of the usual one.
+        watch : callable, optional
+            Called before every evaluation; an exception that it raises ends the solve.
 
         Returns
         -------
@@ -107,17 +113,17 @@ class GaussSeidelSolver:
         q, h = q.copy(), np.maximum(h, self.bound)
         most = max_it or EVALUATIONS
         for iteration in range(most):
-            if self.watch:
-                self.watch()
+            if watch:
+                watch()
             p = np.maximum(q, 0.0)
             h00, still_open = self._correct(p, h, h00, inputs.phi)
             norm = self._evaluate(q, h, h00, inputs)
             if norm < self.tolerance:
                 return q, h, h00, iteration
             if not np.isfinite(norm):
-                raise SolveFailed("NOT_FINITE", iteration)
+                raise SolveFailed("sweeps", "NOT_FINITE", iteration)
             self._sweep(q, h, p, still_open, inputs)
-        raise SolveFailed("MAX_IT", most)
+        raise SolveFailed("sweeps", "MAX_IT", most)
 
     def _correct(self, p, h, h00, phi):
         """Balance the load by h00; put h of the open gap and the ends to the whole integral, in place."""

@@ -1,10 +1,10 @@
 r"""Newton's method for a system of equations, by PETSc's SNES.
 
 Direct contact: ``vinewtonrsls``. At every iteration the nodes with h at its bound and F > 0 form the contact
-set, whose Reynolds rows and films leave the system. Steps that begin clear of the bound take the same
-iterations without it (``newtonls``), which is a tenth quicker; those that come to touch begin anew with it.
-Mixed contact: ``newtonls`` on the semismooth system, whose unknowns carry the complementarity in their sign
-and have no bounds; ``vinewtonrsls`` then takes the same iterations.
+set, whose Reynolds rows and films leave the system. Steps whose guess is clear of the bound take the same
+iterations without it (``newtonls``), which is a tenth quicker; where a film then reaches the bound, the step
+begins again with it. Mixed contact: ``newtonls`` on the semismooth system, whose unknowns carry the
+complementarity in their sign and have no bounds; ``vinewtonrsls`` then takes the same iterations.
 """
 
 import numpy as np
@@ -12,14 +12,19 @@ from petsc4py import PETSc
 
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear import snes as snes_objects
+from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.snes import owned, weakly
 
-LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: where a linear residual is small enough
-LINEAR_WORK = 100  # linear iterations for each of Newton's that is allowed, at most, over a whole solve
-LONGER_START = 7  # times the iterations of a time step
-LOOSEST = 10.0  # times Newton's absolute tolerance: what rounding may make of it
-CLEAR = 0.02  # of the expected film over the bound: a step may begin without it
+LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: absolute tolerance of the linear residual
+LINEAR_WORK = 100  # linear iterations per Newton iteration allowed, at most, over a whole solve
+START_FACTOR = 7  # iterations allowed for a steady start over those of a time step
+MAX_ROUNDING_FACTOR = 10.0  # of Newton's absolute tolerance: rounding may raise it so far
+CLEAR_OF_BOUND = 0.02  # of the expected film: least film of a guess that is solved without the bound
+REJECTED_STEP = (
+    PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
+    PETSc.SNES.ConvergedReason.DIVERGED_LINE_SEARCH,
+)
 
 
 class NewtonSolver:
@@ -28,15 +33,16 @@ class NewtonSolver:
     Parameters
     ----------
     system : systems.two_fields.TwoFields
+    options : defaults.RunOptions, optional
+        Entered, because PETSc reads its table when its objects are made; by default none are set.
 
     Attributes
     ----------
-    watch : callable or None
-        Called in every iteration on every rank; what it raises ends the solve.
-    limited : bool
-        Whether ``-snes_max_it`` is the user's word, then also for steady starts.
+    snes : petsc4py.PETSc.SNES
     tolerance : float
-        What the last solve was asked to bring the residual to.
+        Absolute tolerance of the last solve.
+    bounded : bool
+        Whether SNES enforces the bound of the contact model.
 
     Raises
     ------
@@ -44,12 +50,16 @@ class NewtonSolver:
         PETSc refuses an option, or the system does.
     """
 
-    def __init__(self, system):
+    def __init__(self, system, options=None):
         self.system, self.problem = system, system.problem
-        self.watch = None
-        self.limited = self.touched = self.begins = self.without_bound = False
+        self._options = options or RunOptions()
         self._made = owned(self)
+        self._watch, self._needs_renewal = None, False
+        self._unconstrained = self._reaches_bound = self._is_first = False
+        self.snes = self._unconstrained_snes = self.tolerance = None
         self._create()
+        self.bounded = self.snes.getType() == "vinewtonrsls"
+        self._max_it, self._atol, self._linear_max_it = self.snes.max_it, self.snes.atol, self.snes.ksp.max_it
 
     @property
     def bound(self):
@@ -57,54 +67,57 @@ class NewtonSolver:
         return self.system.model.minimum_film
 
     def _create(self):
-        system, options = self.system, PETSc.Options()
-        self.snes = self._snes_of_type("newtonls" if system.model.lower_bound is None else "vinewtonrsls")
-        self.linear_limit = self.snes.ksp.max_it
-        self.follows = not options.hasName("ksp_atol")
+        system, model = self.system, self.system.model
+        self.snes = self._snes_of_type("newtonls" if model.lower_bound is None else "vinewtonrsls")
         if system.operator is None:
             system.create_matrices(with_band=is_ours(self.snes.ksp.pc))
-        self._give_jacobian(self.snes)
-        self.bounded, self.free = self.snes.getType() == "vinewtonrsls", None
-        if self.bounded:
-            system.give_bounds(self.snes)
-            if system.model.starts_unconstrained and not options.hasName("snes_type"):
-                self.free = self._snes_of_type("newtonls")
-                self._give_jacobian(self.free)
+        self._set_jacobian(self.snes)
+        if self.snes.getType() == "vinewtonrsls":
+            self.snes.setVariableBounds(system.lower, system.upper)
+            if model.starts_unconstrained and "snes_type" not in self._options.user_set:
+                self._unconstrained_snes = self._snes_of_type("newtonls")
+                self._set_jacobian(self._unconstrained_snes)
 
     def _snes_of_type(self, kind):
         system = self.system
-        snes = snes_objects.create(system.comm, kind, system.f, self._function, self._before_step)
+        callbacks = self._function, self._before_step
+        snes = snes_objects.create(system.comm, kind, system.f, *callbacks, self._options.given)
         self._made.append(snes)
         return snes
 
-    def _give_jacobian(self, snes):
+    def _set_jacobian(self, snes):
         snes.setJacobian(weakly(self._jacobian), self.system.operator, self.system.preconditioned)
 
     def _function(self, snes, x, f):
-        evaluation = self.system.evaluation(x) if self.begins else self.system.evaluate(x)
-        self.begins = False
-        if self.touched:
-            f.array[:] = np.nan  # ends the solve on all ranks
-        else:
-            f.array[:] = evaluation.residual
+        # the first one is that of the guess, evaluated already unless SNESVI projects it onto the bounds
+        evaluate = self.system.evaluation if self._is_first else self.system.evaluate
+        f.array[:], self._is_first = evaluate(x).residual, False
+        if self._reaches_bound:
+            snes_objects.set_function_domain_error(snes)  # rejects the step
 
     def _jacobian(self, snes, x, operator, preconditioner):
         self.system.linearise(x)
         left = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
-        snes.ksp.setTolerances(max_it=min(self.linear_limit, max(left, 1)))
+        snes.ksp.setTolerances(max_it=min(self._linear_max_it, max(left, 1)))
         operator.assemble()
 
     def _before_step(self, x, y):
-        if self.watch:
-            self.watch()
+        if self._watch:
+            self._watch()
         self.system.limit_step(x, y)
-        if self.without_bound:
-            self.touched = self.system.touches(x, y)
+        if self._unconstrained:
+            self._reaches_bound = self.system.reaches_bound(x, y)
         return True
 
     def start_iterations(self, needed=None):
-        """Iterations that a steady start may take: what is exponential falls by one exponent in each."""
-        return self.snes.max_it if self.limited else needed or LONGER_START * self.snes.max_it
+        """Iteration limit of a steady start.
+
+        Exponential residuals fall by a factor e an iteration, so it needs more than a time step; a limit set
+        by the user holds for both.
+        """
+        if "snes_max_it" in self._options.user_set:
+            return self._max_it
+        return needed or START_FACTOR * self._max_it
 
     def residual(self):
         """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
@@ -114,8 +127,8 @@ class NewtonSolver:
         """F of the last solution at every node, shape (nx,)."""
         return self.residual()[1]
 
-    def solve(self, q, w, h00, inputs, max_it=None):
-        """Solve from the given start, with `max_it` iterations instead of the usual number at most.
+    def solve(self, q, w, h00, inputs, max_it=None, watch=None):
+        """Solve from a first guess.
 
         Parameters
         ----------
@@ -123,6 +136,9 @@ class NewtonSolver:
         h00 : float
         inputs : ehl_problem.StepInputs
         max_it : int, optional
+            Iteration limit in place of the usual one.
+        watch : callable, optional
+            Called in every iteration on every rank; an exception that it raises ends the solve.
 
         Returns
         -------
@@ -134,72 +150,75 @@ class NewtonSolver:
         ------
         SolveFailed
         """
-        guess, spent = (q, w, h00, inputs), 0
-        if self._clear_of_the_bound(w, inputs):
+        guess, spent, self._watch = (q, w, h00, inputs), 0, watch
+        if self._is_clear_of_bound(w, inputs):
             try:
-                return self._solve(self.free, guess, max_it)
-            except SolveFailed as error:  # it comes to touch, or it would not do better with a bound
+                return self._solve(self._unconstrained_snes, guess, max_it)
+            except SolveFailed as error:  # it reaches the bound, or would not do better with it
                 spent = error.iterations
         try:
             *solution, iterations = self._solve(self.snes, guess, max_it)
         except SolveFailed as error:
-            error.iterations += spent
-            raise
+            raise error.after(spent) from error
         return *solution, iterations + spent
 
-    def _clear_of_the_bound(self, w, inputs):
+    def _is_clear_of_bound(self, w, inputs):
         """Whether a step can begin without the bound, which costs a tenth of an iteration."""
-        away = self.free is not None and inputs.history is not None
-        return away and w.min() > self.bound + CLEAR * self.problem.film_scale
+        possible = self._unconstrained_snes is not None and inputs.history is not None
+        return possible and w.min() > self.bound + CLEAR_OF_BOUND * self.problem.film_scale
 
     def _solve(self, snes, guess, max_it):
-        self.system.begin(*guess)
-        self.without_bound, self.touched, self.begins = snes is self.free, False, True
-        usual = self.snes.max_it, self.snes.atol
+        if self._needs_renewal:
+            snes = self._renew(snes)
+        self.system.set_initial_guess(*guess)
+        self._unconstrained, self._reaches_bound = snes is self._unconstrained_snes, False
+        self._is_first = self._needs_renewal = True
         try:
-            self._set_tolerances(snes, usual[0] if max_it is None else max_it)
+            self._set_tolerances(snes, max_it or self._max_it)
             snes.solve(None, self.system.x)
-            self.snes.setTolerances(max_it=usual[0], atol=usual[1])
+            snes.setTolerances(max_it=self._max_it, atol=self._atol)  # for -snes_view
         except PETSc.Error as error:
-            raised = error.__cause__  # by what PETSc called: newer releases wrap it
+            raised = error.__cause__  # by a callback: newer releases wrap it
             if raised and not isinstance(raised, PETSc.Error):
                 raise raised from None
-            self.snes.destroy()
-            snes_objects.raise_refusal(error)
+            snes.destroy()
+            snes_objects.raise_refusal(error, self._options.given)
         return self._solution(snes)
 
     def _set_tolerances(self, snes, max_it):
-        atol, system = self.snes.atol, self.system
-        if self.follows:
-            snes.ksp.setTolerances(atol=LINEAR_ATOL * atol)
+        system = self.system
+        if "ksp_atol" not in self._options.user_set:
+            snes.ksp.setTolerances(atol=LINEAR_ATOL * self._atol)
         if system.factors:
-            system.factors.of_a_new_solve()
-        self.tolerance = min(max(atol, system.rounding()), LOOSEST * atol)
+            system.factors.invalidate()
+        self.tolerance = min(max(self._atol, system.rounding()), MAX_ROUNDING_FACTOR * self._atol)
         snes.setTolerances(max_it=max_it, atol=self.tolerance)
         if snes.rtol > 0.0 or snes.stol > 0.0:  # the user's: obeyed; a solution is no worse than its guess
-            snes.computeFunction(system.x, system.f)
-            share = 1.0 if snes.stol > 0.0 else snes.rtol
-            self.tolerance = max(self.tolerance, share * system.f.norm())
+            factor = 1.0 if snes.stol > 0.0 else snes.rtol
+            system.f.array[:] = system.evaluation(system.x).residual
+            self.tolerance = max(self.tolerance, factor * system.f.norm())
 
     def _solution(self, snes):
         reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
+        # PETSc's solver objects keep a failed factorisation; a step that is rejected is none
+        self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:
-            if not (self.without_bound and reason == PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN):
-                # a failed factorisation stays failed in PETSc's solver objects; a film that touched does not
-                self._renew()
-            raise SolveFailed(snes_objects.REASONS.get(reason, str(reason)), iterations)
+            raise SolveFailed("SNES", snes_objects.REASONS.get(reason, str(reason)), iterations)
         q, w, h00 = self.system.solution()
         if not np.isfinite([q.sum(), w.sum(), h00]).all():
-            raise SolveFailed("NOT_FINITE", iterations)
+            raise SolveFailed("SNES", "NOT_FINITE", iterations)
         bound = self.system.model.lower_bound
         if bound is not None and not self.bounded and w.min() < bound:
-            raise SolveFailed("FILM_BELOW_ITS_BOUND", iterations)
+            raise SolveFailed("SNES", "FILM_BELOW_ITS_BOUND", iterations)
         return q, w, h00, iterations
 
-    def _renew(self):
+    def _renew(self, snes):
+        """New objects in place of those of a solve that failed; returns the one in place of `snes`."""
+        unconstrained = snes is self._unconstrained_snes
         while self._made:
             self._made.pop().destroy()
         self._create()
+        return self._unconstrained_snes if unconstrained else self.snes
 
 
 def is_ours(pc):

@@ -1,8 +1,6 @@
-"""Options that cannot be, told with PETSc's own sentence, and tolerances looser than the program's."""
+"""Options that are refused, with PETSc's own message, and tolerances looser than the program's."""
 
 import importlib
-
-from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
 
@@ -15,27 +13,26 @@ NUMERIC, NO_NUMBERS = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
 NO_CAUSE = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
 
 
-def refusal(error, own):
-    """What PETSc says when it refuses an option, after the options that it can mean; None if there are none.
+def refusal(error, given):
+    """PETSc's message when it refuses an option, after the options that it can mean; None if there are none.
 
     Parameters
     ----------
     error : petsc4py.PETSc.Error
-    own : set of (str, str)
-        The program's own options.
+    given : dict of str to str
+        Options of the user.
     """
-    reason = sentence(error)
-    given = {n: v for n, v in PETSc.Options().getAll().items() if (n, v) not in own}
+    reason = petsc_message(error)
     can = {n: v for n, v in given.items() if not (n.startswith("ehl_") or any(map(n.__contains__, NO_CAUSE)))}
     named = {n: v for n, v in can.items() if n in reason or v and v in reason}
-    told = [f"-{name} {value or ''}".strip() for name, value in (named if len(named) == 1 else can).items()]
-    if not told:
+    names = [f"-{name} {value or ''}".strip() for name, value in (named if len(named) == 1 else can).items()]
+    if not names:
         return None
-    return f"PETSc refuses {'one of ' if len(told) > 1 else ''}{', '.join(told)}: {reason}"
+    return f"PETSc refuses {'one of ' if len(names) > 1 else ''}{', '.join(names)}: {reason}"
 
 
-def sentence(error):
-    """PETSc's own last line."""
+def petsc_message(error):
+    """Last line of an error of PETSc."""
     return str(error).splitlines()[-1].split("] ")[-1]
 
 
@@ -76,17 +73,19 @@ def _check_class(path):
         raise UsageError(f"-pc_python_type {path}: has no method apply(pc, x, y), as a preconditioner has")
 
 
-def looser(atol):
-    """One line for every tolerance in PETSc's table that is looser than the program's own.
+def loose_tolerances(values, atol):
+    """One line for every tolerance that is looser than the program's own.
 
     Parameters
     ----------
+    values : dict of str to str
+        Options.
     atol : float
         The program's own ``-snes_atol``.
     """
-    table, lines = PETSc.Options().getAll(), []
+    lines = []
     for name, own in {"snes_atol": atol, **LOOSER}.items():
-        value = _number(table.get(name, own))
+        value = _number(values.get(name, own))
         if value is not None and value > own:
             lines.append(f"-{name} {value:g} is looser than the program's {own:g}: results are less certain")
     return lines

@@ -1,11 +1,11 @@
 """PETSc's SNES as this program makes it: its options obeyed or refused, and nothing left behind."""
 
+import ctypes
 import weakref
 
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.defaults import OWN
 from ehlpetsc.nonlinear.refusals import refusal
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
@@ -26,7 +26,7 @@ def _destroy(made):
         made.pop().destroy()
 
 
-def create(comm, kind, f, function, pre_check):
+def create(comm, kind, f, function, pre_check, given):
     """A SNES of a type, unless the user's ``-snes_type`` says another.
 
     Parameters
@@ -36,7 +36,9 @@ def create(comm, kind, f, function, pre_check):
     f : petsc4py.PETSc.Vec
         For residuals.
     function, pre_check : bound method
-        Residual, and what is done to Newton's step; they do not keep their object alive.
+        Residual, and changes of Newton's step; they do not keep their object alive.
+    given : dict of str to str
+        Options of the user.
 
     Raises
     ------
@@ -56,18 +58,23 @@ def create(comm, kind, f, function, pre_check):
     except (PETSc.Error, UsageError) as error:
         snes.destroy()
         if isinstance(error, PETSc.Error):
-            raise_refusal(error)
+            raise_refusal(error, given)
         raise
     snes.setLineSearchPreCheck(weakly(pre_check))
     return snes
 
 
-def raise_refusal(error):
-    """What PETSc raises over an option that the user gave is the user's to mend."""
-    told = refusal(error, OWN)
-    if told is None:
+def raise_refusal(error, given):
+    """Raise PETSc's error as a `UsageError` where an option of the user can be its cause."""
+    message = refusal(error, given)
+    if message is None:
         raise error
-    raise UsageError(told) from None
+    raise UsageError(message) from None
+
+
+def set_function_domain_error(snes):
+    """Report x outside the domain of the function (SNESSetFunctionDomainError, which petsc4py lacks)."""
+    ctypes.CDLL(PETSc.__file__).SNESSetFunctionDomainError(ctypes.c_void_p(snes.handle))
 
 
 def weakly(method):

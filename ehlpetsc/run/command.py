@@ -9,7 +9,7 @@ from petsc4py import PETSc
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import faults, help_text, text_of, time_limit
-from ehlpetsc.nonlinear.scheme import scheme
+from ehlpetsc.nonlinear.scheme import check_scheme
 from ehlpetsc.run.preview.banner import banner
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.series.passes import Passes
@@ -45,7 +45,7 @@ def run(path, overrides):
     comm, options = MPI.COMM_WORLD, PETSc.Options()
     try:
         stop = StopRequest(time_limit(options))
-        scheme(options)
+        check_scheme(text_of(options, "ehl_scheme"))
     except UsageError as error:
         return refuse(comm, [f"ehlpetsc: {error}"])
     wrong = faults(options.getAll())

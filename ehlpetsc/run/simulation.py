@@ -106,10 +106,8 @@ class Simulation:
         self._film = film = expected_film(case, self.scales)
         self.state = self.solution = None
         with self.options:
-            table = PETSc.Options()
-            solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), table)
-            solver.limited = "snes_max_it" in self.options.users
-            self._followed = any(map(table.hasName, FOLLOWED))
+            solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
+            self._followed = not self.options.user_set.isdisjoint(FOLLOWED)
         before = after.solution.records if after else {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
@@ -197,10 +195,9 @@ class Simulation:
             Its `state` is the last good one.
         """
         started = clock.monotonic()
-        self.stepper.solver.watch = watch
         with self.options:
             try:
-                solution = self._start() if self.solution is None else self._step(dt)
+                solution = self._start(watch) if self.solution is None else self._step(dt, watch)
                 self._check_ends(solution)
                 self.solution = solution
             except NotConverged as error:
@@ -213,20 +210,20 @@ class Simulation:
         touching = self.stepper.problem.model.contact_mask(solution.w, solution.imbalance)
         check_ends(self.scales.x, solution.p, touching)
 
-    def _start(self):
+    def _start(self, watch):
         self._head("steady start")
         with events.START:
-            solution = self.stepper.start(self._records)
+            solution = self.stepper.start(self._records, watch)
         if isinstance(self.stepper.solver, NewtonSolver):
-            for name in self.options.views:
+            for name in self.options.deferred_views:
                 snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
         return solution
 
-    def _step(self, dt):
+    def _step(self, dt, watch):
         self._head(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
         with events.STEPS:
-            return self.stepper.advance(self.solution, dt)
+            return self.stepper.advance(self.solution, dt, watch)
 
     def _head(self, what):
         """Head PETSc's own lines, where the user asked for some."""

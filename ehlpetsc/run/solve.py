@@ -82,7 +82,7 @@ class UnusedOptions:
     def note(self):
         """Print those that have not been printed yet."""
         noted = self._noted or set()
-        new = self._options.unread_so_far() - noted
+        new = self._options.unused_so_far() - noted
         self._noted = noted | new
         if new:
             self._show(f"note: options that nobody read: -{', -'.join(sorted(new))}")
@@ -141,7 +141,7 @@ class Run:
             restart = self.recorder.reserve(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
-            self._looser = self.simulation.options.looser()
+            self._looser = self.simulation.options.loose_tolerances()
             shown = [self._unused, ProgressOutput(self.simulation, self.out)] if self.root else []
             return solve(self.simulation, [self.recorder, *shown], self.stop)
 

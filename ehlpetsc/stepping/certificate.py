@@ -19,7 +19,7 @@ SLACK = 1.0 + 1e-6  # of a tolerance: sums taken in another order
 LEAST_OIL = 1e-9  # void fractions beyond 1 by no more than this are rounding
 
 
-def solve_checked(solver, q, w, h00, inputs, max_it=None):
+def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
     """Solve, and check the solution.
 
     Parameters and returned values are those of `nonlinear.newton.NewtonSolver.solve`.
@@ -29,10 +29,10 @@ def solve_checked(solver, q, w, h00, inputs, max_it=None):
     SolveFailed
         The solver gave up, or its solution does not pass the check.
     """
-    *solution, iterations = solver.solve(q, w, h00, inputs, max_it=max_it)
+    *solution, iterations = solver.solve(q, w, h00, inputs, max_it=max_it, watch=watch)
     fault = find_fault(solver.problem, *solution, solver.residual(), solver.tolerance)
     if fault:
-        raise SolveFailed(f"ended, but {fault}", iterations)
+        raise SolveFailed("solution check:", fault, iterations)
     return *solution, iterations
 
 

@@ -34,7 +34,7 @@ LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
 MOST_ATTEMPTS = 100  # at a solution of one start, those that fail too
 
 
-def steady(solver, film, inputs):
+def steady(solver, film, inputs, watch=None):
     """Steady solution of the solver's problem.
 
     Parameters
@@ -43,6 +43,8 @@ def steady(solver, film, inputs):
     film : float
         Expected film in a^2/R.
     inputs : ehl_problem.StepInputs
+    watch : callable, optional
+        As of `nonlinear.newton.NewtonSolver.solve`.
 
     Returns
     -------
@@ -57,24 +59,26 @@ def steady(solver, film, inputs):
     """
     problem, oil = solver.problem, inputs.inlet_film
     if problem.model.yield_pressure < 1.0:
-        return yielding_start(solver, film, inputs)
+        return yielding_start(solver, film, inputs, watch)
     if oil is None:
         # the set of dry nodes may have all of them to go
         max_it = problem.n if problem.fluid is None and solver.bounded else None
-        return Continuation(solver, inputs, max_it).solve(hertz_start(problem, film, inputs))
+        return Continuation(solver, inputs, max_it, watch).solve(hertz_start(problem, film, inputs))
     flooded = replace(inputs, inlet_film=None)
-    q, w, h00, iterations = Continuation(solver, flooded).solve(hertz_start(problem, film, inputs))
+    q, w, h00, iterations = Continuation(solver, flooded, watch=watch).solve(
+        hertz_start(problem, film, inputs)
+    )
     if problem.content(q, w)[-1] <= oil:
         q[0] = min(oil / problem.model.state(q, w).film[0] - 1.0, 0.0)
         begin = q, w, h00
     else:
         begin = starved_start(problem, film, inputs)
     # the meniscus may have all nodes of the inlet to go
-    *state, more = Continuation(solver, inputs, max_it=problem.n).solve(begin)
+    *state, more = Continuation(solver, inputs, problem.n, watch).solve(begin)
     return *state, iterations + more
 
 
-def yielding_start(solver, film, inputs):
+def yielding_start(solver, film, inputs, watch=None):
     """Steady solution of solids that yield under Hertz' pressure: from that of the dry contact.
 
     Arguments, returns and errors of :func:`steady`. All that touches would yield at once under Hertz'
@@ -82,7 +86,7 @@ def yielding_start(solver, film, inputs):
     films want the edges of the flat pressure smoothed; of several times the yield pressure thin films do not,
     and for thick ones the load is grown from where the solids begin to yield.
     """
-    problem, attempt = solver.problem, SolveAttempts(solver)
+    problem, attempt = solver.problem, SolveAttempts(solver, watch=watch)
     for width in (SMOOTHED, 0.0):
         state = attempt(bounded_start(problem, film, inputs, width), inputs)
         if state is not None:
@@ -111,8 +115,8 @@ class SolveAttempts:
         The last one.
     """
 
-    def __init__(self, solver, max_it=None):
-        self.solver, self.max_it = solver, solver.start_iterations(max_it)
+    def __init__(self, solver, max_it=None, watch=None):
+        self.solver, self.watch, self.max_it = solver, watch, solver.start_iterations(max_it)
         self.made, self.spent, self.failure = 0, 0, None
 
     def __call__(self, begin, inputs):
@@ -122,7 +126,7 @@ class SolveAttempts:
             raise NoSteadyStart(f"{told}: {self.failure}", None, self.spent)
         self.made += 1
         try:
-            *state, iterations = solve_checked(self.solver, *begin, inputs, max_it=self.max_it)
+            *state, iterations = solve_checked(self.solver, *begin, inputs, self.max_it, self.watch)
         except SolveFailed as error:
             self.spent, self.failure = self.spent + error.iterations, error
             return None
@@ -133,8 +137,8 @@ class SolveAttempts:
 class Continuation:
     """Solve at once or, failing that, with a growing share of what makes the contact hard."""
 
-    def __init__(self, solver, inputs, max_it=None):
-        self.inputs, self.attempt = inputs, SolveAttempts(solver, max_it)
+    def __init__(self, solver, inputs, max_it=None, watch=None):
+        self.inputs, self.attempt = inputs, SolveAttempts(solver, max_it, watch)
 
     def solve(self, begin):
         """Returns q, w, h00 and the iterations spent."""

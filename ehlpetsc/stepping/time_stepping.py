@@ -97,30 +97,34 @@ class TimeStepping:
         # the baseline is the steady solution of the start: under other conditions it is none
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
-    def start(self, records):
+    def start(self, records, watch=None):
         """Steady solution at time 0; by time steps, if roughness at rest has none in reach.
 
         Parameters
         ----------
         records : dict
             Of the effects at time 0.
+        watch : callable, optional
+            As of `nonlinear.newton.NewtonSolver.solve`.
         """
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
-            state = self._steady(inputs, records)
+            state = self._steady(inputs, records, watch)
         except NoSteadyStart as error:
             if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
                 raise NotConverged(f"steady start: {error}") from error
-            state = self._start_by_time_stepping(records)
+            state = self._start_by_time_stepping(records, watch)
         self.baseline = (state.q, state.w)
         return state
 
-    def _steady(self, inputs, records):
-        solution, newton, imbalance = self._inlet_first(inputs, lambda i: steady(self.solver, self.film, i))
+    def _steady(self, inputs, records, watch):
+        solution, newton, imbalance = self._inlet_first(
+            inputs, lambda i: steady(self.solver, self.film, i, watch)
+        )
         state = self._state(solution, imbalance, self._step_end(), records, newton=newton)
-        return self._settled(state, inputs, records)
+        return self._settled(state, inputs, records, watch)
 
-    def _settled(self, state, inputs, before):
+    def _settled(self, state, inputs, before, watch):
         """Steady solution that agrees with the records it leads to, by solving again with these."""
         end, newton = self._step_end(), state.newton
         for _ in range(MAX_STEADY_SOLUTIONS):
@@ -130,7 +134,7 @@ class TimeStepping:
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
                 solution, more, imbalance = self._inlet_first(
-                    again, lambda i, q, w, h00=state.h00: self._solve(i, q, w, h00), state.q, state.w
+                    again, lambda i, q, w, h00=state.h00: self._solve(i, q, w, h00, watch), state.q, state.w
                 )
             except SolveFailed as error:
                 raise NoSteadyStart(error, None, newton + error.iterations) from error
@@ -161,14 +165,14 @@ class TimeStepping:
         q, w, h00, iterations = solve(inputs.mirrored(), *map(mirrored, nodal))
         return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.mass_imbalance())
 
-    def _start_by_time_stepping(self, records):
+    def _start_by_time_stepping(self, records, watch):
         """State at time 0 of a film into which roughness at rest has grown by time steps before.
 
         It lies under the film from the start, where Newton's method may find no way to it; the roughness of
         a moving body comes in through the inlet. The growth covers `RAMP_LENGTH` at the mean speed.
         """
         try:
-            state = self._steady(self._inputs_of(self._step_end()), records)
+            state = self._steady(self._inputs_of(self._step_end()), records, watch)
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
@@ -177,7 +181,7 @@ class TimeStepping:
         state = replace(state, time=-self.ramp_time, travelled=moved)
         self.baseline = (state.q, state.w)
         while state.time < -LEVEL * dt:
-            state = self.advance(state)
+            state = self.advance(state, watch=watch)
             newton += state.newton
         begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
@@ -247,25 +251,26 @@ class TimeStepping:
         nodes = [(then - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
-    def _solve(self, inputs, q, w, h00):
+    def _solve(self, inputs, q, w, h00, watch):
         """Solution of a step; where solids yield and there is none, from the elastic one."""
         elastic = self.problem.model.elastic()
         try:
-            return solve_checked(self.solver, q, w, h00, inputs)
+            return solve_checked(self.solver, q, w, h00, inputs, watch=watch)
         except SolveFailed as error:
             if elastic is None:
                 raise
             spent = error.iterations
         try:
-            *begin, more = solve_checked(self.solver, q, w, h00, replace(inputs, contact=elastic))
+            *begin, more = solve_checked(
+                self.solver, q, w, h00, replace(inputs, contact=elastic), watch=watch
+            )
             spent += more
-            *state, more = solve_checked(self.solver, *begin, inputs)
+            *state, more = solve_checked(self.solver, *begin, inputs, watch=watch)
         except SolveFailed as error:
-            error.iterations += spent
-            raise
+            raise error.after(spent) from error
         return *state, spent + more
 
-    def advance(self, state, dt=None):
+    def advance(self, state, dt=None, watch=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
@@ -276,7 +281,7 @@ class TimeStepping:
             try:
                 step, inputs = self.inputs(state, dt)
                 solution, iterations, imbalance = self._inlet_first(
-                    inputs, lambda i, q, w: self._solve(i, q, w, state.h00), *guess
+                    inputs, lambda i, q, w: self._solve(i, q, w, state.h00, watch), *guess
                 )
                 break
             except SolveFailed as error:

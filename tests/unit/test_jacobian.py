@@ -95,7 +95,7 @@ def differences(at, direction, step):
 def linearised(at):
     """The system with its Jacobian at the state, as SNES asks for it."""
     system, n = at.solver.system, at.solver.system.n
-    system.begin(firsts(at.state, n), seconds(at.state, n), at.state[-1], at.inputs)
+    system.set_initial_guess(firsts(at.state, n), seconds(at.state, n), at.state[-1], at.inputs)
     at.solver.snes.computeJacobian(system.x, system.operator, system.preconditioned)
     return system
 

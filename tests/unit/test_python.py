@@ -150,7 +150,7 @@ def test_no_convergence_is_an_exception_with_the_last_good_state(case, result, t
     from ehlpetsc.errors import SolveFailed
 
     def fail(*_, **__):
-        raise SolveFailed("MADE_UP", 1)
+        raise SolveFailed("SNES", "MADE_UP", 1)
 
     simulation = ehlpetsc.Simulation(case)
     simulation.advance()

@@ -117,8 +117,7 @@ def test_in_mixed_contact_the_oil_drags_beside_the_solids():
 def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
     """Whether rounding leaves 0 or 1e-17 of it must not matter: runs continued and not differed there."""
     case, scales, p, h = scene(0.5)
-    problem = EHLProblem(case, scales, 1e-2, 0, scales.nx)
-    problem.model.bound_tolerance = 1e-8  # as SNES has it
+    problem = EHLProblem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)  # as SNES has it
     found = []
     for left in (0.0, 1e-17, 1e-9):
         w = h / scales.h

@@ -20,7 +20,7 @@ def smallest_film(contact, scales):
     return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
 
 
-def contact_model(case, scales, film_scale):
+def contact_model(case, scales, film_scale, bound_tolerance=0.0):
     """The contact model of a case.
 
     Parameters
@@ -29,6 +29,8 @@ def contact_model(case, scales, film_scale):
     scales : physics.scales.Scales
     film_scale : float
         See :func:`film_scale_of`.
+    bound_tolerance : float
+        Of the active set, in a^2/R.
 
     Returns
     -------
@@ -36,7 +38,9 @@ def contact_model(case, scales, film_scale):
     """
     contact = case.contact
     if contact.model == "direct":
-        return (DryContact if case.fluid is None else DirectContact)(contact.minimum_film / scales.h)
+        return (DryContact if case.fluid is None else DirectContact)(
+            contact.minimum_film / scales.h, bound_tolerance
+        )
     if contact.asperity_height is not None:
         layer = Layer.of(contact, scales, GAMMA)
         if contact.yield_pressure is None:

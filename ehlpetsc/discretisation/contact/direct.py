@@ -19,13 +19,20 @@ from ehlpetsc.discretisation.contact.node_state import (
 
 
 class DirectContact(ContactModel):
-    """Film bounded below by `bound` (a^2/R), with oil between the solids."""
+    """Film bounded below by `bound`, with oil between the solids.
+
+    Parameters
+    ----------
+    bound, tolerance : float
+        In a^2/R; films this close to the bound count as on it.
+    """
 
     starts_unconstrained = True
     lowest_pressure = 0.0
 
-    def __init__(self, bound):
+    def __init__(self, bound, tolerance=0.0):
         self.lower_bound = self.minimum_film = bound
+        self.bound_tolerance = tolerance
 
     def pressure(self, q, w):
         """See :class:`.model.ContactModel`."""

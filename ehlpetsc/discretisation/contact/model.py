@@ -22,7 +22,7 @@ class ContactModel:
     starts_unconstrained : bool
         Whether a bounded system is solved without its bound first, where the guess is clear of it.
     bound_tolerance : float
-        Tolerance of the active set: films this close to the bound count as on it. SNES sets it.
+        Tolerance of the active set: films this close to the bound count as on it, as SNES has it.
     yield_pressure : float
         In p0; inf for elastic solids.
     """

@@ -25,8 +25,8 @@ class Factors:
         self.lu = SpikeLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh = False
 
-    def of_a_new_solve(self):
-        """Factor the next matrix anew, so that a run that was stopped goes on as if it had not been."""
+    def invalidate(self):
+        """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
         self.fresh = False
 
     def factor(self, operator):

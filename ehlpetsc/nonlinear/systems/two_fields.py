@@ -23,7 +23,7 @@ from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 from ehlpetsc.nonlinear.snes import owned
 
 ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
-ZERO_TOLERANCE = 1e-8  # of PETSc: how near to its bound an unknown is taken to be on it
+ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
 STEP_LIMIT = 0.3  # p0: largest change of pressure of one Newton step
 FILM_AFTER_RELEASE = 1e-3  # of the expected film: film of a node in the iteration in which its solids part
 
@@ -36,6 +36,8 @@ class TwoFields:
     case, scales, film_scale
         As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
     comm : petsc4py.PETSc.Comm
+    bound_tolerance : float
+        Films this close to their bound count as on it, ``-snes_vi_zero_tolerance`` of SNES; in a^2/R.
 
     Attributes
     ----------
@@ -52,18 +54,18 @@ class TwoFields:
         More ranks than the mesh can be cut for.
     """
 
-    def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD):
+    def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD, bound_tolerance=ZERO_TOLERANCE):
         n, rank = scales.nx, comm.rank
         cuts = first_nodes(n, comm.size)
         first, last = cuts[rank], cuts[rank + 1]
         self.n, self.local, self.comm = n, last - first, comm
         self.near_field = case.mesh.near_field
-        self.problem = EHLProblem(case, scales, film_scale, first, last)
+        self.problem = EHLProblem(case, scales, film_scale, first, last, bound_tolerance)
         self.model = self.problem.model
         self.exchange = HaloExchange(self.problem, cuts, comm.tompi4py())
         self.linear_exchange = HaloExchange(self.problem, cuts, comm.tompi4py(), LINEAR_TOLERANCE)
         self._create_vectors()
-        self.inputs = self.place = self.rows = self.operator = None
+        self.inputs = self.x_evaluated = self.rows = self.operator = None
 
     def _create_vectors(self):
         sizes = (count(self.local) + self.problem.load_is_local, count(self.n) + 1)
@@ -96,13 +98,8 @@ class TwoFields:
             self.assembled = NearFieldMatrix(self.problem, self.near_field, self.preconditioned)
             self._made.append(self.preconditioned)
 
-    def give_bounds(self, snes):
-        """Let a SNES hold the unknowns to their bounds, and count as on them what it counts so."""
-        snes.setVariableBounds(self.lower, self.upper)
-        self.model.bound_tolerance = PETSc.Options().getReal("snes_vi_zero_tolerance", ZERO_TOLERANCE)
-
-    def begin(self, q, w, h00, inputs):
-        """Take a first guess, of the whole mesh, and the inputs of a time step.
+    def set_initial_guess(self, q, w, h00, inputs):
+        """Set the unknowns to a guess on the whole mesh, and the inputs of the solve.
 
         Parameters
         ----------
@@ -110,7 +107,7 @@ class TwoFields:
         h00 : float
         inputs : ehl_problem.StepInputs
         """
-        self.inputs, self.place, self.rows = inputs, None, None
+        self.inputs, self.x_evaluated, self.rows = inputs, None, None
         mine = slice(self.problem.first, self.problem.last)
         firsts(self.x.array, self.local)[:], seconds(self.x.array, self.local)[:] = q[mine], w[mine]
         if self.problem.load_is_local:
@@ -133,16 +130,16 @@ class TwoFields:
         return self.rows
 
     def evaluation(self, x):
-        """Residual and derivatives at x, where they were asked for last more often than not."""
-        if not all_ranks(self.exchange.ranks, np.array_equal(x.array_r, self.place)):
+        """Residual and derivatives at x, which is the point last evaluated more often than not."""
+        if not all_ranks(self.exchange.ranks, np.array_equal(x.array_r, self.x_evaluated)):
             self.evaluate(x)
         return self._evaluation
 
     def evaluate(self, x):
         """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`."""
-        self.place = x.array_r.copy()
+        self.x_evaluated = x.array_r.copy()
         with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
-            nodes, h00, sums = self.exchange(self.place, self._pressure)
+            nodes, h00, sums = self.exchange(self.x_evaluated, self._pressure)
             q, w = np.ascontiguousarray(nodes.T)
             self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, sums)
         return self._evaluation
@@ -176,10 +173,11 @@ class TwoFields:
         step = pairs(y.array, self.local)
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
-    def touches(self, x, y):
-        """Whether a film of this rank's comes to its bound by the step y."""
+    def reaches_bound(self, x, y):
+        """Whether the step y takes a film to its bound, on any rank."""
         film = seconds(x.array_r, self.local) - seconds(y.array_r, self.local)
-        return film.min() <= self.model.lower_bound + self.model.bound_tolerance
+        is_clear = film.min() > self.model.lower_bound + self.model.bound_tolerance
+        return not all_ranks(self.exchange.ranks, is_clear)
 
     def rounding(self):
         """What rounding of the unknowns leaves of the residual at x: nothing less can be asked.

@@ -1,0 +1,73 @@
+"""Newton's method around SNES: interruptions, films that reach their bound, options, failures."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ehlpetsc
+from ehlpetsc.errors import SolveFailed, UsageError
+
+CASES = Path(__file__).parents[2] / "cases"
+# the inlet near the contact, thin oil: the asperities touch within few steps
+TOUCHING = {
+    "mesh.inlet": -1.2,
+    "mesh.outlet": 1.3,
+    "mesh.points_per_half_width": 40,
+    "time.travel": 1.0,
+    "time.courant": 1.0,
+    "fluid.viscosity": 0.001,
+}
+
+
+class Interruption(Exception):
+    """Raised by a watch."""
+
+
+def interrupt():
+    raise Interruption
+
+
+def test_interruptions_leave_limits_and_answers_as_they_are():
+    case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING | {"time.travel": 0.1})
+    expected = list(ehlpetsc.Simulation(case))
+    simulation = ehlpetsc.Simulation(case)
+    solver = simulation.stepper.solver
+    limit = solver.start_iterations()
+    for state in expected:
+        for _ in range(3):
+            with pytest.raises(Interruption):
+                simulation.advance(watch=interrupt)
+            assert solver.start_iterations() == limit == 210
+        found = simulation.advance()
+        assert found.newton == state.newton
+        np.testing.assert_array_equal(found.pressure, state.pressure)
+
+
+def test_a_film_that_reaches_its_bound_is_outside_the_domain_of_the_function(capfd):
+    """PETSc's line search ends there, no residual is nan, and the step is solved with the bound."""
+    case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING)
+    simulation = ehlpetsc.Simulation(case, options={"snes_converged_reason": None})
+    states = list(simulation)
+    assert any(state.in_contact.any() for state in states) and sum(state.retries for state in states) == 0
+    lines = capfd.readouterr().out
+    assert re.search("DIVERGED_(LINE_SEARCH|FUNCTION_DOMAIN)", lines) and "FNORM_NAN" not in lines
+
+
+def test_options_are_those_of_the_call_and_of_no_other():
+    case = ehlpetsc.load(CASES / "table1_smooth.toml", {"mesh.points_per_half_width": 20})
+    given = {"snes_vi_zero_tolerance": 1e-7, "snes_max_it": 12}
+    ones, others = ehlpetsc.Simulation(case, options=given), ehlpetsc.Simulation(case)
+    found = [
+        (s.stepper.problem.model.bound_tolerance, s.stepper.solver.start_iterations()) for s in (ones, others)
+    ]
+    assert found == [(1e-7, 12), (1e-8, 210)]
+    with pytest.raises(UsageError, match="-snes_vi_zero_tolerance much"):
+        ehlpetsc.Simulation(case, options={"snes_vi_zero_tolerance": "much"})
+
+
+def test_a_failure_names_its_method_and_sums_up_iterations():
+    error = SolveFailed("sweeps", "MAX_IT", 3)
+    assert str(error) == "sweeps MAX_IT after 3 iterations"
+    assert str(error.after(4)) == "sweeps MAX_IT after 7 iterations" and error.iterations == 3
