@@ -7,7 +7,7 @@ usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n on 2 ranks where they are worth it, else on 1
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
-./run_mpi.sh plot|post|summary|compare|study ...    the same as ehlpetsc plot ..., each with -h
+./run_mpi.sh plot|post|summary|compare|gears|study ...    the same as ehlpetsc plot ..., each with -h
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
 ./run_mpi.sh --commands FOLDER                      put the command ehlpetsc (on one rank; ehlpetsc plot,
@@ -337,7 +337,7 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
-    plot | post | summary | compare | study | ensemble | collisions | contacts | explain | keys | template | python)
+    plot | post | summary | compare | gears | study | ensemble | collisions | contacts | explain | keys | template | python)
         prepare "$run_modules" "$drawing"
         exec "$python" -m ehlpetsc "$@"
         ;;

@@ -18,6 +18,7 @@ SUBCOMMANDS = {  # name: module, function, what it needs, what it does
     "post": ("ehlpetsc.post.command", "command", NUMERICS, "subsurface stresses, fatigue damage, statistics"),
     "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.compare", "main", NUMERICS, "two results field by field"),
+    "gears": ("ehlpetsc.gears.__main__", "main", DRAWING, "path of contact of spur gears, and runs along it"),
     "study": ("ehlpetsc.study.__main__", "main", DRAWING, "accuracy, speed, robustness"),
     "ensemble": (
         "ehlpetsc.analysis.ensemble",
