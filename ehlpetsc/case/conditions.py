@@ -56,6 +56,25 @@ def conditions_of(tables, folder):
     return _checked(columns, lines, tables, operation.get("repeat", 1))
 
 
+def with_columns(tables, folder):
+    """Tables of a case with the columns of its table's file in place of its name, as results store them.
+
+    Returns
+    -------
+    tables : dict
+    settings : list of (list of str, value)
+        The changes; a value None removes the key.
+    """
+    operation = tables.get("operation", {})
+    if "file" not in operation:
+        return tables, []
+    columns = read_table(folder / operation["file"])[0]
+    rest = {key: value for key, value in operation.items() if key != "file"}
+    settings = [(["operation", "file"], None)]
+    settings += [(["operation", key], values) for key, values in columns.items()]
+    return tables | {"operation": rest | columns}, settings
+
+
 def of_gears(path):
     """Conditions along a path of contact, from where a pair of teeth carries `MIN_LOAD` of the load.
 

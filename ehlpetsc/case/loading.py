@@ -10,6 +10,7 @@ from ehlpetsc.case.conditions import (
     TableFault,
     conditions_of,
     reversal_faults,
+    with_columns,
     with_reference_state,
 )
 from ehlpetsc.case.faults import describe, shortened, show
@@ -151,7 +152,9 @@ def load(case, overrides=None):
         faults += series_faults(path, data, lambda member: _faults(path, member))
     if faults:
         raise CaseError(faults)
-    return _made(path, data, toml_text(data) if from_python else text_with(text, settings, data))
+    stored, columns = with_columns(data, Path(path).parent)
+    text = toml_text(stored) if from_python else text_with(text, [*settings, *columns], stored)
+    return _made(path, data, text)
 
 
 def stored_case(text, overrides=None):

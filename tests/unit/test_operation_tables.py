@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehlpetsc.case.loading import load
+from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import ConditionsTable, VariableOperation, operation_of
@@ -92,6 +92,19 @@ def test_a_table_that_is_not_there_is_named(with_table, tmp_path):
     (tmp_path / "mesh.csv").unlink()
     with pytest.raises(CaseError, match="no such file"):
         load(path)
+
+
+def test_the_text_of_a_case_holds_the_table_of_its_file(with_table, tmp_path):
+    path = with_table(TABLE, repeat=2)
+    case = load(path, ["fluid.viscosity=0.004"])
+    assert case.operation.file == "mesh.csv"
+    (tmp_path / "mesh.csv").unlink()
+    alone = stored_case(case.text)
+    assert alone.operation.file is None and alone.conditions.repeat == 2
+    for one, other in zip(alone.conditions, case.conditions, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert alone.fluid.viscosity == 0.004 and alone.contact.load == case.contact.load
+    assert "# m" in case.text  # comments of the file stay
 
 
 def test_columns_may_stand_in_the_case_or_come_from_python():
