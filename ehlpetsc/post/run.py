@@ -87,8 +87,8 @@ def run(job, report=None, progress=None):
         job = job._replace(counting=job.counting._replace(strain=loads.case.post.strain))
         prepared = prepare(loads, job.surfaces, report)
         choices = job.counting, job.regression, job.criteria, job.within
-        mark = fingerprint(prepared.digest, job.surfaces, prepared.settings, *choices)
-        if stored_fingerprint(job.output) == mark:
+        identity = fingerprint(prepared.digest, job.surfaces, prepared.settings, *choices)
+        if stored_fingerprint(job.output) == identity:
             report(f"{job.output}: already there, of the same file and options")
             return
         _note_material(loads.case, job.criteria, report)
@@ -96,10 +96,11 @@ def run(job, report=None, progress=None):
             report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
         if job.counting.ranges == "window":
             report("note: counting takes four to eleven times as long with --ranges window")
-        with Lock(Path(job.output), "wait for it, or give another -o"), DepthCache(job.output, mark) as cache:
+        lock = Lock(Path(job.output), "wait for it, or give another -o")
+        with lock, DepthCache(job.output, identity) as cache:
             try:
                 _compute(job, prepared, cache, progress or (lambda done, of: None))
-                _store(job, prepared, cache, mark, report)
+                _store(job, prepared, cache, identity, report)
             except (PostError, OutputError, OSError):
                 cache.remove()  # unlike after an interruption there is nothing to continue from
                 raise
@@ -126,10 +127,10 @@ def _compute(job, prepared, cache, progress):
     with workers(job.jobs) as map_:
         for task in tasks:
 
-            def share(part, done=done, task=task):
+            def task_progress(part, done=done, task=task):
                 progress(done + part * len(task.depths), total)
 
-            values = solve(job, prepared, task, map_, share)
+            values = solve(job, prepared, task, map_, task_progress)
             for depth, part in zip(task.depths, values, strict=True):
                 cache.save(task.surface, depth, part)
             done += len(task.depths)
@@ -144,7 +145,7 @@ def _tasks(missing):
     return tasks
 
 
-def solve(job, prepared, task, map_=map, share=None):
+def solve(job, prepared, task, map_=map, progress=None):
     """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan where none passed."""
     loads, motion = prepared.loads, prepared.motions[task.surface]
     width = len(PAPER) + len(columns(job.criteria))
@@ -163,8 +164,8 @@ def solve(job, prepared, task, map_=map, share=None):
     def advance(count):
         nonlocal done
         done += count
-        if share:
-            share(done / frames)
+        if progress:
+            progress(done / frames)
 
     make = partial(Counters, prepared.settings, task.surface, job.counting, job.criteria)
     counters = list(map_(make, [motion.samples() + 2] * job.jobs))
@@ -175,11 +176,11 @@ def solve(job, prepared, task, map_=map, share=None):
     return out
 
 
-def _store(job, prepared, cache, mark, report):
+def _store(job, prepared, cache, identity, report):
     contents = Contents(prepared, job.regression, columns(job.criteria), job.within)
     for surface in prepared.motions:
         contents.add(surface, np.stack([cache.load(surface, d) for d in prepared.settings.depths]))
     for note in contents.notes:
         report(note)
-    attributes = contents.attributes(mark, job.counting, job.settings)
+    attributes = contents.attributes(identity, job.counting, job.settings)
     write_result(job.output, contents.datasets, attributes, contents.groups)

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from post_result_file import A, Scene, write
+from post_result_file import LOAD, A, Scene, write
 
 from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.post.inputs.loads import Loads
@@ -222,3 +222,34 @@ def test_texts_of_any_kind_and_check_sums_are_read(scene, tmp_path):
     with h5py.File(paths[1], "r+") as file:
         file["pressure"].attrs["units"] = np.bytes_(b"MPa")
     assert 'its unit is "MPa", it must be "Pa"' in refused(paths[1])
+
+
+@pytest.mark.parametrize("table", ["file", "columns"])
+def test_under_changing_speeds_points_are_where_the_surfaces_have_got_to(table, scene, tmp_path):
+    """Damage is of the positions alone: the same frames at other times give the same."""
+    count = scene.time.size
+    warped = scene.time[-1] * (scene.time / scene.time[-1]) ** 1.3
+    file_text = 'file = "elsewhere.csv"'
+    columns = (
+        f"time = {warped[[0, count // 2, -1]].tolist()}\nload = [{LOAD}, {LOAD}, {LOAD}]\n"
+        f"speed_1 = [{scene.u1}, {scene.u1}, {scene.u1}]\nspeed_2 = [{scene.u2}, {scene.u2}, {scene.u2}]"
+    )
+
+    def edit(file):
+        case = file.attrs["case"].replace("load = 527e3\n", "")
+        case = case.replace(case[case.index("[motion]") : case.index("[mesh]")], "")
+        operation = file_text if table == "file" else columns
+        file.attrs["case"] = f"{case}\n[operation]\n{operation}\n"
+        for name in ("time", "steps/time"):
+            file[name][...] = warped
+        for name, speed in (("displacement_1", scene.u1), ("displacement_2", scene.u2)):
+            file[f"steps/{name}"] = speed * scene.time
+        file["steps/load_given"] = np.full(count, LOAD)
+
+    paths = [write(tmp_path / "a.h5", scene), write(tmp_path / "b.h5", scene, edit=edit)]
+    found = []
+    for path in paths:
+        run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)))
+        found.append(PostResult(f"{path}.post").damage)
+    for side in ("slow", "fast"):
+        np.testing.assert_allclose(found[1][side], found[0][side], rtol=1e-9)

@@ -13,6 +13,7 @@ from math import exp, log, pi
 import numpy as np
 
 from ehlpetsc.compiled import compiled
+from ehlpetsc.post.criteria.path_reduction import turning_samples
 from ehlpetsc.post.criteria.planes import (
     STEP,
     normal_weights,
@@ -20,7 +21,6 @@ from ehlpetsc.post.criteria.planes import (
     shear_weights,
     strain_weights,
 )
-from ehlpetsc.post.criteria.turning import turning_samples
 from ehlpetsc.post.fatigue.cycles import find_cycles
 from ehlpetsc.post.fatigue.life_table import interpolate
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of

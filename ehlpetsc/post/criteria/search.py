@@ -1,4 +1,4 @@
-"""Criteria over many histories: what :mod:`ehlpetsc.post` calls from Python and for result files."""
+"""Criteria over many histories, of result files and of arrays: their counters and functions."""
 
 from typing import NamedTuple
 

@@ -27,9 +27,11 @@ class Gaps(NamedTuple):
 
 def find_gaps(loads):
     """Gaps in the stored frames, two or more, of :class:`ehlpetsc.post.inputs.loads.Loads`."""
-    steps, nominal = np.diff(loads.time) / loads.dt[:-1], np.diff(loads.step)
-    at_least = np.ceil(steps / MAX_STEP).astype(int)  # steps that such a time takes
-    between = np.where(at_least > nominal, np.rint(steps).astype(int), nominal)
+    between = np.diff(loads.step)
+    if loads.dt:
+        steps = np.diff(loads.time) / loads.dt
+        at_least = np.ceil(steps / MAX_STEP).astype(int)  # steps that such a time takes
+        between = np.where(at_least > between, np.rint(steps).astype(int), between)
     every = max(int(np.median(between)), 1)
     missing = np.maximum(-(-between // every) - 1, 0)
     after = np.flatnonzero(missing)

@@ -13,6 +13,7 @@ from ehlpetsc.results.post_result import SURFACES
 from ehlpetsc.results.reader import read_result
 
 CACHE = 32 << 20  # bytes of chunks kept a dataset
+VARIABLE = ("displacement_1", "displacement_2", "load_given")  # of changing operating conditions
 MIN_NODES = 8  # the slopes between nodes take seven
 UNITS = {"x": "m", "time": "s", "pressure": "Pa"} | {f"shear_stress_{surface}": "Pa" for surface in SURFACES}
 
@@ -29,8 +30,6 @@ class Loads:
     Attributes
     ----------
     case : Case
-    operation : ehlpetsc.physics.operation.ConstantOperation
-        Load and speeds over time.
     scales : Scales
         What follows from the case: a, p0, dx, dt ...
     x : ndarray (nx,), m
@@ -41,8 +40,12 @@ class Loads:
         As stored.
     speeds : dict
         Of the reference state, m/s, by surface.
-    dt : ndarray (nt,)
-        Longest time step of the case from each frame on, s.
+    dt : float or None
+        Longest time step of the case, s; None where it varies with the operating conditions.
+    load : ndarray (nt,)
+        Of the operating conditions at each frame, N/m.
+    has_conditions : bool
+        Whether the case has its operating conditions; they may be in a file beside it.
     travelled : dict
         Distance covered since time 0 at each frame, m, (nt,), by surface.
     profiles : dict
@@ -96,11 +99,17 @@ class Loads:
             raise PostError(f"dataset x: {fault}") from None
         if (np.diff(self.time) <= 0).any():
             raise PostError("dataset time: does not increase from frame to frame")
-        self.scales = Scales.of(self.case)
-        self.operation = operation_of(self.case, self.scales)
-        self.dt = np.array([self.operation.time_step(t, self.scales.dt) for t in self.time], float)
-        ways = np.array([self.operation.travelled(t) for t in self.time]).reshape(-1, 2)
-        self.travelled = {"fast": ways[:, 0], "slow": ways[:, 1]}
+        self.scales, self.has_conditions = Scales.of(self.case), True
+        stored = [self.step_scalar(name) for name in VARIABLE]
+        if all(values is not None for values in stored):
+            one, other, self.load = stored
+            self.dt, self.has_conditions = None, self.case.conditions is not None
+        else:
+            operation = operation_of(self.case, self.scales)
+            one, other = np.array([operation.travelled(t) for t in self.time]).reshape(-1, 2).T
+            self.load = np.array([operation.at(t).load for t in self.time])
+            self.dt = self.scales.dt
+        self.travelled = {"fast": one, "slow": other}
 
     def _profile(self, surface):
         """(s, z, speed) sorted by s; None of a smooth surface."""

@@ -92,7 +92,7 @@ class Contents:
     def _put(self, group, inner, **values):
         self.datasets |= {f"{group}/{inner}{name}": value for name, value in values.items()}
 
-    def attributes(self, mark, counting, settings=()):
+    def attributes(self, identity, counting, settings=()):
         """Root attributes: where the result comes from and how it was computed."""
         loads = self.prepared.loads
         mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
@@ -102,7 +102,7 @@ class Contents:
             "source": str(loads.path),
             "material": ", ".join(loads.case.contact.material or (DEFAULT,)),
             "settings": "\n".join(settings),
-            "fingerprint": mark,
+            "fingerprint": identity,
             "a": loads.a,
             "inlet": loads.x[0],
             "outlet": loads.x[-1],
