@@ -24,8 +24,9 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.physics import thermal_viscosity
 
 LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
-ITERATIONS = 100
-ACCURACY = 1e-10  # K
+ITERATIONS = 200
+ACCURACY = 1e-10  # K: change in an iteration that ends it
+QUADRATIC = 1e-4  # K: the same of an iteration of Newton's method, after which it is accurate to 1e-9 K
 
 _log_viscosity = compiled(thermal_viscosity.log_viscosity)
 _limited = compiled(thermal_viscosity.limited_shear)
@@ -63,7 +64,7 @@ class FilmLaw(NamedTuple):
 
 
 @compiled
-def shear_stress(ln_eta, h, p, spread, law):
+def shear_stress(ln_rate, ln_eta, p, eyring, limit):
     r"""Mean shear stress of the film :math:`\tau_m` [Pa].
 
     :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
@@ -71,31 +72,27 @@ def shear_stress(ln_eta, h, p, spread, law):
 
     Parameters
     ----------
-    ln_eta, h, p : float
-        ln(eta/eta0), film [m], pressure [Pa].
-    spread : float
-        s.
-    law : FilmLaw
+    ln_rate : float
+        :math:`\ln(\eta_0|u_1-u_2|/(\tau_0h))-s`; Newtonian: :math:`\ln(\eta_0|u_1-u_2|/h)`.
+    ln_eta, p : float
+        ln(eta/eta0), pressure [Pa].
+    eyring, limit : float
+        Eyring stress [Pa], limiting shear stress over pressure; infinite: none.
 
     Returns
     -------
     tau, by_ln_eta, by_p : float
         `by_p` at constant viscosity.
     """
-    _, _, eta0, eyring, limit, _, _, sliding = law
-    if sliding == 0.0 or h <= 0.0:
-        return 0.0, 0.0, 0.0
+    argument = ln_rate + ln_eta
     if eyring == np.inf:
-        tau = eta0 * np.exp(min(ln_eta, 600.0)) * sliding / h
-        by_ln_eta = tau
+        tau = by_ln_eta = np.exp(min(argument, 600.0))
+    elif argument > 20.0:
+        tau, by_ln_eta = eyring * (argument + 0.6931471805599453), eyring
     else:
-        argument = np.log(sliding * eta0 / (eyring * h)) + ln_eta - spread
-        if argument > 20.0:
-            tau, by_ln_eta = eyring * (argument + 0.6931471805599453), eyring
-        else:
-            x = np.exp(argument)
-            root = np.sqrt(1.0 + x * x)
-            tau, by_ln_eta = eyring * np.log(x + root) if x > 1e-4 else eyring * x, eyring * x / root
+        x = np.exp(argument)
+        root = np.sqrt(1.0 + x * x)
+        tau, by_ln_eta = eyring * np.log(x + root) if x > 1e-4 else eyring * x, eyring * x / root
     if limit == np.inf:
         return tau, by_ln_eta, 0.0
     tau, by_tau, by_limit = _limited(tau, limit * p)
@@ -117,7 +114,7 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     g : float
         Heat that does not depend on the temperature [W/m^2].
     spread : float
-        As of :func:`shear_stress`.
+        :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress.
     walls : tuple of 4 floats
         W1, W2 [K], R1, R2 [m^2 K/W].
     law : FilmLaw
@@ -132,54 +129,60 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
         Heat fluxes into both surfaces [W/m^2].
     shear_heat : float
         Phi [W/m^2].
+    viscosity : tuple of 3 floats
+        Of :func:`.thermal_viscosity.log_viscosity` at that temperature.
     """
-    pressure_law, thermal_law = law[0], law[1]
-    conductivity, sliding = law[5] * (1.0 + law[6] * p), law[7]
+    pressure_law, thermal_law, eta0, eyring, limit = law[0], law[1], law[2], law[3], law[4]
+    more = 1.0 + law[6] * p
+    conductivity = law[5] * more * max(left, LEAST_OIL)
     w1, w2, r1, r2 = walls
-    left = max(left, 1e-6)
-    r = h / (conductivity * left)
+    r = h / conductivity
     total, difference = r + r1 + r2, r1 - r2
     kappa = r / 12.0 + 0.25 * (r1 + r2 - difference * difference / total)
     alpha = 0.5 * (w1 + w2) - 0.5 * difference * (w1 - w2) / total
-    slope = a + 1.0 / kappa
-    known = b + g + alpha / kappa
-    ln_eta, eta_p, eta_t = _log_viscosity(p, guess, pressure_law, thermal_law)
-    low = known / slope
-    t = low
-    high = np.inf
+    slope, known = a + 1.0 / kappa, b + g + alpha / kappa
+    heat = left * law[7] if h > 0.0 else 0.0
+    low, high = known / slope, np.inf
+    t = low if heat == 0.0 else max(guess, low)
+    ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
     tau, by_ln_eta, by_p = 0.0, 0.0, 0.0
-    if sliding > 0.0:
-        t = max(guess, low)
+    if heat > 0.0:
+        linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
+        unit = eta0 if eyring == np.inf else eta0 / eyring
+        ln_rate = np.log(law[7] * unit / h) - (0.0 if eyring == np.inf else spread)
+        tau, by_ln_eta, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
         for _ in range(ITERATIONS):
-            ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
-            tau, by_ln_eta, by_p = shear_stress(ln_eta, h, p, spread, law)
-            f = slope * t - known - left * sliding * tau
+            f = slope * t - known - heat * tau
             if f > 0.0:
                 high = min(high, t)
             else:
                 low = max(low, t)
-            step = f / (slope - left * sliding * by_ln_eta * eta_t)
-            new = t - step
-            if new >= high or new <= low:
-                new = 0.5 * (low + high) if high < np.inf else new
-                new = max(new, low)
-            change = abs(new - t)
-            t = new
-            if change < ACCURACY * max(1.0, 1e-3 * abs(t)):
+            new = t - f / (slope - heat * by_ln_eta * eta_t)
+            newton = low < new < high
+            if not newton:
+                new = 0.5 * (low + high) if high < np.inf else max(new, low)
+            change, t = new - t, new
+            if newton and abs(change) < QUADRATIC:
+                ln_eta += eta_t * change
+                tau += by_ln_eta * eta_t * change
                 break
-    ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
-    tau, by_ln_eta, by_p = shear_stress(ln_eta, h, p, spread, law)
-    heat = left * sliding
+            if linear:
+                ln_eta += eta_t * change
+            else:
+                ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+            tau, by_ln_eta, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
+            if abs(change) < ACCURACY:
+                break
     f_t = slope - heat * by_ln_eta * eta_t
     kappa_r = 1.0 / 12.0 + 0.25 * difference * difference / (total * total)
     alpha_r = 0.5 * difference * (w1 - w2) / (total * total)
     flow = (t - alpha) / kappa
     f_r = -(alpha_r + flow * kappa_r) / kappa
-    f_h = f_r / (conductivity * left) + (heat * by_ln_eta / h if h > 0.0 else 0.0)
-    f_p = -f_r * r * law[6] / (1.0 + law[6] * p) - heat * (by_ln_eta * eta_p + by_p)
+    f_h = f_r / conductivity + (heat * by_ln_eta / h if h > 0.0 else 0.0)
+    f_p = -f_r * r * law[6] / more - heat * (by_ln_eta * eta_p + by_p)
     exchange = -(2.0 * (w1 - w2) + difference * flow) / total
     q1, q2 = 0.5 * (flow + exchange), 0.5 * (flow - exchange)
-    return t, -f_p / f_t, -f_h / f_t, q1, q2, heat * tau
+    return t, -f_p / f_t, -f_h / f_t, q1, q2, heat * tau, (ln_eta, eta_p, eta_t)
 
 
 class FilmHeat(NamedTuple):
@@ -193,7 +196,7 @@ class FilmHeat(NamedTuple):
     w1, w2, r1, r2
         Of both surfaces.
     guess
-        Temperature to start from [K].
+        Temperature to start from [K]; that of the last evaluation.
     """
 
     law: FilmLaw

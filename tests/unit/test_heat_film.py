@@ -35,7 +35,7 @@ LAWS = {
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_balance_and_fluxes(law):
-    t, _, _, q1, q2, shear = solved(law=law)
+    t, _, _, q1, q2, shear, _ = solved(law=law)
     walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:], (q1, q2), strict=True)]
     exchange = 0.14 * (1.0 + law.conductivity_pressure * 0.8e9) * 0.9 / 3e-7
     mean = 6.0 * (t - 0.5 * sum(walls))
@@ -65,7 +65,7 @@ def test_the_temperature_does_not_depend_on_the_guess(guess):
 
 
 def test_surfaces_in_contact_have_one_temperature():
-    t, _, _, q1, q2, shear = solved(h=0.0, left=1.0)
+    t, _, _, q1, q2, shear, _ = solved(h=0.0, left=1.0)
     walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:], (q1, q2), strict=True)]
     assert walls[0] == pytest.approx(walls[1], abs=1e-9)
     assert t == pytest.approx(walls[0], abs=1e-9)

@@ -42,7 +42,7 @@ def heat_nodes(q, at, heat, p0, film):
     at : ndarray, shape (11, nodes)
         As of :func:`.reynolds.nodal`, changed in place; one node more may be beyond the outlet.
     heat : FilmHeat
-        Of these nodes.
+        Of these nodes; `guess` becomes their temperature.
     p0, film : float
         Scales of pressure [Pa] and film [m].
     """
@@ -50,10 +50,10 @@ def heat_nodes(q, at, heat, p0, film):
     for i in range(nodes):
         p, left = p0 * at[P, i], 1.0 + min(q[i], 0.0)
         walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
-        t, t_p, t_h, _, _, _ = film_temperature(
+        t, t_p, t_h, _, _, _, (ln_eta, by_p, by_t) = film_temperature(
             heat.guess[i], p, at[H, i], left, heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
         )
-        ln_eta, by_p, by_t = _log_viscosity(p, t, law.pressure_law, law.thermal_law)
+        heat.guess[i] = t
         at[FLUIDITY, i] = np.exp(-ln_eta) / law.eta0
         at[LN_ETA_P, i] = p0 * (by_p + by_t * t_p)
         at[LN_ETA_H, i] = film * by_t * t_h
@@ -156,7 +156,7 @@ def transport(t, p, h, left, old, stored, flow, inlet, heat, t_new, q1, q2, shea
             a = stored[i] + from_left + from_right
             b = stored[i] * old[i] + from_left * before + from_right * after
             walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
-            value, _, _, q1[i], q2[i], shear_heat[i] = film_temperature(
+            value, _, _, q1[i], q2[i], shear_heat[i], _ = film_temperature(
                 t_new[i], p[i], h[i], left[i], a, b, heat.g[i], heat.spread[i], walls, law
             )
             change = max(change, abs(value - t_new[i]))

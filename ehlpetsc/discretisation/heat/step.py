@@ -99,7 +99,7 @@ class HeatStep:
         a = self._stored + left + right
         b = self._stored * t + left * np.append(self.inlet, t[:-1]) + right * np.append(t[1:], self.inlet)
         law = film_law(self.fluid, self.heat, step.conditions.sliding)
-        self._heat = FilmHeat(law, a, b, record.source, record.spread, *walls, *responses, t)
+        self._heat = FilmHeat(law, a, b, record.source, record.spread, *walls, *responses, t.copy())
         if record.solved and self.fluid is not None:
             inputs = replace(inputs, heat=self._heat)
         self._inputs = inputs
