@@ -24,7 +24,7 @@ from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time, Wear
 from ehlpetsc.case.tables.surface import Surface
-from ehlpetsc.case.tables.table import Table, is_plain
+from ehlpetsc.case.tables.table import Needs, Table, is_plain
 from ehlpetsc.case.tables.validation import Field, PrivateAttr, ValidationError, validator
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.units import in_si
@@ -76,7 +76,7 @@ class Case(Table):
     @validator("heat")
     def _of_surfaces_in_motion(cls, value, values):
         if value is not None and values.get("motion") is None:
-            raise ValueError("needs [motion]")
+            raise Needs("[motion]")
         return value
 
     @validator("petsc")

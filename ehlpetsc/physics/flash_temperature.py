@@ -2,6 +2,13 @@
 
 import numpy as np
 
+from ehlpetsc.physics.half_space_conduction import Solid
+from ehlpetsc.physics.rheology import viscosity, wall_shear
+
+STEEL = Solid(46.0, 7850.0, 470.0)
+WORTH_HEAT = 20.0  # K: flash temperature above which a case should not be isothermal
+MOST_FRICTION = 0.1  # coefficient of a film: isothermal Newtonian estimates may be anything
+
 
 def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
     r"""Steady surface temperature by Jaeger's integral.
@@ -64,3 +71,29 @@ def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
     if sliding == 0.0 or carried == 0.0:
         return 0.0
     return 1.11 * friction * load * abs(sliding) / (carried * (2.0 * a) ** 0.5)
+
+
+def expected_friction(fluid, boundary_friction, scales, film):
+    """Coefficient of friction of a smooth contact at its mean Hertz pressure; dry: of the boundary.
+
+    Parameters
+    ----------
+    fluid : case.tables.schema.Fluid or None
+    boundary_friction : float
+    scales : physics.scales.Scales
+    film : float
+        Expected film [m].
+    """
+    if fluid is None:
+        return boundary_friction
+    p = np.array([scales.load / (2.0 * scales.a)])
+    with np.errstate(over="ignore"):
+        stress, _ = wall_shear(film, 0.0, viscosity(p, fluid)[0], fluid, scales.u1 - scales.u2, p)
+    return float(min(abs(stress[0]) / p[0], MOST_FRICTION))
+
+
+def flash_temperature(friction, scales, solids=(STEEL, STEEL)):
+    """Blok's flash temperature [K] of a contact with a coefficient of friction."""
+    effusivities = [solid.effusivity for solid in solids]
+    conditions = scales.load, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
+    return blok_flash_temperature(friction, *conditions, effusivities)

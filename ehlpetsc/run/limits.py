@@ -5,6 +5,7 @@ Fed by the figures that are kept of all steps anyway; the sentences go into the 
 
 import numpy as np
 
+from ehlpetsc.physics.flash_temperature import WORTH_HEAT, flash_temperature
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.stepping.observables import MOLECULES
 from ehlpetsc.surfaces.mesh_fit import SHARE
@@ -33,7 +34,7 @@ def limits(case, scales, rough, totals):
     """
     if "p_max" not in totals:  # no step was taken
         return []
-    told = [_yield(case, totals), _mesh(rough, scales)]
+    told = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
     if case.fluid:
         told += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
     return [line for line in told if line]
@@ -46,6 +47,18 @@ def _yield(case, totals):
         f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
         f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic; "
         "in mixed contact yield_pressure lets them flow"
+    )
+
+
+def _heat(case, scales, totals):
+    if "friction_coefficient" not in totals or case.heat is not None or case.motion is None:
+        return None
+    flash = flash_temperature(abs(totals["friction_coefficient"]), scales)
+    if flash <= WORTH_HEAT:
+        return None
+    return (
+        f"heat: the run is isothermal, but the flash temperature of its friction is about {flash:.0f} K by "
+        "Blok's formula for steel; [heat] computes with temperatures"
     )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.flash_temperature import WORTH_HEAT, expected_friction, flash_temperature
 from ehlpetsc.run.preview.domain import domain_warnings
 from ehlpetsc.surfaces.arrival import arrival_warnings
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings
@@ -37,7 +38,22 @@ def warnings(case, scales):
     profiles = Roughness.of(case, scales)
     notes += magnitude_warnings(case, scales) + oil_warnings(case.fluid) + domain_warnings(case, scales)
     notes += tilt_warnings(case, profiles) + arrival_warnings(case, scales, profiles)
-    return notes + mesh_warnings(profiles, scales)
+    return notes + mesh_warnings(profiles, scales) + heat_warnings(case, scales)
+
+
+def heat_warnings(case, scales):
+    """Isothermal cases whose estimated flash temperature is high."""
+    if case.heat is not None or case.motion is None:
+        return []
+    friction = case.contact.boundary_friction
+    friction = expected_friction(case.fluid, friction, scales, expected_film(case, scales) * scales.h)
+    flash = flash_temperature(friction, scales)
+    if flash <= WORTH_HEAT:
+        return []
+    return [
+        f"the case is isothermal, but its flash temperature by Blok's formula is about {flash:.0f} K (steel, "
+        f"coefficient of friction {friction:.3f}); [heat] computes with temperatures"
+    ]
 
 
 def magnitude_warnings(case, scales):
