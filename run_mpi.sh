@@ -5,7 +5,7 @@ set -eu
 
 usage() {
     cat <<'END'
-./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n on 2 ranks where they are worth it, else on 1
+./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh plot|post|summary|compare|gears|study ...    the same as ehlpetsc plot ..., each with -h
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
@@ -134,7 +134,9 @@ set_environment() {
         export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     fi
     [ "$(nodes)" = 1 ] || return 0
-    # one machine: shared memory alone, by copies that a container allows, and no wait for a network or munge
+    # one machine: a rank that waits leaves its core to others, as they may have other work, or to the rank it waits for
+    export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-1}
+    # shared memory alone, by copies that a container allows, and no wait for a network or munge
     export OMPI_MCA_btl=${OMPI_MCA_btl:-^tcp,ofi,openib,uct}
     export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism:-none}
     export OMPI_MCA_smsc=${OMPI_MCA_smsc:-^cma}
@@ -207,7 +209,7 @@ without_mpiruns_comment() {
         END { text = held; if (!comment()) flush_held() }'
 }
 
-# One rank where two would be no quicker, which the program knows of its cases; faults are told by the run
+# One rank for one contact unless the gain is certain: a large mesh, and two idle cores. Faults are told by the run
 worthwhile_ranks() {
     local told
     told=$("$python" -m ehlpetsc --ranks "$@" 2>/dev/null) || true
@@ -288,7 +290,6 @@ run_tests() {
             say "PyPI cannot be reached: the comparison with its rainflow is left out"
     fi
     export PYTHONPATH="$PYTHONPATH:$test_only"
-    export OMPI_MCA_mpi_yield_when_idle=1 # ranks that wait would take the cores from those they wait for
     "$python" -m pytest -p no:cacheprovider -q -n 2 --dist loadfile -m "not mpi" "${@:-tests}"
     for ranks in 1 2 3; do run_mpi_tests $ranks; done
 }

@@ -67,7 +67,7 @@ def help_text():
     lines += [f"  -{name}{o.shown}: {o.text} (default: {o.default})" for name, o in OWN.items()]
     lines += [
         "  --explain: print the case in words, with expected film, run time and file size; nothing is run",
-        "  --ranks: print how many ranks the case is worth, one or two; nothing is run",
+        "  --ranks: print the default number of ranks of the case, one or two; nothing is run",
         "  --keys [TABLE or TABLE.KEY]: print the keys of a case file with units, bounds, defaults",
         "  --template: print a commented case to begin from",
         "With a case, -help also lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",

@@ -10,6 +10,7 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals, means
 from ehlpetsc.run.progress import ProgressOutput, summary_line
 from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.slow_steps import SlowSteps
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,10 @@ class Run:
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._looser = self.simulation.options.loose_tolerances()
-            shown = [self._unused, ProgressOutput(self.simulation, self.out)] if self.root else []
+            shown = []
+            if self.root:
+                slow = SlowSteps(self.simulation.comm.size, self._print)
+                shown = [self._unused, ProgressOutput(self.simulation, self.out), slow]
             return solve(self.simulation, [self.recorder, *shown], self.stop)
 
     def _report(self, outcome):

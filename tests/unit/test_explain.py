@@ -151,13 +151,22 @@ def test_all_passes_are_expected(monkeypatch):
     "name, overrides, ranks",
     [
         ("table1_rough.toml", (), 1),
-        ("table1_rough.toml", ("mesh.points_per_half_width=900",), 1),
-        ("table1_rough.toml", ("mesh.points_per_half_width=1000",), 2),
+        ("table1_rough.toml", ("mesh.points_per_half_width=1900",), 1),
+        ("table1_rough.toml", ("mesh.points_per_half_width=2100",), 2),
         ("fig4.toml", (), 2),
     ],
 )
-def test_a_case_is_worth_two_ranks_on_a_fine_mesh_or_as_a_series(name, overrides, ranks):
+def test_a_case_is_worth_two_ranks_on_a_fine_mesh_or_as_a_series(name, overrides, ranks, monkeypatch):
+    monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
+    monkeypatch.setattr("os.getloadavg", lambda: (0.2, 0.0, 0.0))
     assert worthwhile_ranks(case.load(CASES / name, overrides)) == ranks
+
+
+def test_one_contact_gets_one_rank_beside_other_work(monkeypatch):
+    monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
+    monkeypatch.setattr("os.getloadavg", lambda: (1.0, 0.0, 0.0))
+    fine = case.load(CASES / "table1_rough.toml", ["mesh.points_per_half_width=2100"])
+    assert worthwhile_ranks(fine) == 1
 
 
 def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp_path):

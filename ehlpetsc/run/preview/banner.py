@@ -1,10 +1,12 @@
 """What is about to run, in a few lines, and the ranks that it is worth."""
 
+import os
+
 from ehlpetsc import __version__
 from ehlpetsc.run.preview.forecast import steps
 from ehlpetsc.run.preview.surfaces import lambda_line, surface_lines
 
-WORTH_TWO_RANKS = 4000  # nodes: on 561 two ranks take twice as long as one, on 4,481 a bit less
+WORTH_TWO_RANKS = 8000  # nodes: fewer gain little on a quiet machine, and lose on a busy one
 
 
 def banner(case, scales, rough, ranks):
@@ -33,8 +35,13 @@ def banner(case, scales, rough, ranks):
 
 
 def worthwhile_ranks(case):
-    """Ranks that a case is worth where nobody says how many: two for a series or a large mesh, else one."""
-    return 2 if case.series or case.mesh.nodes >= WORTH_TWO_RANKS else 1
+    """Default number of ranks: two for a series, and for a large mesh where two cores are idle; else one."""
+    return 2 if case.series or (case.mesh.nodes >= WORTH_TWO_RANKS and idle_cores() >= 2) else 1
+
+
+def idle_cores():
+    """Cores of this process that had nothing to do in the last minute, on average."""
+    return round(len(os.sched_getaffinity(0)) - os.getloadavg()[0])
 
 
 def _ranks_for_nothing(scales, ranks):

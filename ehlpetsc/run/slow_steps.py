@@ -1,0 +1,57 @@
+"""Warning of a run that has become several times slower than it began."""
+
+import statistics
+
+STEPS = 20  # of a median
+SKIPPED = 3  # first steps, which load and compile
+SLOWDOWN = 3.0  # contact and finer films take up to twice the time of an iteration
+
+
+class SlowSteps:
+    """Warning where an iteration takes several times what the first ones took; an output.
+
+    Ranks wait for each other some twenty times an iteration: where they share cores with other work, each
+    wait lasts until the other rank has its turn.
+
+    Parameters
+    ----------
+    ranks : int
+    show : callable
+        Prints a line.
+    """
+
+    def __init__(self, ranks, show):
+        self._ranks, self._show = ranks, show
+        self._seen, self._first, self._latest, self._warned = 0, [], [], False
+
+    def take(self, state):
+        """Compare the latest steps with the first ones; the steady start counts as none."""
+        figures = state.figures
+        if figures["step"] == 0 or not figures["newton"]:
+            return
+        self._seen += 1
+        if self._seen <= SKIPPED:
+            return
+        time = figures["wall"] / figures["newton"]
+        if len(self._first) < STEPS:
+            self._first.append(time)
+            return
+        self._latest = [*self._latest[1 - STEPS :], time]
+        if len(self._latest) == STEPS and not self._warned:
+            self._compare()
+
+    def close(self, status):
+        """Nothing is left to do."""
+
+    def _compare(self):
+        now, begun = statistics.median(self._latest), statistics.median(self._first)
+        if now < SLOWDOWN * begun:
+            return
+        self._warned = True
+        cure = (
+            "one rank waits for no other: -n 1" if self._ranks > 1 else "other work on its core slows it down"
+        )
+        self._show(
+            f"warning: an iteration takes {1e3 * now:.3g} ms, {now / begun:.1f} times what the first steps "
+            f"took; is the machine busy otherwise? {cure}"
+        )
