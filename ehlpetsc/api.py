@@ -8,10 +8,11 @@ import sys
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 from ehlpetsc import environment
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.errors import CaseError
+from ehlpetsc.errors import CaseError, UsageError
 from ehlpetsc.results import reader
 from ehlpetsc.results.hdf5.opening import open_result
 
@@ -48,12 +49,28 @@ class Result(reader.Result):
         from ehlpetsc.plot import frames, labels
 
         (index,), ((colour,), *_) = frames.choose_frames([self], step, time), labels.series_colours([self])
+        window = self._window(window)
         figure, axes = pyplot.subplots(2, 1, figsize=(8.0, 5.2), sharex=True, layout="constrained")
         frames.pressure_and_film(axes, [self], [index], [colour], window or frames.default_window([self]))
         frames.frame_legend(axes, self, index, colour)
         title = ": ".join(filter(None, [self.attrs["title"], frames.instant([self], [index])]))
         axes[0].set_title(title, fontsize="medium")
         return figure
+
+    def _window(self, window):
+        """Limits of x/a, checked to hold nodes."""
+        if window is None:
+            return None
+        ends = self.x[[0, -1]] / self.attrs["a"]
+        try:
+            low, high = map(float, window)
+            inside = np.count_nonzero((self.x >= low * self.attrs["a"]) & (self.x <= high * self.attrs["a"]))
+        except (TypeError, ValueError):
+            inside = 0
+        if inside < 2:
+            allowed = f"two limits of x/a with nodes between them, from {ends[0]:g} to {ends[1]:g}"
+            raise UsageError(f"window = {window!r}: allowed: {allowed}")
+        return low, high
 
 
 def refuse_passes(case):

@@ -2,6 +2,7 @@
 
 import contextlib
 import difflib
+import os
 import re
 import tomllib
 from pathlib import Path
@@ -20,6 +21,8 @@ def read_text(path):
     ------
     CaseError
     """
+    if not isinstance(path, str | os.PathLike):  # open takes a number for a file that is open already
+        raise CaseError([f"{path!r}: allowed: the name of a TOML file, or a dict of its tables"])
     try:
         if not str(path):
             raise CaseError(["'': no name of a case file; allowed: a TOML file"])

@@ -116,7 +116,7 @@ def load(case, overrides=None):
     case : str, path-like or dict
         The TOML file, or its tables; profile files of a dict are sought in the present folder, and heights of
         a surface may be arrays, ``{"surface": {"fast": {"x": x, "z": z}}}`` [m].
-    overrides : dict, or iterable of str, optional
+    overrides : dict, str or iterable of str, optional
         ``{"fluid.viscosity": 0.003}``, None leaving the key out; or ``table.key=value``, the value in TOML
         syntax, else taken as text.
 
@@ -186,7 +186,8 @@ def stored_case(text, overrides=None):
 def _override(path, data, overrides):
     """Set keys in the tables; returns the settings and one fault for each that is none."""
     settings, faults = [], []
-    for override in list(overrides.items()) if isinstance(overrides, dict) else overrides or ():
+    given = overrides.items() if isinstance(overrides, dict) else overrides or ()
+    for override in [given] if isinstance(given, str | int | float) else list(given):
         try:
             settings.append(parsed(override))
             put(data, *settings[-1])
@@ -201,15 +202,17 @@ def members(case):
 
     Parameters
     ----------
-    case : Case
-        With a series.
+    case : Case, or what `load` takes
 
     Returns
     -------
     list of (value, Case)
         Of several keys the value is the tuple of theirs.
     """
+    case = case if isinstance(case, Case) else load(case)
     data, result = tomllib.loads(case.text), []
+    if "series" not in data:
+        raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
     alone = text_with(case.text, [], member_tables(data, []), without="series")
     for settings in settings_of(data["series"]):
         tables = member_tables(data, settings)

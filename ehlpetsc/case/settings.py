@@ -17,8 +17,10 @@ def parsed(override):
     ValueError
         It is no setting of a key.
     """
-    if isinstance(override, tuple):
+    if isinstance(override, tuple) and len(override) == 2 and isinstance(override[0], str):
         return override[0].split("."), plain(override[1])
+    if not isinstance(override, str):
+        raise ValueError(override)
     name, equals, raw = override.partition("=")
     keys = name.strip().split(".")
     if not equals or not all(keys) or len(keys) > PARTS:

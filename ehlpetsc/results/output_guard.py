@@ -90,9 +90,10 @@ def check_derived(path, inputs, kinds, option="-o"):
 def stands(path):
     """Whether there is something of that name; OutputError where nobody may tell, in a folder of others."""
     try:
-        return path.exists()
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
+        return path.exists() or "\0" in str(path) and path.stat() is None  # stat refuses what exists takes
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(f"{str(path)!r}: cannot be looked at, {reason}") from error
 
 
 def check_index(path, rows, files=()):

@@ -183,6 +183,8 @@ class Result:
 
     def nearest_frame(self, *, time=None, step=None):
         """Index of the stored frame nearest to a time [s] or to a step number."""
+        if (time is None) == (step is None):
+            raise OutputError(f"{self.path}: nearest_frame needs either time or step")
         wanted, stored = (time, self.time) if step is None else (step, self.step)
         return int(np.argmin(np.abs(stored - wanted)))
 

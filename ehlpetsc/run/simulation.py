@@ -19,6 +19,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.accepted_state import AcceptedState
+from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
@@ -70,7 +71,7 @@ class Simulation:
     CaseError
         The case is faulty, or it is a series.
     UsageError
-        An option that cannot be.
+        An option that cannot be, or a pass that cannot follow the one before.
 
     Examples
     --------
@@ -90,11 +91,10 @@ class Simulation:
                 [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
             )
         self.comm = comm or MPI.COMM_SELF
-        given = {name: _text(v) for name, v in (options or {}).items()}
-        self.options = RunOptions(case.contact.law, case.petsc, given)
+        self.options = RunOptions(case.contact.law, case.petsc, option_texts(options))
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
-        self.pass_number = pass_number or (after.pass_number + 1 if after else 1)
+        self.pass_number = check_pass(case, self.scales, after, pass_number)
         positions = SurfacePositions.at_rest(self.scales)
         one, other = (case.conditions and case.conditions.begins) or (0.0, 0.0)
         shift = (self.pass_number - 1) * case.time.pass_shift if case.time else 0.0
@@ -193,7 +193,10 @@ class Simulation:
         ------
         NotConverged
             Its `state` is the last good one.
+        UsageError
+            No such time step is possible, or the simulation is at its end.
         """
+        check_time_step(dt, self)
         started = clock.monotonic()
         with self.options:
             try:
@@ -241,10 +244,3 @@ def _heat_transfer(scene):
     from ehlpetsc.discretisation.heat.step import HeatStep
 
     return HeatStep(scene)
-
-
-def _text(value):
-    """An option's value for PETSc: None, where it has none, True, False and numbers too."""
-    if value is None:
-        return ""
-    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,6 +1,7 @@
 """The datasets of a result file: created up front with dimension scales, then lengthened row by row."""
 
 import contextlib
+import itertools
 import os
 import struct
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from ehlpetsc.results.hdf5 import attributes
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
 METADATA_BYTES = 2**20  # more than HDF5 adds to its own structures in one flush
+NUMBERS = itertools.count()  # of results in memory
 RESERVE_BYTES = 2**16  # more than it writes on closing
 MEMORY_BLOCK = 2**22  # by which a file in memory grows
 
@@ -84,7 +86,8 @@ def last_row(file):
 def create(path):
     """Create an HDF5 file for writing, None: in memory; OSError if the disk has no room for an empty one."""
     if path is None:
-        return h5py.File("result", "w", driver="core", block_size=MEMORY_BLOCK, backing_store=False)
+        name = f"result {next(NUMBERS)}"  # HDF5 takes two of one name for one file
+        return h5py.File(name, "w", driver="core", block_size=MEMORY_BLOCK, backing_store=False)
     with open(path, "wb") as raw:
         os.posix_fallocate(raw.fileno(), 0, METADATA_BYTES)
     return h5py.File(path, "w", libver="latest")

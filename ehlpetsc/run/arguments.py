@@ -1,0 +1,99 @@
+"""Checks of the arguments that Python callers give to a simulation."""
+
+import math
+from numbers import Integral, Real
+
+import numpy as np
+
+from ehlpetsc.errors import UsageError
+
+SAME = 1e-9  # relative: nodes and half widths nearer than this are equal
+SHORTEST = 1e-9  # of the nominal time step
+
+
+def option_texts(options):
+    """PETSc options as texts by name.
+
+    Parameters
+    ----------
+    options : dict or None
+        None, True, False, numbers and texts by name without the dash.
+
+    Raises
+    ------
+    UsageError
+    """
+    if not isinstance(options or {}, dict):
+        raise UsageError(f"options = {options!r}: allowed: a dict of PETSc options without the dash")
+    texts = {}
+    for name, value in (options or {}).items():
+        text = "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+        if not isinstance(name, str) or not name or not (name + text).isprintable():
+            raise UsageError(f"options: {name!r}: {value!r}: allowed: names and values in one line of text")
+        texts[name] = text
+    return texts
+
+
+def check_pass(case, scales, after, pass_number):
+    """Number of a pass, where it may follow another one.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    after : run.simulation.Simulation or None
+        The pass before.
+    pass_number : int or None
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    UsageError
+    """
+    least = after.pass_number + 1 if after is not None and hasattr(after, "pass_number") else 1
+    number = least if pass_number is None else pass_number
+    if not isinstance(number, Integral) or isinstance(number, bool) or number < least:
+        raise UsageError(f"pass_number = {number!r}: allowed: a whole number from {least} on")
+    if after is None:
+        return int(number)
+    if not hasattr(after, "solution") or not hasattr(after, "scales"):
+        raise UsageError(f"after = {after!r}: allowed: the ehlpetsc.Simulation of the pass before")
+    if not after.finished:
+        raise UsageError("after: the pass before is not at its end; iterate over its states first")
+    if after.case.contact.law != case.contact.law:
+        raise UsageError(
+            f"after: contact.law is {case.contact.law}, of the pass before {after.case.contact.law}"
+        )
+    x, before = scales.x * scales.a, after.scales.x * after.scales.a
+    if len(x) != len(before) or np.abs(x - before).max() > SAME * np.ptp(before):
+        raise UsageError("after: the pass before has other nodes; allowed: the same [mesh] and half width")
+    return int(number)
+
+
+def check_time_step(dt, simulation):
+    """Refuse a length that no time step of a simulation can have, and a step behind its end.
+
+    Parameters
+    ----------
+    dt : float or None
+        [s]; None: that of the case.
+    simulation : run.simulation.Simulation
+
+    Raises
+    ------
+    UsageError
+    """
+    if simulation.finished:
+        raise UsageError("advance: the simulation is at its end")
+    if dt is None:
+        return
+    if simulation.solution is None:
+        raise UsageError(f"dt = {dt!r}: the first state is the steady start, which has no time step")
+    left = simulation.end - simulation.solution.time
+    shortest = SHORTEST * simulation.scales.dt
+    known = isinstance(dt, Real) and not isinstance(dt, bool) and math.isfinite(dt)
+    if not known or not shortest <= dt <= left * (1.0 + SAME):
+        raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")

@@ -1,0 +1,171 @@
+"""Arguments that Python callers may get wrong: refused by name before anything is computed."""
+
+import threading
+
+import matplotlib
+import pytest
+
+import ehlpetsc
+from ehlpetsc import CaseError, OutputError, Simulation, UsageError
+
+matplotlib.use("Agg")
+RIDGE = {"mesh.points_per_half_width": 20, "time.travel": 0.1}
+PASS = {
+    "mesh.points_per_half_width": 20,
+    "time.travel": 0.1,
+    "time.passes": 1,
+    "contact.yield_pressure": 0.95e9,
+}
+
+
+@pytest.fixture(autouse=True)
+def at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+@pytest.fixture(scope="module")
+def case(request):
+    return ehlpetsc.load(request.config.rootpath / "cases" / "ridge.toml", RIDGE)
+
+
+@pytest.fixture(scope="module")
+def result(case):
+    return ehlpetsc.solve(case)
+
+
+def running_in(**changes):
+    return ehlpetsc.load(
+        "cases/running_in.toml", PASS | {k.replace("__", "."): v for k, v in changes.items()}
+    )
+
+
+@pytest.fixture(scope="module")
+def first(request):
+    simulation = Simulation(ehlpetsc.load(request.config.rootpath / "cases" / "running_in.toml", PASS))
+    list(simulation)
+    return simulation
+
+
+def test_threads_may_solve_in_memory_at_once():
+    found = []
+
+    def work(load):
+        found.append(ehlpetsc.solve(ehlpetsc.load("cases/dry_hertz.toml", load)))
+
+    loads = [{"contact.load": load} for load in (200e3, 300e3, 400e3, 500e3)]
+    threads = [threading.Thread(target=work, args=(load,)) for load in loads]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 4
+    for one in found:
+        assert one.pressure.max() == pytest.approx(one.attrs["p0"], rel=2e-4)
+    assert len({round(one.attrs["p0"]) for one in found}) == 4
+
+
+@pytest.mark.parametrize("dt", [-1e-7, 0.0, float("nan"), float("inf"), 1.0, "1e-7", True])
+def test_a_time_step_is_a_number_within_the_time_left(case, dt):
+    simulation = Simulation(case)
+    simulation.advance()
+    before = simulation.solution
+    with pytest.raises(UsageError, match="dt = .* a number from 1.49e-15 to the 5.96767e-06 s left"):
+        simulation.advance(dt)
+    assert simulation.solution is before
+    assert simulation.advance(1e-6).time == pytest.approx(1e-6)
+
+
+def test_nothing_comes_behind_the_end(case):
+    simulation = Simulation(case)
+    list(simulation)
+    with pytest.raises(UsageError, match="at its end"):
+        simulation.advance()
+    with pytest.raises(UsageError, match="no time step"):
+        Simulation(case).advance(1e-7)
+
+
+@pytest.mark.parametrize(
+    "changes, told",
+    [
+        ({"mesh__points_per_half_width": 30}, "other nodes"),
+        ({"contact__load": 400e3}, "other nodes"),
+        (
+            {"contact__model": "direct", "contact__boundary_film": None, "contact__yield_pressure": None},
+            "direct, of the pass before mixed",
+        ),
+    ],
+)
+def test_a_pass_follows_one_of_the_same_contact(first, changes, told):
+    with pytest.raises(UsageError, match=told):
+        Simulation(running_in(**changes), after=first)
+    assert Simulation(running_in(fluid__viscosity=0.003), after=first).pass_number == 2
+
+
+def test_a_pass_follows_one_that_is_over(first):
+    half = Simulation(running_in())
+    with pytest.raises(UsageError, match="not at its end"):
+        Simulation(running_in(), after=half)
+    half.advance()
+    with pytest.raises(UsageError, match="not at its end"):
+        Simulation(running_in(), after=half)
+    with pytest.raises(UsageError, match="after = 'pass1.h5'"):
+        Simulation(running_in(), after="pass1.h5")
+
+
+@pytest.mark.parametrize("number", [-3, 0, 1.5, "2", True])
+def test_passes_are_counted_from_one(number):
+    with pytest.raises(UsageError, match="pass_number = .*: allowed: a whole number from 1 on"):
+        Simulation(running_in(), pass_number=number)
+
+
+def test_passes_are_counted_onwards(first):
+    with pytest.raises(UsageError, match="a whole number from 2 on"):
+        Simulation(running_in(), after=first, pass_number=1)
+
+
+def test_members_are_those_of_a_series(case):
+    with pytest.raises(CaseError, match=r"ridge.toml: no \[series\]"):
+        ehlpetsc.members(case)
+    assert len(ehlpetsc.members("cases/stribeck.toml")) > 2
+
+
+@pytest.mark.parametrize("window", [(1,), (1, 2, 3), "ab", 5, (2, -2), (float("nan"), 1.0), (5, 6)])
+def test_a_window_holds_nodes(result, window):
+    with pytest.raises(UsageError, match="window = .*: allowed: two limits of x/a .* from -2.5 to 1.5"):
+        result.plot(window=window)
+
+
+@pytest.mark.parametrize("options", [["-a"], {5: 1}, {"": 1}, {"snes_rtol": "a\0"}, {"snes_rtol": "\udcff"}])
+def test_options_are_texts_by_name(case, options):
+    with pytest.raises(UsageError, match="^options"):
+        ehlpetsc.solve(case, options=options)
+
+
+@pytest.mark.parametrize("name", ["a\0b", "", "/tmp"])
+def test_an_output_is_the_name_of_a_file(case, name):
+    with pytest.raises(OutputError):
+        ehlpetsc.solve(case, output=name)
+
+
+@pytest.mark.parametrize("given", [5, None, 0, 1.5])
+def test_a_case_is_a_file_or_a_dict(given):
+    """A number would be taken for an open file: 0 is what is typed."""
+    with pytest.raises(CaseError, match="allowed: the name of a TOML file"):
+        ehlpetsc.load(given)
+
+
+@pytest.mark.parametrize("given", [5, [5], {5: 1}, ["contact.load"], [("contact.load", 1, 2)]])
+def test_overrides_are_settings(given):
+    with pytest.raises(CaseError, match="allowed: table.key=value"):
+        ehlpetsc.load("cases/ridge.toml", given)
+
+
+def test_one_override_may_be_a_text():
+    assert ehlpetsc.load("cases/ridge.toml", "contact.load=5e5").contact.load == 5e5
+
+
+def test_the_nearest_frame_is_near_to_something(result):
+    assert result.nearest_frame(step=3) == 3
+    for given in ({}, {"step": 1, "time": 0.0}):
+        with pytest.raises(OutputError, match="either time or step"):
+            result.nearest_frame(**given)
