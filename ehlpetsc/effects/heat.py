@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.physics.half_space_conduction import BodyHeat
+from ehlpetsc.physics.body_heat import BodyHeat
 from ehlpetsc.quantity import Field, Figure
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.half_space_conduction import BodyHeat, StepWeights, diffuse, exponentials, moving_terms
+from ehlpetsc.physics.body_heat import BodyHeat
+from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
@@ -40,7 +41,7 @@ class Body:
 
     Parameters
     ----------
-    solid : physics.half_space_conduction.Solid
+    solid : physics.body_heat.Solid
     speed : float
         Of its surface at the start [m/s].
     scales : physics.scales.Scales

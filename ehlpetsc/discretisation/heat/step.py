@@ -9,7 +9,7 @@ from ehlpetsc.discretisation.heat.bodies import Body
 from ehlpetsc.discretisation.heat.film import faces, transport
 from ehlpetsc.discretisation.heat.mixing import mixing
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.physics.half_space_conduction import Solid
+from ehlpetsc.physics.body_heat import Solid
 from ehlpetsc.physics.heat_film import FilmHeat
 from ehlpetsc.physics.heat_laws import film_law
 
