@@ -32,8 +32,8 @@ FIELDS = {
     "contact_pressure": Field("Pa", "pressure of the solids, part of the pressure", only="mixed"),
     "film_thickness": Field("m", "film thickness"),
     "void_fraction": Field("1", "void fraction of the film", only="fluid"),
-    "shear_stress_fast": Field("Pa", "shear stress on the fast solid"),
-    "shear_stress_slow": Field("Pa", "shear stress on the slow solid"),
+    "shear_stress_1": Field("Pa", "shear stress on surface 1"),
+    "shear_stress_2": Field("Pa", "shear stress on surface 2"),
     "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
     **{name: replace(field, only=kind.name) for kind in EFFECTS for name, field in kind.fields.items()},
 }
@@ -98,8 +98,8 @@ STEP_SCALARS = {
         summary=".2e",
     ),
     "approach": Figure("m", "undeformed separation h00", compared=True),
-    "friction": Figure("N/m", "friction force on the slow solid", compared=True),
-    "friction_1": Figure("N/m", "friction force on the fast solid, in +x", compared=True),
+    "friction": Figure("N/m", "friction force on surface 2", compared=True),
+    "friction_1": Figure("N/m", "friction force on surface 1, in +x", compared=True),
     "friction_coefficient": Figure(
         "1", "mean friction force of both walls over load", over_run="last", summary=".4g"
     ),
@@ -163,11 +163,11 @@ OTHERS = {
 
 GROUPS = {
     "/": "Result of ehlpetsc, in SI units. Attributes: the case as run, Hertz half width a [m] and pressure "
-    "p0 [Pa], h_scale = a^2/R [m], speeds u1 (fast), u2 (slow) [m/s], provenance, how the run ended (status)",
+    "p0 [Pa], h_scale = a^2/R [m], speeds u1, u2 [m/s], provenance, how the run ended (status)",
     "steps": "a row for every accepted time step, also where no frame is stored",
     "surface": "profiles as used, fixed in the bodies",
-    "surface/fast": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
-    "surface/slow": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
+    "surface/1": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
+    "surface/2": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
 }
 """What the groups hold."""
 

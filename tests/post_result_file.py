@@ -60,13 +60,13 @@ class Scene:
         count = steps or int(np.ceil(travel * A / self.u1 / dt)) + 1
         self.time = dt * np.arange(count)
         s = np.arange(self.x[0] - self.u1 * self.time[-1] - 20e-6, self.x[-1] + 20e-6, 2e-6)
-        self.profiles = {"fast": (s, ground_profile(s, seed + 1)), "slow": (s, ground_profile(s, seed + 2))}
+        self.profiles = {"1": (s, ground_profile(s, seed + 1)), "2": (s, ground_profile(s, seed + 2))}
         self.hertz = P0 * np.sqrt(np.clip(1 - (self.x / A) ** 2, 0, None))
 
     def pressure(self, k):
         height = sum(
             np.interp(self.x - u * self.time[k], *self.profiles[name])
-            for name, u in (("fast", self.u1), ("slow", self.u2))
+            for name, u in (("1", self.u1), ("2", self.u2))
         )
         p = np.clip(self.hertz * (1 + self.ripple * height), 0, None)
         return p * LOAD / (p.sum() * self.dx)  # as a run balances it
@@ -120,10 +120,10 @@ def write(
         file["steps/time"], file["steps/step"] = scene.time, np.arange(scene.time.size)
         file["contact_count"] = np.zeros(scene.x.size, int)
         p, nx = scene.pressures[kept], scene.x.size
-        loads = {"pressure": p, "shear_stress_slow": friction * p, "shear_stress_fast": -friction * p}
+        loads = {"pressure": p, "shear_stress_2": friction * p, "shear_stress_1": -friction * p}
         for name, values in loads.items():
             file.create_dataset(name, data=values.astype(dtype), maxshape=(None, nx), chunks=(8, nx))
-        for name, u in (("fast", scene.u1), ("slow", scene.u2)):
+        for name, u in (("1", scene.u1), ("2", scene.u2)):
             file[f"surface/{name}/s"], file[f"surface/{name}/z"] = scene.profiles[name]
             file[f"surface/{name}"].attrs["speed"] = u
         if edit:

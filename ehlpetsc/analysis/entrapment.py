@@ -78,13 +78,13 @@ def instants(result, entrapment, interval=30, count=4):
 
 
 def surfaces(result, frame):
-    """Deformed heights [m] of the lower (slow) and upper (fast) surface about their mean plane, shape (nx,).
+    """Deformed heights [m] of the lower (2) and upper (1) surface about their mean plane, shape (nx,).
 
     Both solids are taken to give way alike, so that the middle of the gap is where both rough surfaces, laid
     onto each other undeformed, have theirs.
     """
     time, middle = result.time[frame], np.zeros(len(result.x))
-    for side, sign in (("slow", 1.0), ("fast", -1.0)):
+    for side, sign in (("2", 1.0), ("1", -1.0)):
         profile = result.profile(side)
         if profile is not None:
             s, z, speed = profile

@@ -50,12 +50,12 @@ def tables():
     -------
     dict of str to type
         By dotted name, "" for the keys above all tables; kinds of synthetic profiles as
-        ``surface.fast.synthetic (ridge)``.
+        ``surface.1.synthetic (ridge)``.
     """
     found = {"": Case}
     for name, model in _below(Case):
         found[name] = model
-        if name == "surface.fast":
+        if name == "surface.1":
             found |= {f"{name}.synthetic ({kind})": made for kind, made in SYNTHETIC.items()}
     return found
 
@@ -93,7 +93,7 @@ def keys(table=None):
     Parameters
     ----------
     table : str, optional
-        Only that one, as in "fluid" or "surface.fast"; or one key, as in "contact.load".
+        Only that one, as in "fluid" or "surface.1"; or one key, as in "contact.load".
 
     Raises
     ------
@@ -147,7 +147,7 @@ def template():
     lines = []
     for name, model in tables().items():
         written = [EXAMPLE.get(f"{name}.{f.alias}" if name else f.alias) for f in _keys(model)]
-        if name in ("surface.slow", "post", "petsc", "series") or " (" in name:
+        if name in ("surface.2", "post", "petsc", "series") or " (" in name:
             continue
         if name:
             lines += ["", f"[{name}]" if any(written) else f"# [{name}]"]

@@ -115,7 +115,7 @@ def load(case, overrides=None):
     ----------
     case : str, path-like or dict
         The TOML file, or its tables; profile files of a dict are sought in the present folder, and heights of
-        a surface may be arrays, ``{"surface": {"fast": {"x": x, "z": z}}}`` [m].
+        a surface may be arrays, ``{"surface": {"1": {"x": x, "z": z}}}`` [m].
     overrides : dict, str or iterable of str, optional
         ``{"fluid.viscosity": 0.003}``, None leaving the key out; or ``table.key=value``, the value in TOML
         syntax, else taken as text.

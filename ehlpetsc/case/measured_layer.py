@@ -42,7 +42,7 @@ def resolve_measured_layer(path, data):
     surface = data.get("surface") if isinstance(data.get("surface"), dict) else {}
     tables = [table for table in surface.values() if isinstance(table, dict) and "short_cutoff" in table]
     if not tables:
-        return [], [f'contact.{KEY} = "measured": needs short_cutoff in [surface.fast] or [surface.slow]']
+        return [], [f'contact.{KEY} = "measured": needs short_cutoff in [surface.1] or [surface.2]']
     try:
         removed = [_removed(Path(path).parent, SurfaceProfile(**table)) for table in tables]
     except (ProfileError, ValidationError):  # named with its key by the checks of the profiles

@@ -6,6 +6,7 @@ from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.sides import FORMER, SIDES
 from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
 from ehlpetsc.surfaces.samples import layout_of, samples
 
@@ -28,7 +29,7 @@ def profile_faults(folder, surface, case):
         ``key = value: what is wrong; allowed: ...``
     """
     faults = []
-    for side in ("fast", "slow"):
+    for side in (*SIDES, *FORMER):
         table = surface.get(side) if isinstance(surface, dict) else None
         if not isinstance(table, dict):
             continue

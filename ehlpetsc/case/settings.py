@@ -5,6 +5,7 @@ import tomllib
 import tomlkit
 
 from ehlpetsc.case.toml_text import plain, toml_text
+from ehlpetsc.sides import stored_name
 
 PARTS = 50  # of a dotted key: more than any case has
 
@@ -40,6 +41,7 @@ def put(tables, keys, value):
     ValueError
         What stands above the key is no table.
     """
+    keys = _as_spelled(tables, keys)
     for key in keys[:-1]:
         tables = tables.setdefault(key, {})
         if not isinstance(tables, dict):
@@ -48,6 +50,14 @@ def put(tables, keys, value):
         tables.pop(keys[-1], None)
     else:
         tables[keys[-1]] = value
+
+
+def _as_spelled(tables, keys):
+    """A key of a surface under the name, today's or the former one, that the tables have."""
+    surfaces = tables.get("surface") if len(keys) > 1 and keys[0] == "surface" else None
+    if not isinstance(surfaces, dict):
+        return keys
+    return ["surface", stored_name(surfaces, keys[1]), *keys[2:]]
 
 
 def text_with(text, settings, data, without=None):

@@ -27,8 +27,8 @@ class PlasticDeformation(Effect):
     name = "plastic_deformation"
     record = PlasticRecord
     fields = {
-        "set_fast": Field("m", "depth by which the fast solid has yielded", on_request=True),
-        "set_slow": Field("m", "depth by which the slow solid has yielded", on_request=True),
+        "set_1": Field("m", "depth by which surface 1 has yielded", on_request=True),
+        "set_2": Field("m", "depth by which surface 2 has yielded", on_request=True),
     }
     scalars = {
         "yielding": Figure("1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True),

@@ -14,7 +14,7 @@ class RoughSurfaces(Effect):
     @classmethod
     def is_in(cls, case):
         """Whether one of the surfaces has a profile."""
-        return bool(case.surface.fast or case.surface.slow)
+        return bool(case.surface.body_1 or case.surface.body_2)
 
     def inputs(self, record, inputs, step):
         """Add the roughness at the end of the step to the gap."""

@@ -5,7 +5,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 
-FLANKS = (("pinion", ("1", "fast")), ("wheel", ("2", "slow")))  # with their names in files
+FLANKS = (("pinion", ("1", "1")), ("wheel", ("2", "2")))  # with their names in files
 SHOWN = 4  # depths in the picture
 
 

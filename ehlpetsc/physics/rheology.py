@@ -168,7 +168,7 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
     Returns
     -------
     lower, upper : ndarray
-        Shear stress [Pa] in the film at the lower (slow) and at the upper (fast) wall, at h > 0.
+        Shear stress [Pa] in the film at the walls of surface 2 (lower) and 1 (upper), at h > 0.
     """
     rate = sliding / h
     half = h * gradient / 2.0

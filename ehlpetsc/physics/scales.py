@@ -57,8 +57,8 @@ class Scales:
     a, p0, h : float
         Hertz half width [m], maximum pressure [Pa], film scale a^2/R [m].
     u, xi, u1, u2 : float
-        Mean speed [m/s], slide/roll ratio, u1 = u (1 + xi/2) of the surface called "fast" and
-        u2 = u (1 - xi/2) of "slow": with xi < 0 "fast" is the slower one. 0 where nothing moves.
+        Mean speed [m/s], slide/roll ratio, u1 = u (1 + xi/2) of surface 1 and u2 = u (1 - xi/2) of surface 2;
+        with xi < 0 surface 1 is the slower one. 0 where nothing moves.
     eta0 : float or None
         Viscosity at ambient pressure [Pa s]; None in a dry case.
     moes_m, moes_l : float or None

@@ -6,11 +6,11 @@ from ehlpetsc.physics import rheology
 
 
 def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
-    """Shear stress in +x on the fast (upper) and the slow (lower) solid.
+    """Shear stress in +x on surfaces 1 (upper) and 2 (lower).
 
     In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, times the fraction of
-    the gap in which oil is sheared; between the solids ``boundary_friction * solids``, + on the slow solid
-    and - on the fast one where u1 > u2, none in pure rolling. Where both act, they are added: the shear of
+    the gap in which oil is sheared; between the solids ``boundary_friction * solids``, + on surface 2
+    and - on surface 1 where u1 > u2, none in pure rolling. Where both act, they are added: the shear of
     a boundary film of some nanometres is then that of the bulk viscosity, which overestimates it.
 
     Parameters
@@ -31,15 +31,15 @@ def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
 
     Returns
     -------
-    fast, slow : ndarray, shape (nx,)
+    shear_1, shear_2 : ndarray, shape (nx,)
         [Pa]
     """
-    slow = case.contact.boundary_friction * np.sign(sliding) * solids
-    fast = -slow
+    shear_2 = case.contact.boundary_friction * np.sign(sliding) * solids
+    shear_1 = -shear_2
     if case.fluid is None:
-        return fast, slow
+        return shear_1, shear_2
     if ln_eta is None:
         ln_eta, _ = rheology.viscosity(oil, case.fluid)
     film = np.where(sheared > 0.0, h, 1.0)
     lower, upper = rheology.wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding, oil)
-    return fast - upper * sheared, slow + lower * sheared
+    return shear_1 - upper * sheared, shear_2 + lower * sheared

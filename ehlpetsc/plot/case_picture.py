@@ -36,13 +36,13 @@ def draw_case(path, overrides=()):
         raise OutputError("\n".join(error.faults)) from None
     scales = Scales.of(case)
     rough = Roughness.of(case, scales)
-    sides = [side for side in ("fast", "slow") if rough and getattr(rough, side)]
+    sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
     size = (SIZE[0], SIZE[1] * len(sides) + 0.5)
     figure, axes = labels.new_figure(len(sides), 2, size, squeeze=False, width_ratios=(3.2, 1.0))
     for row, side in zip(axes, sides, strict=True):
-        profile = getattr(rough, side)
+        profile = rough.side(side)
         _heights(row[0], profile, case, scales, side)
         _abbott(row[1], profile)
     figure.suptitle(f"{case.title}\n{conditions(case, scales)}", fontsize="medium")

@@ -57,7 +57,7 @@ def fill_frame(axes, results, indices, options):
 def draw_frame(results, options):
     """Figure of pressure and film at an instant; of one rough result both deformed surfaces too."""
     indices = frames.choose_frames(results, options.step, options.time)
-    rough = len(results) == 1 and any(results[0].profile(side) for side in ("fast", "slow"))
+    rough = len(results) == 1 and any(results[0].profile(side) for side in ("1", "2"))
     if not rough:
         figure, axes = two_panels()
     else:

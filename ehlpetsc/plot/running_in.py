@@ -41,7 +41,7 @@ def draw_running_in(results, _options):
     added(axes[0, 1], rows)
     contact(axes[1, 1], rows)
     if known:
-        for row, side in zip(axes, ("fast", "slow"), strict=True):
+        for row, side in zip(axes, ("1", "2"), strict=True):
             fatigue(row[2], damages, side)
     figure.suptitle(f"{results[0].attrs['title']}\n{labels.conditions(results)}", fontsize="medium")
     return figure
@@ -49,13 +49,13 @@ def draw_running_in(results, _options):
 
 def surface(axes, results):
     """Heights of the surface with the deepest indentation before, after the first and after the last pass."""
-    sides = [side for side in ("fast", "slow") if heights(results[-1], side) is not None]
+    sides = [side for side in ("1", "2") if heights(results[-1], side) is not None]
     side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
     s, made, last = heights(results[-1], side)
     first = heights(results[0], side)[2]
     a = results[0].attrs["a"]
     near = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * STRETCH * a
-    forward = results[0].attrs["u1" if side == "fast" else "u2"] > 0.0
+    forward = results[0].attrs["u1" if side == "1" else "u2"] > 0.0
     abscissa = 1e3 * (s.max() - s if forward else s - s.min())
     for z, colour, name, style in (
         (made, "k", "before", ":"),
@@ -65,7 +65,7 @@ def surface(axes, results):
         axes.plot(abscissa[near], 1e6 * z[near], style, color=colour, label=name)
     axes.set(
         xlabel="abscissa of the profile, around the deepest indentation [mm]",
-        ylabel=f"height of the {side} surface [µm]",
+        ylabel=f"height of surface {side} [µm]",
     )
     above(axes)
 
@@ -98,7 +98,7 @@ def added(axes, rows):
     axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
     axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=ticks(numbers))
     beside = axes.twinx()
-    for side, style in (("fast", "^--"), ("slow", "v--")):
+    for side, style in (("1", "^--"), ("2", "v--")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
             ra = [1e6 * row[side]["ra"] for row in rows]
             beside.plot(numbers, ra, style, color="C0", ms=4, label=f"Ra {side}")
@@ -143,7 +143,7 @@ def fatigue(axes, damages, side):
         colour = labels.mpl.colormaps["viridis"](0.9 * k / max(len(depths) - 1, 1))
         largest = [one[side]["largest"][k] for one in damages]
         axes.semilogy(numbers, largest, "o-", ms=4, color=colour, label=f"{depth:g} a")
-    axes.set(xlabel="pass", ylabel=f"largest damage D of the {side} surface", xticks=ticks(numbers))
+    axes.set(xlabel="pass", ylabel=f"largest damage D of surface {side}", xticks=ticks(numbers))
     labels.legend_beside(axes, title="depth")
 
 

@@ -132,9 +132,7 @@ def _note_damage(index):
     """Damage of every pass into the index of a run, and one greppable line a pass."""
     found = note_damage(index)
     for number, known in found:
-        largest = (
-            f"{side} D_max={max(known[side]['largest']):.3e}" for side in ("fast", "slow") if side in known
-        )
+        largest = (f"{side} D_max={max(known[side]['largest']):.3e}" for side in ("1", "2") if side in known)
         print(f"pass {number}: {' '.join(largest)}")
     print(f"ehlpetsc.post: done {index} passes={len(found)}")
 

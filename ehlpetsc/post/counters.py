@@ -22,7 +22,7 @@ class Counters:
     """
 
     def __init__(self, settings, surface, counting, criteria, samples):
-        material = getattr(settings, surface)
+        material = settings.material(surface)
         self.parts = [(Counter(material, counting, samples), len(PAPER))]
         for name in criteria:
             from ehlpetsc.post.criteria.search import counter_of  # only where asked: it takes long to compile

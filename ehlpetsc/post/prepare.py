@@ -112,7 +112,7 @@ def _motions(loads, surfaces):
 
 def _flank(loads, surface):
     """Points of a flank between the ends of its path of contact, where the run has come to the end of it."""
-    case, number = loads.case, int(surface in ("slow", "2"))
+    case, number = loads.case, int(surface in ("2", "2"))
     if case.gears is None:
         return NO_FLANK
     pair, begin = case.gears.pair, case.conditions.begins[number]
@@ -137,12 +137,12 @@ def _warn(loads, gaps, motions, whole, report):
         passed = np.count_nonzero(motion.complete)
         if not motions[surface].complete.any():
             report(
-                f"warning: no point of the {surface} surface passed the whole contact: its damage is nan"
+                f"warning: no point of surface {surface} passed the whole contact: its damage is nan"
                 f"{_travel_needed(loads, surface, 'lets some through')}"
             )
         elif passed < FEW_POINTS:
             report(
-                f"warning: only {passed} point{'s' if passed > 1 else ''} of the {surface} surface passed "
+                f"warning: only {passed} point{'s' if passed > 1 else ''} of surface {surface} passed "
                 "the whole contact, and its damage is theirs"
                 f"{_travel_needed(loads, surface, 'lets a half width through', 1.0)}"
             )
@@ -177,6 +177,6 @@ def _report_gaps(loads, gaps, motions, whole, report):
         passed, left = motion.complete.sum(), whole[surface].complete.sum()
         if left < passed:
             report(
-                f"warning: {what}: {passed - left} of {passed} points of the {surface} surface were in the "
+                f"warning: {what}: {passed - left} of {passed} points of surface {surface} were in the "
                 f"contact then; their damage is nan (damage/{surface}_missed)"
             )

@@ -30,7 +30,7 @@ def filled_from(result):
     speeds = result.attrs["u1"], result.attrs["u2"]
     return max(
         _filled_by(result, side, speed, table.get(side, {}), number)
-        for number, (side, speed) in enumerate(zip(("fast", "slow"), speeds, strict=True), 1)
+        for number, (side, speed) in enumerate(zip(("1", "2"), speeds, strict=True), 1)
     )
 
 

@@ -201,7 +201,7 @@ def inputs_of(case):
     ----------
     case : ehlpetsc.case.loading.Case
     """
-    sides = (case.surface.fast, case.surface.slow)
+    sides = (case.surface.body_1, case.surface.body_2)
     folder = Path(case.path).parent
     files = [*sides, case.operation]
     return [Path(case.path), *(folder / table.file for table in files if table and table.file)]

@@ -10,8 +10,9 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.opening import open_for_reading
 from ehlpetsc.results.hdf5.stored import reading
+from ehlpetsc.sides import current_name, stored_name
 
-SURFACES = ("slow", "fast")
+SURFACES = ("2", "1")
 BOUNDS = tuple(f"{name}_{what}" for name in ("alpha", "beta") for what in ("likelihood", "low", "high"))
 
 
@@ -72,17 +73,18 @@ class PostResult:
         self.title = self.attrs.get("title", "")
         damage = file["damage"]
         self.s, self.z = damage["s"][:], damage["z_over_a"][:]
-        self.surfaces = [name for name in SURFACES if name in damage]
-        self.main = Attributes(damage, self.path).get("surface", next(iter(self.surfaces), None))
-        self.damage = {name: damage[name][:] for name in self.surfaces}
+        self.surfaces = [name for name in SURFACES if stored_name(damage, name) in damage]
+        main = Attributes(damage, self.path).get("surface", next(iter(self.surfaces), None))
+        self.main = main and current_name(main)
+        self.damage = {name: damage[stored_name(damage, name)][:] for name in self.surfaces}
         self.complete = {
             name: _array(damage, f"{name}_complete", ~np.isnan(values[0])).astype(bool)
             for name, values in self.damage.items()
         }
         self.profiles = {
-            name: (file[f"profile/{name}/s"][:], file[f"profile/{name}/z"][:])
+            name: tuple(file[f"{place}/{axis}"][:] for axis in "sz")
             for name in self.surfaces
-            if f"profile/{name}" in file
+            if (place := stored_name(file, f"profile/{name}")) in file
         }
         none = np.empty((len(self.z), 0))
         self.height = _array(file, "asperities/height", none[0])
@@ -97,7 +99,7 @@ class PostResult:
         for name, group in file.get("criteria", {}).items():
             kind = "utilisation" if name == "dang_van" else "damage"
             self.criteria[name.replace("_", "-")] = {
-                side: group[f"{side}_{kind}"][:] for side in self.surfaces
+                side: group[stored_name(group, f"{side}_{kind}")][:] for side in self.surfaces
             }
 
     def with_damage(self, surface, values):
@@ -134,6 +136,7 @@ class PostResult:
 
 
 def _array(file, name, default):
+    name = stored_name(file, name)
     return file[name][:] if name in file else default
 
 

@@ -9,6 +9,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.opening import open_result
 from ehlpetsc.results.hdf5.stored import Stored, reading
+from ehlpetsc.sides import current_name, stored_name
 
 CHECKED = 1024  # frames at a time
 OVER_NODES = ("x", "contact_count")
@@ -85,7 +86,8 @@ class Result:
             # a killed writer may have lengthened some datasets and not yet others
             self._frames = _whole_rows(file, path)
             self.steps = Steps(file["steps"], _whole_rows(file["steps"], path), path)
-            self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+            datasets = {n: d for n, d in file.items() if isinstance(d, h5py.Dataset)}
+            self.fields = [current_name(name) for name, dataset in datasets.items() if dataset.ndim == 2]
         self.figures = self.steps.names
         self.x, self.contact_count = self["x"][:], self["contact_count"][:]
         self.time, self.step = self["time"][: self._frames], self["step"][: self._frames]
@@ -111,14 +113,16 @@ class Result:
     def __getitem__(self, name):
         """The dataset `name`, not read yet; after a killed run it may have rows beyond `time`."""
         with reading(self.path, name):
-            if not isinstance(self._file.get(name), h5py.Dataset):
+            dataset = self._file.get(stored_name(self._file, name))
+            if not isinstance(dataset, h5py.Dataset):
                 raise OutputError(f"{self.path}: does not store {name}")
-            return Stored(self._file[name], self.path)
+            return Stored(dataset, self.path)
 
     def __contains__(self, name):
-        return name in self._file
+        return stored_name(self._file, name) in self._file
 
     def __getattr__(self, name):
+        name = current_name(name)
         if name not in self.__dict__.get("fields", ()):
             raise AttributeError(f"{name}: no field of this result")
         if name not in self._read:
@@ -204,9 +208,10 @@ class Result:
         return self.contact_count / (1e3 * lasted)
 
     def profile(self, surface):
-        """Roughness of surface "fast" or "slow" as ``(s, z, speed)``; None if it was smooth."""
+        """Roughness of surface "1" or "2" as ``(s, z, speed)``; None if it was smooth."""
         name = f"surface/{surface}"
         with reading(self.path, name):
+            name = stored_name(self._file, name)
             if name not in self._file:
                 return None
             speed = float(self._file[name].attrs["speed"])

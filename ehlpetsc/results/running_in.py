@@ -31,7 +31,7 @@ def pass_figures(result, begin):
     found["halved"] = int(np.count_nonzero(steps("retries")))
     found |= {name: float(steps(name)[-1]) for name in result.figures if STEP_SCALARS[name].units == "m^2"}
     found.setdefault("set_volume", 0.0)
-    return found | {side: statistics(result, side) for side in ("fast", "slow")}
+    return found | {side: statistics(result, side) for side in ("1", "2")}
 
 
 def heights(result, side):

@@ -122,7 +122,7 @@ class ResultWriter:
         self.written, self._flushed = self._last, clock.monotonic()
 
     def put_depth(self, side, name, depth):
-        """Store a depth [m] of a surface, "fast" or "slow", at the points s of its profile."""
+        """Store a depth [m] of a surface, "1" or "2", at the points s of its profile."""
         with self._plain_faults("not written on"):
             self._file[f"surface/{side}/{name}"][:] = depth
 

@@ -96,8 +96,8 @@ def _molecules(totals):
 
 
 def _mesh(rough, scales):
-    sides = [side for side in ("fast", "slow") if rough and getattr(rough, side)]
-    shares = {side: getattr(rough, side).short_share(scales.dx) for side in sides}
+    sides = [side for side in ("1", "2") if rough and rough.side(side)]
+    shares = {side: rough.side(side).short_share(scales.dx) for side in sides}
     coarse = [f"{100 * share:.1f} % of surface.{side}" for side, share in shares.items() if share > SHARE]
     if not coarse:
         return None

@@ -24,8 +24,8 @@ def profiles(simulation):
     depths = [name for effect in simulation.stepper.effects for name in effect.surface]
     rough = simulation.roughness
     found = {}
-    for k, (side, offset) in enumerate(zip(("fast", "slow"), _offsets(simulation), strict=True)):
-        profile = rough and getattr(rough, side)
+    for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
+        profile = rough and rough.side(side)
         if profile:
             figures = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
             found[side] = profile.s + offset, profile.z, profile.speed, figures, depths
@@ -67,7 +67,7 @@ def _offsets(simulation):
 
 
 def _smooth_side(simulation, side, offset, depths):
-    """The stretch of a smooth surface that passes, for depths in it; 0: fast."""
+    """The stretch of a smooth surface that passes, for depths in it; 0: surface 1."""
     scales = simulation.scales
     least, largest = simulation.operation.extent()[side]
     ends = scales.x[[0, -1]] * scales.a

@@ -39,7 +39,7 @@ def observe(scene, problem, effects, state, started):
     fields, touching = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, film = s.dx * pressure.sum(), mean_film(s, state.h)
-    friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("fast", "slow"))
+    friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
     smooth_film = smooth_films(case.fluid, s.E, conditions)[1] if case.fluid else np.nan
     figures = {
         "dt": state.dt or 0.0,
@@ -81,14 +81,14 @@ def _fields(case, s, conditions, problem, state, loads, ln_eta):
     void = np.zeros_like(loads.film) if problem.fluid is None else np.maximum(-state.q, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
-    fast, slow = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared, ln_eta)
+    shear_1, shear_2 = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared, ln_eta)
     return {
         "pressure": loads.pressure * s.p0,
         "contact_pressure": loads.contact_pressure * s.p0,
         "film_thickness": film,
         "void_fraction": void,
-        "shear_stress_fast": fast,
-        "shear_stress_slow": slow,
+        "shear_stress_1": shear_1,
+        "shear_stress_2": shear_2,
         "in_contact": loads.contact_mask,
     }
 

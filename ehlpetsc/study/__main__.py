@@ -137,7 +137,7 @@ def contact(chosen):
     case = load(chosen.case, chosen.set)
     check_outputs(HEAD, f"{stem}.csv", case=case)
     if chosen.damage:
-        check_damage(case, "fast", min(chosen.meshes))
+        check_damage(case, "1", min(chosen.meshes))
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
     with tempfile.TemporaryDirectory() as folder:
         table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say, chosen.damage)
@@ -158,7 +158,7 @@ def accuracy(chosen):
         check_outputs(HEAD, f"{stem}.csv", f"{stem}.png", case=study.case)
         references, runs = plan(study.case, chosen.meshes, chosen.courant, chosen.ranks)
         if chosen.damage:
-            check_damage(study.case, "slow", min(setting.values[MESH] for setting in (*references, *runs)))
+            check_damage(study.case, "2", min(setting.values[MESH] for setting in (*references, *runs)))
         rows = study.table(references, runs, f"{stem}.csv", say)
     draw(rows, f"{stem}.png", study.case.title)
     say(f"{stem}.csv, {stem}.png")

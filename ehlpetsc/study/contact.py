@@ -3,7 +3,7 @@
 ``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination asked for, a line each in
 table and CSV; means over the time both rough surfaces fill the contact. Where a sequence of meshes halves its
 spacing, the observed order and the extrapolated value of each figure follow. ``--damage`` stores every step
-and has `ehlpetsc.post` count the damage of the fast surface at z = 0 and 0.01 a.
+and has `ehlpetsc.post` count the damage of surface 1 at z = 0 and 0.01 a.
 """
 
 import csv
@@ -34,7 +34,7 @@ FIGURES = (
     "p_mean",
 )
 FIELDS = ("pressure", "film_thickness", "contact_pressure", "in_contact")
-SHEAR = ("shear_stress_fast", "shear_stress_slow")
+SHEAR = ("shear_stress_1", "shear_stress_2")
 OF_MIXED_CONTACT = ("boundary_film", "yield_pressure")  # keys of [contact] that direct contact refuses
 
 
@@ -76,7 +76,7 @@ class Measured:
     iterations, halved, mass_error, seconds
         Newton's a step, steps that had to be halved, largest oil imbalance, processor time of the run.
     damage_at_surface, damage_below
-        Largest fatigue damage of the fast surface in a passage, at the depths of `DEPTHS`; nan: not asked.
+        Largest fatigue damage of surface 1 in a passage, at the depths of `DEPTHS`; nan: not asked.
     """
 
     length: float
@@ -141,7 +141,7 @@ def _of_frame(result, frame, boundary_film):
 
 def _damages(path):
     """Largest damage at the two depths, by the names in `Measured`."""
-    at_surface, below = greatest_damage(path, "fast", DEPTHS)
+    at_surface, below = greatest_damage(path, "1", DEPTHS)
     return {"damage_at_surface": at_surface, "damage_below": below}
 
 

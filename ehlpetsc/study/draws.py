@@ -81,7 +81,7 @@ def draw(rng):
     if rng.random() < 0.1:
         overrides.append(f"fluid.inlet_film={between(0.02e-6, 1e-6):.3g}")
     a = math.sqrt(8.0 * load * RADIUS / (math.pi * MODULUS))
-    for side in ("fast", "slow"):
+    for side in ("1", "2"):
         overrides += _surface(rng, between, side, a, points)
     return text, [*overrides, f"contact.model={model}"]
 

@@ -24,7 +24,7 @@ def wave(kind, amplitude, wavelength):
 def rough(axis, value, *overrides, fast=None, slow=None, travel=2.5, short=False):
     """A line of time steps from the smooth start, the inlet near so that few steps fill the contact."""
     settings = [*SHORT_DOMAIN, f"time.travel={travel}"]
-    for side, spec in (("fast", fast), ("slow", slow)):
+    for side, spec in (("1", fast), ("2", slow)):
         settings += [f"surface.{side}.synthetic={spec}"] if spec else []
     return Line(axis, value, (*settings, *overrides), TABLE_1, short)
 
@@ -47,7 +47,7 @@ def _roughness():
     ]
     lines += [
         rough("roughness", f"Ra {ra * 1e6:g} um, {side} surface only", **{side: ground(ra)})
-        for ra, side in ((0.3e-6, "fast"), (0.3e-6, "slow"), (1.0e-6, "slow"))
+        for ra, side in ((0.3e-6, "1"), (0.3e-6, "2"), (1.0e-6, "2"))
     ]
     return lines
 
@@ -78,13 +78,13 @@ def _features():
             **{side: wave("ridge", 1e-6, width * 1e-6)},
             short=width == 20,
         )
-        for width, side in ((10, "slow"), (20, "slow"), (20, "fast"), (60, "slow"))
+        for width, side in ((10, "2"), (20, "2"), (20, "1"), (60, "2"))
     ]
     return [*lines, rough("roughness", "single dent of 1 um, 60 um wide", slow=wave("dent", 1e-6, 60e-6))]
 
 
 def _measured():
-    dusty = f'surface.slow.file="{PROFILES / "hommel_stylus_profile.csv"}"'
+    dusty = f'surface.2.file="{PROFILES / "hommel_stylus_profile.csv"}"'
     meander = PROFILES / "alicona_meander_profile.csv"
     lines = [
         rough("roughness", "dusty stylus profile", dusty, short=True),
@@ -97,7 +97,7 @@ def _measured():
             f"fluid.viscosity={eta}",
             *(
                 f"surface.{side}.{key}"
-                for side in ("fast", "slow")
+                for side in ("1", "2")
                 for key in (f'file="{meander}"', f"scale={scale}")
             ),
         )

@@ -118,7 +118,7 @@ def check_damage(case, surface, mesh):
     ----------
     case : case.loading.Case
     surface : str
-        "fast" or "slow".
+        "1" or "2".
     mesh : int
         Points per half width of the coarsest run, whose mesh may be half a spacing wider than the case's.
 
@@ -129,14 +129,14 @@ def check_damage(case, surface, mesh):
     if not case.time:
         raise PostError("--damage: the case is steady; damage takes a [time] section, with time.travel")
     scales = Scales.of(case)
-    speed = abs(scales.u1 if surface == "fast" else scales.u2)
+    speed = abs(scales.u1 if surface == "1" else scales.u2)
     if not speed:
-        raise PostError(f"--damage: the {surface} surface stands still, and none of its points has a passage")
+        raise PostError(f"--damage: surface {surface} stands still, and none of its points has a passage")
     width = case.mesh.outlet - case.mesh.inlet
     needed = (width + 1.0 / mesh) * scales.u_max / speed
     if case.time.travel < needed:
         raise PostError(
-            f"--damage: within a travel of {case.time.travel:g} a no point of the {surface} surface passes "
+            f"--damage: within a travel of {case.time.travel:g} a no point of surface {surface} passes "
             f"the whole mesh, {width:g} a wide; allowed: time.travel = {math.ceil(100.0 * needed) / 100.0:g} "
             "or more"
         )

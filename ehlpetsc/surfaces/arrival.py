@@ -36,8 +36,8 @@ def arrival_warnings(case, scales, rough):
     rough : ehlpetsc.surfaces.roughness.Roughness or None
     """
     notes = []
-    for side in ("fast", "slow"):
-        profile = rough and getattr(rough, side)
+    for side in ("1", "2"):
+        profile = rough and rough.side(side)
         arrives = profile and arrival(profile, scales)
         if not arrives or case.time.travel >= arrives[1]:
             continue

@@ -20,8 +20,8 @@ def mesh_warnings(rough, scales):
     scales : scales.Scales
     """
     notes = []
-    for side in ("fast", "slow"):
-        profile = rough and getattr(rough, side)
+    for side in ("1", "2"):
+        profile = rough and rough.side(side)
         share = profile.short_share(scales.dx) if profile else 0.0
         if share > SHARE:
             notes.append(

@@ -69,8 +69,12 @@ def directed_speeds(case, scales):
 class Roughness:
     """Both profiles; a smooth side is None."""
 
-    fast: Profile | None
-    slow: Profile | None
+    surface_1: Profile | None
+    surface_2: Profile | None
+
+    def side(self, name):
+        """Profile of surface "1" or "2"."""
+        return {"1": self.surface_1, "2": self.surface_2}[name]
 
     @classmethod
     def of(cls, case, scales, positions=None):
@@ -89,10 +93,10 @@ class Roughness:
         """
         sides, positions = {}, positions or SurfacePositions.at_rest(scales)
         speeds = directed_speeds(case, scales)
-        for k, side in enumerate(("fast", "slow")):
-            spec = getattr(case.surface, side)
+        for k, side in enumerate(("1", "2")):
+            spec = case.surface.side(side)
             sides[side] = spec and _profile(case, scales, spec, speeds[k], k, positions)
-        return cls(**sides) if any(sides.values()) else None
+        return cls(sides["1"], sides["2"]) if any(sides.values()) else None
 
     def phi(self, x, t, cell=None):
         """What both roughnesses add to the gap [m], minus both heights, at time t [s].
@@ -106,14 +110,14 @@ class Roughness:
             Width of the cells of a mesh [m]: means over them. Waves shorter than that, which no mesh of this
             width carries, are then damped instead of taken for longer ones. Without it values at x.
         """
-        ways = [profile.speed * t if profile else 0.0 for profile in (self.fast, self.slow)]
+        ways = [profile.speed * t if profile else 0.0 for profile in (self.surface_1, self.surface_2)]
         return self.phi_after(x, ways, cell)
 
     def phi_after(self, x, travelled, cell=None):
-        """The same where both bodies have travelled so far (fast, slow) [m]."""
+        """The same where both bodies have travelled so far (surfaces 1, 2) [m]."""
         phi = np.zeros_like(x)
         at = x if cell is None else np.append(x - 0.5 * cell, x[-1] + 0.5 * cell)
-        for profile, way in zip((self.fast, self.slow), travelled, strict=True):
+        for profile, way in zip((self.surface_1, self.surface_2), travelled, strict=True):
             if profile is not None:
                 heights = profile.height if cell is None else profile.mean_height
                 phi -= heights(at - way)
@@ -122,7 +126,7 @@ class Roughness:
     @property
     def rq(self):
         """Combined root mean square height [m]."""
-        return float(np.hypot(*(p.rq if p else 0.0 for p in (self.fast, self.slow))))
+        return float(np.hypot(*(p.rq if p else 0.0 for p in (self.surface_1, self.surface_2))))
 
 
 def _profile(case, scales, spec, speed, side, positions):

@@ -32,7 +32,7 @@ def overrides(steps):
     frames = max(steps // (20 * PERIOD), 1) * PERIOD
     wave = f'{{ kind = "sine", amplitude = 0.03e-6, wavelength = {a!r} }}'
     return [
-        f"surface.slow.synthetic={wave}",
+        f"surface.2.synthetic={wave}",
         "motion.slide_roll_ratio=0.0",
         "mesh.inlet=-1.5",
         f"mesh.points_per_half_width={POINTS}",

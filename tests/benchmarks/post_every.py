@@ -20,7 +20,7 @@ from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 
 DEPTHS = (0.0, 0.01, 0.03, 0.1, 0.5)
-FRAMED = ("time", "pressure", "shear_stress_slow", "shear_stress_fast")
+FRAMED = ("time", "pressure", "shear_stress_2", "shear_stress_1")
 
 
 def thin(source, target, every, start):

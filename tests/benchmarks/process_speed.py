@@ -17,7 +17,7 @@ from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[2]
-ROUGH = ("fluid.viscosity=0.01", "surface.fast.scale=0.2", "surface.slow.scale=0.2", "mesh.inlet=-1.5")
+ROUGH = ("fluid.viscosity=0.01", "surface.1.scale=0.2", "surface.2.scale=0.2", "mesh.inlet=-1.5")
 PYTHON = [sys.executable, "-m", "ehlpetsc"]
 
 

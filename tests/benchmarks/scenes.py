@@ -20,7 +20,7 @@ from ehlpetsc.run.simulation import Simulation
 
 FAST = 8.0  # nominal steps in one, on the way to where time is taken
 # measured profile at a fifth of its height under a thick film: never any contact
-FULL_FILM = ("fluid.viscosity=0.01", "surface.fast.scale=0.2", "surface.slow.scale=0.2")
+FULL_FILM = ("fluid.viscosity=0.01", "surface.1.scale=0.2", "surface.2.scale=0.2")
 
 
 @dataclass

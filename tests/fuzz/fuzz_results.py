@@ -65,7 +65,7 @@ def content(path):
         names = ["x", "time", "step", "contact_count", *result.fields]
         found |= {name: np.asarray(result[name][:]).tobytes() for name in names}
         found |= {f"steps/{name}": result.steps(name).tobytes() for name in result.figures}
-        for side in ("fast", "slow"):
+        for side in ("1", "2"):
             profile = result.profile(side)
             found[side] = repr(
                 None if profile is None else [np.asarray(p).tobytes() for p in profile]

@@ -46,9 +46,9 @@ class Flips:
         return f"byte {place} bit {bit}"
 
 
-DATASETS = ("x", "time", "step", "pressure", "shear_stress_slow", "shear_stress_fast")
-DEEPER = ("surface/slow/s", "surface/slow/z", "surface/fast/s", "steps/load", "steps/p_max", "steps/step")
-GROUPS = ("surface", "surface/slow", "steps")
+DATASETS = ("x", "time", "step", "pressure", "shear_stress_2", "shear_stress_1")
+DEEPER = ("surface/2/s", "surface/2/z", "surface/1/s", "steps/load", "steps/p_max", "steps/step")
+GROUPS = ("surface", "surface/2", "steps")
 ATTRIBUTES = ("case", "a", "p0", "u1", "u2", "status", "title", "format_version")
 STRANGE = (
     lambda shape: np.zeros(shape, complex),

@@ -39,8 +39,8 @@ from ehlpetsc.results.writer import ResultWriter
 LIMIT = 120  # s a case
 READ_LIMIT = 8  # s for one read, before HDF5 is taken to hang
 BAD = ("traceback", "hang", "signal", "litter")
-FIELDS = ["pressure", "film_thickness", "shear_stress_fast", "shear_stress_slow", "in_contact"]
-ALL = ("slow", "fast")
+FIELDS = ["pressure", "film_thickness", "shear_stress_1", "shear_stress_2", "in_contact"]
+ALL = ("2", "1")
 
 
 def write_base(path):
@@ -66,7 +66,7 @@ def write_base(path):
         ranks=1,
         petsc_options="-a 1",
     )
-    profiles = {name: (*scene.profiles[name], u) for name, u in (("fast", scene.u1), ("slow", scene.u2))}
+    profiles = {name: (*scene.profiles[name], u) for name, u in (("1", scene.u1), ("2", scene.u2))}
     writer = ResultWriter(path, Layout(scene.x, FIELDS, profiles=profiles), attrs)
     for k, at in enumerate(scene.time):
         p = scene.pressure(k)

@@ -39,7 +39,7 @@ SHORT = {
     "fzg": ("mesh.points_per_half_width=25", "time.travel=1.0"),
     "moes": (),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
-    "ridge": (*QUICK, "surface.slow.synthetic.position=0.0"),
+    "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
     "running_in": (*QUICK, "time.passes=2", "contact.yield_pressure=1.1e9"),
     "stribeck": (*QUICK, "series.values=[5.0, 0.05]"),
     "table1_damage": QUICK,

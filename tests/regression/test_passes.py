@@ -42,11 +42,11 @@ def test_a_result_a_pass_and_an_index(tmp_path):
             assert volumes[-1] == pytest.approx(row["set_volume"], rel=1e-12)
             laid = sum(
                 (result[f"surface/{side}/set"][:] * np.gradient(result[f"surface/{side}/s"][:])).sum()
-                for side in ("fast", "slow")
+                for side in ("1", "2")
             )
             # its points reach as far as the profile does: the smooth surface ahead of it yields too
             assert 0.5 * volumes[-1] < laid < volumes[-1]
-            assert row["fast"]["deepest"] == result["surface/fast/set"][:].max()
+            assert row["1"]["deepest"] == result["surface/1/set"][:].max()
     assert volumes[0] == pytest.approx(rows[0]["set_volume"], rel=1e-12)  # the second begins with the first's
     assert "pass 2 of 2" in done.stdout and "passes: running_in.passes.json" in done.stdout
 
@@ -119,8 +119,8 @@ def test_a_shifted_pass_meets_other_parts():
     first = Simulation(load(CASE, keys))
     list(first)
     shifted = Simulation(load(CASE, keys), after=first)
-    for side, moved in (("fast", 0.0), ("slow", 50e-6)):
-        one, other = (getattr(s.roughness, side) for s in (first, shifted))
+    for side, moved in (("1", 0.0), ("2", 50e-6)):
+        one, other = (s.roughness.side(side) for s in (first, shifted))
         at = other.s[20:-200]
         inner = at[np.abs(at - other.s[-1]) > 0.2 * shifted.scales.a]
         np.testing.assert_allclose(other.height(inner), one.height(inner - moved), atol=1e-12)
@@ -158,7 +158,7 @@ def test_a_body_that_moves_less_than_a_point_of_its_profile(tmp_path):
     assert done.returncode == 0, done.stderr
     with read_result(tmp_path / "running_in.h5") as result:
         assert result.attrs["status"] == "done"
-        points = [result[f"surface/slow/{name}"][:] for name in ("s", "z", "set")]
+        points = [result[f"surface/2/{name}"][:] for name in ("s", "z", "set")]
         assert [len(values) for values in points] == [2, 2, 2]
         moved = result.attrs["u2"] * result.steps("time")[-1]
         assert moved < np.diff(points[0])[0]

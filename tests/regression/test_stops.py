@@ -206,7 +206,7 @@ def test_at_another_speed_the_bodies_go_on_from_where_they_are(whole, tmp_path, 
     assert done.returncode == 0, done.stderr
     with read_result(tmp_path / "f.h5") as after, read_result(whole / "table1_rough.h5") as one:
         assert list(after.steps("step")) == list(range(21, 21 + steps))
-        for side, travelled in (("fast", 0.5), ("slow", 0.5 * 4.375 / 5.625)):
+        for side, travelled in (("1", 0.5), ("2", 0.5 * 4.375 / 5.625)):
             # the profile where it lies at the end of both runs, by s = x - speed time of each file
             heights = []
             for result in (after, one):

@@ -40,8 +40,8 @@ def fields_at(x, time, viscosity):
         "pressure": pressure,
         "film_thickness": film,
         "void_fraction": np.where(x > 1.05, 0.3, 0.0),
-        "shear_stress_fast": -shear,
-        "shear_stress_slow": shear,
+        "shear_stress_1": -shear,
+        "shear_stress_2": shear,
         "in_contact": contact,
     }, contact
 
@@ -90,7 +90,7 @@ def made(
         ranks=1,
         petsc_options="",
     )
-    profiles = {side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("fast", "slow") if rough}
+    profiles = {side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("1", "2") if rough}
     writer = ResultWriter(path, Layout(x * A, list(fields), profiles=profiles), attrs, every)
     for step, time in enumerate(np.linspace(0, 40e-6, steps)):
         values, contact = fields_at(x, time, viscosity)

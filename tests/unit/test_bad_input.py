@@ -15,7 +15,7 @@ from ehlpetsc.errors import CaseError
 ROOT = Path(__file__).parents[2]
 CASES = ROOT / "cases"
 SMOOTH = (CASES / "table1_smooth.toml").read_text()
-SURFACE = "\n[surface.fast]\nfile = 'p.csv'\n"
+SURFACE = "\n[surface.1]\nfile = 'p.csv'\n"
 LEVEL = "".join(f"{k}e-6,0\n" for k in range(8))
 
 
@@ -115,11 +115,11 @@ def test_a_bad_key(faults, text, words):
 def test_a_bad_roughness_file(faults, profile, words):
     said = faults(SMOOTH + SURFACE, profile)
     assert len(said) == 1
-    assert said[0].startswith('my.toml: surface.fast.file = "p.csv": ') and words in said[0]
+    assert said[0].startswith('my.toml: surface.1.file = "p.csv": ') and words in said[0]
 
 
 def test_everything_wrong_is_told_at_once_by_the_command_and_on_loading(run, faults):
-    text = SMOOTH + SURFACE + "[surface.slow]\nfile = 'nowhere.csv'\n"
+    text = SMOOTH + SURFACE + "[surface.2]\nfile = 'nowhere.csv'\n"
     for old, new in (
         ("radius = 0.0191", "radius = -1"),
         ("viscosity = 0.005", "viscosity = inf"),
@@ -138,8 +138,8 @@ def test_everything_wrong_is_told_at_once_by_the_command_and_on_loading(run, fau
         "contact.load is missing",
         "motion.entrainment_speed =",
         "mesh.outlet =",
-        "surface.fast.file =",
-        "surface.slow.file =",
+        "surface.1.file =",
+        "surface.2.file =",
     ):
         assert sum(line.startswith(f"my.toml: {key}") for line in said) == 1, key
     assert len(said) == 8
@@ -154,7 +154,7 @@ def test_a_mesh_too_coarse_for_the_profile_is_a_warning_with_the_figure(run):
     warned = [line for line in done.stdout.splitlines() if line.startswith("warning: surface.")]
     assert len(warned) == 4
     assert all("the run ends at time.travel = 0.1, before the profile reaches" in line for line in warned[:2])
-    for side, line in zip(("fast", "slow"), warned[2:], strict=True):
+    for side, line in zip(("1", "2"), warned[2:], strict=True):
         assert f"surface.{side}: the mesh is too coarse for the profile" in line
         share = float(line.partition("profile: ")[2].split()[0])
         needed = int(line.partition("half_width = ")[2].split()[0])

@@ -49,7 +49,7 @@ def test_every_case_of_the_project_loads_and_says_what_it_is_for(path):
 
 def test_sections_left_out_are_none_or_default():
     c = case.load(SMOOTH)
-    assert (c.time, c.series, c.surface.fast, c.surface.slow) == (None,) * 4
+    assert (c.time, c.series, c.surface.body_1, c.surface.body_2) == (None,) * 4
     assert (c.mesh.near_field, c.output.every, c.output.precision) == (3, 1, "float64")
     assert c.output.fields == STORED
     dry = case.load(CASES / "dry_hertz.toml")
@@ -61,7 +61,7 @@ def test_values_come_as_written():
     c = case.load(ROUGH)
     assert c.contact.youngs_modulus == (207e9, 207e9)
     assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
-    assert c.surface.fast.scale == 0.5
+    assert c.surface.body_1.scale == 0.5
     assert (c.time.travel, c.time.courant) == (6.0, 0.5)
 
 
@@ -85,7 +85,7 @@ def test_the_text_of_an_overridden_case_loads_to_the_same_case(tmp_path):
         [
             "mesh.near_field=7",
             "petsc.snes_max_it=9",
-            "surface.slow.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}",
+            "surface.2.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}",
         ],
     )
     path = tmp_path / "again.toml"
@@ -124,8 +124,8 @@ def test_all_faults_come_at_once():
         "contact.radius=-1",
         "fluid.viscosity=nan",
         "mesh.inlett=4",
-        "surface.fast.file='nowhere.csv'",
-        "surface.slow.file='missing.csv'",
+        "surface.1.file='nowhere.csv'",
+        "surface.2.file='missing.csv'",
         "motion.entrainment_speed=0",
         "nonsense",
     )
@@ -133,8 +133,8 @@ def test_all_faults_come_at_once():
         "contact.radius =",
         "fluid.viscosity =",
         "mesh.inlett =",
-        "surface.fast.file =",
-        "surface.slow.file =",
+        "surface.1.file =",
+        "surface.2.file =",
         "motion.entrainment_speed =",
         "nonsense:",
     ):
@@ -165,10 +165,10 @@ def test_all_faults_come_at_once():
         ("petsc.-snes_monitor=''", ["without the dash"]),
         ("time=5", ["time = 5", "a table"]),
         (
-            "surface.fast.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}",
+            "surface.1.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}",
             ["either file or synthetic"],
         ),
-        ("surface.fast.cutoff=0.05", ["at most the length of the profile"]),
+        ("surface.1.cutoff=0.05", ["at most the length of the profile"]),
         ("post.b=0.09", ["post.b", "< 0"]),
     ],
 )
@@ -194,14 +194,14 @@ def test_missing_tables_are_named(write, tmp_path):
 
 
 def test_synthetic_keys_are_those_of_its_kind():
-    wave = "surface.slow.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
-    assert [line.partition(": surface.slow.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)] == [
+    wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
+    assert [line.partition(": surface.2.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)] == [
         "wavelength",
         "ra",
     ]
-    assert '"ground" | "sine"' in fault(SMOOTH, "surface.slow.synthetic={kind='waves'}")
+    assert '"ground" | "sine"' in fault(SMOOTH, "surface.2.synthetic={kind='waves'}")
     assert "are for a file" in fault(
-        SMOOTH, "surface.slow={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4}, level=true}"
+        SMOOTH, "surface.2={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4}, level=true}"
     )
 
 
@@ -242,9 +242,9 @@ def test_files_that_cannot_be_read(tmp_path):
 def test_a_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
     if content is not None:
         (tmp_path / "p.csv").write_text(content)
-    path = write("[mesh]", "[surface.fast]\nfile = 'p.csv'\n[mesh]")
+    path = write("[mesh]", "[surface.1]\nfile = 'p.csv'\n[mesh]")
     line = fault(path)
-    assert line.startswith(f'{path}: surface.fast.file = "p.csv": ') and words in line
+    assert line.startswith(f'{path}: surface.1.file = "p.csv": ') and words in line
 
 
 @pytest.mark.parametrize("typed, meant", [("table1_ruff.toml", "table1_rough.toml"), ("nothing.toml", None)])

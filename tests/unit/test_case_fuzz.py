@@ -15,14 +15,14 @@ DRAWS = draws(400)
 KEYS = (
     "contact.radius",
     "fluid",
-    "surface.slow.synthetic",
+    "surface.2.synthetic",
     "series.values",
     "petsc.x",
     "x",
     "",
     ".",
     "time.travel",
-    "surface.fast.file",
+    "surface.1.file",
     "contact.radius.x",
     "title",
     "output.fields",
@@ -114,8 +114,8 @@ def _line_twice(text, rng):
 
 
 def _table(text, rng):
-    old = ("contact", "fluid", "motion", "mesh", "surface.fast", "surface.slow", "time", "output", "series")
-    new = ("contact", "petsc", "surface", "[fluid]", "surface.fast.synthetic", "", "time", "series", "x.y")
+    old = ("contact", "fluid", "motion", "mesh", "surface.1", "surface.2", "time", "output", "series")
+    new = ("contact", "petsc", "surface", "[fluid]", "surface.1.synthetic", "", "time", "series", "x.y")
     return text.replace(f"[{rng.choice(old)}]", f"[{rng.choice(new)}]")
 
 

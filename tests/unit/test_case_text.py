@@ -54,9 +54,9 @@ def test_a_key_of_megabytes_is_refused_in_a_line(tmp_path):
 def test_long_arrays_and_dots_in_comments_are_no_long_keys(tmp_path):
     path = tmp_path / "case.toml"
     heights = ",\n".join("0." + "1" * 5 for _ in range(300))
-    rows = f'\n[surface.slow]\nspacing = 1e-6\nunit = "um"\nz = [\n{heights}\n]\n[time]\ntravel = 1.0\n'
+    rows = f'\n[surface.2]\nspacing = 1e-6\nunit = "um"\nz = [\n{heights}\n]\n[time]\ntravel = 1.0\n'
     path.write_text("# " + "." * 500 + "\n# 1.2.3.4 and so on ...\n" + CASE + rows)
-    assert len(load(path).surface.slow.z) == 300
+    assert len(load(path).surface.body_2.z) == 300
 
 
 def test_a_mark_of_byte_order_before_a_case_is_no_part_of_it(tmp_path):
@@ -93,18 +93,18 @@ MESHES = {
 }
 WAVES = {
     "none": "",
-    "table": '[surface.slow.synthetic]\nkind = "sine"\namplitude = 1e-7\nwavelength = 1e-4\n',
+    "table": '[surface.2.synthetic]\nkind = "sine"\namplitude = 1e-7\nwavelength = 1e-4\n',
     "above": '[surface]\nslow.synthetic.kind = "sine"\nslow.synthetic.amplitude = 1e-7\n'
     "slow.synthetic.wavelength = 1e-4\n",
-    "inline": '[surface.slow]\nsynthetic = { kind = "sine", amplitude = 1e-7, wavelength = 1e-4 }\n',
+    "inline": '[surface.2]\nsynthetic = { kind = "sine", amplitude = 1e-7, wavelength = 1e-4 }\n',
 }
 SETS = (
     "contact.load=4e5",
     "mesh.points_per_half_width=40",
     "contact.boundary_friction=0.1",
     "output.every=3",
-    "surface.slow.synthetic={kind='sine',amplitude=2e-7,wavelength=1e-4}",
-    "surface.slow.scale=2.0",
+    "surface.2.synthetic={kind='sine',amplitude=2e-7,wavelength=1e-4}",
+    "surface.2.scale=2.0",
     "petsc.snes_atol=1e-9",
 )
 
@@ -128,7 +128,7 @@ def test_what_is_stored_is_what_is_run_whatever_the_layout(tmp_path):
     for text in layouts():
         path.write_text(text)
         for some in (SETS[:1], SETS[3:4], SETS[:4], SETS[2:], SETS[4:]):
-            case = load(path, [one for one in some if "scale" not in one or "surface.slow" in text])
+            case = load(path, [one for one in some if "scale" not in one or "surface.2" in text])
             stored = tmp_path / "stored.toml"
             stored.write_text(case.text)
             assert load(stored).dict() == case.dict(), (text, some)

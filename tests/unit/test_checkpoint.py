@@ -152,7 +152,7 @@ def test_another_mesh_is_refused(tmp_path, change, message):
 def test_a_rough_body_cannot_turn_round(tmp_path):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
-    with pytest.raises(OutputError, match="surface.slow moved at 4.375 m/s, now at -1 m/s"):
+    with pytest.raises(OutputError, match="surface.2 moved at 4.375 m/s, now at -1 m/s"):
         Scene("motion.slide_roll_ratio=2.5", "motion.entrainment_speed=4.0").load(tmp_path / "f.restart.h5")
 
 

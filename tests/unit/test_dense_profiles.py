@@ -106,7 +106,7 @@ def test_a_million_points_a_nanometre_apart_load_filter_and_run(tmp_path):
     """Ten million take 17 s and 1.8 GB. A running median of points times window once took 9 GB for one."""
     case = dense(tmp_path, 1_000_000, 1e-9)
     keys = [f"{key}={value}" for key, value in COARSE.items()]
-    keys += ["surface.fast.level=true", "surface.fast.cutoff=1e-4", "surface.fast.short_cutoff=5e-9"]
+    keys += ["surface.1.level=true", "surface.1.cutoff=1e-4", "surface.1.short_cutoff=5e-9"]
     words = [word for key in keys for word in ("-ehl_set", key)]
     pid = os.posix_spawn(
         sys.executable,
@@ -133,11 +133,11 @@ def test_a_tilt_that_nobody_took_off_is_a_warning(tmp_path):
         )
         text = (ROOT / "cases" / "table1_rough.toml").read_text()
         (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", "p.csv"))
-        case = load(tmp_path / "c.toml", {"surface.fast.level": level, "surface.slow": None})
+        case = load(tmp_path / "c.toml", {"surface.1.level": level, "surface.2": None})
         lines = [line for line in warnings(case, Scales.of(case)) if "straight line" in line]
         assert len(lines) == told
         if told:
-            assert lines[0].startswith("surface.fast: 100 % of") or "99 %" in lines[0]
+            assert lines[0].startswith("surface.1: 100 % of") or "99 %" in lines[0]
             assert "5 um over 4 mm" in lines[0] and "level = true" in lines[0]
 
 
@@ -147,5 +147,5 @@ def test_a_file_of_another_kind_is_no_profile(tmp_path, name):
     text = (ROOT / "cases" / "table1_rough.toml").read_text()
     (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", name))
     with pytest.raises(CaseError, match="is no profile file; allowed: two columns of text") as refused:
-        load(tmp_path / "c.toml", {"surface.fast.unit": "um"})
+        load(tmp_path / "c.toml", {"surface.1.unit": "um"})
     assert "unit:" not in str(refused.value)

@@ -103,7 +103,7 @@ def test_solids_too_soft_for_the_domain_are_refused():
 def test_a_contact_wider_than_the_domain_is_an_error():
     """A dent of 50 um: without oil its flanks carry at the ends of the mesh."""
     dent = {"kind": "dent", "amplitude": 50e-6, "wavelength": 600e-6, "position": 340e-6}
-    changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"slow": {"synthetic": dent}}}
+    changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"2": {"synthetic": dent}}}
     with pytest.raises(ehlpetsc.NotConverged, match="solids touch at the inlet, x = -1.01 a: .* further out"):
         ehlpetsc.solve(load(CASES / "dry_hertz.toml", changed))
 

@@ -16,7 +16,7 @@ from ehlpetsc.plot.ensemble import draw_ensemble
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import told_apart
 
-SEEDED = "\n[surface.slow]\nsynthetic = {{ kind = 'ground', ra = 1e-7, correlation = 1e-5, seed = {} }}\n"
+SEEDED = "\n[surface.2]\nsynthetic = {{ kind = 'ground', ra = 1e-7, correlation = 1e-5, seed = {} }}\n"
 SHARES = (0.20, 0.26, 0.31, 0.22, 0.29, 0.24)
 
 
@@ -110,10 +110,10 @@ def test_damage_gives_its_quantiles(tmp_path):
     with h5py.File(path) as result, h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
         file.attrs.update(a=1e-3, case=result.attrs["case"])
         file["damage/s"], file["damage/z_over_a"] = np.arange(102.0), [0.01]
-        file["damage/slow"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
+        file["damage/2"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
     with read_result(path) as result:
         figures = ensemble.run_figures(result)
-    assert [figures[f"damage_slow z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
+    assert [figures[f"damage_2 z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
         [0.5, 0.9, 0.99]
     )
 

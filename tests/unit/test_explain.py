@@ -40,7 +40,7 @@ def test_figures_of_the_main_case():
         "801 nodes",
         "1603 unknowns",
         "2400 steps",
-        "fast 5.625 m/s, slow 4.375 m/s",
+        "surfaces 1, 2 at 5.625, 4.375 m/s",
         "Ra 0.0785 um",
         "contact likely",
     ):
@@ -103,12 +103,12 @@ def test_a_series_names_its_members():
 
 def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
     c = case.load(CASES / "fig6.toml")
-    assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.fast", "surface.slow"]
+    assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.1", "surface.2"]
     still = starting(
-        lines("table1_smooth.toml", "surface.slow.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}"),
+        lines("table1_smooth.toml", "surface.2.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}"),
         "Warning",
     )
-    assert len(still) == 1 and "surface.slow with [motion] but without [time]" in still[0]
+    assert len(still) == 1 and "surface.2 with [motion] but without [time]" in still[0]
     c = case.load(CASES / "dry_rough.toml")
     assert warnings(c, Scales.of(c)) == []
 
@@ -173,7 +173,7 @@ def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp
     """A point of 3 um on a flat: the spline through it, spread over a cell of 3.4 um, is 0.9 um high."""
     x = 0.5e-6 * np.arange(2000)
     z = np.where(np.arange(2000) == 1000, 3e-6, 0.0)
-    spike = {"surface": {"slow": {"x": x, "z": z}}, "time": {"travel": 4.0}}
+    spike = {"surface": {"2": {"x": x, "z": z}}, "time": {"travel": 4.0}}
     text = explain(case.load(CASES / "table1_smooth.toml", spike | {"mesh.points_per_half_width": 100}))
     (line,) = [line for line in text.splitlines() if "heights from" in line]
     given, seen = (float(part.split(" to ")[1].split()[0]) for part in line.split(";"))
@@ -184,7 +184,7 @@ def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp
 
 def test_the_part_of_a_profile_that_passes_is_that_of_its_travel():
     """A body point X reaches x = -a after 1.5 a + X of its own travel and has passed x = a after 2 a more."""
-    told = starting(lines("fig1.toml"), "Surface fast")
+    told = starting(lines("fig1.toml"), "Surface 1")
     c = case.load(CASES / "fig1.toml")
     s = Scales.of(c)
     through = (c.time.travel - 1.5 - 2.0) * s.a
@@ -192,7 +192,7 @@ def test_the_part_of_a_profile_that_passes_is_that_of_its_travel():
     needed = int(told[2].rpartition("time.travel = ")[2].split()[0])
     assert told[2].endswith("for all") and needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
     whole = lines("fig1.toml", f"time.travel={needed}")
-    assert any(line.startswith("Surface fast: continued by reflection") for line in whole)
+    assert any(line.startswith("Surface 1: continued by reflection") for line in whole)
 
 
 @pytest.mark.parametrize(
@@ -215,14 +215,14 @@ def test_implausible_magnitudes_and_unused_constants_are_named(overrides, words)
 def test_a_tilted_profile_is_named_with_its_cure(level):
     x = 1e-6 * np.arange(4001)
     z = 5e-6 * x / x[-1] + 0.4e-6 * np.sin(x / 5e-6)
-    surface = {"surface": {"fast": {"x": x.tolist(), "z": z.tolist(), "level": level}}}
+    surface = {"surface": {"1": {"x": x.tolist(), "z": z.tolist(), "level": level}}}
     c = case.load(CASES / "table1_smooth.toml", surface | {"time": {"travel": 6.0}})
     found = [line for line in warnings(c, Scales.of(c)) if "straight line" in line]
     if level:
         assert found == []
     else:
         share = 5.0**2 / 12 / (5.0**2 / 12 + 0.4**2 / 2)
-        assert found[0].startswith(f"surface.fast: {100 * share:.0f} % of the height variance")
+        assert found[0].startswith(f"surface.1: {100 * share:.0f} % of the height variance")
         assert "5 um over 4 mm" in found[0] and "level = true" in found[0]
 
 
@@ -239,17 +239,17 @@ def test_a_mesh_at_the_brink_is_not_warned_of():
 
 
 def test_each_surface_is_told_with_its_figures():
-    told = starting(lines("fig7.toml"), "Surface slow")
+    told = starting(lines("fig7.toml"), "Surface 2")
     assert told[0].endswith("Rsk 0.080")
-    assert told[1] == "Surface slow: 1.712 mm long, 3425 points 0.5 um apart"
-    assert told[2] == "Surface slow: continued by reflection: 18.28 mm enter during the run"
-    assert told[3] == "Surface slow: reaches the contact at travel 1.93 a and fills it at 4.63 a"
+    assert told[1] == "Surface 2: 1.712 mm long, 3425 points 0.5 um apart"
+    assert told[2] == "Surface 2: continued by reflection: 18.28 mm enter during the run"
+    assert told[3] == "Surface 2: reaches the contact at travel 1.93 a and fills it at 4.63 a"
     assert told[4].endswith(
         "heights from -0.275 to 0.325 um; means over cells, as the mesh has them, -0.265 to 0.314 um"
     )
     assert not [line for line in lines("fig1.toml") if "reflection" in line]
     ridge = starting(lines("ridge.toml"), "Surface")
-    assert ridge[0] == "Surface fast: smooth"
+    assert ridge[0] == "Surface 1: smooth"
     assert ridge[2].endswith("at travel 1.67 a and stands with its middle at x = 0 at 3.73 a")
 
 

@@ -40,7 +40,7 @@ class Stored:
         return np.linspace(0.0, self.scales.duration, 11)
 
     def profile(self, side):
-        profile = getattr(self.rough, side)
+        profile = self.rough.side(side)
         return profile and (profile.s, profile.z, profile.speed)
 
     def __contains__(self, name):
@@ -48,14 +48,12 @@ class Stored:
 
 
 @pytest.mark.parametrize("xi", [0.4, 0.0, 2.5])
-@pytest.mark.parametrize(
-    "surface", [{"fast": WAVE}, {"slow": WAVE}, {"fast": WAVE, "slow": WAVE}, {"fast": RIDGE}]
-)
+@pytest.mark.parametrize("surface", [{"1": WAVE}, {"2": WAVE}, {"1": WAVE, "2": WAVE}, {"1": RIDGE}])
 def test_it_is_the_travel_announced_before_the_run(surface, xi):
     motion = CASE["motion"] | {"slide_roll_ratio": xi}
     result = Stored(load(CASE | {"surface": surface, "motion": motion}))
     s = result.scales
-    fills = max(arrival(p, s)[1] for p in (result.rough.fast, result.rough.slow) if p)
+    fills = max(arrival(p, s)[1] for p in (result.rough.surface_1, result.rough.surface_2) if p)
     assert filled_from(result) == pytest.approx(fills * s.a / s.u_max, rel=1e-12)
     assert RAMP == roughness.RAMP
 
@@ -63,11 +61,11 @@ def test_it_is_the_travel_announced_before_the_run(surface, xi):
 def test_smooth_surfaces_fill_it_from_the_start_also_where_they_have_yielded(tmp_path):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     with h5py.File(path, "r+", libver="latest") as file:
-        file["surface/slow/z"][:] = 0.0
+        file["surface/2/z"][:] = 0.0
     with read_result(path) as result:
         assert filled_from(result) == pytest.approx((3.5 + RAMP) * A / (1.12 * 50.0))
     with h5py.File(path, "r+", libver="latest") as file:
-        file["surface/fast/z"][:] = 0.0
+        file["surface/1/z"][:] = 0.0
     with read_result(path) as result:
         assert filled_from(result) == 0.0 and both_fill(result, result.steps("time")).all()
 
@@ -100,7 +98,7 @@ def test_passes_without_load_on_the_solids_are_drawn(tmp_path, speed):
             for name, value in (("contact_share", 0.0), ("contact_length", 0.0), ("set_volume", 1e-12)):
                 values = np.full(steps, (1 + number) * value)
                 file.create_dataset(f"steps/{name}", data=values, maxshape=(None,))
-            for side in ("fast", "slow"):
+            for side in ("1", "2"):
                 file[f"surface/{side}/set"] = np.full(50, 1e-9)
     figure = draw_running_in([read_result(path) for path in paths], None)
     figure.draw_without_rendering()

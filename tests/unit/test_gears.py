@@ -247,7 +247,7 @@ def test_damage_of_flanks_is_found_by_arc_length_and_depth(tmp_path):
         damage = np.full((2, 81), np.nan)
         damage[1, 20] = 2e-3  # s = -6 mm
         damage[0, 60] = 1e-3
-        file["damage/1"], file["damage/slow"] = damage, 0.5 * damage
+        file["damage/1"], file["damage/2"] = damage, 0.5 * damage
     found = FlankDamage(tmp_path / "run.post.h5", (1e-5, 5e-5))
     assert found.arcs[0][0] == pytest.approx(1e-5) and (np.diff(found.arcs[1]) > 0).all()
     pinion, wheel = found.lines()

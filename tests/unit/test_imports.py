@@ -11,6 +11,7 @@ PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {
     "errors",
     "quantity",
+    "sides",
     "compiled",
     "environment",
     "command_parser",

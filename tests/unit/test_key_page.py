@@ -35,8 +35,8 @@ def test_a_table_alone_has_units_bounds_and_defaults():
     assert told[1].startswith("  entrainment_speed: a number >= 1e-09 and <= 1000 [m/s] (mean of both")
     assert told[2] == "      u = (u1 + u2)/2"
     assert told[3].endswith("default: 0.0")
-    assert "[surface.fast.synthetic (ridge)]" in key_page.keys("surface.fast")
-    assert "[surface.slow]" in key_page.keys("surface")
+    assert "[surface.1.synthetic (ridge)]" in key_page.keys("surface.1")
+    assert "[surface.2]" in key_page.keys("surface")
     with pytest.raises(UsageError, match="--keys fluids: no such table or key; tables: contact, fluid"):
         key_page.keys("fluids")
     with pytest.raises(UsageError, match="--keys contact.laod: no such table or key"):

@@ -82,4 +82,4 @@ def test_solids_that_yield_bear_what_they_are_given():
 
 def test_asperities_of_few_nodes_are_told_with_the_share_of_heights():
     (line,) = told("table1_rough", ["mesh.points_per_half_width=50"])
-    assert line.startswith("mesh: of the height variance, 51.1 % of surface.fast and 51.1 % of surface.slow")
+    assert line.startswith("mesh: of the height variance, 51.1 % of surface.1 and 51.1 % of surface.2")

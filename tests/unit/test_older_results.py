@@ -18,6 +18,7 @@ from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import statistics
+from ehlpetsc.sides import former_name
 
 OLDER = Path(__file__).parents[1] / "data" / "older"
 
@@ -44,7 +45,7 @@ def test_results_are_read(folder, name, nodes, frames, h_min, p_max):
         assert result.pressure.shape == (frames, nodes) and result.attrs["status"] == "done"
         assert result.steps("h_min").min() == h_min
         assert result.steps("p_max").max() == pytest.approx(p_max, rel=1e-12)
-        for side in ("slow", "fast"):
+        for side in ("2", "1"):
             profile = result.profile(side)
             if profile is not None:
                 s, z, speed = profile
@@ -55,19 +56,20 @@ def test_what_yielded_is_read(folder):
     with read_result(folder / "passes.pass1.h5") as result:
         assert result.steps("set_volume")[-1] == pytest.approx(5.1040340802532066e-11, rel=1e-12)
         row = json.loads((folder / "passes.passes.json").read_text())["passes"][0]
-        for side in ("fast", "slow"):
+        for side in ("1", "2"):
             found = statistics(result, side)
             assert (
-                found["deepest"] == pytest.approx(row[side]["deepest"], rel=1e-12) and found["deepest"] > 0.0
+                found["deepest"] == pytest.approx(row[former_name(side)]["deepest"], rel=1e-12)
+                and found["deepest"] > 0.0
             )
 
 
 def test_a_result_of_post_processing_is_read(folder):
     found = PostResult(folder / "passes.pass1.post.h5")
-    assert found.z.tolist() == [0.05] and set(found.surfaces) == {"slow", "fast"}
-    assert np.nanmax(found.damage["slow"]) == pytest.approx(1.979e-10, rel=1e-3)
+    assert found.z.tolist() == [0.05] and set(found.surfaces) == {"2", "1"}
+    assert np.nanmax(found.damage["2"]) == pytest.approx(1.979e-10, rel=1e-3)
     with read_result(folder / "passes.pass1.h5") as result:
-        assert damage_beside(result).largest("fast", 0) == pytest.approx(7.765e-11, rel=1e-3)
+        assert damage_beside(result).largest("1", 0) == pytest.approx(7.765e-11, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ def make_writer(path, every=1, attributes=SCALES, resume_step=None, contact_coun
         x=X,
         fields=STORED,
         figures=list(STEP_SCALARS),
-        profiles={"fast": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "slow": None},
+        profiles={"1": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "2": None},
     )
     attributes = {"title": "ä", "case": 'title = "ä"\n'} | attributes
     going_on = dict(resume_step=resume_step, contact_count=contact_count)
@@ -86,9 +86,9 @@ def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
         for name in STORED:
             assert [dim.keys()[0] for dim in file[name].dims] == ["time", "x"]
         assert file["in_contact"].dtype == np.uint8
-        assert file["surface/fast"].attrs["speed"] == 5.6
-        assert file["surface/fast"].attrs["ra"] == 0.4e-6
-        assert "slow" not in file["surface"]
+        assert file["surface/1"].attrs["speed"] == 5.6
+        assert file["surface/1"].attrs["ra"] == 0.4e-6
+        assert "2" not in file["surface"]
 
 
 def test_headers_alone_tell_what_is_stored(tmp_path):
@@ -162,7 +162,7 @@ def test_xarray_reads_coordinates_and_units(tmp_path):
     with xarray.open_dataset(path, engine="h5netcdf", group="steps") as steps:
         assert steps["newton"].dims == ("time",)
         np.testing.assert_array_equal(steps["newton"], range(5))
-    with xarray.open_dataset(path, engine="h5netcdf", group="surface/fast") as fast:
+    with xarray.open_dataset(path, engine="h5netcdf", group="surface/1") as fast:
         assert fast["z"].dims == ("s",)
 
 
@@ -175,8 +175,8 @@ def test_frames_are_thinned_and_counts_are_not(tmp_path):
         np.testing.assert_allclose(result.contact_rate(), result.contact_count / 100e3)  # dt is 1 s
         assert result.nearest_frame(step=44) == 3
         assert result.nearest_frame(time=0.0) == 0
-        assert result.profile("slow") is None
-        assert result.profile("fast")[2] == 5.6
+        assert result.profile("2") is None
+        assert result.profile("1")[2] == 5.6
 
 
 def test_fewer_fields_and_single_precision(tmp_path):

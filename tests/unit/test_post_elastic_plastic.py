@@ -134,7 +134,7 @@ def test_the_command_changes_the_rule_and_the_steel_of_a_case(tmp_path, capsys):
     for options in ((), ("--strain", "direct"), ("--set", "contact.material=16MnCr5")):
         assert main([path, *options]) == 0
         result = PostResult(tmp_path / "a.post.h5")
-        worst[options] = result.passed("slow").max()
+        worst[options] = result.passed("2").max()
         assert result.attrs["strain"] == ("direct" if "direct" in options else "neuber")
     assert result.attrs["material"] == "16MnCr5, 16MnCr5"
     neuber, direct, hard = worst.values()
@@ -147,11 +147,11 @@ def test_the_command_changes_the_rule_and_the_steel_of_a_case(tmp_path, capsys):
 
 
 def test_few_points_are_warned_of(tmp_path, capsys):
-    """Of 6.05 half widths of travel the slow surface covers 4.03: one node more than the mesh is wide."""
+    """Of 6.05 half widths of travel surface 2 covers 4.03: one node more than the mesh is wide."""
     scene = Scene(per_width=20, ratio=0.4, travel=6.05)
     path = write(tmp_path / "a.h5", scene, depths=(0.0,))
     assert main([str(path)]) == 0
     said = capsys.readouterr()
-    assert "only 1 point of the slow surface passed the whole contact" in said.err
+    assert "only 1 point of surface 2 passed the whole contact" in said.err
     assert "time.travel = 7.6 or more" in said.err and "of the fast" not in said.err
     assert "nan" not in said.out

@@ -17,7 +17,7 @@ def scene():
     return Scene(per_width=20, ratio=0.5, travel=9.0)
 
 
-def refused(path, surfaces=("slow", "fast")):
+def refused(path, surfaces=("2", "1")):
     """Why a file is refused before anything is computed."""
     with pytest.raises((PostError, OutputError)) as fault, Loads(path) as loads:
         prepare(loads, surfaces, print)
@@ -68,12 +68,12 @@ def replaced(name, change):
         (scaled("time", by=1e3), "dataset time: a step takes 0.000269, by the case 2.69e-07 s"),
         (scaled("time", by=1e6), "times must be in s"),
         (scaled("time", by=1e-6), "times must be in s"),
-        (scaled("shear_stress_fast", by=1e6), "dataset shear_stress_fast"),
+        (scaled("shear_stress_1", by=1e6), "dataset shear_stress_1"),
         (lambda file: file["pressure"].attrs.__setitem__("units", "MPa"), 'unit is "MPa", it must be "Pa"'),
         (lambda file: file["time"].attrs.__setitem__("units", b"us"), 'unit is "us", it must be "s"'),
-        (lambda file: file["surface/slow"].attrs.__setitem__("speed", 3.0), "surface/slow = 3 m/s"),
-        (lambda file: file["surface/fast/z"].__setitem__(7, np.nan), "surface/fast/z is nan at point 7"),
-        (replaced("surface/fast/z", lambda z: z[:-1]), "not one height a place"),
+        (lambda file: file["surface/2"].attrs.__setitem__("speed", 3.0), "surface/2 = 3 m/s"),
+        (lambda file: file["surface/1/z"].__setitem__(7, np.nan), "surface/1/z is nan at point 7"),
+        (replaced("surface/1/z", lambda z: z[:-1]), "not one height a place"),
         (replaced("pressure", lambda p: p.astype(complex)), "pressure is no row of numbers"),
         (replaced("pressure", lambda p: p[:, :-1]), "pressure has 80 nodes, x 81"),
         (replaced("pressure", lambda p: p[0]), "no dataset pressure of frames"),
@@ -95,7 +95,7 @@ def with_steps(spoil):
         figures = {
             "load": file["pressure"][:].sum(axis=1) * dx,
             "p_max": file["pressure"][:].max(axis=1),
-            "friction": file["shear_stress_slow"][:].sum(axis=1) * dx,
+            "friction": file["shear_stress_2"][:].sum(axis=1) * dx,
         }
         for name, values in figures.items():
             file[f"steps/{name}"] = values
@@ -107,7 +107,7 @@ def with_steps(spoil):
 @pytest.mark.parametrize(
     "spoil, said",
     [
-        (scaled("shear_stress_slow", by=1e-6), "dataset shear_stress_slow: its integral over x at frame 0"),
+        (scaled("shear_stress_2", by=1e-6), "dataset shear_stress_2: its integral over x at frame 0"),
         (
             lambda file: file["pressure"].__setitem__((40, slice(30, 32)), [1.5e9, 0.0]),
             "dataset pressure: its integral over x at frame 40",
@@ -118,7 +118,7 @@ def with_steps(spoil):
 def test_frames_must_fit_the_figures_of_their_steps(spoil, said, scene, tmp_path):
     prepare_whole = write(tmp_path / "whole.h5", scene, edit=with_steps(lambda file: None))
     with Loads(prepare_whole) as loads:
-        prepare(loads, ("slow",), print)
+        prepare(loads, ("2",), print)
     assert said in refused(write(tmp_path / "a.h5", scene, edit=with_steps(spoil)))
 
 
@@ -126,7 +126,7 @@ def without(first, last, numbers=True):
     """An edit that takes frames first .. last-1 out; without `numbers` as if there had been no such steps."""
 
     def edit(file):
-        for name in ("time", "step", "pressure", "shear_stress_slow", "shear_stress_fast"):
+        for name in ("time", "step", "pressure", "shear_stress_2", "shear_stress_1"):
             replaced(name, lambda values: np.delete(values, slice(first, last), axis=0))(file)
         if not numbers:
             for name in ("step", "steps/step", "steps/time"):
@@ -149,7 +149,7 @@ def test_points_that_miss_frames_have_no_damage(numbers, tmp_path):
         run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)), said.append)
     assert any("40 frames are missing in one place, after" in line for line in said)
     with h5py.File(f"{whole}.post") as a, h5py.File(f"{cut}.post") as b:
-        for surface, speed in (("slow", scene.u2), ("fast", scene.u1)):
+        for surface, speed in (("2", scene.u2), ("1", scene.u1)):
             passed, left = (file[f"damage/{surface}_complete"][:].astype(bool) for file in (a, b))
             place = b["damage/s"][:] + speed * scene.time[[frame - 1, frame + 40]][:, None]
             inside = (place[0] < scene.x[-1] - 1e-9) & (place[1] > scene.x[0] + 1e-9)
@@ -163,7 +163,7 @@ def test_points_that_miss_frames_have_no_damage(numbers, tmp_path):
 def test_refused_where_no_point_kept_all_its_frames(scene, tmp_path):
     def every_tenth(file):
         keep = np.arange(scene.time.size) % 10 != 9
-        for name in ("time", "step", "pressure", "shear_stress_slow", "shear_stress_fast"):
+        for name in ("time", "step", "pressure", "shear_stress_2", "shear_stress_1"):
             replaced(name, lambda values: values[keep])(file)
 
     said = refused(write(tmp_path / "a.h5", scene, edit=every_tenth))
@@ -175,12 +175,12 @@ def test_history_has_every_sample_of_every_point(scene, tmp_path):
     from ehlpetsc.post.stresses.body_stress import history_at
 
     path = write(tmp_path / "a.h5", scene)
-    run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("slow",), depths=(0.0,)))
+    run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("2",), depths=(0.0,)))
     result = PostResult(tmp_path / "o.h5")
     with Loads(path) as loads:
-        motion = prepare(loads, ("slow",), print).motions["slow"]
-        for j in np.flatnonzero(result.complete["slow"])[::9]:
-            time, values = history_at(loads, "slow", result.s[j], 0.0)
+        motion = prepare(loads, ("2",), print).motions["2"]
+        for j in np.flatnonzero(result.complete["2"])[::9]:
+            time, values = history_at(loads, "2", result.s[j], 0.0)
             assert time.size == motion.leave[j] - motion.enter[j] + 1 == values.shape[1] - 2
             assert time[0] == loads.time[motion.enter[j]]
 
@@ -203,12 +203,12 @@ def of_fixed_length(file):
     for name, value in file.attrs.items():
         if isinstance(value, str):
             file.attrs[name] = np.bytes_(value.encode())
-    for name in ("pressure", "shear_stress_slow"):
+    for name in ("pressure", "shear_stress_2"):
         values = file[name][:]
         del file[name]
         file.create_dataset(name, data=values, chunks=(8, values.shape[1]), fletcher32=True)
         file[name].attrs["units"] = np.bytes_(b"Pa")
-    file["surface/slow/set"] = 1e-9 * np.ones(file["surface/slow/z"].shape)
+    file["surface/2/set"] = 1e-9 * np.ones(file["surface/2/z"].shape)
 
 
 def test_texts_of_any_kind_and_check_sums_are_read(scene, tmp_path):
@@ -217,7 +217,7 @@ def test_texts_of_any_kind_and_check_sums_are_read(scene, tmp_path):
     for path in paths:
         with Loads(path) as loads:
             assert loads.title == "made up" and loads.status == "done"
-            digests.append(prepare(loads, ("slow",), print).digest)
+            digests.append(prepare(loads, ("2",), print).digest)
     assert digests[0] == digests[1]
     with h5py.File(paths[1], "r+") as file:
         file["pressure"].attrs["units"] = np.bytes_(b"MPa")
@@ -251,5 +251,5 @@ def test_under_changing_speeds_points_are_where_the_surfaces_have_got_to(table, 
     for path in paths:
         run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)))
         found.append(PostResult(f"{path}.post").damage)
-    for side in ("slow", "fast"):
+    for side in ("2", "1"):
         np.testing.assert_allclose(found[1][side], found[0][side], rtol=1e-9)

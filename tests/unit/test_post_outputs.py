@@ -95,14 +95,14 @@ def test_an_earlier_result_is_replaced(result, tmp_path):
 def test_an_edit_of_the_same_size_and_time_is_seen(result, tmp_path, capsys):
     output, stamp = tmp_path / "run.post.h5", os.stat(result)
     assert main([str(result)]) == 0
-    first = PostResult(output).damage["slow"]
+    first = PostResult(output).damage["2"]
     with h5py.File(result, "r+") as file:
-        file["shear_stress_slow"][200] = file["shear_stress_slow"][200] * 1.5
+        file["shear_stress_2"][200] = file["shear_stress_2"][200] * 1.5
     os.utime(result, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
     assert os.stat(result).st_size == stamp.st_size
     capsys.readouterr()
     assert main([str(result)]) == 0 and "already there" not in capsys.readouterr().err
-    assert np.nanmax(np.abs(PostResult(output).damage["slow"] - first)) > 0
+    assert np.nanmax(np.abs(PostResult(output).damage["2"] - first)) > 0
     assert main([str(result)]) == 0 and "already there" in capsys.readouterr().err
 
 
@@ -158,7 +158,7 @@ def test_sigterm_at_work_and_going_on(scene, tmp_path):
     run(Job(str(path), str(output)))
     run(Job(str(path), str(tmp_path / "whole.h5")))
     ours, whole = PostResult(output), PostResult(tmp_path / "whole.h5")
-    np.testing.assert_allclose(ours.damage["slow"], whole.damage["slow"], rtol=1e-9)
+    np.testing.assert_allclose(ours.damage["2"], whole.damage["2"], rtol=1e-9)
     assert not left_over(tmp_path)
 
 
@@ -205,7 +205,7 @@ def test_results_of_earlier_versions_are_processed(name, tmp_path, capsys):
         assert status == ExitStatus.BAD_INPUT and "raise time.travel" in said
     else:
         assert status == ExitStatus.DONE
-        assert PostResult(tmp_path / f"{name}.post.h5").passed("slow").max() == pytest.approx(2e-10, rel=0.1)
+        assert PostResult(tmp_path / f"{name}.post.h5").passed("2").max() == pytest.approx(2e-10, rel=0.1)
 
 
 @pytest.mark.parametrize("title", ["lone \udc80 surrogate", np.bytes_(b"raw byte \xff")])
@@ -221,7 +221,7 @@ def test_a_title_that_is_no_utf_8(title, scene, tmp_path, capsys):
 
 
 def test_a_contact_one_node_wide(tmp_path, capsys):
-    """All of the load on one node that travels with the slow surface: damage where it passes."""
+    """All of the load on one node that travels with surface 2: damage where it passes."""
     scene = Scene(per_width=20, ratio=0.5, travel=9.0)
 
     def pressure(k):
@@ -233,7 +233,7 @@ def test_a_contact_one_node_wide(tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, depths=(0.0, 0.1))
     assert main([str(path), "--pictures", str(tmp_path / "p")]) == ExitStatus.DONE
     result = PostResult(tmp_path / "a.post.h5")
-    assert np.isfinite(result.passed("slow")).all() and result.passed("slow").max() > 1e-3
+    assert np.isfinite(result.passed("2")).all() and result.passed("2").max() > 1e-3
 
 
 @pytest.mark.slow

@@ -86,12 +86,12 @@ def test_damage_of_every_pass_is_added_to_the_index(index, capsys):
     for number, row in enumerate(rows, 1):
         known = PostResult(index.with_name(f"run.pass{number}.post.h5"))
         assert row["set_volume"] == 1e-12 and row["damage"]["z_over_a"] == [0.0, 0.1]
-        for side in ("fast", "slow"):
+        for side in ("1", "2"):
             passed = known.damage[side][:, known.complete[side]]
             assert row["damage"][side]["largest"] == passed.max(axis=1).tolist()
             assert row["damage"][side]["median"] == np.median(passed, axis=1).tolist()
-        assert f"pass {number}: fast D_max={max(row['damage']['fast']['largest']):.3e}" in said
-    assert rows[1]["damage"]["slow"]["largest"][0] < rows[0]["damage"]["slow"]["largest"][0]
+        assert f"pass {number}: 1 D_max={max(row['damage']['1']['largest']):.3e}" in said
+    assert rows[1]["damage"]["2"]["largest"][0] < rows[0]["damage"]["2"]["largest"][0]
     assert f"done {index} passes=2" in said
 
 
@@ -115,11 +115,11 @@ def test_an_index_that_is_none_is_refused(tmp_path, capsys):
 
 @pytest.mark.parametrize("shift", [7.0, 7.4], ids=["whole spacings", "between points"])
 def test_passes_that_are_shifted_against_each_other(shift, tmp_path):
-    """The slow surface enters further on in the second pass: the same points lie elsewhere in s."""
+    """Surface 2 enters further on in the second pass: the same points lie elsewhere in s."""
     scenes = [Scene(per_width=20, ratio=0.5, travel=12.0) for _ in range(2)]
     step = shift * scenes[0].dx
-    s, z = scenes[0].profiles["slow"]
-    scenes[1].profiles["slow"] = s + step, z
+    s, z = scenes[0].profiles["2"]
+    scenes[1].profiles["2"] = s + step, z
 
     def edit(file):
         time = f"passes = 2\npass_shift = {step}\ntravel"
@@ -128,15 +128,15 @@ def test_passes_that_are_shifted_against_each_other(shift, tmp_path):
     paths = [
         str(write(tmp_path / f"{k}.h5", scene, depths=(0.1,), edit=edit)) for k, scene in enumerate(scenes)
     ]
-    assert main([*paths, "--passes", "slow"]) == ExitStatus.DONE
+    assert main([*paths, "--passes", "2"]) == ExitStatus.DONE
     results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
-    points, damages = same_points(results, "slow")
+    points, damages = same_points(results, "2")
     k = points.size // 2
     j = np.argmin(np.abs(results[1].s - points[k] - step))
     assert abs(results[1].s[j] - points[k] - step) <= 0.51 * scenes[0].dx
-    assert damages[1, :, k] == pytest.approx(results[1].damage["slow"][:, j], rel=1e-12)
-    with pytest.raises(PostError, match="profiles of the fast surface differ"):
-        scenes[1].profiles["fast"] = scenes[1].profiles["slow"]
+    assert damages[1, :, k] == pytest.approx(results[1].damage["2"][:, j], rel=1e-12)
+    with pytest.raises(PostError, match="profiles of surface 1 differ"):
+        scenes[1].profiles["1"] = scenes[1].profiles["2"]
         write(paths[1], scenes[1], depths=(0.1,), edit=edit)
         assert main([paths[1]]) == ExitStatus.DONE
-        same_points([results[0], PostResult(tmp_path / "1.post.h5")], "fast")
+        same_points([results[0], PostResult(tmp_path / "1.post.h5")], "1")

@@ -75,7 +75,7 @@ def test_result_has_the_fixed_names(result, scene, capsys):
     assert "ehlpetsc.post: done" in capsys.readouterr().out
     with h5py.File(result.with_name("run.post.h5")) as file:
         ns = file["damage/s"].size
-        for name in ("damage/slow", "damage/fast", "damage/cycles", "damage/peak_range"):
+        for name in ("damage/2", "damage/1", "damage/cycles", "damage/peak_range"):
             assert file[name].shape == (3, ns)
         assert list(file["damage/z_over_a"]) == [0.0, 0.05, 0.5]
         peaks = file["asperities/s"].size
@@ -87,12 +87,9 @@ def test_result_has_the_fixed_names(result, scene, capsys):
             assert not isinstance(item, h5py.Dataset) or {"units", "long_name"} <= set(item.attrs), name
 
         file.visititems(described)
-        passed = file["damage/slow_complete"][:].astype(bool)
+        passed = file["damage/2_complete"][:].astype(bool)
         assert passed.any() and not passed.all()
-        assert (
-            np.isnan(file["damage/slow"][:, ~passed]).all()
-            and np.isfinite(file["damage/slow"][:, passed]).all()
-        )
+        assert np.isnan(file["damage/2"][:, ~passed]).all() and np.isfinite(file["damage/2"][:, passed]).all()
         s = file["damage/s"][passed]
         assert s[-1] <= scene.x[0] + 1e-12 and s[0] + scene.u2 * scene.time[-1] >= scene.x[-1] - 1e-12
     assert not result.with_name("run.post.h5.parts").exists()
@@ -111,9 +108,7 @@ def test_imports_no_petsc_mpi_or_solver_and_without_pictures_no_matplotlib(resul
 
 def arrays(path):
     with h5py.File(path) as file:
-        return {
-            name: file[name][:] for name in ("damage/slow", "damage/fast", "damage/cycles", "weibull/beta")
-        }
+        return {name: file[name][:] for name in ("damage/2", "damage/1", "damage/cycles", "weibull/beta")}
 
 
 def test_two_threads_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
@@ -161,10 +156,10 @@ def test_parts_of_other_choices_are_not_used(result, tmp_path):
     parts = tmp_path / "out.h5.parts"
     parts.mkdir()
     (parts / "mark").write_text("another run")
-    np.save(parts / "slow_0.npy", np.full((3, 3), 7.0))
+    np.save(parts / "2_0.npy", np.full((3, 3), 7.0))
     run(Job(str(result), str(output), depths=(0.0,)))
     with h5py.File(output) as file:
-        assert np.nanmax(file["damage/slow"]) < 1
+        assert np.nanmax(file["damage/2"]) < 1
 
 
 def test_killed_writer(scene, tmp_path):
@@ -186,14 +181,14 @@ with h5py.File({str(path)!r}) as old, h5py.File({str(path) + ".new"!r}, "w", lib
     assert any("running" in line for line in said)
     run(Job(str(path), str(tmp_path / "whole.h5")))
     with h5py.File(tmp_path / "out.h5") as cut, h5py.File(tmp_path / "whole.h5") as whole:
-        assert 0 < cut["damage/slow_complete"][:].sum() < whole["damage/slow_complete"][:].sum()
+        assert 0 < cut["damage/2_complete"][:].sum() < whole["damage/2_complete"][:].sum()
 
 
 @pytest.mark.parametrize(
     "name, words",
     [
         ("pressure", 'no dataset pressure of frames: list "pressure" in output.fields'),
-        ("shear_stress_slow", "no dataset shear_stress_slow"),
+        ("shear_stress_2", "no dataset shear_stress_2"),
         ("time", "time is no row of numbers"),
         ("x", "not a result of ehlpetsc"),
     ],
@@ -212,7 +207,7 @@ def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
     assert not list(tmp_path.glob("a.post.h5*"))
 
 
-@pytest.mark.parametrize("name, value", [("a", np.nan), ("p0", 0.0), ("u1", np.inf), ("u2", "fast")])
+@pytest.mark.parametrize("name, value", [("a", np.nan), ("p0", 0.0), ("u1", np.inf), ("u2", "1")])
 def test_attributes_that_are_no_numbers(name, value, scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.attrs.__setitem__(name, value))
     assert f"attribute {name}" in fault(capsys, path)
@@ -279,13 +274,13 @@ def test_every_is_warned_of(scene, tmp_path, capsys):
 
 
 def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
-    frames = int(1.1 * 4 * 40 / 0.5)  # the fast surface has passed, the slow one not
+    frames = int(1.1 * 4 * 40 / 0.5)  # surface 1 has passed, the slow one not
     assert main([str(write(tmp_path / "a.h5", scene, frames=frames))]) == 0
     said = capsys.readouterr().err
-    assert "no point of the slow surface" in said and "time.travel = 6.8 or more lets some through" in said
+    assert "no point of surface 2" in said and "time.travel = 6.8 or more lets some through" in said
     with h5py.File(tmp_path / "a.post.h5") as file:
-        assert np.isnan(file["damage/slow"]).all() and np.isfinite(file["damage/fast"]).any()
-        assert file["asperities"].attrs["surface"] == "fast"
+        assert np.isnan(file["damage/2"]).all() and np.isfinite(file["damage/1"]).any()
+        assert file["asperities"].attrs["surface"] == "1"
 
 
 @pytest.mark.slow
@@ -309,13 +304,13 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
     assert main([*map(str, paths), "--pictures", str(tmp_path / "out")]) == 0
     drawn = {path.name for path in (tmp_path / "out").iterdir()}
     for stem in (
-        "0.5.damage_slow",
-        "0.5.damage_fast",
+        "0.5.damage_2",
+        "0.5.damage_1",
         "0.5.exceedance",
         "0.5.stress",
         "0.5.history",
-        "compared.damage_slow",
-        "compared.damage_fast",
+        "compared.damage_2",
+        "compared.damage_1",
         "compared.exceedance_z0",
         "compared.exceedance_z0.1",
     ):
@@ -330,29 +325,29 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
 
 @pytest.mark.slow
 def test_passes_of_one_surface(tmp_path, legends, capsys, monkeypatch):
-    """The slow surface is one; that it meets is another in each pass. Drawn are the passes alone."""
+    """Surface 2 is one; that it meets is another in each pass. Drawn are the passes alone."""
     monkeypatch.setattr(gallery, "_of_one", lambda *_: [])
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
-    scenes[1].profiles["slow"] = scenes[0].profiles["slow"]
+    scenes[1].profiles["2"] = scenes[0].profiles["2"]
     paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.0, 0.1))) for k, scene in enumerate(scenes)]
-    assert main([*paths, "--passes", "slow", "--pictures", str(tmp_path / "out")]) == 0
-    assert (tmp_path / "out" / "passes.damage_slow.png").is_file()
+    assert main([*paths, "--passes", "2", "--pictures", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out" / "passes.damage_2.png").is_file()
     assert len(legends) == 2  # one of each of its axes
     results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
-    s, damages = same_points(results, "slow")
+    s, damages = same_points(results, "2")
     assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20
     place = np.argmin(np.abs(results[1].s - s[3]))
-    assert damages[1][:, 3] == pytest.approx(results[1].damage["slow"][:, place], rel=1e-12)
-    with h5py.File(tmp_path / "passes_slow.post.h5") as file:
-        assert file["damage/slow_mean"][:] == pytest.approx(damages.mean(axis=0), rel=1e-12)
-        assert file["damage/slow_deviation"][:] == pytest.approx(damages.std(axis=0, ddof=1), rel=1e-9)
-        assert file["damage/slow_life"][:] == pytest.approx(1 / damages.mean(axis=0), rel=1e-12)
-        assert (file["damage/slow_count"][:] == 2).all() and file.attrs["passes"] == 2
+    assert damages[1][:, 3] == pytest.approx(results[1].damage["2"][:, place], rel=1e-12)
+    with h5py.File(tmp_path / "passes_2.post.h5") as file:
+        assert file["damage/2_mean"][:] == pytest.approx(damages.mean(axis=0), rel=1e-12)
+        assert file["damage/2_deviation"][:] == pytest.approx(damages.std(axis=0, ddof=1), rel=1e-9)
+        assert file["damage/2_life"][:] == pytest.approx(1 / damages.mean(axis=0), rel=1e-12)
+        assert (file["damage/2_count"][:] == 2).all() and file.attrs["passes"] == 2
         assert file["damage/s"][:] == pytest.approx(s)
     assert f"first failure after {1 / damages.mean(axis=0)[1].max():.4g} passes" in capsys.readouterr().out
-    assert "profiles of the fast surface differ" in fault(capsys, *paths, "--passes", "fast", "--pictures")
+    assert "profiles of surface 1 differ" in fault(capsys, *paths, "--passes", "1", "--pictures")
     with pytest.raises(SystemExit):
-        main([paths[0], "--passes", "slow"])
+        main([paths[0], "--passes", "2"])
 
 
 def test_one_output_for_one_input(result, capsys):
@@ -371,33 +366,33 @@ def judged(scene, tmp_path_factory):
     save = gallery._save
     with pytest.MonkeyPatch.context() as patch:  # of the pictures that of the criteria alone
         patch.setattr(gallery, "_save", lambda *one: save(*one) if "criteria" in one[1] else [])
-        assert main([*argv, "--surface", "slow", "--pictures", str(folder)]) == 0
-    assert (folder / "a.criteria_slow.png").is_file()
+        assert main([*argv, "--surface", "2", "--pictures", str(folder)]) == 0
+    assert (folder / "a.criteria_2.png").is_file()
     return folder / "a.post.h5"
 
 
 @pytest.mark.slow
 def test_criteria_stand_beside_the_papers_damage(judged, scene, tmp_path):
     plain = write(tmp_path / "a.h5", scene, depths=(0.0, 0.5))
-    run(Job(str(plain), str(tmp_path / "plain.h5"), surfaces=("slow",)))
+    run(Job(str(plain), str(tmp_path / "plain.h5"), surfaces=("2",)))
     with h5py.File(judged) as file, h5py.File(tmp_path / "plain.h5") as other:
-        np.testing.assert_array_equal(file["damage/slow"], other["damage/slow"])  # the paper's stays
+        np.testing.assert_array_equal(file["damage/2"], other["damage/2"])  # the paper's stays
         assert "criteria" not in other
-        passed = file["damage/slow_complete"][:].astype(bool)
+        passed = file["damage/2_complete"][:].astype(bool)
         assert set(file["criteria"]) == {"fatemi_socie", "shear", "swt", "dang_van"}
         for name in ("fatemi_socie", "shear"):
             group = file[f"criteria/{name}"]
-            assert (group["slow_damage"][:, passed] > 0).all() and (group["slow_tilt"][0, passed] > 40).all()
-            assert np.isnan(group["slow_damage"][:, ~passed]).all()
-            assert group["slow_rank_correlation"][0] > 0.9
-            assert group["slow_damage"].dims[1][0] == file["damage/s"]
-        opened = file["criteria/fatemi_socie/slow_damage"][:, passed]
-        assert (opened >= 0.95 * file["criteria/shear/slow_damage"][:, passed]).all()
-        use = file["criteria/dang_van/slow_utilisation"][1]
+            assert (group["2_damage"][:, passed] > 0).all() and (group["2_tilt"][0, passed] > 40).all()
+            assert np.isnan(group["2_damage"][:, ~passed]).all()
+            assert group["2_rank_correlation"][0] > 0.9
+            assert group["2_damage"].dims[1][0] == file["damage/s"]
+        opened = file["criteria/fatemi_socie/2_damage"][:, passed]
+        assert (opened >= 0.95 * file["criteria/shear/2_damage"][:, passed]).all()
+        use = file["criteria/dang_van/2_utilisation"][1]
         point = np.flatnonzero(passed)[10]
         with Loads(str(plain)) as loads:
             quantum = QUANTUM * loads.p0
-            _, history = history_at(loads, "slow", file["damage/s"][point], 0.5 * loads.a, quantum)
+            _, history = history_at(loads, "2", file["damage/s"][point], 0.5 * loads.a, quantum)
         assert use[point] == pytest.approx(dang_van(*history, 0.3, residual_stress=-2e8), rel=1e-6)
         assert file.attrs["residual_stress"].tolist() == [[0.0, -4e8], [1.0, 0.0]]
 
@@ -416,14 +411,14 @@ def test_asperities_and_the_sureness_of_their_distribution(judged):
 
 def test_residual_stress_without_a_mean_stress_term_is_told(scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, depths=(0.5,), post="residual_stress = [[0.0, -4e8]]")
-    assert main([str(path), "--surface", "fast"]) == 0
+    assert main([str(path), "--surface", "1"]) == 0
     assert "residual_stress changes nothing without" in capsys.readouterr().err
     damages = []
     for post in ("", "residual_stress = [[0.0, 1e9], [1.0, 8e8]]"):
         path = write(tmp_path / "b.h5", scene, depths=(0.5,), post=post)
-        assert main([str(path), "--surface", "fast", "--mean-stress", "morrow"]) == 0
+        assert main([str(path), "--surface", "1", "--mean-stress", "morrow"]) == 0
         with h5py.File(tmp_path / "b.post.h5") as file:
-            damages.append(np.nanmax(file["damage/fast"][:]))
+            damages.append(np.nanmax(file["damage/1"][:]))
     assert damages[1] > 2 * damages[0] > 0
 
 
@@ -449,21 +444,21 @@ def test_pictures_are_drawn_over_the_surfaces_own_abscissa(result, capsys):
     """In mm from the point that was at the inlet at time 0, where a profile begins, and in um deep."""
     assert main([str(result), "--depths", "0", "0.05", "0.5"]) == 0
     found = PostResult(result.with_name("run.post.h5"))
-    passed = found.s[found.complete["slow"]]
+    passed = found.s[found.complete["2"]]
     with h5py.File(result) as file:
         inlet, a = file["x"][0], file.attrs["a"]
-    top, bottom, *_ = gallery.damage_picture(found, "slow").axes
+    top, bottom, *_ = gallery.damage_picture(found, "2").axes
     assert bottom.get_xlim() == pytest.approx([1e3 * (inlet - passed[-1]), 1e3 * (inlet - passed[0])])
     (beside,) = bottom.child_axes
     assert [text.get_text() for text in beside.get_yticklabels()] == ["0", f"{5e4 * a:.3g}", f"{5e5 * a:.3g}"]
-    s, z = found.worst_point("slow")
+    s, z = found.worst_point("2")
     assert f"at {1e3 * (inlet - s):.4g} mm, z/a = {z:g}" in top.get_title()
     line = top.lines[-1].get_xydata()
-    profile_s, profile_z = found.profiles["slow"]
+    profile_s, profile_z = found.profiles["2"]
     np.testing.assert_allclose(line[:, 1], 1e6 * np.interp(inlet - 1e-3 * line[:, 0], profile_s, profile_z))
     found.attrs["speed_slow"] = -1.0
     outlet = found.attrs["outlet"]
-    assert plots.along_body(found, "slow", outlet + 2e-3) == pytest.approx(2.0)
+    assert plots.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
 
 
 def test_the_depth_of_the_largest_von_mises_stress_is_marked(result):
@@ -479,10 +474,10 @@ def test_the_depth_of_the_largest_von_mises_stress_is_marked(result):
 
 
 def test_a_smooth_surface_has_no_panel_for_its_profile(scene, tmp_path):
-    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface/slow"))
+    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface/2"))
     run(Job(str(path), str(tmp_path / "o.h5")))
     found = PostResult(tmp_path / "o.h5")
-    counts = [len(gallery.damage_picture(found, side).axes) for side in ("slow", "fast")]
+    counts = [len(gallery.damage_picture(found, side).axes) for side in ("2", "1")]
     assert counts == [2, 3]  # with the scale of colours
 
 

@@ -161,7 +161,7 @@ def measured(tmp_path, x=1.0, z=1.0):
     """A measured profile in another unit beside a case."""
     table = np.loadtxt(CASES / "profiles" / "alicona_meander_profile.csv", delimiter=",")
     np.savetxt(tmp_path / "p.csv", table * (x, z), delimiter=",")
-    text = (CASES / "table1_smooth.toml").read_text() + "\n[surface.slow]\nfile = 'p.csv'\n"
+    text = (CASES / "table1_smooth.toml").read_text() + "\n[surface.2]\nfile = 'p.csv'\n"
     (tmp_path / "c.toml").write_text(text)
     return tmp_path / "c.toml"
 
@@ -181,17 +181,17 @@ def measured(tmp_path, x=1.0, z=1.0):
 def test_a_profile_absurd_beside_the_contact_names_the_likely_unit(tmp_path, x, z, keys, told):
     path = measured(tmp_path, x, z)
     with pytest.raises(CaseError, match=told) as caught:
-        case.load(path, [f"surface.slow.{key}" for key in keys])
+        case.load(path, [f"surface.2.{key}" for key in keys])
     (fault,) = caught.value.faults
-    assert "surface.slow.file" in fault
+    assert "surface.2.file" in fault
 
 
 def test_the_unit_named_is_the_one_to_write(tmp_path):
     path = measured(tmp_path, 1e3, 1e6)
-    case.load(path, ["surface.slow.unit='um'", "surface.slow.x_unit='mm'"])
+    case.load(path, ["surface.2.unit='um'", "surface.2.x_unit='mm'"])
     case.load(measured(tmp_path))
     with pytest.raises(CaseError, match='unit = "feet": allowed'):
-        case.load(path, ["surface.slow.unit='feet'"])
+        case.load(path, ["surface.2.unit='feet'"])
 
 
 def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):

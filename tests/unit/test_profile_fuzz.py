@@ -96,7 +96,7 @@ def test_corrupted_profiles_end_in_words_or_in_finite_heights(tmp_path):
     case.write_text(text)
     for draw in range(DRAWS):
         (tmp_path / "p.csv").write_bytes(corrupted(lines, rng))
-        keys = [f"surface.fast.{key}" for key in rng.sample(KEYS, rng.choice((0, 0, 1, 2)))]
+        keys = [f"surface.1.{key}" for key in rng.sample(KEYS, rng.choice((0, 0, 1, 2)))]
         words = ["mesh.points_per_half_width=20", *keys]
         drawn = partial("draw {}: {}\n{}".format, draw, keys, (tmp_path / "p.csv").read_bytes()[:300])
         faults = faults_of(partial(load, case, words), drawn)

@@ -52,8 +52,8 @@ def test_profiles_may_be_arrays():
     in_metres = {"x": x, "z": z}
     in_um = {"z": 1e6 * z, "spacing": x[1], "unit": "um"}
     for given in (in_metres, in_um):
-        case = ehlpetsc.load(CASES / "table1_rough.toml", {"surface.fast": given, "surface.slow": None})
-        profile = ehlpetsc.Simulation(case).roughness.fast
+        case = ehlpetsc.load(CASES / "table1_rough.toml", {"surface.1": given, "surface.2": None})
+        profile = ehlpetsc.Simulation(case).roughness.surface_1
         assert profile.ra == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-9)
 
 
@@ -65,14 +65,14 @@ def test_profiles_may_be_arrays():
         ({"z": [0.0] * 5, "spacing": 1e-6, "columns": [1]}, "columns: for a file"),
         (
             {"z": [0.0, 1e-7, np.nan, 0.0], "spacing": 1e-6},
-            "surface.fast.z = [0.0, 1e-07, NaN, 0.0]: allowed",
+            "surface.1.z = [0.0, 1e-07, NaN, 0.0]: allowed",
         ),
         ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "x falls after"),
     ],
 )
 def test_arrays_that_are_no_profile_are_refused(surface, fault):
     with pytest.raises(ehlpetsc.CaseError) as caught:
-        ehlpetsc.load(CASES / "table1_rough.toml", {"surface.fast": surface})
+        ehlpetsc.load(CASES / "table1_rough.toml", {"surface.1": surface})
     assert fault in str(caught.value)
 
 

@@ -84,7 +84,7 @@ def test_the_case_file_shown_has_twelve_lines_and_is_a_case(tmp_path):
     path.write_text(shown.replace("profiles/", f"{ROOT}/cases/profiles/"))
     case = load(path, ())
     assert (case.mesh.points_per_half_width, case.time.travel, case.output.every) == (200, 6.0, 4)
-    assert case.surface.slow is None and case.surface.fast.scale == 0.5
+    assert case.surface.body_2 is None and case.surface.body_1.scale == 0.5
 
 
 def test_a_run_begins_with_the_lines_shown():

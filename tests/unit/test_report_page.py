@@ -100,11 +100,11 @@ def test_damage_of_the_file_beside_is_shown_in_decades(tmp_path, page):
         file.attrs.update(a=2.0, case=result.attrs["case"])
         group = file.create_group("damage")
         group["s"], group["z_over_a"] = [1.0, 2.0, 4.0], [0.0, 0.5]
-        group["slow"] = [[1e-3, 0.0, 1e-5], [np.nan, 1e-7, 1e-8]]
+        group["2"] = [[1e-3, 0.0, 1e-5], [np.nan, 1e-7, 1e-8]]
     _, data = page(path)
-    assert data["damage"]["depths"] == [0.0, 0.5] and list(data["damage"]["surfaces"]) == ["slow"]
+    assert data["damage"]["depths"] == [0.0, 0.5] and list(data["damage"]["surfaces"]) == ["2"]
     np.testing.assert_allclose(unpacked(data["damage"]["s"]), [0.5, 1.0, 2.0])
-    rows = [unpacked(row) for row in data["damage"]["surfaces"]["slow"]]
+    rows = [unpacked(row) for row in data["damage"]["surfaces"]["2"]]
     np.testing.assert_allclose(rows, [[-3, np.nan, -5], [np.nan, -7, -8]], rtol=1e-6)
 
 

@@ -76,13 +76,12 @@ def test_both_filters_share_what_there_is():
 
 def test_the_short_cutoff_tells_ra_before_and_after():
     base, _ = rough("table1_rough.toml")
-    smoothed, _ = rough("table1_rough.toml", "surface.fast.short_cutoff=10e-6")
-    (note,) = smoothed.fast.given.notes
-    assert (
-        note == f"short_cutoff: Ra {1e6 * base.fast.ra:.4f} um before, {1e6 * smoothed.fast.ra:.4f} um after"
-    )
-    assert 0.5 * base.fast.ra < smoothed.fast.ra < 0.98 * base.fast.ra
-    assert base.fast.given.notes == ()
+    smoothed, _ = rough("table1_rough.toml", "surface.1.short_cutoff=10e-6")
+    (note,) = smoothed.surface_1.given.notes
+    before, after = (1e6 * one.surface_1.ra for one in (base, smoothed))
+    assert note == f"short_cutoff: Ra {before:.4f} um before, {after:.4f} um after"
+    assert 0.5 * base.surface_1.ra < smoothed.surface_1.ra < 0.98 * base.surface_1.ra
+    assert base.surface_1.given.notes == ()
 
 
 def test_the_filter_refuses_what_it_cannot_filter():
@@ -97,13 +96,13 @@ def test_the_filter_refuses_what_it_cannot_filter():
 
 def test_keys_of_a_surface_act_in_their_order():
     base, _ = rough("table1_rough.toml")
-    flipped, _ = rough("table1_rough.toml", "surface.fast.flip=true")
-    np.testing.assert_array_equal(flipped.fast.heights, base.fast.heights[::-1])
-    turned, _ = rough("table1_rough.toml", "surface.fast.scale=-2")
-    assert turned.fast.rsk == pytest.approx(-base.fast.rsk)
-    assert turned.fast.ra == pytest.approx(4 * base.fast.ra)
-    filtered, _ = rough("table1_rough.toml", "surface.fast.cutoff=20e-6", "surface.fast.level=true")
-    assert filtered.fast.rq < 0.7 * base.fast.rq
+    flipped, _ = rough("table1_rough.toml", "surface.1.flip=true")
+    np.testing.assert_array_equal(flipped.surface_1.heights, base.surface_1.heights[::-1])
+    turned, _ = rough("table1_rough.toml", "surface.1.scale=-2")
+    assert turned.surface_1.rsk == pytest.approx(-base.surface_1.rsk)
+    assert turned.surface_1.ra == pytest.approx(4 * base.surface_1.ra)
+    filtered, _ = rough("table1_rough.toml", "surface.1.cutoff=20e-6", "surface.1.level=true")
+    assert filtered.surface_1.rq < 0.7 * base.surface_1.rq
 
 
 def test_body_points_carry_their_heights_with_them():
@@ -224,7 +223,7 @@ def test_at_rest_or_steady_it_lies_under_the_whole_domain(speed, moving):
 
 def test_stored_samples_are_the_heights_used():
     r, scales = rough("table1_rough.toml")
-    for p in (r.fast, r.slow):
+    for p in (r.surface_1, r.surface_2):
         assert np.diff(p.s) == pytest.approx(0.5e-6)
         assert p.s[-1] == pytest.approx(scales.x[0] * scales.a)
         assert p.s[-1] - p.s[0] == pytest.approx(p.speed * scales.duration, abs=0.5e-6)
@@ -237,7 +236,7 @@ def test_stored_samples_are_the_heights_used():
 def test_smooth_surfaces_have_no_roughness_and_load_no_spline():
     assert rough("table1_smooth.toml")[0] is None
     r, _ = rough("ridge.toml")
-    assert r.fast is None and r.slow is not None
+    assert r.surface_1 is None and r.surface_2 is not None
 
 
 def test_the_ridge_case_is_the_gaussian_of_its_description():
@@ -250,25 +249,23 @@ def test_the_ridge_case_is_the_gaussian_of_its_description():
 
 def test_a_dent_is_a_ridge_turned_over():
     ridge, s = rough("ridge.toml")
-    dent, _ = rough("ridge.toml", "surface.slow.synthetic.kind='dent'")
+    dent, _ = rough("ridge.toml", "surface.2.synthetic.kind='dent'")
     x, t = s.x * s.a, 2.9 * s.a / s.u2
     np.testing.assert_array_equal(dent.phi(x, t), -ridge.phi(x, t))
 
 
 def test_a_wave_goes_on_for_ever_with_its_amplitude():
-    wave = "surface.slow.synthetic={kind='sine', amplitude=1e-7, wavelength=2e-5}"
+    wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, wavelength=2e-5}"
     r, s = rough("table1_smooth.toml", wave, "time.travel=30")
     t = 20 * s.a / s.u2
     x = np.linspace(-4, 1.5, 3001) * s.a
     abscissa = s.x[0] * s.a - x + s.u2 * t
     np.testing.assert_allclose(r.phi(x, t), -1e-7 * np.cos(2 * np.pi * abscissa / 2e-5), atol=1e-13)
-    assert r.slow.rq == pytest.approx(1e-7 / np.sqrt(2), rel=0.02)
+    assert r.surface_2.rq == pytest.approx(1e-7 / np.sqrt(2), rel=0.02)
 
 
 def test_a_square_wave_stays_within_its_amplitude():
-    r, s = rough(
-        "table1_smooth.toml", "surface.slow.synthetic={kind='square', amplitude=1e-7, wavelength=1e-4}"
-    )
+    r, s = rough("table1_smooth.toml", "surface.2.synthetic={kind='square', amplitude=1e-7, wavelength=1e-4}")
     z = r.phi(np.linspace(-4, 1.5, 20001) * s.a, 0.0)
     assert np.abs(z).max() <= 1e-7 * (1 + 1e-6)
     assert (np.abs(z) > 0.99e-7).mean() > 0.8
@@ -277,17 +274,17 @@ def test_a_square_wave_stays_within_its_amplitude():
 @pytest.mark.parametrize("skewness", [-1.5, -0.5, 0.0, 1.0])
 def test_ground_heights_have_what_is_asked_for(skewness):
     spec = f"{{kind='ground', ra=0.3e-6, correlation=25e-6, skewness={skewness}, seed=4}}"
-    r, _ = rough("table1_smooth.toml", f"surface.slow.synthetic={spec}")
-    assert r.slow.ra == pytest.approx(0.3e-6)
-    assert r.slow.rsk == pytest.approx(skewness, abs=1e-6)
-    z = r.slow.heights - r.slow.heights.mean()
+    r, _ = rough("table1_smooth.toml", f"surface.2.synthetic={spec}")
+    assert r.surface_2.ra == pytest.approx(0.3e-6)
+    assert r.surface_2.rsk == pytest.approx(skewness, abs=1e-6)
+    z = r.surface_2.heights - r.surface_2.heights.mean()
     assert z[10:] @ z[:-10] / (z @ z) == pytest.approx(np.exp(-1), abs=0.1)  # one correlation length apart
 
 
 def test_ground_heights_depend_on_their_seed_alone():
-    spec = "surface.slow.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
+    spec = "surface.2.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
     first, again, other = (
-        rough("table1_smooth.toml", spec.format(seed), travel)[0].slow.heights
+        rough("table1_smooth.toml", spec.format(seed), travel)[0].surface_2.heights
         for seed, travel in ((1, "time.travel=2"), (1, "time.travel=9"), (2, "time.travel=2"))
     )
     np.testing.assert_array_equal(first, again)
@@ -334,9 +331,9 @@ def test_spikes_narrower_than_a_cell_are_told_and_asperities_are_not():
 
 def test_the_travel_at_which_a_profile_comes_and_fills():
     r, s = rough("table1_rough.toml")  # inlet -2.5 a, slide/roll ratio 0.25: 5.625 and 4.375 m/s
-    assert arrival(r.fast, s) == pytest.approx((1.5, 3.5 + RAMP))
-    assert arrival(r.slow, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP) * 9 / 7))
-    for profile in (r.fast, r.slow):
+    assert arrival(r.surface_1, s) == pytest.approx((1.5, 3.5 + RAMP))
+    assert arrival(r.surface_2, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP) * 9 / 7))
+    for profile in (r.surface_1, r.surface_2):
         reaches, fills = arrival(profile, s)
         x = s.x * s.a
         inside = np.abs(s.x) <= 1.0
@@ -345,9 +342,9 @@ def test_the_travel_at_which_a_profile_comes_and_fills():
         whole = profile._at(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
         np.testing.assert_allclose(then[inside], whole, rtol=1e-9)
     backwards, s = rough("table1_rough.toml", "motion.slide_roll_ratio=-4")  # u -1, 3: enters at the outlet
-    reaches, fills = arrival(backwards.fast, s)
+    reaches, fills = arrival(backwards.surface_1, s)
     assert (reaches, fills) == pytest.approx((0.5 * 3, (2.5 + RAMP) * 3))
     ridge, s = rough("ridge.toml")
-    assert arrival(ridge.slow, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
+    assert arrival(ridge.surface_2, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
     still, s = rough("dry_rough.toml")
-    assert arrival(still.slow, s) is None
+    assert arrival(still.surface_2, s) is None

@@ -38,10 +38,10 @@ def test_files_are_named_after_output_and_value(tmp_path):
 
 
 def test_tables_are_named_by_what_differs_in_them(tmp_path):
-    key = "series.key='surface.slow.synthetic'"
+    key = "series.key='surface.2.synthetic'"
     one, two = (f"{{kind='sine',amplitude={z},wavelength=1e-4}}" for z in ("1e-7", "2e-7"))
     values = f"series.values=[{one},{two}]"
-    names = [m.output.name for m in series(tmp_path, f"surface.slow={{synthetic={one}}}", key, values)]
+    names = [m.output.name for m in series(tmp_path, f"surface.2={{synthetic={one}}}", key, values)]
     assert names == ["out_amplitude_1e-07.h5", "out_amplitude_2e-07.h5"]
 
 

@@ -56,7 +56,7 @@ def test_a_table_is_never_written_over_what_the_case_is_read_from(tmp_path, word
     profile = tmp_path / "gear.csv"
     profile.write_text("".join(f"{0.5e-6 * k},{1e-7 * (k % 7)}\n" for k in range(4000)))
     case = tmp_path / "case.toml"
-    case.write_text(TABLE_1 + '\n[surface.fast]\nfile = "gear.csv"\n')
+    case.write_text(TABLE_1 + '\n[surface.1]\nfile = "gear.csv"\n')
     before = profile.read_bytes()
     assert study([str(case), *words, "-o", str(tmp_path / "gear")]) == 2
     assert "gear.csv: is read by this run" in capsys.readouterr().err
@@ -123,18 +123,18 @@ def test_a_travel_too_short_for_damage_is_refused_before_anything_is_run(table_1
     short = ["--damage", "--set", "mesh.inlet=-1.2", "--set", "mesh.outlet=1.3", "--set", "time.travel=1.0"]
     short += ["--set", "motion.slide_roll_ratio=0.25"]
     assert study([str(table_1), *words, *short]) == ExitStatus.BAD_INPUT
-    surface, needed = ("fast", "2.52") if words else ("slow", "3.24")  # (2.5 + 1/50), over 0.875/1.125
+    surface, needed = ("1", "2.52") if words else ("2", "3.24")  # (2.5 + 1/50), over 0.875/1.125
     assert capsys.readouterr().err == (
-        f"ehlpetsc.study: --damage: within a travel of 1 a no point of the {surface} surface passes the "
+        f"ehlpetsc.study: --damage: within a travel of 1 a no point of surface {surface} passes the "
         f"whole mesh, 2.5 a wide; allowed: time.travel = {needed} or more\n"
     )
 
 
 def test_damage_takes_time_and_a_surface_that_moves(table_1):
     with pytest.raises(PostError, match="the case is steady"):
-        check_damage(load(table_1), "slow", 100)
-    with pytest.raises(PostError, match="the slow surface stands still"):
-        check_damage(load(table_1, ["time.travel=9.0", "motion.slide_roll_ratio=2.0"]), "slow", 100)
+        check_damage(load(table_1), "2", 100)
+    with pytest.raises(PostError, match="surface 2 stands still"):
+        check_damage(load(table_1, ["time.travel=9.0", "motion.slide_roll_ratio=2.0"]), "2", 100)
 
 
 @pytest.mark.parametrize("mesh", [13, 50, 200])
@@ -151,10 +151,10 @@ def test_the_least_travel_for_damage_lets_a_point_pass(table_1, mesh, ratio):
         s = body_points(x, scales.dx, [scales.u1 * time, scales.u2 * time])
         assert passage(s, x, scales.dx, scales.u2 * time).complete.any() == passes
         if passes:
-            check_damage(case, "slow", mesh)
+            check_damage(case, "2", mesh)
         else:
             with pytest.raises(PostError, match="more"):
-                check_damage(case, "slow", mesh)
+                check_damage(case, "2", mesh)
 
 
 def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, monkeypatch):
@@ -164,7 +164,7 @@ def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, 
         file["x"] = [0.0]
     monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: Outcome(0, "", result=result))
     monkeypatch.setattr(
-        "ehlpetsc.study.accuracy.table.figures", lambda path, damage: greatest_damage(path, "slow")
+        "ehlpetsc.study.accuracy.table.figures", lambda path, damage: greatest_damage(path, "2")
     )
     command = [str(table_1), "--set", "time.travel=9.0", "--damage", "-o", str(tmp_path / "table")]
     assert study(command) == ExitStatus.BAD_INPUT

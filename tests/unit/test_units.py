@@ -47,20 +47,20 @@ def test_a_case_with_units_is_the_same_case_in_si(tmp_path):
         "fluid.viscosity": "5 mPa s",
         "fluid.pressure_viscosity": "11.1 1/GPa",
         "motion.entrainment_speed": "5 m/s",
-        "surface.fast.synthetic": {"kind": "ridge", "amplitude": "0.2 um", "wavelength": "0.1 mm"},
+        "surface.1.synthetic": {"kind": "ridge", "amplitude": "0.2 um", "wavelength": "0.1 mm"},
         "time.travel": 4.0,
     }
     plain = {
         "contact.radius": 0.0191,
         "contact.load": 527e3,
         "fluid.viscosity": 0.005,
-        "surface.fast.synthetic": {"kind": "ridge", "amplitude": 2e-7, "wavelength": 1e-4},
+        "surface.1.synthetic": {"kind": "ridge", "amplitude": 2e-7, "wavelength": 1e-4},
         "time.travel": 4.0,
     }
     one, other = load(SMOOTH, overrides), load(SMOOTH, plain)
     assert one.dict() == other.dict()
     table = tomllib.loads(one.text)  # what results hold and their readers take
-    assert table["contact"]["load"] == 527e3 and table["surface"]["fast"]["synthetic"]["amplitude"] == 2e-7
+    assert table["contact"]["load"] == 527e3 and table["surface"]["1"]["synthetic"]["amplitude"] == 2e-7
     path = tmp_path / "c.toml"
     path.write_text(SMOOTH.read_text().replace("load = 527e3 ", 'load = "527 N/mm" ', 1))
     case = load(path)

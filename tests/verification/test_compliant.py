@@ -142,14 +142,14 @@ def test_rough_solids_under_the_layer_yield():
 
 
 def test_the_measured_height_is_what_the_short_cutoff_removes():
-    alone = {"surface.fast.short_cutoff": 8e-6, "surface.slow": None}
-    given = case(alone | {"surface.fast.scale": 0.5}, "measured")
-    spec = given.surface.fast
+    alone = {"surface.1.short_cutoff": 8e-6, "surface.2": None}
+    given = case(alone | {"surface.1.scale": 0.5}, "measured")
+    spec = given.surface.body_1
     before = samples(CASES, spec.copy(update={"short_cutoff": None})).z
     expected = np.sqrt(np.mean((before - samples(CASES, spec).z - before.mean()) ** 2))
     assert given.contact.asperity_height == pytest.approx(expected, rel=1e-3)
-    both = case({"surface.fast.short_cutoff": 8e-6, "surface.slow.short_cutoff": 8e-6}, "measured")
+    both = case({"surface.1.short_cutoff": 8e-6, "surface.2.short_cutoff": 8e-6}, "measured")
     ratio = both.contact.asperity_height / case(alone, "measured").contact.asperity_height
     assert ratio == pytest.approx(np.sqrt(2.0), rel=1e-4)
     with pytest.raises(CaseError, match="short_cutoff"):
-        case({"surface.fast.short_cutoff": None, "surface.slow.short_cutoff": None}, "measured")
+        case({"surface.1.short_cutoff": None, "surface.2.short_cutoff": None}, "measured")

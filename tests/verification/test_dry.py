@@ -61,7 +61,7 @@ def parabola_and_quartic(points, width, folder):
         mesh(points),
         "mesh.inlet=-1.52",
         "mesh.outlet=1.52",
-        f"surface.slow.file='{folder}/quartic.csv'",
+        f"surface.2.file='{folder}/quartic.csv'",
     ).start(MAX_IT)
     x = scene.x * s.a
     exact = exact_solutions.quartic_pressure(x, contact, s.R, s.E, quartic)
@@ -101,7 +101,7 @@ class Wave:
     def __init__(self, nodes, amplitude):
         s = Scene("dry_hertz.toml").scales
         length = s.a / WAVES
-        wave = f"surface.slow.synthetic={{kind='sine', amplitude={amplitude}, wavelength={length}}}"
+        wave = f"surface.2.synthetic={{kind='sine', amplitude={amplitude}, wavelength={length}}}"
         scene = Scene("dry_hertz.toml", mesh(nodes * WAVES), *DOMAIN, wave).start(MAX_IT)
         assert (scene.state.h >= 0.0).all()
         central = slice(scene.centre - nodes // 2, scene.centre + nodes // 2)

@@ -25,7 +25,7 @@ def solved(name, *keys):
 
 def friction_of_both(simulation, state):
     """Mean of both walls' friction over the load."""
-    shear = 0.5 * (state.shear_stress_slow - state.shear_stress_fast)
+    shear = 0.5 * (state.shear_stress_2 - state.shear_stress_1)
     return shear.sum() * simulation.scales.dx / state.load
 
 

@@ -136,7 +136,7 @@ def test_oil_in_less_oil_out_is_what_is_stored(rough):
 
 
 RIDGES = """
-[surface.slow]
+[surface.2]
 file = "ridges.csv"
 [time]
 travel = 2.0
@@ -161,7 +161,7 @@ def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
     z = 1e-6 * sum(np.exp(-(((x - place) / 15e-6) ** 6)) for place in (first, first + apart))
     np.savetxt(tmp_path / "ridges.csv", np.column_stack([x, z]), delimiter=",")
     text = (CASES / "table1_mixed.toml").read_text()
-    (tmp_path / "case.toml").write_text(text[: text.index("[surface.fast]")] + RIDGES)
+    (tmp_path / "case.toml").write_text(text[: text.index("[surface.1]")] + RIDGES)
     simulation = Simulation(load(tmp_path / "case.toml", POCKET), options={"snes_atol": "1e-9"})
     case, scales = simulation.case, simulation.scales
     front = round((first + apart) / scales.dx)  # nodes that the second ridge is behind

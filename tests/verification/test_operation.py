@@ -32,7 +32,7 @@ def scaled(simulation, name, solution):
 def test_constant_conditions_in_a_table_are_the_plain_case(name):
     plain = COARSE | {"time.travel": 0.4, "time.courant": 0.5}
     if name == "table1_smooth.toml":
-        plain["surface.slow.synthetic"] = {"kind": "sine", "amplitude": 5e-8, "wavelength": 1e-4}
+        plain["surface.2.synthetic"] = {"kind": "sine", "amplitude": 5e-8, "wavelength": 1e-4}
     simulation, expected = states(name, plain)
     s = simulation.scales
     table = {
@@ -61,7 +61,7 @@ FZG = {
     "tip_relief": 20e-6,
 }
 WAVE = {"synthetic": {"kind": "sine", "amplitude": 1e-7, "wavelength": 3e-4}}
-BOTH_WAVY = {"surface.fast": WAVE, "surface.slow": WAVE, "time": None}
+BOTH_WAVY = {"surface.1": WAVE, "surface.2": WAVE, "time": None}
 
 
 def test_the_profile_of_a_flank_is_met_by_its_arc_length_from_the_first_contact():
@@ -89,7 +89,7 @@ def test_a_body_that_reverses_shows_the_same_points_on_its_way_back():
     sides = {"mesh.inlet": -2.0, "mesh.outlet": 2.0, "mesh.points_per_half_width": 50}
     simulation = Simulation(load(CASES / "table1_mixed.toml", table | sides | BOTH_WAVY))
     x, moved = simulation.scales.x * simulation.scales.a, simulation.operation.travelled
-    fast, slow = simulation.roughness.fast, simulation.roughness.slow
+    fast, slow = simulation.roughness.surface_1, simulation.roughness.surface_2
     assert not fast.enters and slow.enters
     there, back = moved(0.4e-4)[0], moved(1.6e-4)[0]
     assert there == pytest.approx(back, rel=1e-9)

@@ -29,7 +29,7 @@ SCENE = (
     "motion.entrainment_speed=25",
     "mesh.inlet=-1.75",
     "mesh.outlet=1.5",
-    "surface.slow.synthetic={kind='ridge', amplitude=0.1e-6, wavelength=133e-6, position=133e-6}",
+    "surface.2.synthetic={kind='ridge', amplitude=0.1e-6, wavelength=133e-6, position=133e-6}",
 )
 
 

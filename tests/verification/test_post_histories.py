@@ -19,7 +19,7 @@ WAVE = 10  # nodes
 
 
 class Ripples(Scene):
-    """Hertz times 1 + half a ripple of ten nodes that the fast surface carries."""
+    """Hertz times 1 + half a ripple of ten nodes that surface 1 carries."""
 
     def load(self, x, k):
         phase = 2 * np.pi * (x - self.u1 * self.time[k]) / (WAVE * self.dx)
@@ -74,7 +74,7 @@ def test_damage_on_ripples_of_ten_nodes_within_a_fifth_of_a_percent(scene, loads
         frames = np.flatnonzero((place >= scene.x[0]) & (place <= scene.x[-1]))
         assert frames[0] > 0 and frames[-1] < scene.time.size - 1
         exact = damage(*reference(scene, s, frames), Material()).damage
-        ours = [damage(*history_at(loads, "slow", s, z * A)[1], Material()).damage for z in DEPTHS]
+        ours = [damage(*history_at(loads, "2", s, z * A)[1], Material()).damage for z in DEPTHS]
         assert ours == pytest.approx(exact, rel=0.002)
         losses.append(1 - damage(*linear(scene, s, frames), Material()).damage / exact)
     assert np.mean(losses) > 0.2  # what linear interpolation would lose
@@ -87,7 +87,7 @@ def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
     run(Job(str(loads.path), str(output)))
     result = PostResult(output)
     differences = []
-    for surface in ("slow", "fast"):
+    for surface in ("2", "1"):
         points = np.flatnonzero(result.complete[surface])
         for j in points[[0, points.size // 3, -1]]:
             for k, z in enumerate(DEPTHS):
@@ -99,8 +99,8 @@ def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
 
 
 def test_signs_of_the_two_bodies(loads):
-    """Traction +0.05 p on the slow solid, -0.05 p on the fast one: at the surface txz = -q."""
-    for surface, sign in (("slow", -1), ("fast", 1)):
+    """Traction +0.05 p on surface 2, -0.05 p on the fast one: at the surface txz = -q."""
+    for surface, sign in (("2", -1), ("1", 1)):
         s = loads.x[0] - 30 * loads.dx
         _, values = history_at(loads, surface, s, 0.0)
         assert values[2] == pytest.approx(-sign * 0.05 * values[1], abs=1e-6 * P0)
@@ -137,9 +137,9 @@ def test_skipped_frames_lose_damage(tmp_path):
     found = []
     for every in (1, 2, 4, 8):
         path = write(tmp_path / f"{every}.h5", scene, every=every, depths=(0.0, 0.02))
-        run(Job(str(path), str(tmp_path / "out.h5"), surfaces=("slow",)))
+        run(Job(str(path), str(tmp_path / "out.h5"), surfaces=("2",)))
         result = PostResult(tmp_path / "out.h5")
-        found.append(result.damage["slow"][:, result.complete["slow"]].mean())
+        found.append(result.damage["2"][:, result.complete["2"]].mean())
     kept = np.array(found) / found[0]
     assert kept[1] < 0.99 and kept[2] < 0.95 and kept[3] < 0.85
     assert (np.diff(kept) < 0).all()
@@ -174,11 +174,7 @@ def test_counting_choices_reach_the_result(loads, tmp_path):
         "morrow": Counting(mean_stress="morrow"),
         "window": Counting(ranges="window"),
     }.items():
-        run(
-            Job(
-                str(loads.path), str(tmp_path / "o.h5"), surfaces=("slow",), depths=(0.05,), counting=counting
-            )
-        )
-        values[name] = np.nanmax(PostResult(tmp_path / "o.h5").damage["slow"])
+        run(Job(str(loads.path), str(tmp_path / "o.h5"), surfaces=("2",), depths=(0.05,), counting=counting))
+        values[name] = np.nanmax(PostResult(tmp_path / "o.h5").damage["2"])
     assert values["sz"] <= values["max3"] <= values["window"]
     assert values["morrow"] < values["max3"]

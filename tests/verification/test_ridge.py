@@ -27,7 +27,7 @@ from ehlpetsc.physics.published_values import RIDGE
 def test_ridge_in_the_centre_of_the_contact():
     scene = Scene("ridge.toml", "mesh.points_per_half_width=150", "time.courant=0.75").start()
     s = scene.scales
-    position = load(CASES / "ridge.toml").surface.slow.synthetic.position
+    position = load(CASES / "ridge.toml").surface.body_2.synthetic.position
     arrival = (position - s.x[0] * s.a) / s.u2
     count = round(arrival / s.dt)
     for _ in scene.steps(count, arrival / count):

@@ -18,7 +18,7 @@ SCENES = {
     "direct": ("table1_rough.toml", SHORT | {"fluid.viscosity": 0.001}),
     "slow direct": ("table1_rough.toml", SHORT | {"motion.entrainment_speed": 0.03, "time.travel": 0.7}),
     "mixed": ("table1_mixed.toml", SHORT | {"fluid.viscosity": 0.001}),
-    "film": ("ridge.toml", SHORT | {"surface.slow.synthetic.position": 0.0}),
+    "film": ("ridge.toml", SHORT | {"surface.2.synthetic.position": 0.0}),
     "dry": ("dry_hertz.toml", {}),
 }
 
@@ -161,16 +161,16 @@ def test_oil_balance_of_every_step(run):
 def test_friction_and_films(run):
     case, result, of = run
     dx, steps = spacing(result), result.steps
-    friction = dx * result.shear_stress_slow.sum(axis=1)
+    friction = dx * result.shear_stress_2.sum(axis=1)
     np.testing.assert_allclose(steps.friction, friction, rtol=1e-9, atol=1e-9)
-    other = dx * result.shear_stress_fast.sum(axis=1)
+    other = dx * result.shear_stress_1.sum(axis=1)
     np.testing.assert_allclose(steps.friction_1, other, rtol=1e-9, atol=1e-9)
     coefficient = 0.5 * (friction - other) / steps.load
     np.testing.assert_allclose(steps.friction_coefficient, coefficient, rtol=1e-9, atol=1e-15)
     middle = np.abs(result.x) <= 0.5 * of.a * (1.0 + 1e-9)
     film = result.film_thickness[:, middle].mean(axis=1)
     np.testing.assert_allclose(steps.film_central, film, rtol=1e-6, atol=1e-12)
-    heights = [result.profile(side) for side in ("fast", "slow")]
+    heights = [result.profile(side) for side in ("1", "2")]
     if not any(heights):
         assert np.isnan(steps.lambda_ratio).all() and np.isnan(steps.mean_gap_ratio).all()
 

@@ -33,7 +33,7 @@ def amplitude_left(ratio, points, nodes, half_periods):
     smooth = Scene("waviness.toml", *mesh).start()
     amplitude = 0.1 * smooth.film[smooth.centre]
     s = smooth.scales
-    wave = f"surface.fast.synthetic={{kind='sine', amplitude={amplitude}, wavelength={ratio * s.a}}}"
+    wave = f"surface.1.synthetic={{kind='sine', amplitude={amplitude}, wavelength={ratio * s.a}}}"
     scene = Scene("waviness.toml", *mesh, wave).start()
     period = round(ratio * points / nodes)
     count = round(2.0 * points / nodes) + half_periods * period // 2

@@ -21,7 +21,7 @@ def worn(*keys, after=None):
 
 @pytest.mark.parametrize("scale", [0.5, 1.0])
 def test_worn_volume_is_the_integral_of_the_solids_pressure_times_sliding(scale):
-    keys = [f"surface.{side}.scale={scale}" for side in ("fast", "slow")]
+    keys = [f"surface.{side}.scale={scale}" for side in ("1", "2")]
     simulation, states = worn(f"wear.coefficient=[{K}, {3 * K}]", *keys)
     sliding, dx = simulation.scales.u1 - simulation.scales.u2, simulation.scales.dx
     work = sum(state.contact_pressure.sum() * dx * sliding * state.dt for state in states[1:])

@@ -15,7 +15,7 @@ RIDGE = (
     MIXED,
     "mesh.inlet=-1.5",
     "mesh.points_per_half_width=60",
-    "surface.slow.scale=6",
+    "surface.2.scale=6",
     "fluid.viscosity=0.002",
     "time.travel=3.5",
     "time.courant=1.2",

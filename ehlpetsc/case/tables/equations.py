@@ -3,7 +3,7 @@
 SYMBOLS = """
 Of the equations: a is the half width and p0 the largest pressure by Hertz's formulas, E' the reduced modulus,
 h the film, p the pressure, p_c that of the solids, q the shear stress, theta the void fraction, eta and rho
-viscosity and density, eta0 and rho0 at ambient pressure, u1 and u2 the speeds of the surfaces fast and slow,
+viscosity and density, eta0 and rho0 at ambient pressure, u1 and u2 the speeds of surfaces 1 and 2,
 u_max the larger one, X the abscissa and z the height of a profile; of fatigue N are the cycles to failure, de
 and ds the ranges of strain and stress, D the damage.
 """

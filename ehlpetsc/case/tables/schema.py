@@ -11,10 +11,11 @@ from ehlpetsc.case.tables.table import Needs, Table
 from ehlpetsc.case.tables.validation import Field, confloat, constr, root_validator, validator
 from ehlpetsc.materials import STEELS
 from ehlpetsc.quantities import FIELDS, STORED
+from ehlpetsc.sides import current_name
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
 ASPERITIES = {"asperity_stiffness": 1.0, "asperity_slope": 0.1}  # of ground and superfinished steel
-DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_]+)+$"  # a key below a table
+DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_0-9]+)+$"  # a key below a table
 MAX_MEMBERS = 10_000  # of a series
 MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
 
@@ -47,12 +48,12 @@ class Contact(Table):
         ...,
         unit="Pa",
         one_for_both=True,
-        description="of both solids, or of surface fast and slow; with material left out",
+        description="of both solids, or of surfaces 1 and 2; with material left out",
     )
     poisson_ratio: tuple[Ratio, Ratio] = Field(
         ...,
         one_for_both=True,
-        description="of both solids, or of surface fast and slow; with material left out",
+        description="of both solids, or of surfaces 1 and 2; with material left out",
     )
     boundary_friction: float = Field(
         0.0, ge=0, le=2, description="boundary friction coefficient: shear stress over pressure of the solids"
@@ -92,7 +93,7 @@ class Contact(Table):
         None,
         unit="Pa",
         one_for_both=True,
-        description="mixed contact: pressure at which solids yield, of both or of surface fast and slow, or "
+        description="mixed contact: pressure at which solids yield, of both or of surfaces 1 and 2, or "
         '"material": that of contact.material; left out: elastic',
     )
 
@@ -268,7 +269,7 @@ class Time(Table):
         ge=-1,
         le=1,
         unit="m",
-        description="by which the slow surface's profile enters further on, from pass to pass",
+        description="by which surface 2's profile enters further on, from pass to pass",
     )
 
 
@@ -294,6 +295,12 @@ class Output(Table):
         2.0, ge=1, le=1000, unit="boundary films", description="mixed contact: films below it count as thin"
     )
     checkpoint: float = Field(10.0, gt=0, le=1e5, unit="minutes", description="between restart files")
+
+    @validator("fields", pre=True)
+    def _former_names(cls, names):
+        if not isinstance(names, list):
+            return names
+        return [current_name(name) if isinstance(name, str) else name for name in names]
 
 
 class Series(Table):

@@ -4,6 +4,7 @@ from typing import Literal
 
 from ehlpetsc.case.tables.table import Table
 from ehlpetsc.case.tables.validation import Field, confloat, conint, root_validator, validator
+from ehlpetsc.sides import FORMER
 
 Height = confloat(ge=1e-12, le=1e-2)
 Length = confloat(ge=1e-9, le=1.0)
@@ -44,7 +45,7 @@ SYNTHETIC = {"ground": Ground, "sine": Wave, "square": Wave, "ridge": Bump, "den
 
 
 class SurfaceProfile(Table):
-    """`[surface.fast]`, `[surface.slow]`: a measured or a synthetic profile."""
+    """`[surface.1]`, `[surface.2]`: a measured or a synthetic profile."""
 
     file: str | None = Field(None, min_length=1, description="profile file, beside the case file")
     unit: Literal[UNITS] | None = Field(None, description="of the heights in the file; left out: m")
@@ -111,8 +112,34 @@ class SurfaceProfile(Table):
         return values
 
 
+def with_current_sides(surface):
+    """The table `[surface]` with the names 1 and 2 for fast and slow.
+
+    Raises
+    ------
+    ValueError
+        One surface stands there under both names.
+    """
+    for former, side in FORMER.items():
+        if former in surface and side in surface:
+            raise ValueError(f"{former} and {side} are the same surface; allowed: one of them")
+    return {FORMER.get(name, name): spec for name, spec in surface.items()}
+
+
 class Surface(Table):
     """`[surface]`: a side left out is smooth."""
 
-    fast: SurfaceProfile | None = Field(None, description="profile of the surface moving at u (1 + xi/2)")
-    slow: SurfaceProfile | None = Field(None, description="profile of the surface moving at u (1 - xi/2)")
+    body_1: SurfaceProfile | None = Field(
+        None, alias="1", description="profile of the surface moving at u (1 + xi/2)"
+    )
+    body_2: SurfaceProfile | None = Field(
+        None, alias="2", description="profile of the surface moving at u (1 - xi/2)"
+    )
+
+    @root_validator(pre=True)
+    def _former_names(cls, values):
+        return with_current_sides(values)
+
+    def side(self, name):
+        """Profile of surface "1" or "2"; None: smooth."""
+        return {"1": self.body_1, "2": self.body_2}[name]

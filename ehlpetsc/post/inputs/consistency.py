@@ -17,7 +17,7 @@ def check_scales(loads):
     if not loads.has_conditions:
         return
     scales, faults = loads.scales, []
-    found = {"a": loads.a, "p0": loads.p0, "u1": loads.speeds["fast"], "u2": loads.speeds["slow"]}
+    found = {"a": loads.a, "p0": loads.p0, "u1": loads.speeds["1"], "u2": loads.speeds["2"]}
     for name, unit, size in (
         ("a", "m", scales.a),
         ("p0", "Pa", scales.p0),
@@ -71,9 +71,9 @@ class Balance:
         self._of_step(first, high, "p_max", "pressure", "its greatest value", p0)
 
     def check_slow_shear(self, first, total):
-        """Sums of the shear stresses on the slow solid of frames from `first` on."""
+        """Sums of the shear stresses on surface 2 of frames from `first` on."""
         force, small = total * self.loads.dx, 1e-3 * self.load[0]
-        self._of_step(first, force, "friction", "shear_stress_slow", "its integral over x", small)
+        self._of_step(first, force, "friction", "shear_stress_2", "its integral over x", small)
 
     def check_shear_size(self, name, first, size):
         """Greatest magnitudes of a shear stress against the Hertz pressure."""

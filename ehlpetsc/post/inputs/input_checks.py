@@ -46,7 +46,7 @@ def _check_rows(balance, name, first, rows, total):
         balance.check_pressure(first, total, low, high)
         return
     balance.check_shear_size(name, first, np.maximum(-low, high))
-    if name == "shear_stress_slow":
+    if name == "shear_stress_2":
         balance.check_slow_shear(first, total)
 
 

@@ -73,7 +73,7 @@ class Loads:
             self.case = stored_case(attrs["case"], overrides)
             self.title, self.status = attrs.get("title", ""), attrs.get("status", "unknown")
             self.a, self.p0 = float(attrs["a"]), float(attrs["p0"])
-            self.speeds = {"fast": float(attrs["u1"]), "slow": float(attrs["u2"])}
+            self.speeds = {"1": float(attrs["u1"]), "2": float(attrs["u2"])}
             self._read_mesh()
             found = {surface: self._profile(surface) for surface in SURFACES}
             self.profiles = {surface: one and one[:2] for surface, one in found.items()}
@@ -109,7 +109,7 @@ class Loads:
             one, other = np.array([operation.travelled(t) for t in self.time]).reshape(-1, 2).T
             self.load = np.array([operation.at(t).load for t in self.time])
             self.dt = self.scales.dt
-        self.travelled = {"fast": one, "slow": other}
+        self.travelled = {"1": one, "2": other}
 
     def _profile(self, surface):
         """(s, z, speed) sorted by s; None of a smooth surface."""

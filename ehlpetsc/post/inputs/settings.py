@@ -16,10 +16,14 @@ class Settings(NamedTuple):
     """Depths z/a, one material a surface, constants of the criteria, residual stress (z/a, Pa)."""
 
     depths: tuple
-    fast: Material
-    slow: Material
+    material_1: Material
+    material_2: Material
     criteria: Criteria = Criteria()
     residual_stress: tuple = ()
+
+    def material(self, surface):
+        """Material of surface "1" or "2"."""
+        return {"1": self.material_1, "2": self.material_2}[surface]
 
     def residual(self, depth):
         """Residual stress along the surface at a depth z/a, Pa: straight lines, constant beyond its ends."""

@@ -11,7 +11,7 @@ from ehlpetsc.post.fatigue.weibull import LEVEL, weibull_bounds, weibull_likelih
 class Contents:
     """Gathers datasets, root attributes and group attributes for `write_result`.
 
-    One surface stands under the fixed names: the slow one, whose asperities meet more others, if it is rough
+    One surface stands under the fixed names: surface 2, whose asperities meet more others, if it is rough
     and passed.
 
     Parameters
@@ -76,7 +76,7 @@ class Contents:
         for depth, count in zip(prepared.settings.depths, beyond, strict=True):
             if count:
                 self.notes.append(
-                    f"note: {count} of {peaks.s.size} asperities of the {surface} surface have damage of 1 "
+                    f"note: {count} of {peaks.s.size} asperities of surface {surface} have damage of 1 "
                     f"or more at z/a = {depth:g}: failure in the first pass"
                 )
 
@@ -95,7 +95,7 @@ class Contents:
     def attributes(self, identity, counting, settings=()):
         """Root attributes: where the result comes from and how it was computed."""
         loads = self.prepared.loads
-        mean = (loads.speeds["fast"] + loads.speeds["slow"]) / 2
+        mean = (loads.speeds["1"] + loads.speeds["2"]) / 2
         return {
             "title": loads.title,
             "case": loads.case_text,
@@ -107,7 +107,7 @@ class Contents:
             "inlet": loads.x[0],
             "outlet": loads.x[-1],
             "p0": loads.p0,
-            "slide_roll_ratio": (loads.speeds["fast"] - loads.speeds["slow"]) / mean if mean else 0.0,
+            "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
             "regression": self.regression,
             "every": self.prepared.every,
             "within": self.within,

@@ -38,7 +38,7 @@ def same_points(results, surface):
     ]
     places = np.array(sorted(set.intersection(*passed)), int)
     if not places.size:
-        raise PostError(f"no point of the {surface} surface passed the whole contact in all of the results")
+        raise PostError(f"no point of surface {surface} passed the whole contact in all of the results")
     rows = [r.damage[surface][:, places - start] for start, r in zip(firsts, results, strict=True)]
     return first.s[0] + spacing * places, np.stack(rows)
 
@@ -46,7 +46,7 @@ def same_points(results, surface):
 def _shift_of_profile(first, other, surface):
     """Distance in s (m) by which the profile of another pass is shifted; PostError if it is another one."""
     if (surface in first.profiles) != (surface in other.profiles):
-        raise PostError(f"the {surface} surface is smooth in one result and rough in another")
+        raise PostError(f"surface {surface} is smooth in one result and rough in another")
     if surface not in first.profiles:
         return 0.0
     time = stored_case(first.attrs["case"]).time
@@ -55,7 +55,7 @@ def _shift_of_profile(first, other, surface):
     for shift in (count * step for count in counts):
         if _is_same_profile(first.profiles[surface], other.profiles[surface], shift):
             return shift
-    raise PostError(f"the profiles of the {surface} surface differ: these are not passes of one body")
+    raise PostError(f"the profiles of surface {surface} differ: these are not passes of one body")
 
 
 def _is_same_profile(one, other, shift):
@@ -75,7 +75,7 @@ def store_passes(path, results, surface):
     path : path-like
     results : sequence of PostResult
         Of passes of one body.
-    surface : {"slow", "fast"}
+    surface : {"2", "1"}
         Of it.
 
     Returns

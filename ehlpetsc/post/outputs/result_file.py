@@ -17,18 +17,18 @@ FORMAT_VERSION = 1
 DESCRIPTIONS = {
     "damage/s": ("m", "body coordinate, x = s + speed * time"),
     "damage/z_over_a": ("1", "depth over half width"),
-    "damage/slow": (
+    "damage/2": (
         "1",
-        "fatigue damage of one pass, slow surface; nan where a point did not pass the whole contact",
+        "fatigue damage of one pass, surface 2; nan where a point did not pass the whole contact",
     ),
-    "damage/fast": (
+    "damage/1": (
         "1",
-        "fatigue damage of one pass, fast surface; nan where a point did not pass the whole contact",
+        "fatigue damage of one pass, surface 1; nan where a point did not pass the whole contact",
     ),
-    "damage/slow_complete": ("1", "1 where a point of the slow surface entered and left the domain"),
-    "damage/fast_complete": ("1", "1 where a point of the fast surface entered and left the domain"),
-    "damage/slow_missed": ("1", "frames missing while a point of the slow surface was among the nodes"),
-    "damage/fast_missed": ("1", "frames missing while a point of the fast surface was among the nodes"),
+    "damage/2_complete": ("1", "1 where a point of surface 2 entered and left the domain"),
+    "damage/1_complete": ("1", "1 where a point of surface 1 entered and left the domain"),
+    "damage/2_missed": ("1", "frames missing while a point of surface 2 was among the nodes"),
+    "damage/1_missed": ("1", "frames missing while a point of surface 1 was among the nodes"),
     "damage/mean": ("1", "fatigue damage of a pass, mean of the passes"),
     "damage/deviation": ("1", "standard deviation of the damage of a pass, with n - 1"),
     "damage/largest": ("1", "largest damage of a pass"),
@@ -95,7 +95,7 @@ def write_result(path, datasets, attrs, group_attrs):
     ----------
     path : path-like
     datasets : dict
-        Name to array; names of a second surface have it before the last part, as in ``weibull/fast/alpha``.
+        Name to array; names of a second surface have it before the last part, as in ``weibull/1/alpha``.
     attrs, group_attrs : dict
         Root attributes; attributes by group name.
 

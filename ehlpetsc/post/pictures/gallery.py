@@ -56,7 +56,7 @@ def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
         s/a and z/a of the history picture.
     frame : int, optional
         Stored frame of the stress picture.
-    passes : {"slow", "fast"}, optional
+    passes : {"2", "1"}, optional
         The results are passes of this surface: statistics over them instead of a comparison.
     """
     names = []
@@ -90,7 +90,7 @@ def _of_one(path, result, stem, point, frame):
 
 def _compared(results, folder):
     names = []
-    for surface in ("slow", "fast"):
+    for surface in ("2", "1"):
         if all(surface in result.surfaces and result.complete[surface].any() for result in results):
             names += _save(stacked_picture(results, surface), folder / f"compared.damage_{surface}")
     if all(result.height.size for result in results) and len({result.main for result in results}) == 1:
@@ -152,7 +152,7 @@ def _aligned(result, surface, results):
     first = max(r.s[r.complete[surface]][0] for r in results)
     last = min(r.s[r.complete[surface]][-1] for r in results)
     if last <= first:
-        raise PostError(f"no point of the {surface} surface passed the whole contact in all of the results")
+        raise PostError(f"no point of surface {surface} passed the whole contact in all of the results")
     last_shown = last + 0.5 * (result.s[1] - result.s[0])
     first_shown = max(first, last - SECTION * result.a) - 0.5 * (result.s[1] - result.s[0])
     result.complete[surface] &= (result.s >= first_shown) & (result.s <= last_shown)
@@ -167,7 +167,7 @@ def field_picture(path, result, frame):
         if not 0 <= frame < loads.time.size:
             raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
         p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = getattr(read_settings(loads.case), surface).poisson_ratio
+        nu = read_settings(loads.case).material(surface).poisson_ratio
         z = FIELD_DEPTH * np.linspace(0, 1, 121) ** 2
         fields = plots.stress_fields(*stress(loads.x, z * loads.a, p, q, nu), nu)
         x, time, width = loads.x / loads.a, loads.time[frame], loads.a
@@ -175,7 +175,7 @@ def field_picture(path, result, frame):
     top, *axes = figure.subplots(5, 1, sharex=True, height_ratios=(0.7, 1, 1, 1, 1))
     top.plot(x, p / 1e9, color=plots.DARK, lw=0.9)
     top.set_ylabel("p [GPa]")
-    top.set_title(f"solid of the {surface} surface, t = {time * 1e6:.4g} µs", fontsize=9)
+    top.set_title(f"solid of surface {surface}, t = {time * 1e6:.4g} µs", fontsize=9)
     for row, (name, values) in zip(axes, fields.items(), strict=True):
         mesh = plots.stress_field(row, x, z, values, name)
         if name == plots.VON_MISES:
@@ -193,7 +193,7 @@ def _check_passed(result, surface, s):
     if not all(0 <= j < passed.size and passed[j] for j in around):
         first, last = result.s[passed][[0, -1]] / result.a
         raise PostError(
-            f"--point s/a = {s / result.a:.6g}: not a point of the {surface} surface that passed the whole "
+            f"--point s/a = {s / result.a:.6g}: not a point of surface {surface} that passed the whole "
             f"contact with all its frames stored; s/a = {first:.6g} to {last:.6g} is allowed"
         )
 
@@ -204,7 +204,7 @@ def history_picture(path, result, point):
     s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
     _check_passed(result, surface, s)
     with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
-        material = getattr(read_settings(loads.case), surface)
+        material = read_settings(loads.case).material(surface)
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
     step = time[1] - time[0]
     time = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])

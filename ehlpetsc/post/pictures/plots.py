@@ -32,7 +32,7 @@ def along_body(result, surface, s):
 
 def body_label(surface):
     """Label of an axis of :func:`along_body`."""
-    return f"along the {surface} surface [mm]"
+    return f"along surface {surface} [mm]"
 
 
 def stretch(result, surface, longest=None):

@@ -35,7 +35,7 @@ class Layout:
     precision : {"float64", "float32"}
         Type of the stored fields.
     profiles : dict
-        ``{"fast": (s, z, speed) or None, "slow": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
+        ``{"1": (s, z, speed) or None, "2": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
         fifth one names depths of `ehlpetsc.quantities.OTHERS` to make room for ("set").
     """
 

@@ -97,7 +97,7 @@ def _fault_of_datasets(file):
     if lost:
         return f"damaged: {lost[0]} is missing, or cannot be read"
     room = BEYOND * os.fstat(file.id.get_vfd_handle()).st_size
-    for name in ("x", "contact_count", *(f"surface/{s}/{v}" for s in ("fast", "slow") for v in "sz")):
+    for name in ("x", "contact_count", *(f"surface/{s}/{v}" for s in ("1", "2") for v in "sz")):
         if name in file and not (isinstance(file[name], h5py.Dataset) and (file[name].nbytes or 0) <= room):
             return f"damaged: {name} is no dataset, or has more numbers than the file can hold"
     nodes = file["x"].shape

@@ -95,7 +95,7 @@ def _motion(case, s):
         return ["Motion: none"]
     if case.conditions is not None:
         return _variable(case, s)
-    line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; fast {s.u1:g} m/s, slow {s.u2:g} m/s"
+    line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; surfaces 1, 2 at {s.u1:g}, {s.u2:g} m/s"
     if case.time is None:
         return [line, "Time: steady"]
     return [
@@ -119,8 +119,8 @@ def _variable(case, s):
     return [
         f"Conditions of a {origin}{repeats}: load {of(1e-3 * table.load, 'kN/m')}, "
         f"radius {of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
-        f"Motion: mean {of(table.entrainment, 'm/s')}; fast {of(table.u1, 'm/s')}, "
-        f"slow {of(table.u2, 'm/s')}",
+        f"Motion: mean {of(table.entrainment, 'm/s')}; surface 1 {of(table.u1, 'm/s')}, "
+        f"surface 2 {of(table.u2, 'm/s')}",
         f"Time: {1e3 * operation.duration:.4f} ms, the faster surface moves {moved:.3f} mm; "
         f"{operation.step_count(s.dt)} steps",
     ]

@@ -56,7 +56,7 @@ def _share_under_roughness(case, s, rough):
     """Share of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
-    arrivals = [arrival(profile, s) for profile in (rough.fast, rough.slow) if profile]
+    arrivals = [arrival(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
     reaches = min(found[0] if found else 0.0 for found in arrivals)
     return min(max(1.0 - reaches / case.time.travel, 0.0), 1.0)
 

@@ -20,8 +20,8 @@ def surface_lines(case, s, rough):
     list of str
     """
     lines = []
-    for side in ("fast", "slow"):
-        profile = rough and getattr(rough, side)
+    for side in ("1", "2"):
+        profile = rough and rough.side(side)
         told = _profile(case, s, profile) if profile else ["smooth"]
         lines += [f"Surface {side}: {line}" for line in told]
     return lines
@@ -82,8 +82,8 @@ def _part_in_contact(case, s, profile):
 
 def height_lines(rough, s):
     """Valleys and peaks of the profiles beside those of means over the cells of a mesh."""
-    for side in ("fast", "slow"):
-        profile = rough and getattr(rough, side)
+    for side in ("1", "2"):
+        profile = rough and rough.side(side)
         if profile:
             given = profile.heights.min(), profile.heights.max()
             given, seen = (

@@ -23,7 +23,7 @@ def warnings(case, scales):
     case : case.loading.Case
     scales : scales.Scales
     """
-    rough = [f"surface.{name}" for name in ("fast", "slow") if getattr(case.surface, name)]
+    rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
     notes = []
     if case.contact.yield_pressure and min(case.contact.yield_pressure) < SOFT * scales.p0:
         notes.append(
@@ -90,8 +90,8 @@ def oil_warnings(fluid):
 def tilt_warnings(case, profiles):
     """Profiles whose heights are mostly a straight line: a tilt of the measurement."""
     notes = []
-    for side in ("fast", "slow"):
-        profile, spec = profiles and getattr(profiles, side), getattr(case.surface, side)
+    for side in ("1", "2"):
+        profile, spec = profiles and profiles.side(side), case.surface.side(side)
         if not profile or not profile.given.measured or spec.level:
             continue
         X, z = profile.X, profile.heights

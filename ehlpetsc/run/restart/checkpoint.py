@@ -75,9 +75,9 @@ def save(path, checkpoint, case, scales, model):
         arrays |= {name: np.array([level[name] for level in levels]) for name in levels[0]}
     numbers = {"time": state.time, "dt": state.dt or 0.0, "h00": state.h00}
     numbers |= {"a": scales.a, "p0": scales.p0, "h_scale": scales.h, "u1": scales.u1, "u2": scales.u2}
-    numbers |= dict(zip(("travelled_fast", "travelled_slow"), state.travelled, strict=True))
+    numbers |= dict(zip(("travelled_1", "travelled_2"), state.travelled, strict=True))
     numbers |= dict(zip(("entered_inlet", "entered_outlet"), positions.domain_ends_at_entry, strict=True))
-    numbers |= dict(zip(("begin_fast", "begin_slow"), positions.profile_offsets, strict=True))
+    numbers |= dict(zip(("begin_1", "begin_2"), positions.profile_offsets, strict=True))
     attributes = {name: float(value) for name, value in numbers.items()}
     attributes |= {"retries": int(state.retries), "step": int(state.step), "case": case.text}
     attributes["pass_number"] = checkpoint.pass_number
@@ -122,9 +122,9 @@ def load(path, case, scales, model):
         raise OutputError(f"{path}: damaged restart file: {error}") from None
     rescale(arrays, attributes, scales)
     positions = SurfacePositions(
-        (float(attributes["travelled_fast"]), float(attributes["travelled_slow"])),
+        (float(attributes["travelled_1"]), float(attributes["travelled_2"])),
         (float(attributes["entered_inlet"]), float(attributes["entered_outlet"])),
-        (float(attributes["begin_fast"]), float(attributes["begin_slow"])),
+        (float(attributes["begin_1"]), float(attributes["begin_2"])),
     )
     state = State(
         *_unknowns(model, arrays, ""),
@@ -197,8 +197,8 @@ def _misfit(arrays, attributes, earlier, case, scales):
         return f"a run {one} [fluid] cannot go on {other} it"
     if case.fluid is not None and attributes["dt"] and not {"m", "m_older"} <= arrays.keys():
         return "damaged restart file: its film contents m, m_older are missing"
-    for side, name, speed in (("fast", "u1", scales.u1), ("slow", "u2", scales.u2)):
-        if getattr(case.surface, side) and np.sign(attributes[name]) != np.sign(speed):
+    for side, name, speed in (("1", "u1", scales.u1), ("2", "u2", scales.u2)):
+        if case.surface.side(side) and np.sign(attributes[name]) != np.sign(speed):
             return (
                 f"surface.{side} moved at {attributes[name]:g} m/s, now at {speed:g} m/s: "
                 "a rough surface can neither start, stop nor turn round in mid-run"

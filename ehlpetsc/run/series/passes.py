@@ -159,7 +159,7 @@ def line(row):
     parts = [
         f"pass {row['pass']}: set {1e12 * row['set_volume']:.4g} um^2, added {1e12 * row['added']:.4g} um^2"
     ]
-    for side in ("fast", "slow"):
+    for side in ("1", "2"):
         if row[side]:
             parts.append(f"Ra {side} {1e6 * row[side]['ra']:.4f} um")
     if row.get("contact_share") is not None:

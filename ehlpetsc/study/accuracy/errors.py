@@ -28,7 +28,7 @@ def figures(path, damage=False):
     """Figures of a result file: films at its last frame, extremes and contact of the whole run.
 
     Contact is the length of the contacts times their duration over that of the whole run [m s/s]; damage the
-    greatest on the slow surface, by ``ehlpetsc.post``.
+    greatest on surface 2, by ``ehlpetsc.post``.
     """
     with read_result(path) as result:
         x = np.asarray(result.x) / result.attrs["a"]
@@ -42,7 +42,7 @@ def figures(path, damage=False):
             float(h[np.argmin(np.abs(x))]),
             float(result.steps("p_max").max()),
             float(contact * (x[1] - x[0])),
-            float(np.log10(greatest_damage(path, "slow").max())) if damage else None,
+            float(np.log10(greatest_damage(path, "2").max())) if damage else None,
         )
 
 

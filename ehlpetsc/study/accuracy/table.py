@@ -54,7 +54,7 @@ class Study:
             return self._known[known]
         fields = '["pressure", "film_thickness"]'
         if self.damage:
-            fields = '["pressure", "film_thickness", "shear_stress_fast", "shear_stress_slow"]'
+            fields = '["pressure", "film_thickness", "shear_stress_1", "shear_stress_2"]'
         overrides = [
             *self.overrides,
             *setting.overrides(),
