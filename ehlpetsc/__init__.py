@@ -1,7 +1,7 @@
 """Transient mixed lubrication and contact of rough line contacts on PETSc.
 
 ``load`` a case, ``solve`` it, or iterate over the accepted states of a ``Simulation``; ``read_result`` opens
-a file. They are imported when first asked for.
+a file. ``gears`` computes paths of contact of spur gears. They are imported when first asked for.
 """
 
 import importlib
@@ -23,7 +23,12 @@ _HOMES = {
 }
 
 
+_PACKAGES = ("gears",)
+
+
 def __getattr__(name):
+    if name in _PACKAGES:
+        return importlib.import_module(f"ehlpetsc.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'ehlpetsc' has no attribute {name!r}")
     if _HOMES[name].startswith("ehlpetsc.run."):
@@ -32,7 +37,7 @@ def __getattr__(name):
 
 
 def __dir__():
-    return [*globals(), *_HOMES]
+    return [*globals(), *_HOMES, *_PACKAGES]
 
 
 if sys.argv[0] == "-m":  # a command of this package, about to be imported: what it needs may not be there

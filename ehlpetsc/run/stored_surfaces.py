@@ -22,13 +22,13 @@ def profiles(simulation):
         None for a smooth side without such depths.
     """
     depths = [name for effect in simulation.stepper.effects for name in effect.surface]
-    rough = simulation.roughness
+    rough, speeds = simulation.roughness, (simulation.scales.u1, simulation.scales.u2)
     found = {}
     for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
         profile = rough and rough.side(side)
         if profile:
             figures = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
-            found[side] = profile.s + offset, profile.z, profile.speed, figures, depths
+            found[side] = profile.s + offset, profile.z, speeds[k], figures, depths
         else:
             found[side] = _smooth_side(simulation, k, offset, depths) if depths else None
     return found

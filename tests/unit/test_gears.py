@@ -267,3 +267,10 @@ def test_points_of_a_flank_pass_the_contact_from_its_begin_to_its_end():
     assert (through[0], through[-1]) == pytest.approx((-18.5, -3.0))
     flank = s[passage(s, x, 0.1, moved, (-20.0, 0.0)).complete]
     assert (flank[0], flank[-1]) == pytest.approx((-20.0, 0.0))
+
+
+def test_the_package_offers_it_without_another_import():
+    import ehlpetsc
+
+    assert ehlpetsc.gears.path_of_contact(FZG).contact_ratio == pytest.approx(1.443, abs=5e-4)
+    assert "gears" in dir(ehlpetsc)
