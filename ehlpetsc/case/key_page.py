@@ -64,7 +64,7 @@ def _below(model, above=""):
     for field in model.__fields__.values():
         if _is_table(field):
             name = above + field.alias
-            if not any(_is_table(f) for f in field.type_.__fields__.values()):
+            if _keys(field.type_):
                 yield name, field.type_
             yield from _below(field.type_, name + ".")
 

@@ -15,6 +15,7 @@ from ehlpetsc.case.conditions import (
 )
 from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.measured_layer import resolve_measured_layer
+from ehlpetsc.case.oil_grade import with_grade
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.solids import with_material
@@ -223,7 +224,7 @@ def members(case):
 
 
 def _made(path, data, text, stored=False):
-    data = with_material(data)
+    data = with_grade(with_material(data))
     table, _ = _conditions(path, data, stored)
     case = Case(**with_reference_state(data, table))
     case._text, case._path, case._conditions = text, Path(path), table
@@ -248,7 +249,7 @@ def _faults(path, data):
 
 def _table_faults(path, data, stored=False):
     """The case, or None, and the faults of its tables."""
-    data = with_material(data)
+    data = with_grade(with_material(data))
     table, faults = _conditions(path, data, stored)
     data = with_reference_state(data, table)
     if "motion" not in data and ("fluid" in data or "time" in data):

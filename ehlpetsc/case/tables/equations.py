@@ -19,6 +19,8 @@ EQUATIONS = {
     "Contact.yield_pressure": "p <= p_y, d >= 0, (p_y - p) d = 0, d what a step adds to the permanent set",
     "Fluid.law": "seed: ln(eta/eta0) = ln(eta0/kappa) ((1 + chi p)^Z - 1), Z = alpha/(chi ln(eta0/kappa)); "
     "barus: ln(eta/eta0) = alpha p; roelands: ln(eta/eta0) = (alpha pr/z) ((1 + p/pr)^z - 1)",
+    "Grade.v40": "lg lg(nu + 0.7) = A - B lg T, nu in mm^2/s (ASTM D341); viscosity = nu density; "
+    "alpha = 9.904 nu^0.139 /GPa (Gold et al. 2001)",
     "Fluid.density": "rho/rho0 = (1 + gamma p)/(1 + lambda p)",
     "Fluid.eyring_stress": "du/dz = (tau0/eta) sinh(tau/tau0), tau0 = eyring_stress",
     "Fluid.inlet_film": "h (1 - theta) = inlet_film at the first node",

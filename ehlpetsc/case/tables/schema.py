@@ -150,12 +150,34 @@ class Contact(Table):
         return value
 
 
+class Grade(Table):
+    """`fluid.grade`: an oil as data sheets give it."""
+
+    v40: float = Field(..., gt=2e-6, le=0.1, unit="m^2/s", description="kinematic viscosity at 40 C")
+    v100: float = Field(..., gt=2e-6, le=0.1, unit="m^2/s", description="at 100 C, below v40")
+    density: float = Field(..., ge=500, le=3000, unit="kg/m^3", description="at ambient pressure")
+
+    @validator("v100")
+    def _thinner_when_hot(cls, value, values):
+        if values.get("v40") is not None and value >= values["v40"]:
+            raise ValueError("too large")
+        return value
+
+
 class Fluid(Table):
     """`[fluid]`: viscosity, density and Eyring stress."""
 
-    viscosity: float = Field(..., ge=1e-6, le=1e4, unit="Pa s", description="at ambient pressure")
+    viscosity: float = Field(
+        ..., ge=1e-6, le=1e4, unit="Pa s", description="at ambient pressure; left out: of grade"
+    )
+    grade: Grade | None = Field(None, description="oil as data sheets give it, with a temperature")
+    temperature: float | None = Field(
+        None, ge=200, le=700, unit="K", description="at which grade gives viscosity; left out: that of [heat]"
+    )
     law: Literal["seed", "barus", "roelands"] = Field(..., description="viscosity law")
-    pressure_viscosity: float = Field(..., ge=1e-12, le=1e-6, unit="1/Pa", description="alpha")
+    pressure_viscosity: float = Field(
+        ..., ge=1e-12, le=1e-6, unit="1/Pa", description="alpha; left out: of grade"
+    )
     kappa: float | None = Field(None, ge=1e-9, le=1, unit="Pa s", description="seed law, below viscosity")
     chi: float | None = Field(None, ge=1e-12, le=1e-6, unit="1/Pa", description="seed law")
     roelands_z: float | None = Field(

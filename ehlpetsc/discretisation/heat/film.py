@@ -63,7 +63,7 @@ def heat_nodes(q, at, heat, p0, film):
 
 
 @compiled
-def faces(at, law, oil, flow, couette, pressure_heat, spread, gradient):
+def faces(at, law, oil, most, flow, couette, pressure_heat, spread, gradient):
     r"""Mass flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
 
     Parameters
@@ -73,6 +73,8 @@ def faces(at, law, oil, flow, couette, pressure_heat, spread, gradient):
         Of :func:`.finite_volumes.flux_through`.
     oil : ndarray of bool, shape (nodes,)
         Nodes where the Reynolds equation holds: what flows beside others has no meaning.
+    most : (float, float)
+        Largest pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
     flow, couette : ndarray, shape (nodes + 1,)
         Filled in: mass flow through the faces i-1/2, and that of the surfaces' mean speed, in u a^2/R.
     pressure_heat : ndarray, shape (nodes,)
@@ -99,7 +101,9 @@ def faces(at, law, oil, flow, couette, pressure_heat, spread, gradient):
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
         known = oil[i] and oil[min(i + 1, nodes - 1)]
-        heat = 0.25 * (left[0] + right[0]) * slope * slope if known else 0.0
+        pressed = 0.5 * (left[0] + right[0]) * abs(slope) if known else 0.0
+        pressed = min(pressed, max(most[0] * 0.5 * (at[H, i] + at[H, i + 1]), most[1]))
+        heat = 0.5 * pressed * abs(slope)
         pressure_heat[i] += heat
         if i < nodes - 1:
             pressure_heat[i + 1] += heat

@@ -15,6 +15,7 @@ from ehlpetsc.physics.heat_laws import film_law
 
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
+MOST_FLOW = 2.0  # times that of the mean speed: pressure flow beside direct contact
 MIN_RESPONSE = 0.01  # of the largest one
 
 
@@ -147,10 +148,27 @@ class HeatStep:
         flow, couette = np.zeros(n + 1), np.zeros(n + 1)
         pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
         at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs)
-        faces(at, self.reynolds.face_law(inputs), oil, flow, couette, pressure_heat, spread, gradient)
+        faces(
+            at,
+            self.reynolds.face_law(inputs),
+            oil,
+            self._most(h, oil, inputs),
+            flow,
+            couette,
+            pressure_heat,
+            spread,
+            gradient,
+        )
         if backward:
             return -couette[::-1], -flow[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
         return couette, flow, pressure_heat, spread, gradient
+
+    def _most(self, h, oil, inputs):
+        """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
+        if oil.all():
+            return np.inf, np.inf
+        speed, contact = MOST_FLOW * abs(inputs.conditions.entrainment), np.abs(self.scales.x) <= 1.0
+        return speed, speed * h[contact].mean() * self.scales.h
 
     def _compression(self, record, film, gradient, step):
         r"""Heat of compression :math:`\beta_vTh(\partial_t+u\partial_x)p` [W/m^2]."""

@@ -1,0 +1,47 @@
+"""Keys of `[fluid]` that follow from the grade of an oil, as data sheets give it."""
+
+from ehlpetsc.case.tables.table import is_of
+from ehlpetsc.physics.thermal_viscosity import gold_pressure_viscosity, walther, walther_constants
+
+MM2 = 1e6  # mm^2/s in m^2/s
+
+
+def with_grade(tables):
+    """Tables of a case with the viscosity of its oil grade, where the case gives none.
+
+    Walther's equation (ASTM D341) at `fluid.temperature`, else at the reference temperature of `[heat]`,
+    times the density; `pressure_viscosity` by Gold et al. (2001). Tables without a grade or a temperature,
+    or with faults that the schema names, stay as they are.
+
+    Parameters
+    ----------
+    tables : dict
+
+    Returns
+    -------
+    dict
+    """
+    fluid, heat = tables.get("fluid"), tables.get("heat", {})
+    grade = fluid.get("grade") if isinstance(fluid, dict) else None
+    if not isinstance(grade, dict) or not isinstance(heat, dict):
+        return tables
+    v40, v100, density = (grade.get(key) for key in ("v40", "v100", "density"))
+    temperature = _temperature(fluid, heat)
+    if not all(is_of(float, one) and one > 0.0 for one in (v40, v100, density, temperature)):
+        return tables
+    if not (2e-6 < v100 < v40 < 1.0 and 200.0 < temperature < 700.0):
+        return tables
+    nu = float(walther(temperature, *walther_constants(v40, v100))[0])
+    found = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}
+    tables = tables | {"fluid": found | fluid}
+    return tables | {"heat": {"oil_density": density} | heat} if heat else tables
+
+
+def _temperature(fluid, heat):
+    """Temperature at which `viscosity` holds [K], None if there is none."""
+    bulk = heat.get("bulk_temperature")
+    if isinstance(bulk, (list, tuple)):
+        numbers = len(bulk) == 2 and all(is_of(float, one) for one in bulk)
+        bulk = 0.5 * sum(bulk) if numbers else None
+    given = heat.get("reference_temperature"), fluid.get("temperature"), heat.get("inlet_temperature"), bulk
+    return next((one for one in given if one is not None), None)

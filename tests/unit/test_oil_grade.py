@@ -1,0 +1,41 @@
+"""Oils by their grade: viscosity, its pressure coefficient, thermal law."""
+
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc.case.loading import CaseError, load
+from ehlpetsc.physics.heat_laws import thermal_law
+from ehlpetsc.physics.thermal_viscosity import WALTHER
+
+CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
+GRADE = {"fluid.grade": {"v40": 220e-6, "v100": 19e-6, "density": 880.0}}
+LEFT_OUT = {"fluid.viscosity": None, "fluid.pressure_viscosity": None}
+ROELANDS = {"fluid.law": "roelands", "fluid.kappa": None, "fluid.chi": None}
+
+
+@pytest.mark.parametrize("celsius, nu", [(40.0, 220e-6), (100.0, 19e-6)])
+def test_viscosity_of_a_grade(celsius, nu):
+    case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"fluid.temperature": celsius + 273.15})
+    assert case.fluid.viscosity == pytest.approx(880.0 * nu, rel=1e-10)
+    assert case.fluid.pressure_viscosity == pytest.approx(9.904e-9 * (1e6 * nu) ** 0.139, rel=1e-10)
+
+
+def test_what_the_case_gives_is_kept():
+    case = load(CASE, GRADE | {"fluid.temperature": 333.15})
+    assert case.fluid.viscosity == 0.005 and case.fluid.pressure_viscosity == 11.1e-9
+
+
+def test_the_grade_gives_the_thermal_law():
+    case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"heat.bulk_temperature": 373.15})
+    assert case.fluid.viscosity == pytest.approx(880.0 * 19e-6, rel=1e-10)
+    assert case.heat.oil_density == 880.0
+    kind, _, _, reference = thermal_law(case.fluid, case.heat)
+    assert kind == WALTHER and reference == 373.15
+
+
+def test_faults():
+    with pytest.raises(CaseError, match="viscosity is missing"):
+        load(CASE, GRADE | LEFT_OUT)  # no temperature
+    with pytest.raises(CaseError, match="v100"):
+        load(CASE, {"fluid.grade": {"v40": 19e-6, "v100": 220e-6, "density": 880.0}})
