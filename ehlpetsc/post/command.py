@@ -1,4 +1,4 @@
-"""The command: what it does, what it says, its exit status."""
+"""The command ``ehlpetsc.post``: its steps, its messages and its exit status."""
 
 import os
 import sys
@@ -150,7 +150,7 @@ def _draw(paths, chosen):
 
 
 def _status(work, path, output):
-    """Exit status of work(), whose faults are told; `path` and `output` are what it reads and writes."""
+    """Exit status of work(), its faults printed; `path` is its input, `output` its output."""
     try:
         work()
     except (PostError, OutputError, CaseError) as fault:
@@ -164,7 +164,7 @@ def _status(work, path, output):
         say(f"{not_written(fault, output)}; nothing is left of it")
         return ExitStatus.BAD_INPUT
     except KeyboardInterrupt:
-        say("interrupted; the same command goes on from the finished depths")
+        say("interrupted; the same command continues from the finished depths")
         return ExitStatus.STOPPED
     return ExitStatus.DONE
 

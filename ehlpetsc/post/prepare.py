@@ -62,7 +62,7 @@ def prepare(loads, surfaces, report):
     Raises
     ------
     PostError
-        The file is not fit for damage; the text says why.
+        The file is not fit for damage; the text gives the reason.
     """
     settings = read_settings(loads.case)
     loads.check(surfaces)
@@ -149,7 +149,7 @@ def _warn(loads, gaps, motions, whole, report):
 
 
 def _travel_needed(loads, surface, why, passed=0.0):
-    """Travel with which `passed` half widths of a surface cross the mesh; empty if it stands still."""
+    """Travel with which `passed` half widths of a surface cross the mesh; empty if it hardly moves."""
     way, longest = (abs(w[-1] - w[0]) for w in (loads.travelled[surface], _longest(loads)))
     if way < MIN_SPEED * longest:
         return ""

@@ -74,7 +74,7 @@ def run(job, report=None, progress=None):
     Raises
     ------
     OutputError, CaseError
-        The result file or its case cannot be read, or the output is not ours to write; the text says why.
+        The result file or its case cannot be read, or the output may not be overwritten.
     PostError
         The result file is not fit for damage.
     OSError

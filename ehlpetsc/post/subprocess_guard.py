@@ -19,7 +19,7 @@ NOTE_HEADER = struct.Struct("<QQ")
 
 
 class _Note:
-    """What is being read just now, in memory that both processes see, and how many reads there were."""
+    """Name of the dataset being read and number of reads, in memory shared by both processes."""
 
     def __init__(self):
         self._shared, self._count = mmap.mmap(-1, 1024), 0
@@ -38,16 +38,16 @@ class _Note:
 
 def stop_on_signals():
     """From now on the first SIGTERM or SIGINT raises KeyboardInterrupt; returns whether one has come."""
-    asked = []
+    requested = []
 
     def stop(*_):
-        if not asked:
-            asked.append(True)
+        if not requested:
+            requested.append(True)
             raise KeyboardInterrupt
 
     for number in STOPS:
         signal.signal(number, stop)
-    return lambda: bool(asked)
+    return lambda: bool(requested)
 
 
 class SubprocessGuard:
@@ -71,7 +71,7 @@ class SubprocessGuard:
             os.kill(self._child, signal.SIGTERM)
 
     def __call__(self, name, work):
-        """Exit status of work(), a function that returns one; `name` says what it is about."""
+        """Exit status of work(), a function that returns one; `name` is that of its file."""
         note = _Note()
         ours, theirs = os.pipe()
         sys.stdout.flush()
@@ -139,7 +139,7 @@ class SubprocessGuard:
             self.say(f"{name}: {what}: HDF5 crashes on it ({killed_by}), the file is damaged")
             return ExitStatus.BAD_INPUT
         if -status == signal.SIGKILL:
-            self.say(f"{name}: killed, as when memory runs out; the same command goes on from there")
+            self.say(f"{name}: killed, as when memory runs out; the same command continues from there")
             return ExitStatus.STOPPED
         self.say(f"{name}: crashed ({killed_by}) while nothing was being read: a bug")
         return ExitStatus.BUG

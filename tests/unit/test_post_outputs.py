@@ -153,7 +153,7 @@ def test_sigterm_at_work_and_going_on(scene, tmp_path):
         assert process.poll() is None
         time.sleep(0.001)
     process.terminate()
-    assert process.wait(30) == 4 and "goes on from the finished depths" in process.stderr.read()
+    assert process.wait(30) == 4 and "continues from the finished depths" in process.stderr.read()
     assert not output.exists() and list(tmp_path.glob("run.post.h5.parts/*.npy"))
     run(Job(str(path), str(output)))
     run(Job(str(path), str(tmp_path / "whole.h5")))

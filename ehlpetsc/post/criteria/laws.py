@@ -42,7 +42,7 @@ class Criteria:
     Attributes
     ----------
     normal_sensitivity : float
-        k of Fatemi and Socie; 1 is customary where no test tells it.
+        k of Fatemi and Socie; 1 is customary without tests.
     yield_strength : float or None
         sigma_y, Pa; None: the cyclic one at 0.2 % plastic strain, K' 0.002^n'.
     torsion_limit : float

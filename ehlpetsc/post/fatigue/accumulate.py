@@ -28,7 +28,7 @@ class Damage(NamedTuple):
 
 
 class Counting(NamedTuple):
-    """How histories are counted; :func:`damage` says what each choice means."""
+    """How histories are counted; the choices are explained in :func:`damage`."""
 
     count: str = "max3"
     residue: str = "closed"

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def evaluate(sx, sz, txz, counter_of, residual_stress):
-    """What a counter finds in each history.
+    """Results of a counter for each history.
 
     Parameters
     ----------

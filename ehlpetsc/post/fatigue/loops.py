@@ -26,7 +26,7 @@ BLOCK = 16  # points of a path that are bounded together
 def loop_of(series, size, i, j, closed):
     """First sample and number of samples of the loop of the cycle between samples i and j of series[:size].
 
-    `closed`: the history repeats, so that a loop may go on across its end, as from i to j < i.
+    `closed`: the history repeats, so that a loop may extend across its end, as from i to j < i.
     """
     low, high = min(series[i], series[j]), max(series[i], series[j])
     count = (j - i if j >= i else j - i + size) + 1

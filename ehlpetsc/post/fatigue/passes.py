@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Passes(NamedTuple):
-    """What several passes say about each point.
+    """Statistics of each point over several passes.
 
     Attributes
     ----------

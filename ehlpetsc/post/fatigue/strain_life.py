@@ -87,7 +87,7 @@ def rule_of(strain):
 def strain_range(dsv, material, strain="direct"):
     """Strain range of an elastic stress range dsv in Pa (Holmes et al. 2005, eq. (13)).
 
-    `strain` says what the elastic range becomes first (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
+    `strain`: rule applied to the elastic range first (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
     """
     dsv = np.asarray(dsv, float)
     if rule_of(strain):

@@ -1,1 +1,1 @@
-"""What is read: the loads in a result file, and the case text stored in it."""
+"""Loads and case of a result file, read and checked."""

@@ -11,8 +11,8 @@ from ehlpetsc.post.fatigue.weibull import LEVEL, weibull_bounds, weibull_likelih
 class Contents:
     """Gathers datasets, root attributes and group attributes for `write_result`.
 
-    One surface stands under the fixed names: surface 2, whose asperities meet more others, if it is rough
-    and passed.
+    One surface has the fixed names: surface 2, whose asperities meet more others, if it is rough and
+    passed.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ class Contents:
     regression : str
         Of the Weibull fit.
     columns : sequence of (criterion, column)
-        What stands behind damage, cycles and peak range.
+        Of the columns after damage, cycles and peak range.
     within : float
         Half widths either side of a peak in which the largest damage of its asperity is sought.
     """

@@ -148,7 +148,7 @@ def stacked_picture(results, surface):
 
 
 def _aligned(result, surface, results):
-    """The result cut to the points that passed in all results, so that one profile stands above them."""
+    """The result cut to the points that passed in all results, so that all share one profile."""
     first = max(r.s[r.complete[surface]][0] for r in results)
     last = min(r.s[r.complete[surface]][-1] for r in results)
     if last <= first:

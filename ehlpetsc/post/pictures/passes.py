@@ -1,4 +1,4 @@
-"""Several results as passes of one body: damage a pass with its scatter, and how many passes it stands."""
+"""Several results as passes of one body: damage a pass with its scatter, and passes to failure."""
 
 import numpy as np
 from matplotlib.figure import Figure

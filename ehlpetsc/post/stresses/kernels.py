@@ -92,6 +92,6 @@ def hat(u, z):
 def half_hat(u, z):
     """The same over its left half alone: what the end node of a load would add outside the load.
 
-    At u = z = 0 the traction jump's stress is infinite; the finite part stands there.
+    At u = z = 0 the traction jump's stress is infinite; the finite part is returned.
     """
     return _blend(u, z, _half_closed, _half_quadrature)
