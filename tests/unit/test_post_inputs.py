@@ -5,7 +5,10 @@ import numpy as np
 import pytest
 from post_result_file import LOAD, A, Scene, write
 
+from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError, PostError
+from ehlpetsc.physics.scales import Scales, hertz_line
+from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, run
@@ -253,3 +256,39 @@ def test_under_changing_speeds_points_are_where_the_surfaces_have_got_to(table, 
         found.append(PostResult(f"{path}.post").damage)
     for side in ("2", "1"):
         np.testing.assert_allclose(found[1][side], found[0][side], rtol=1e-9)
+
+
+def test_flanks_of_gears_have_damage_where_their_teeth_met(tmp_path):
+    """Hertz's pressure along the path of contact of the FZG pair: both flanks from its begin to its end."""
+    case = load("cases/fzg.toml", {"mesh.points_per_half_width": 20})
+    scales = Scales.of(case)
+    operation = operation_of(case, scales)
+    time = [0.0]
+    while time[-1] < operation.duration * (1 - 1e-9):
+        time.append(time[-1] + operation.time_left(time[-1], scales.dt))
+    conditions = [operation.at(t) for t in time]
+    x = scales.x * scales.a
+    pressure = []
+    for now in conditions:
+        a, _ = hertz_line(now.load, now.radius, scales.E)
+        p = np.sqrt(np.clip(1 - (x / a) ** 2, 0, None))
+        pressure.append(p * now.load / (p.sum() * scales.dx))
+    ways = np.array([operation.travelled(t) for t in time])
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs.update(format_version=1, title="flanks", case=case.text, status="done")
+        file.attrs.update(a=scales.a, p0=scales.p0, u1=scales.u1, u2=scales.u2)
+        file["x"], file["contact_count"] = x, np.zeros(x.size, int)
+        file["pressure"], file["shear_stress_slow"] = pressure, 0.05 * np.array(pressure)
+        file["shear_stress_fast"] = -0.05 * np.array(pressure)
+        for name in ("time", "steps/time"):
+            file[name] = time
+        for name in ("step", "steps/step"):
+            file[name] = np.arange(len(time))
+        file["steps/load_given"] = [now.load for now in conditions]
+        file["steps/displacement_1"], file["steps/displacement_2"] = ways.T
+    run(Job(str(tmp_path / "a.h5"), str(tmp_path / "o.h5"), depths=(0.5,)))
+    found = PostResult(tmp_path / "o.h5")
+    for side in found.surfaces:
+        damage = found.passed(side)
+        assert damage.shape[1] * scales.dx > 0.9 * abs(ways[-1]).min() and np.isfinite(damage).all()
+        assert damage.max() > 1e-9

@@ -40,6 +40,7 @@ class Loads:
         As stored.
     speeds : dict
         Of the reference state, m/s, by surface.
+    operation : ehlpetsc.physics.operation.ConstantOperation or VariableOperation
     dt : float or None
         Longest time step of the case, s; None where it varies with the operating conditions.
     load : ndarray (nt,)
@@ -100,14 +101,14 @@ class Loads:
         if (np.diff(self.time) <= 0).any():
             raise PostError("dataset time: does not increase from frame to frame")
         self.scales, self.has_conditions = Scales.of(self.case), True
+        self.operation = operation_of(self.case, self.scales)
         stored = [self.step_scalar(name) for name in VARIABLE]
         if all(values is not None for values in stored):
             one, other, self.load = stored
             self.dt, self.has_conditions = None, self.case.conditions is not None
         else:
-            operation = operation_of(self.case, self.scales)
-            one, other = np.array([operation.travelled(t) for t in self.time]).reshape(-1, 2).T
-            self.load = np.array([operation.at(t).load for t in self.time])
+            one, other = np.array([self.operation.travelled(t) for t in self.time]).reshape(-1, 2).T
+            self.load = np.array([self.operation.at(t).load for t in self.time])
             self.dt = self.scales.dt
         self.travelled = {"1": one, "2": other}
 
