@@ -278,8 +278,8 @@ def test_flanks_of_gears_have_damage_where_their_teeth_met(tmp_path):
         file.attrs.update(format_version=1, title="flanks", case=case.text, status="done")
         file.attrs.update(a=scales.a, p0=scales.p0, u1=scales.u1, u2=scales.u2)
         file["x"], file["contact_count"] = x, np.zeros(x.size, int)
-        file["pressure"], file["shear_stress_slow"] = pressure, 0.05 * np.array(pressure)
-        file["shear_stress_fast"] = -0.05 * np.array(pressure)
+        file["pressure"], file["shear_stress_2"] = pressure, 0.05 * np.array(pressure)
+        file["shear_stress_1"] = -0.05 * np.array(pressure)
         for name in ("time", "steps/time"):
             file[name] = time
         for name in ("step", "steps/step"):

@@ -456,7 +456,7 @@ def test_pictures_are_drawn_over_the_surfaces_own_abscissa(result, capsys):
     line = top.lines[-1].get_xydata()
     profile_s, profile_z = found.profiles["2"]
     np.testing.assert_allclose(line[:, 1], 1e6 * np.interp(inlet - 1e-3 * line[:, 0], profile_s, profile_z))
-    found.attrs["speed_slow"] = -1.0
+    found.attrs["speed_2"] = -1.0
     outlet = found.attrs["outlet"]
     assert plots.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
 
