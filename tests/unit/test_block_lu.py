@@ -44,7 +44,7 @@ def dense(rows):
 def test_the_compiled_sizes_are_those_of_a_group():
     assert SIZE == TERMS + 2 * GROUP
     assert LEFT == TERMS + GROUP + 2  # sums, pressures and, upwind, two films
-    assert RIGHT == TERMS + GROUP + 1
+    assert RIGHT == LEFT and FROM_RIGHT == SIZE - FROM_LEFT - RIGHT  # the same from the right end
     assert len(FILMS) == GROUP
     assert LINE == 12 >= SIZE  # what take_off takes off
 

@@ -31,11 +31,11 @@ class BandedJacobian:
 
     Attributes
     ----------
-    groups, order : int
+    groups, size : int
         Local groups, and the room that their unknowns take.
-    place : ndarray, shape (2 nodes,)
+    dofs : ndarray, shape (2 nodes,)
         Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
-    at_ends : ndarray, shape (2, LINE)
+    end_groups : ndarray, shape (2, LINE)
         Numbers of the unknowns of the first and of the last group, and of the room behind them.
     entries : contact.band.BandEntries or None
         Of the state last filled in.
@@ -49,13 +49,14 @@ class BandedJacobian:
         self.nodes = np.arange(problem.first, problem.last)
         self.rates, self.weights = exponentials(problem.deflection.curvature, 1.0 / problem.dx)
         self.groups = -(-len(self.nodes) // GROUP)
-        self.order = self.groups * LINE
-        self.place = np.stack([self._pressure(self.nodes), self._film(self.nodes)], axis=1).ravel()
-        self.at_ends = np.stack([np.arange(LINE), np.arange(self.order - LINE, self.order)])
-        self.values = np.zeros(self.order * WIDTH + 1)  # the last one: what stands nowhere
+        self.is_mirrored = problem.first > 0 and problem.last == problem.n
+        self.size = self.groups * LINE
+        self.dofs = np.stack([self._pressure(self.nodes), self._film(self.nodes)], axis=1).ravel()
+        self.end_groups = np.stack([np.arange(LINE), np.arange(self.size - LINE, self.size)])
+        self.values = np.zeros(self.size * WIDTH + 1)  # the last one: what stands nowhere
         self.columns = self.values[:-1].reshape(self.groups, WIDTH, LINE)
         self._recurrences()
-        self._spare()
+        self._padding()
         self._under_films()
         self._under_pressures()
         self._under_reynolds()
@@ -68,17 +69,23 @@ class BandedJacobian:
     def _in_group(self, node):
         return (node - self.problem.first) % GROUP
 
+    def _dof(self, group, k):
+        """Number of the k-th unknown of a group; from the right end of the mesh where mirrored."""
+        if self.is_mirrored:
+            group, k = self.groups - 1 - group, SIZE - 1 - k
+        return group * LINE + k
+
     def _sums(self, group):
         """Numbers of the sums of groups, one row each."""
-        return np.asarray(group)[:, None] * LINE + FIRST_SUM + np.arange(TERMS)
+        return self._dof(np.asarray(group)[:, None], FIRST_SUM + np.arange(TERMS))
 
     def _pressure(self, node):
         """Number of q of a node."""
-        return self._group(node) * LINE + FIRST_PRESSURE + self._in_group(node)
+        return self._dof(self._group(node), FIRST_PRESSURE + self._in_group(node))
 
     def _film(self, node):
         """Number of h of a node."""
-        return self._group(node) * LINE + FILMS[self._in_group(node)]
+        return self._dof(self._group(node), FILMS[self._in_group(node)])
 
     def _at(self, row, column):
         """Place of an entry among `values`; the last one where it stands nowhere."""
@@ -90,20 +97,17 @@ class BandedJacobian:
         return np.where(beside, (group * WIDTH + starts + c) * LINE + r, self.values.size - 1)
 
     def _recurrences(self):
-        p, sums = self.problem, self._sums(np.arange(self.groups)).T
-        ends = (p.first == 0, p.last == p.n)
-        for rate, row in zip(self.rates, sums, strict=True):
-            self.values[self._at(row, row)] = 2.0 * np.cosh(rate)
-            for towards, at_end in ((-1, ends[0]), (1, ends[1])):
-                inner = row[1:] if towards < 0 else row[:-1]
-                outer = row[0] if towards < 0 else row[-1]
-                self.values[self._at(inner, inner + towards * LINE)] = -1.0
-                if at_end:  # no pressure beyond: the sum falls on as the exponential does
-                    self.values[self._at(outer, outer)] -= np.exp(-rate)
-                else:
-                    self.values[self._at(outer, outer + towards * LINE)] = -1.0
+        p, groups = self.problem, np.arange(self.groups)
+        row = self._sums(groups)
+        self.values[self._at(row, row)] = 2.0 * np.cosh(self.rates)
+        for towards, outer, at_end in ((-1, 0, p.first == 0), (1, -1, p.last == p.n)):
+            beyond = self._at(row, self._sums(groups + towards))
+            self.values[beyond] = -1.0
+            if at_end:  # no pressure beyond: the sum falls on as the exponential does
+                self.values[beyond[outer]] = 0.0
+                self.values[self._at(row[outer], row[outer])] -= np.exp(-self.rates)
 
-    def _spare(self):
+    def _padding(self):
         """Unknowns of a last group that is not full: zero."""
         none = np.arange(self.nodes[-1] + 1, self.problem.first + self.groups * GROUP)
         for spare in (self._pressure(none), self._film(none)):

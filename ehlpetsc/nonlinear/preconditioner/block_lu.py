@@ -8,7 +8,7 @@ group behind. A solve is three products of small matrices with vectors in each g
 LAPACK's substitution in a band; the factors take half as long as LAPACK's.
 
 All matrices are kept by columns, each with room for `LINE` numbers, three vectors of the processor. Numba
-makes vectors of a loop only where it can tell that nothing written is read again; :func:`take_off_four` reads
+makes vectors of a loop only where it can tell that nothing written is read again; :func:`axpy_four` reads
 before it writes, so that it need not ask. Loops count in unsigned numbers or to constants: numba takes twice
 as long over indices that may be negative, and over short loops whose length it does not know. It keeps what
 it compiled as long as this file is as it was, so the constants stand here.
@@ -21,7 +21,7 @@ from ehlpetsc.compiled import compiled, unsigned
 SIZE = 11  # unknowns of a group
 LINE = 12  # room for them
 LEFT, FROM_LEFT = 9, 2  # unknowns of the group before that the rows contain, and the first of them
-RIGHT, FROM_RIGHT = 8, 1  # those of the group behind
+RIGHT, FROM_RIGHT = 9, 0  # those of the group behind: one more than it has, for the mirrored order
 WIDTH = LEFT + SIZE + RIGHT
 FAST = {"contract", "nsz", "reassoc"}
 ONE, TWO, THREE, FOUR, EIGHT = (unsigned(k) for k in (1, 2, 3, 4, 8))
@@ -38,12 +38,12 @@ class BlockLU:
     ----------
     inverses : ndarray, shape (groups, SIZE, LINE)
         Columns of the inverse of S.
-    spread : ndarray, shape (groups, RIGHT, LINE)
-        Columns of W.
+    upper : ndarray, shape (groups, RIGHT, LINE)
+        Columns of W, of the last group too.
     """
 
     def __init__(self, groups):
-        self.inverses, self.spread = np.zeros((groups, SIZE, LINE)), np.zeros((groups, RIGHT, LINE))
+        self.inverses, self.upper = np.zeros((groups, SIZE, LINE)), np.zeros((groups, RIGHT, LINE))
         self._work, self._column = np.empty((SIZE + RIGHT) * LINE), np.empty(LINE)
         self._free, self._pivots = np.empty(SIZE), np.empty(SIZE, dtype=unsigned)
 
@@ -54,21 +54,29 @@ class BlockLU:
         ----------
         columns : ndarray, shape (groups, WIDTH, LINE)
             What the rows of each group have of the group before, of their own and of the group behind, by
-            columns; to be left as it is while solves follow. What the first group has of one before and the
-            last of one behind is not looked at.
+            columns; to be left as it is while solves follow. What the first group has of one before is not
+            looked at, and what the last one has of one behind enters W alone.
         """
         self._columns = columns.ravel()
         room = self._work, self._column, self._free, self._pivots
-        factor(self._columns, self.inverses.ravel(), self.spread.ravel(), *room)
+        factor(self._columns, self.inverses.ravel(), self.upper.ravel(), *room)
 
     def solve(self, b, first=0):
         """Solve in place for `b` (groups, LINE), whose groups before `first` are zero."""
-        factors = self._columns, self.inverses.ravel(), self.spread.ravel()
-        substitute(*factors, b.ravel(), first, self._column)
+        self.forward(b, first)
+        self.backward(b)
+
+    def forward(self, b, first=0):
+        """Replace `b` by y, in place; see :meth:`solve`."""
+        forward(self._columns, self.inverses.ravel(), b.ravel(), first, self._column)
+
+    def backward(self, b):
+        """Replace y by x, in place: the last group is left as it is."""
+        backward(self.upper.ravel(), b.ravel())
 
 
 @compiled(fastmath=FAST)
-def take_off_four(a, i, factor, b, k):
+def axpy_four(a, i, factor, b, k):
     """Take four numbers of b from the k-th on, times a factor, off those of a from the i-th on."""
     first, second = a[i] - factor * b[k], a[i + ONE] - factor * b[k + ONE]
     third, fourth = a[i + TWO] - factor * b[k + TWO], a[i + THREE] - factor * b[k + THREE]
@@ -76,15 +84,15 @@ def take_off_four(a, i, factor, b, k):
 
 
 @compiled(fastmath=FAST)
-def take_off(a, i, factor, b, k):
+def axpy(a, i, factor, b, k):
     """Take a column of b times a factor off one of a; they begin at the k-th and the i-th number."""
-    take_off_four(a, i, factor, b, k)
-    take_off_four(a, i + FOUR, factor, b, k + FOUR)
-    take_off_four(a, i + EIGHT, factor, b, k + EIGHT)
+    axpy_four(a, i, factor, b, k)
+    axpy_four(a, i + FOUR, factor, b, k + FOUR)
+    axpy_four(a, i + EIGHT, factor, b, k + EIGHT)
 
 
 @compiled(fastmath=FAST)
-def factor(columns, inverses, spread, work, column, free, pivots):
+def factor(columns, inverses, upper, work, column, free, pivots):
     """Fill in the inverses of S and W; see :class:`BlockLU`."""
     line, size, right = unsigned(LINE), unsigned(SIZE), unsigned(RIGHT)
     for i in range(unsigned(len(inverses) // (SIZE * LINE))):
@@ -96,15 +104,15 @@ def factor(columns, inverses, spread, work, column, free, pivots):
             before = part - right * line
             for c in range(right):
                 for k in range(unsigned(LEFT)):
-                    entry = spread[before + c * line + unsigned(FROM_LEFT) + k]
-                    take_off(work, (unsigned(FROM_RIGHT) + c) * line, entry, columns, left + k * line)
+                    entry = upper[before + c * line + unsigned(FROM_LEFT) + k]
+                    axpy(work, (unsigned(FROM_RIGHT) + c) * line, entry, columns, left + k * line)
         eliminate(work, column, free, pivots)
         for c in range(size):
             for k in range(size):
                 inverses[inverse + pivots[c] * line + k] = work[c * line + pivots[k]]
         for c in range(right):
             for k in range(size):
-                spread[part + c * line + k] = work[(size + c) * line + pivots[k]]
+                upper[part + c * line + k] = work[(size + c) * line + pivots[k]]
 
 
 @compiled(fastmath=FAST)
@@ -130,7 +138,7 @@ def eliminate(a, column, free, pivots):
         column[pivot] = 0.0
         for c in range(unsigned(SIZE + RIGHT)):
             entry = a[c * line + pivot] * inverse
-            take_off(a, c * line, entry, column, unsigned(0))
+            axpy(a, c * line, entry, column, unsigned(0))
             a[c * line + pivot] = entry
         for r in range(line):
             a[here + r] = -inverse * column[r]
@@ -138,8 +146,8 @@ def eliminate(a, column, free, pivots):
 
 
 @compiled(fastmath=FAST)
-def substitute(columns, inverses, spread, b, first, known):
-    """Solve in place; see :class:`BlockLU`."""
+def forward(columns, inverses, b, first, known):
+    """Eliminate in place; see :class:`BlockLU`."""
     line = unsigned(LINE)
     groups, first = unsigned(len(b) // LINE), unsigned(first)
     for i in range(first, groups):
@@ -147,13 +155,20 @@ def substitute(columns, inverses, spread, b, first, known):
         if i > first:
             for c in range(unsigned(LEFT)):
                 entry = b[here - line + unsigned(FROM_LEFT) + c]
-                take_off(b, here, entry, columns, (i * unsigned(WIDTH) + c) * line)
+                axpy(b, here, entry, columns, (i * unsigned(WIDTH) + c) * line)
         for k in range(line):
             known[k], b[here + k] = b[here + k], 0.0
         for c in range(unsigned(SIZE)):
-            take_off(b, here, -known[c], inverses, (i * unsigned(SIZE) + c) * line)
+            axpy(b, here, -known[c], inverses, (i * unsigned(SIZE) + c) * line)
+
+
+@compiled(fastmath=FAST)
+def backward(upper, b):
+    """Substitute in place; see :class:`BlockLU`."""
+    line = unsigned(LINE)
+    groups = unsigned(len(b) // LINE)
     for done in range(ONE, groups):
         i = groups - ONE - done
         for c in range(unsigned(RIGHT)):
             entry = b[(i + ONE) * line + unsigned(FROM_RIGHT) + c]
-            take_off(b, i * line, entry, spread, (i * unsigned(RIGHT) + c) * line)
+            axpy(b, i * line, entry, upper, (i * unsigned(RIGHT) + c) * line)

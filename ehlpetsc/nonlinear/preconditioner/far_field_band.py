@@ -2,13 +2,13 @@
 
 Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.preconditioner.FarFieldBand`` (the default).
 
-The band of :mod:`.banded_jacobian`, far deflection included, split between ranks by :mod:`.spike`.
+The band of :mod:`.banded_jacobian`, far deflection included, split between ranks by :mod:`.distributed_lu`.
 What GMRES has left to do is the error of three exponentials, the same on any number of ranks.
 """
 
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
-from ehlpetsc.nonlinear.preconditioner.spike import SpikeLU
+from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
 
 
 class Factors:
@@ -22,7 +22,7 @@ class Factors:
     """
 
     def __init__(self, problem, ranks):
-        self.lu = SpikeLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
+        self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh = False
 
     def invalidate(self):

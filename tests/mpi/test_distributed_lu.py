@@ -14,8 +14,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
-from ehlpetsc.nonlinear.preconditioner.spike import SpikeLU
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -79,7 +79,7 @@ def test_it_solves_its_matrix(model):
     whole, part = EHLProblem(case, scales, film, 0, n), EHLProblem(case, scales, film, first, last)
     right = np.random.default_rng(2).standard_normal(2 * n + 1)
     right[2 * dropped + 1] = 0.0
-    lu = SpikeLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)
+    lu = DistributedLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)
     mine = dropped[(dropped >= first) & (dropped < last)] - first
     kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
     nodes = part.model.state(at[0][part.window], at[1][part.window])
