@@ -16,7 +16,9 @@ ROWS = (  # name among the scalars of the steps, factor, label
     ("lambda_ratio", 1.0, "lambda ratio"),
     ("friction_coefficient", 1.0, "friction coefficient"),
     ("contact_share", 1.0, "share of the load\non the solids"),
-    ("film_temperature", 1.0, "highest film\ntemperature [K]"),
+    ("film_temperature_max", 1.0, "highest temperature\nof the film [K]"),
+    ("temperature_1_max", 1.0, "highest temperature\nof the pinion [K]"),
+    ("temperature_2_max", 1.0, "highest temperature\nof the wheel [K]"),
 )
 WINDOW = 0.02  # of the path, over which the thick line averages
 COLOUR = "#1f4e79"
@@ -95,14 +97,14 @@ class GearRun:
         from matplotlib.figure import Figure
 
         rows = [row for row in ROWS if row[0] in self.scalars and np.isfinite(self.scalars[row[0]]).any()]
-        figure = Figure(figsize=(7.0, 1.0 + 1.5 * len(rows)), layout="constrained")
+        figure = Figure(figsize=(7.0, 1.0 + 1.2 * len(rows)), layout="constrained")
         axes = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
         points, c = self.path.pair.points, self.path.pair.points["C"]
         for axis, (name, factor, label) in zip(axes, rows, strict=True):
             values = factor * self.scalars[name]
             axis.plot(1e3 * self.position, values, color=COLOUR, alpha=0.3, linewidth=0.5)
             axis.plot(1e3 * self.position, self.averaged(values), color=COLOUR, linewidth=1.5)
-            axis.set_ylabel(label, fontsize=8)
+            axis.set_ylabel(label, fontsize=7)
             axis.grid(alpha=0.3)
             for rho in points.values():
                 axis.axvline(1e3 * (rho - c), color="0.7", linewidth=0.8)

@@ -5,7 +5,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 
-FLANKS = (("pinion", ("1", "1")), ("wheel", ("2", "2")))  # with their names in files
+FLANKS = {"pinion": "1", "wheel": "2"}  # with their surfaces in files
 SHOWN = 4  # depths in the picture
 
 
@@ -39,8 +39,7 @@ class FlankDamage:
             with h5py.File(file) as stored:
                 group = stored["damage"]
                 self.depths = group["z_over_a"][:] * float(stored.attrs["a"])
-                names = [next((name for name in found if name in group), None) for _, found in FLANKS]
-                self.damage = [None if name is None else group[name][:][:, ::-1] for name in names]
+                self.damage = [group[name][:][:, ::-1] if name in group else None for name in FLANKS.values()]
                 self.arcs = [begin - group["s"][:][::-1] for begin in begins]
         except (OSError, KeyError, RuntimeError) as error:
             raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
@@ -48,7 +47,7 @@ class FlankDamage:
     def lines(self):
         """Lines of text: largest damage of each flank, where and how deep."""
         found = []
-        for (flank, _), damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
+        for flank, damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
             if damage is None or not np.isfinite(damage).any():
                 continue
             depth, point = np.unravel_index(np.nanargmax(damage), damage.shape)
@@ -84,7 +83,7 @@ class FlankDamage:
                 arc = 1e3 * float(pair.flank_arcs(rho)[k])
                 axis.axvline(arc, color="0.7", linewidth=0.8)
                 axis.annotate(name, (arc, 1.02), xycoords=("data", "axes fraction"), ha="center")
-            axis.set_ylabel(f"damage of an engagement,\n{FLANKS[k][0]}")
+            axis.set_ylabel(f"damage of an engagement,\n{tuple(FLANKS)[k]}")
             axis.set_xlabel("arc length along the flank from A [mm]")
             axis.grid(alpha=0.3)
         figure.axes[0].legend(fontsize=8)

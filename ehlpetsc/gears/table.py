@@ -6,8 +6,10 @@ import numpy as np
 
 from ehlpetsc.gears.losses import gear_loss_factor, ohlendorf_loss_factor
 from ehlpetsc.gears.path import describe
+from ehlpetsc.materials import STEELS
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
+ELASTIC = ("youngs_modulus", "poisson_ratio")
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 
 
@@ -18,10 +20,13 @@ def hertz(path, contact):
     ----------
     path : ehlpetsc.gears.path.Path
     contact : dict
-        `youngs_modulus` and `poisson_ratio` of the solids.
+        `youngs_modulus` and `poisson_ratio` of the solids, or their `material`.
     """
     try:
-        modulus = reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])
+        names = contact.get("material")
+        steels = [STEELS[name] for name in ([names] * 2 if isinstance(names, str) else names or ())]
+        given = {key: [getattr(steel, key) for steel in steels] for key in ELASTIC} | contact
+        modulus = reduced_modulus(*(given[key] for key in ELASTIC))
         pairs = zip(path.load, path.radius, strict=True)
         found = [hertz_line(w, r, modulus) if w > 0 else (0.0, 0.0) for w, r in pairs]
     except (KeyError, TypeError, ValueError, ZeroDivisionError):
