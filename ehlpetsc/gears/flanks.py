@@ -4,8 +4,9 @@ import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.sides import SIDES, stored_name
 
-FLANKS = {"pinion": "1", "wheel": "2"}  # with their surfaces in files
+FLANKS = ("pinion", "wheel")  # surfaces 1 and 2
 SHOWN = 4  # depths in the picture
 
 
@@ -39,7 +40,8 @@ class FlankDamage:
             with h5py.File(file) as stored:
                 group = stored["damage"]
                 self.depths = group["z_over_a"][:] * float(stored.attrs["a"])
-                self.damage = [group[name][:][:, ::-1] if name in group else None for name in FLANKS.values()]
+                names = [stored_name(group, side) for side in SIDES]
+                self.damage = [group[name][:][:, ::-1] if name in group else None for name in names]
                 self.arcs = [begin - group["s"][:][::-1] for begin in begins]
         except (OSError, KeyError, RuntimeError) as error:
             raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
@@ -83,9 +85,10 @@ class FlankDamage:
                 arc = 1e3 * float(pair.flank_arcs(rho)[k])
                 axis.axvline(arc, color="0.7", linewidth=0.8)
                 axis.annotate(name, (arc, 1.02), xycoords=("data", "axes fraction"), ha="center")
-            axis.set_ylabel(f"damage of an engagement,\n{tuple(FLANKS)[k]}")
+            axis.set_ylabel(f"damage of an engagement,\n{FLANKS[k]}")
             axis.set_xlabel("arc length along the flank from A [mm]")
             axis.grid(alpha=0.3)
-        figure.axes[0].legend(fontsize=8)
+        if self.damage[0] is not None:
+            figure.axes[0].legend(fontsize=8)
         figure.suptitle(title, fontsize=10)
         figure.savefig(target, dpi=120)
