@@ -25,11 +25,16 @@ SYNONYMS = {
     "r": "radius",
     "w": "load",
 }
+ELSEWHERE = {
+    "temperature": "temperatures are in [heat]: bulk_temperature, inlet_temperature",
+    "thermal": "a [heat] table computes with temperatures",
+    "archard": "wear is in [wear]: coefficient",
+    "hardness": "contact.material or contact.yield_pressure set where asperities yield",
+}
 NOT_MODELLED = {
     "radius_x": "the contact is a line contact: one radius in the direction of motion",
     "radius_y": "the contact is a line contact: one radius in the direction of motion",
     "ellipticity": "the contact is a line contact",
-    "limiting_shear_stress": "the oil's shear stress is limited by eyring_stress alone",
     "mass": "inertia is neglected: the load is in balance at every step",
     "damping": "inertia is neglected: the load is in balance at every step",
     "side_leakage": "the contact is a line contact: no flow across the direction of motion",
@@ -37,7 +42,9 @@ NOT_MODELLED = {
 
 
 def not_modelled(where, name):
-    """Answer to a key that asks for physics which the program does not have; "" otherwise."""
+    """Answer to a key that asks for physics of another table or for none of the program; "" otherwise."""
+    if name in ELSEWHERE:
+        return ELSEWHERE[name]
     if name == "type" and where == "contact.":
         return "not modelled: point contacts; the contact is always a line contact"
     return f"not modelled: {NOT_MODELLED[name]}" if name in NOT_MODELLED else ""

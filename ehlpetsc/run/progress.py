@@ -52,6 +52,7 @@ class Progress:
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
         self._bar = on_terminal(self._stream) or in_notebook()
+        self._output = None  # of a notebook's cell
         self._marks = []  # wall clock and time of the run, from the first step on, now and then
         self._shown = None
         self._pending = None
@@ -74,7 +75,7 @@ class Progress:
         """Show the last step, if it has not been."""
         if self._pending:
             self._show(clock.monotonic())
-        if self._bar and self._shown is not None:
+        if self._bar and self._shown is not None and not self._output:
             self._stream.write("\n")
             self._stream.flush()
 
@@ -109,7 +110,19 @@ class Progress:
         width = max(10, columns - len(text) - 3)
         filled = round(done * width)
         bar = f"[{'#' * filled}{'.' * (width - filled)}]{text}"[: columns - 1]
-        self._stream.write("\r" + bar.ljust(columns - 1))
+        if in_notebook():
+            self._update_cell(bar)
+        else:
+            self._stream.write("\r" + bar.ljust(columns - 1))
+
+    def _update_cell(self, bar):
+        """Replace the bar in a notebook's cell: a carriage return would leave a line for each."""
+        from IPython.display import display
+
+        if self._output is None:
+            self._output = display({"text/plain": bar}, raw=True, display_id=True)
+        else:
+            self._output.update({"text/plain": bar}, raw=True)
 
 
 class ProgressOutput:

@@ -36,11 +36,9 @@ def fault(overrides):
         ("movement.speed", 3, '[movement]: unknown table; did you mean "motion"?'),
         ("contact.radius_y", 3.0, "unknown key; not modelled: the contact is a line contact"),
         ("contact.type", "point", "not modelled: point contacts"),
-        (
-            "fluid.limiting_shear_stress",
-            1e7,
-            "not modelled: the oil's shear stress is limited by eyring_stress",
-        ),
+        ("fluid.limiting_shear_stress", 1e7, 'did you mean "limiting_shear"?'),
+        ("contact.temperature", 363, "temperatures are in [heat]: bulk_temperature, inlet_temperature"),
+        ("contact.thermal", True, "a [heat] table computes with temperatures"),
         ("fluid.alpha", 1e-8, 'did you mean "pressure_viscosity"?'),
     ],
 )

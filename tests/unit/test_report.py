@@ -2,6 +2,8 @@
 
 import io
 import re
+import sys
+import types
 
 import pytest
 
@@ -163,3 +165,33 @@ def test_summary_line_can_be_grepped_and_read_back():
         mean_gap_ratio=1.5,
         wall=12.3,
     )
+
+
+def test_a_notebook_has_one_bar_that_is_replaced(monkeypatch):
+    """A carriage return would leave a line for each update in an executed notebook."""
+    shown = []
+
+    class Handle:
+        def update(self, data, raw):
+            shown[-1] = data["text/plain"]
+
+    def display(data, raw, display_id):
+        shown.append(data["text/plain"])
+        return Handle()
+
+    shell = type("ZMQInteractiveShell", (), {})()
+    ipython = types.ModuleType("IPython")
+    ipython.get_ipython = lambda: shell
+    ipython.display = types.ModuleType("IPython.display")
+    ipython.display.display = display
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", ipython.display)
+    monkeypatch.setattr(report, "SECONDS_BETWEEN_BARS", 0.0)
+    stream = io.StringIO()
+    progress = report.Progress(0.0, 1.0, stream)
+    for time in (0.1, 0.5, 1.0):
+        progress.step({"step": 1, "time": time, "h_min": 1e-7, "p_max": 1e9, "contacts": 0})
+    progress.close()
+    assert stream.getvalue() == ""
+    (bar,) = shown
+    assert "100.0 %" in bar
