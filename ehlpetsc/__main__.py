@@ -132,24 +132,35 @@ class Interrupted(BaseException):
     """A signal to stop; after a KeyboardInterrupt inside an import Python would end by the signal itself."""
 
 
+class EarlyStop:
+    """Handler of the signals that come before the run takes them.
+
+    Attributes
+    ----------
+    asked : list
+        Empty until one has come.
+    """
+
+    def __init__(self):
+        self.asked = []
+
+    def __call__(self, *_):
+        self.asked.append(True)
+        raise Interrupted
+
+
 def stops_raise():
     """From now on a signal to stop is an `Interrupted`; returns whether one has come.
 
     One that comes inside a callback of numba's compiler is lost there: `stop.asked` is for who handles
     signals next.
     """
-    asked, told = [], sys.unraisablehook
-
-    def stop(*_):
-        asked.append(True)
-        raise Interrupted
-
-    stop.asked = asked
+    stop, told = EarlyStop(), sys.unraisablehook
     sys.unraisablehook = lambda lost: None if isinstance(lost.exc_value, Interrupted) else told(lost)
     for name in STOPS:
         if signal.getsignal(name) is not signal.SIG_IGN:  # nohup
             signal.signal(name, stop)
-    return lambda: bool(asked)
+    return lambda: bool(stop.asked)
 
 
 def ended(error, asked):

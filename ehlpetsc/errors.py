@@ -118,4 +118,6 @@ class NotConverged(Exception):
         The last good one, None if there is none.
     """
 
-    state = None
+    def __init__(self, message, state=None):
+        super().__init__(message)
+        self.state = state

@@ -11,7 +11,7 @@ Exit status: 0 the same, 1 different, 2 the files cannot be compared.
 
 import argparse
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -137,11 +137,15 @@ def _curves(difference, values, x=None, time=None):
     one, other = values
     apart = np.abs(one - other)
     apart[np.isnan(one) & np.isnan(other)] = 0.0
-    difference.scale = float(np.nanmax(np.abs(values), initial=0.0))
     worst = int(np.argmax(apart))  # a nan counts as the greatest
-    difference.greatest, difference.rms = float(apart[worst]), float(np.sqrt(np.mean(apart**2)))
-    difference.x, difference.time = (None if axis is None else float(axis[worst]) for axis in (x, time))
-    return difference
+    return replace(
+        difference,
+        scale=float(np.nanmax(np.abs(values), initial=0.0)),
+        greatest=float(apart[worst]),
+        rms=float(np.sqrt(np.mean(apart**2))),
+        x=None if x is None else float(x[worst]),
+        time=None if time is None else float(time[worst]),
+    )
 
 
 def _field(one, other, name, x, times, by_node):

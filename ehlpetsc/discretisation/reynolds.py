@@ -12,8 +12,6 @@ over nodes is the relative mass imbalance.
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 """
 
-import copy
-
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -64,15 +62,14 @@ class FilmHistory:
     """
 
     def __init__(self, m, m_older, dt, dt_older=None):
-        self.m, self.dt = m, dt
+        self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
         self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
         self.carried = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
 
     def mirrored(self):
         """The same history with the nodes in reverse order."""
-        turned = copy.copy(self)
-        turned.m, turned.carried = mirrored(self.m), mirrored(self.carried)
-        return turned
+        older = None if self.m_older is None else mirrored(self.m_older)
+        return FilmHistory(mirrored(self.m), older, self.dt, self.dt_older)
 
 
 class Reynolds:

@@ -111,7 +111,7 @@ def arguments(argv=None):
         help="body point of the history picture (default: that of the largest damage)",
     )
     add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
-    chosen = parser.parse_args(argv)
+    chosen = argparse.Namespace(**vars(parser.parse_args(argv)))
     chosen.indexes = [path for path in chosen.results if is_of_passes(path)]
     try:
         chosen.results = [str(file) for path in chosen.results for file in files_of(path)]

@@ -32,10 +32,10 @@ def replacing(path, keep_ending=False):
         yield beside
         os.replace(beside, path)
     except BaseException as error:
-        if isinstance(error, OSError) and error.errno and (error.filename or str(beside)) == str(beside):
-            error.filename = str(path)
         with contextlib.suppress(OSError):
             beside.unlink()
+        if isinstance(error, OSError) and error.errno and (error.filename or str(beside)) == str(beside):
+            raise OSError(error.errno, error.strerror, str(path)) from error
         raise
 
 

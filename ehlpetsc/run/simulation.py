@@ -204,8 +204,7 @@ class Simulation:
                 self._check_ends(solution)
                 self.solution = solution
             except NotConverged as error:
-                error.state = self.state
-                raise
+                raise NotConverged(str(error), self.state) from error
         self.state = AcceptedState.of(self, started)
         return self.state
 

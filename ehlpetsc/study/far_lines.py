@@ -105,16 +105,16 @@ def _meshes():
 
 
 def _rough():
-    both = {"fast": ground(0.3e-6), "slow": ground(0.3e-6, 2)}
+    both = {"one": ground(0.3e-6), "two": ground(0.3e-6, 2)}
     slow = "motion.entrainment_speed={}".format
     thin = ("contact.boundary_film=0.5e-9", 'contact.model="mixed"')
     return [
-        rough("far rough", "Ra 1 um, both", fast=ground(1e-6), slow=ground(1e-6, 2)),
-        rough("far rough", "Ra 3 um, slow surface", slow=ground(3e-6)),
+        rough("far rough", "Ra 1 um, both", one=ground(1e-6), two=ground(1e-6, 2)),
+        rough("far rough", "Ra 3 um, surface 2", two=ground(3e-6)),
         rough("far rough", "Ra 0.3 um, u 0.1 m/s", slow(0.1), **both),
         rough("far rough", "Ra 0.3 um, u 0.01 m/s", slow(0.01), **both),
         rough("far rough", "mixed, boundary film 0.5 nm", *thin, **both),
-        rough("far rough", "square steps of 2 um", slow=wave("square", 1e-6, 100e-6)),
+        rough("far rough", "square steps of 2 um", two=wave("square", 1e-6, 100e-6)),
     ]
 
 
@@ -122,13 +122,16 @@ def _sliding():
     one, two = ground(0.15e-6), ground(0.15e-6, 2)
     return [
         *(
-            rough(
-                "far sliding", f"xi {xi:g}, both rough", f"motion.slide_roll_ratio={xi}", fast=one, slow=two
-            )
+            rough("far sliding", f"xi {xi:g}, both rough", f"motion.slide_roll_ratio={xi}", one=one, two=two)
             for xi in (8.0, -8.0)
         ),
         *(
-            rough("far sliding", f"xi {xi:g}, fast rough", f"motion.slide_roll_ratio={xi}", fast=ground(1e-6))
+            rough(
+                "far sliding",
+                f"xi {xi:g}, 1 rough",
+                f"motion.slide_roll_ratio={xi}",
+                one=ground(1e-6),
+            )
             for xi in (2.0, -2.0)
         ),
         far("sliding", "xi 50, smooth", "motion.slide_roll_ratio=50.0"),

@@ -21,10 +21,10 @@ def wave(kind, amplitude, wavelength):
     return f'{{ kind = "{kind}", amplitude = {amplitude:g}, wavelength = {wavelength:g} }}'
 
 
-def rough(axis, value, *overrides, fast=None, slow=None, travel=2.5, short=False):
+def rough(axis, value, *overrides, one=None, two=None, travel=2.5, short=False):
     """A line of time steps from the smooth start, the inlet near so that few steps fill the contact."""
     settings = [*SHORT_DOMAIN, f"time.travel={travel}"]
-    for side, spec in (("1", fast), ("2", slow)):
+    for side, spec in (("1", one), ("2", two)):
         settings += [f"surface.{side}.synthetic={spec}"] if spec else []
     return Line(axis, value, (*settings, *overrides), TABLE_1, short)
 
@@ -39,8 +39,8 @@ def _roughness():
         rough(
             "roughness",
             f"Ra {ra * 1e6:g} um, both surfaces",
-            fast=ground(ra),
-            slow=ground(ra, 2),
+            one=ground(ra),
+            two=ground(ra, 2),
             short=ra in (0.01e-6, 0.3e-6),
         )
         for ra in (0.01e-6, 0.1e-6, 0.3e-6, 1.0e-6)
@@ -54,7 +54,7 @@ def _roughness():
 
 def _features():
     lines = [
-        rough("roughness", f"sine 0.1 um, wavelength {name}", slow=wave("sine", 0.1e-6, length))
+        rough("roughness", f"sine 0.1 um, wavelength {name}", two=wave("sine", 0.1e-6, length))
         for name, length in (
             ("6 nodes", 0.06 * A),
             ("12 nodes", 0.12 * A),
@@ -66,7 +66,7 @@ def _features():
         rough(
             "roughness",
             f"square steps {height:g} um, wavelength {name}",
-            slow=wave("square", height * 0.5e-6, length),
+            two=wave("square", height * 0.5e-6, length),
             short=height == 0.5,
         )
         for height, name, length in ((0.2, "0.5 a", 0.5 * A), (0.5, "0.5 a", 0.5 * A), (1.0, "2 a", 2 * A))
@@ -80,7 +80,7 @@ def _features():
         )
         for width, side in ((10, "2"), (20, "2"), (20, "1"), (60, "2"))
     ]
-    return [*lines, rough("roughness", "single dent of 1 um, 60 um wide", slow=wave("dent", 1e-6, 60e-6))]
+    return [*lines, rough("roughness", "single dent of 1 um, 60 um wide", two=wave("dent", 1e-6, 60e-6))]
 
 
 def _measured():
@@ -112,8 +112,8 @@ def _rough_sliding():
             "rough sliding",
             f"xi {xi:g}, Ra 0.15 um, both",
             f"motion.slide_roll_ratio={xi}",
-            fast=ground(0.15e-6),
-            slow=ground(0.15e-6, 2),
+            one=ground(0.15e-6),
+            two=ground(0.15e-6, 2),
             short=xi in (2.0, -4.0),
         )
         for xi in (0.0, 1.0, -1.0, 1.9, 2.0, -2.0, 4.0, -4.0)
@@ -121,7 +121,7 @@ def _rough_sliding():
 
 
 def _domain():
-    both = {"fast": ground(0.15e-6), "slow": ground(0.15e-6, 2)}
+    both = {"one": ground(0.15e-6), "two": ground(0.15e-6, 2)}
     lines = [
         rough("domain", f"inlet {inlet:g} a", f"mesh.inlet={inlet}", travel=1.5 - inlet, **both)
         for inlet in (-1.5, -2.5, -6.0)
@@ -156,7 +156,7 @@ def _domain():
 
 
 def _starts():
-    both = {"fast": ground(0.15e-6), "slow": ground(0.15e-6, 2)}
+    both = {"one": ground(0.15e-6), "two": ground(0.15e-6, 2)}
 
     def before(line, *changed):  # shorter, and with a restart file after every step
         return (*line.overrides, "time.travel=0.5", "output.checkpoint=1e-6", *changed)

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time as clock
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -107,7 +107,7 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
             status, last_words(words.read()), seconds=seconds, processor=_processor_time() - used
         )
     if output.exists():
-        _read_figures(output, load(case, overrides), outcome)
+        outcome = replace(outcome, **_read_figures(output, load(case, overrides), outcome.words))
     return outcome
 
 
@@ -190,19 +190,18 @@ def last_words(text):
     return (told or lines or [""])[-1].removeprefix("ehlpetsc: not converged: ")
 
 
-def _read_figures(path, case, outcome):
-    """Enter the figures of a result file; a file that cannot be read is told in the words."""
+def _read_figures(path, case, words):
+    """Fields of an `Outcome` from a result file; a file that cannot be read is named in its words."""
     try:
         with read_result(path) as result:
             totals = Totals.of_result(result).values
     except OutputError as error:
-        outcome.words = f"{outcome.words} {error}".strip()
-        return
+        return {"words": f"{words} {error}".strip()}
     if not totals:
-        return
-    outcome.result, outcome.steps = path, totals["step"]
-    for name in ("newton", "retries", "h_min", "p_max", "wall", "load_error", "mass_error"):
-        setattr(outcome, name, totals[name])
+        return {}
+    names = ("newton", "retries", "h_min", "p_max", "wall", "load_error", "mass_error")
+    found = {"result": path, "steps": totals["step"]} | {name: totals[name] for name in names}
     if case.fluid:
-        ratio = viscosity(np.array([outcome.p_max]), case.fluid)[0][0]
-        outcome.viscosity = float(case.fluid.viscosity * np.exp(min(ratio, 700.0)))
+        ratio = viscosity(np.array([totals["p_max"]]), case.fluid)[0][0]
+        found["viscosity"] = float(case.fluid.viscosity * np.exp(min(ratio, 700.0)))
+    return found
