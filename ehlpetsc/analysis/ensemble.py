@@ -91,6 +91,8 @@ def run_figures(result):
     result : ehlpetsc.results.reader.Result
     """
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
+    if not len(time):
+        raise OutputError(f"{result.path}: no time step in it")
     kept = both_fill(result, time) & (dt > 0.0)
     if not kept.any():
         kept = dt > 0.0 if dt.any() else np.ones(len(time), bool)

@@ -60,7 +60,7 @@ def show(value):
     except RecursionError:
         text = "tables in tables without end"
     text = "nan" if text == "NaN" else text
-    return shortened(text)
+    return shortened(text.encode(errors="backslashreplace").decode())
 
 
 def shortened(text):

@@ -5,6 +5,9 @@ restarts  damaged restart files: bytes changed or cut off; or content changed un
 results   damaged result files: a bit changed, or datasets and attributes replaced; read, compared, drawn
 layouts   shipped cases laid out otherwise in TOML, keys set, stored, loaded again: the same case
 cases     case files with one to three mutations, loaded, told, used as far as a run does before it computes
+ensembles results, damaged ones among them, given to every command that reads several
+passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
+python    calls from Python with arguments drawn from lists of good and bad ones
 
 Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
 traceback, hang, signal, different (status 0 with another answer and no word), changed (an input is not as it
@@ -29,7 +32,8 @@ from ehlpetsc import environment
 
 environment.prepare()
 # restarts import PETSc, after which nothing may be forked
-KINDS = ("cases", "results", "options", "restarts", "layouts")
+KINDS = ("cases", "results", "options", "restarts", "layouts", "ensembles", "passes", "python")
+LATE = ("restarts", "layouts", "python")
 
 
 def fuzz(seed, show=False, keep=None, **numbers):
@@ -46,7 +50,7 @@ def fuzz(seed, show=False, keep=None, **numbers):
         Draws of each kind.
     """
     found = {}
-    for kind in KINDS:
+    for kind in sorted(KINDS, key=LATE.__contains__):
         if not numbers.get(kind):
             continue
         counts = found[kind] = Counter()
