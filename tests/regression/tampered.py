@@ -2,6 +2,7 @@
 
 ACCIDENT is "raise", an error in the code, "late", the end of the time limit, "lost", the folder "out" removed
 with all that is in it, or the name of a signal that the rank gets during the step; "SIGKILL@2": of pass 2.
+With "index" the rank is killed as it is about to put an index in its place for the STEP-th time.
 """
 
 import math
@@ -14,6 +15,22 @@ from types import SimpleNamespace
 from ehlpetsc.__main__ import guarded
 from ehlpetsc.environment import prepare
 from ehlpetsc.run.command_line import parse_command_line
+
+
+def kill_at_index(rank, count):
+    from mpi4py import MPI
+
+    from ehlpetsc.results import whole_file
+
+    replace, seen = os.replace, []
+
+    def killing(beside, path):
+        seen.extend([path] * str(path).endswith(".json"))
+        if len(seen) == count and MPI.COMM_WORLD.rank == rank:
+            os.kill(os.getpid(), signal.SIGKILL)
+        replace(beside, path)
+
+    whole_file.os = SimpleNamespace(**{name: getattr(os, name) for name in dir(os)} | {"replace": killing})
 
 
 def tamper(accident, rank, step):
@@ -48,5 +65,8 @@ if __name__ == "__main__":
     import petsc4py
 
     petsc4py.init([sys.argv[0], *parse_command_line(rest).petsc])  # what is tampered with imports PETSc
-    tamper(accident, int(rank), int(step))
+    if accident == "index":
+        kill_at_index(int(rank), int(step))
+    else:
+        tamper(accident, int(rank), int(step))
     sys.exit(guarded([sys.argv[0], *rest]))

@@ -3,11 +3,12 @@
 import errno
 import json
 import os
+import subprocess
 
 import numpy as np
 import pytest
 from mpi4py import MPI
-from running import ROOT, run, settings
+from running import BARE, ROOT, SCRIPT, command, run, settings
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError
@@ -242,3 +243,48 @@ def test_more_passes_continue_from_the_last_one(tmp_path, uninterrupted):
     rows = json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
     assert [row["pass"] for row in rows] == [1, 2, 3]
     assert rows[2]["set_volume"] > rows[1]["set_volume"]
+
+
+def test_passes_killed_as_the_index_is_written_are_finished_by_the_same_command(tmp_path, uninterrupted):
+    assert run(CASE, *BRIEF, cwd=tmp_path, tampered=("index", 0, 2)).returncode == -9
+    assert [
+        row["pass"] for row in json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
+    ] == [1]
+    assert [path for path in tmp_path.iterdir() if path.name.endswith(".tmp")]
+    done = run(CASE, *BRIEF, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "pass 1 of 2" not in done.stdout
+    assert_as_uninterrupted(tmp_path, uninterrupted)
+    assert not [path.name for path in tmp_path.iterdir() if path.name.endswith((".lock", ".tmp"))]
+
+
+def test_passes_whose_folder_is_lost_end_in_words(tmp_path):
+    (tmp_path / "out").mkdir()
+    lost = run(CASE, *BRIEF, "-ehl_output", "out/r.h5", cwd=tmp_path, tampered=("lost", 0, 5))
+    assert lost.returncode == 2 and "Traceback" not in lost.stderr
+    assert "out/r.pass1.h5: result file removed or replaced by others during the run" in lost.stderr
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("case", [CASE, CASES / "stribeck.toml"])
+def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, case):
+    (tmp_path / "out").mkdir(mode=0o500)
+    user = {"user": 65534} if os.getuid() == 0 else {}
+    if user:
+        os.chown(tmp_path / "out", 65534, 65534)
+        for place in (tmp_path, *tmp_path.parents[:2]):
+            place.chmod(0o755)
+    done = subprocess.run(
+        command(
+            case, *settings("mesh.points_per_half_width=20", "time.travel=0.2"), "-ehl_output", "out/r.h5"
+        ),
+        cwd=tmp_path,
+        env=BARE | SCRIPT | {"NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        **user,
+    )
+    assert done.returncode == 2 and "Permission denied" in done.stderr, done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert not list((tmp_path / "out").iterdir())

@@ -163,6 +163,26 @@ def test_a_stopped_series_goes_on_where_it_was(tmp_path, finished):
     assert summary(on.stdout)["steps"] == summary(finished[1].stdout)["steps"]
 
 
+def assert_as_finished(folder, finished):
+    assert set(states(folder).values()) == {"done"}
+    for name in states(folder):
+        with read_result(folder / name) as one, read_result(finished[0] / name) as other:
+            assert list(one.step) == list(other.step)
+            assert abs(one.pressure - other.pressure).max() < 1e-9 * one.attrs["p0"]
+    assert not [path.name for path in folder.iterdir() if path.name.endswith((".lock", ".tmp"))]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("accident", [("SIGKILL", 1, 5), ("SIGKILL", 0, 12), ("index", 0, 2)])
+def test_a_series_killed_on_two_ranks_is_finished_by_the_same_command(tmp_path, finished, accident):
+    killed = series(tmp_path, tampered=accident)
+    assert killed.returncode not in (0, 4)
+    assert set(states(tmp_path).values()) != {"done"}  # the index is whole, old or new
+    on = series(tmp_path, ranks=0)
+    assert on.returncode == 0, on.stderr
+    assert_as_finished(tmp_path, finished)
+
+
 @pytest.mark.parametrize(
     "words, fault",
     [

@@ -14,7 +14,7 @@ from ehlpetsc.results.output_guard import Lock, check_index, check_place, inputs
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
-from ehlpetsc.results.whole_file import write_whole
+from ehlpetsc.results.whole_file import remove_left, write_whole
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
@@ -70,6 +70,7 @@ class Passes:
         on_root(self.comm, lambda: check_place(self.index, inputs_of(self.case)))
         lock = Lock(self.index)
         on_root(self.comm, lock.take)
+        on_root(self.comm, remove_left, self.index)
         try:
             return self._run(restart, overwrite)
         finally:

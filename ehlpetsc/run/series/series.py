@@ -19,7 +19,7 @@ from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_index
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.results.whole_file import write_whole
+from ehlpetsc.results.whole_file import remove_left, write_whole
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.progress import summary_line
@@ -107,6 +107,7 @@ class Series:
             )
         self._lock = Lock(self.index)
         on_root(world, self._lock.take)
+        on_root(world, remove_left, self.index)
         self.states = world.bcast([m.state_of_files() for m in self.members] if world.rank == 0 else None)
         self.states = ["waiting" if state == "begun" else state for state in self.states]
         missing = [n for n, state in enumerate(self.states) if state != "done"]
