@@ -44,6 +44,11 @@ class ConditionsTable(NamedTuple):
     begins: tuple | None = None
 
     @property
+    def varies(self):
+        """Whether a condition changes with time."""
+        return any(np.ptp(column) > 0.0 for column in self[1:5])
+
+    @property
     def speed(self):
         """Speed of the faster surface [m/s]."""
         return np.maximum(np.abs(self.u1), np.abs(self.u2))
@@ -144,6 +149,7 @@ class VariableOperation:
     dx: float
     modulus: float
     travel: float | None = None
+    varies = True
 
     @cached_property
     def _cubics(self):
@@ -157,11 +163,6 @@ class VariableOperation:
     def period(self):
         """Length of the table [s]."""
         return float(self.table.time[-1])
-
-    @property
-    def varies(self):
-        """Whether a condition changes with time."""
-        return any(np.ptp(column) > 0.0 for column in self.table[1:5])
 
     @property
     def is_reversing(self):
@@ -286,8 +287,11 @@ def operation_of(case, scales):
     -------
     ConstantOperation or VariableOperation
     """
-    if case.conditions is None:
+    table = case.conditions
+    if table is None:
         return ConstantOperation.of(case, scales)
-    return VariableOperation(
-        case.conditions, case.time.courant, scales.dx, scales.E, case.time.travel * scales.a
-    )
+    travel = case.time.travel * scales.a
+    if not table.varies:
+        conditions = Conditions(*(float(column[0]) for column in table[1:5]))
+        return ConstantOperation(conditions, min(travel, table.swept_length()))
+    return VariableOperation(table, case.time.courant, scales.dx, scales.E, travel)

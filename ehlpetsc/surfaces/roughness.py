@@ -132,7 +132,7 @@ class Roughness:
 def _profile(case, scales, spec, speed, side, positions):
     (inlet, outlet), travelled = positions.domain_ends_at_entry, positions.travelled[side]
     swept_length, table, reach = 0.0, case.conditions, None
-    if table is not None:
+    if table is not None and table.varies:
         reach = table.extent()[side]
         swept_length = max(map(abs, reach))
     elif case.time is not None:

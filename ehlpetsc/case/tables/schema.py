@@ -282,7 +282,11 @@ class Time(Table):
     """`[time]`: left out, the case is steady."""
 
     travel: float = Field(
-        ..., ge=1e-6, le=1e5, unit="half widths", description="of the faster surface, from the smooth start"
+        ...,
+        ge=1e-6,
+        le=1e5,
+        unit="half widths",
+        description="of the faster surface, from the smooth start; all of [gears] or [operation] if left out",
     )
     courant: float = Field(0.5, ge=1e-3, le=100, description="u_max dt/dx")
     passes: int = Field(1, ge=1, le=10_000, description="times that the same stretch of both surfaces meets")
