@@ -57,10 +57,10 @@ def _under_surface(axes, result, surface, ends, depths, gap):
     """Axes of a map under a surface, in mm, z/a and um; abscissae of the points that passed and depths."""
     depth, ticks = _depth_axis(depths, gap)
     axes.set_yticks(depth[ticks], [f"{z:g}" for z in depths[ticks]])
-    axes.set_ylim(depth[-1], depth[0])
     axes.set_xlim(*ends)
     axes.set_ylabel("z/a")
     if len(depth) > 1:
+        axes.set_ylim(depth[-1], depth[0])
         beside = axes.secondary_yaxis("right")
         beside.set_yticks(depth[ticks], [f"{1e6 * z * result.a:.3g}" for z in depths[ticks]])
         beside.set_ylabel("z [µm]")
