@@ -73,6 +73,14 @@ class Totals:
         return " ".join(f"{label}={value:{form}}" for label, value, form in shown)
 
 
+def _sliding_reverses(result):
+    """Whether the sliding speed has both signs during the run: friction then is averaged by its magnitude."""
+    if "speed_1" not in result.figures:
+        return False
+    sliding = result.steps("speed_1") - result.steps("speed_2")
+    return bool((sliding > 0.0).any() and (sliding < 0.0).any())
+
+
 def means(result):
     """Means over the time in which both surfaces fill the contact, by name; a steady run has its values.
 
@@ -90,6 +98,8 @@ def means(result):
     found = {}
     for name in MEANS if weights.any() else ():
         values = result.steps(name).astype(float) if name in result.figures else np.full(len(time), np.nan)
+        if name == "friction_coefficient" and _sliding_reverses(result):
+            values = np.abs(values)
         known = np.isfinite(values)
         if weights[known].any():
             found[name] = float(np.average(values[known], weights=weights[known]))

@@ -5,6 +5,7 @@ import math
 import h5py
 import numpy as np
 import pytest
+from made_results import make_result
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
@@ -15,6 +16,8 @@ from ehlpetsc.gears.load_sharing import relief_ratio
 from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.post.stresses.body_points import body_points, passage
+from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.totals import means
 
 FZG = {  # type C
     "module": 4.5e-3,
@@ -274,3 +277,17 @@ def test_the_package_offers_it_without_another_import():
 
     assert ehlpetsc.gears.path_of_contact(FZG).contact_ratio == pytest.approx(1.443, abs=5e-4)
     assert "gears" in dir(ehlpetsc)
+
+
+@pytest.mark.parametrize(("after", "mean"), [(1.0, 0.0), (-1.0, 0.03)])
+def test_friction_of_a_run_whose_sliding_reverses_is_averaged_by_its_magnitude(tmp_path, after, mean):
+    path = make_result(tmp_path / "run.h5")
+    with h5py.File(path, "a") as file:
+        steps, n = file["steps"], len(file["steps/time"])
+        first = np.arange(n) < n // 2
+        steps["dt"][...] = 1e-6
+        steps["friction_coefficient"][...] = np.where(first, -0.03, 0.03 * (n // 2) / (n - n // 2))
+        steps["speed_1"] = np.where(first, 1.0, after)
+        steps["speed_2"] = np.zeros(n)
+    with read_result(path) as result:
+        assert means(result)["friction_coefficient"] == pytest.approx(mean, abs=2e-3)
