@@ -22,7 +22,7 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState
 from ehlpetsc.discretisation.deflection import Deflection
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
-from ehlpetsc.discretisation.interleaving import count, firsts, seconds
+from ehlpetsc.discretisation.interleaving import n_dofs, q_of, w_of
 from ehlpetsc.discretisation.no_oil import NoOil
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds, mirrored
 from ehlpetsc.physics.operation import Conditions
@@ -175,14 +175,14 @@ class EHLProblem:
         """
         model = inputs.contact or self.model
         state = model.state(q, w)
-        residual = np.empty(count(self.local) + self.load_is_local)
+        residual = np.empty(n_dofs(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
         curvature = self.scales.R / inputs.conditions.radius
         separation = state.separation - curvature * self._parabola - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
-        firsts(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
+        q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
         reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
-        seconds(residual, self.local)[:] = reynolds
+        w_of(residual, self.local)[:] = reynolds
         if self.load_is_local:
             residual[-1] = sums.load[2] - 0.5 * np.pi * inputs.load_share * (
                 inputs.conditions.load / self.scales.load
@@ -208,9 +208,9 @@ class EHLProblem:
             Interleaved, shape of the local part of the vector.
         """
         unknown, film, separation = state.directional_derivative(nodes)
-        rows = np.empty(count(self.local) + self.load_is_local)
-        firsts(rows, self.local)[:] = self.deflection.residual(separation, v_h00, sums)
-        reynolds_product(derivatives, unknown, film, self.own.start, seconds(rows, self.local))
+        rows = np.empty(n_dofs(self.local) + self.load_is_local)
+        q_of(rows, self.local)[:] = self.deflection.residual(separation, v_h00, sums)
+        reynolds_product(derivatives, unknown, film, self.own.start, w_of(rows, self.local))
         if self.load_is_local:
             rows[-1] = sums.load[2]
         return rows

@@ -1,38 +1,38 @@
-"""Where the unknowns of a node stand in a vector: (q_0, w_0, q_1, w_1, ..., h00), rows likewise.
+"""Order of the unknowns in a vector: (q_0, w_0, q_1, w_1, ..., h00); rows in the same order.
 
-Rows of coefficients over some nodes hold them in the same order, without h00.
+Rows of coefficients over some nodes have the same order, without h00.
 """
 
 import numpy as np
 
 
-def first_of(nodes):
-    """Places of q, or of the deflection rows."""
+def q_index(nodes):
+    """Indices of q, or of the deflection rows."""
     return 2 * nodes
 
 
-def second_of(nodes):
-    """Places of w, or of Reynolds' rows."""
+def w_index(nodes):
+    """Indices of w, or of the Reynolds rows."""
     return 2 * nodes + 1
 
 
-def count(nodes):
-    """Unknowns of so many nodes, h00 left out: where that stands."""
+def n_dofs(nodes):
+    """Number of unknowns of so many nodes without h00, which has this index."""
     return 2 * nodes
 
 
-def nodes_of_seconds(places):
-    """Nodes whose w, or Reynolds row, stands in one of the places."""
-    return places[places % 2 == 1] // 2
+def nodes_of_w(indices):
+    """Nodes whose w, or Reynolds row, is among the indices."""
+    return indices[indices % 2 == 1] // 2
 
 
-def firsts(vector, nodes):
-    """View of the first entries of so many nodes."""
+def q_of(vector, nodes):
+    """View of q, or of the deflection rows, of the first nodes."""
     return vector[: 2 * nodes : 2]
 
 
-def seconds(vector, nodes):
-    """View of the second entries of so many nodes."""
+def w_of(vector, nodes):
+    """View of w, or of the Reynolds rows, of the first nodes."""
     return vector[1 : 2 * nodes : 2]
 
 
@@ -41,16 +41,16 @@ def pairs(vector, nodes):
     return vector[: 2 * nodes].reshape(nodes, 2)
 
 
-def firsts_of_rows(rows):
-    """View of what each row has under q, shape (rows, nodes)."""
+def q_columns(rows):
+    """View of the coefficients of q in each row, shape (rows, nodes)."""
     return rows[:, ::2]
 
 
-def seconds_of_rows(rows):
-    """View of what each row has under w, or under the film, shape (rows, nodes)."""
+def w_columns(rows):
+    """View of the coefficients of w, or of the film, in each row, shape (rows, nodes)."""
     return rows[:, 1::2]
 
 
-def both_of(nodes):
-    """Places of both unknowns of each node, last axis (q, w)."""
-    return np.stack([first_of(nodes), second_of(nodes)], axis=-1)
+def dofs_of(nodes):
+    """Indices of both unknowns of each node, last axis (q, w)."""
+    return np.stack([q_index(nodes), w_index(nodes)], axis=-1)

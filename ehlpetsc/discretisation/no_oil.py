@@ -7,7 +7,7 @@ solids have a pressure of their own, q = 0.
 import numpy as np
 
 from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL
-from ehlpetsc.discretisation.interleaving import both_of, count
+from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
 
 
 class NoOil:
@@ -22,9 +22,9 @@ class NoOil:
 
     def __init__(self, first, last, start=0):
         self.own, local = slice(first - start, last - start), last - first
-        self.columns = np.full((local, count(STENCIL)), -1, dtype=np.int32)
-        self.columns[:, OWN : OWN + 2] = both_of(np.arange(first, last, dtype=np.int32))
-        self._derivatives = np.zeros((local, count(STENCIL)))
+        self.columns = np.full((local, n_dofs(STENCIL)), -1, dtype=np.int32)
+        self.columns[:, OWN : OWN + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
+        self._derivatives = np.zeros((local, n_dofs(STENCIL)))
         self._derivatives[:, OWN] = 1.0
 
     def film_content(self, q, h, fluid):

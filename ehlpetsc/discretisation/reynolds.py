@@ -34,7 +34,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     balance,
     extrapolated,
 )
-from ehlpetsc.discretisation.interleaving import both_of, count
+from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
 from ehlpetsc.physics import rheology
 
 
@@ -105,9 +105,9 @@ class Reynolds:
 
     def _columns(self, rows, n):
         node = rows[:, None] + np.arange(-2, 2)
-        both = both_of(node)
+        both = dofs_of(node)
         both[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
-        return both.reshape(len(rows), count(STENCIL)).astype(np.int32)
+        return both.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
 
     def content(self, q, h, fluid):
         r"""Film content :math:`\rho h(1-\theta)` and its derivatives with respect to q and h."""
@@ -158,7 +158,7 @@ class Reynolds:
         if history is not None:
             then = history.m[rows], history.carried[rows], history.k, self.dx / history.dt
         imbalance = np.empty(self.local.stop - self.local.start)
-        derivatives = np.zeros((len(imbalance), count(STENCIL)))
+        derivatives = np.zeros((len(imbalance), n_dofs(STENCIL)))
         inner = slice(int(self.has_inlet), None)
         balance(at, first, law, *then, imbalance[inner], derivatives[inner])
         if self.has_outlet:

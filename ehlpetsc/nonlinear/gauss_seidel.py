@@ -33,7 +33,7 @@ import numpy as np
 
 from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.interleaving import firsts, seconds
+from ehlpetsc.discretisation.interleaving import q_of, w_of
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear.sweeps import DeflectionForm, Linearised, sweep
 
@@ -138,9 +138,9 @@ class GaussSeidelSolver:
         with np.errstate(over="ignore", invalid="ignore"):
             evaluation = self.problem.evaluate(q, h, h00, inputs)
             rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
-            imbalance = seconds(rows, self.problem.n)
+            imbalance = w_of(rows, self.problem.n)
             self.imbalance = imbalance.copy()
-            self.rows = firsts(rows, self.problem.n).copy(), self.imbalance, rows[-1]
+            self.rows = q_of(rows, self.problem.n).copy(), self.imbalance, rows[-1]
             imbalance[(h <= self.bound) & (self.imbalance > 0.0)] = 0.0
             return np.linalg.norm(rows)
 

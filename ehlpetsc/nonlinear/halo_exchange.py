@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, CurvatureProduct
 from ehlpetsc.discretisation.deflection import HALO, PressureSums
-from ehlpetsc.discretisation.interleaving import count, pairs
+from ehlpetsc.discretisation.interleaving import n_dofs, pairs
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
 
@@ -45,7 +45,7 @@ class HaloExchange:
     def __init__(self, problem, cuts, ranks, tolerance=TOLERANCE):
         self.problem, self.ranks = problem, ranks
         self._product = CurvatureProduct(problem.deflection.curvature, cuts, ranks.rank, tolerance)
-        self._edge = count(HALO)
+        self._edge = n_dofs(HALO)
         self._load = 2 * self._edge + 1  # behind the outer unknowns and h00: three sums, then the product's
         size = self._load + 3 + self._product.message_size
         self._mine, self._all = np.zeros(size), np.zeros((ranks.size, size))

@@ -12,7 +12,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK
+from ehlpetsc.nonlinear.operators.jacobian_operator import PIVOT_REGULARISATION
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
@@ -35,8 +35,8 @@ def state(case, scales):
     return q, w, 0.0
 
 
-def dense(problem, at, dropped):
-    """The matrix in q and w, its far deflection by exponentials; second unknowns of dropped nodes held."""
+def dense(problem, at, inactive_nodes):
+    """The matrix in q and w, its far deflection by exponentials; second unknowns of inactive nodes held."""
     n, d = problem.n, problem.deflection
     rates, weights = exponentials(d.curvature, 1.0 / problem.dx)
     group, node = np.arange(n) // GROUP, np.arange(n)
@@ -50,7 +50,7 @@ def dense(problem, at, dropped):
     evaluation = problem.evaluate(*at, problem.inputs())
     nodes, derivatives = evaluation.state, evaluation.reynolds_derivatives
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
-    leak = np.where((nodes.p_q > 0.0) | (nodes.p_w != 0.0), 0.0, LEAK)
+    leak = np.where((nodes.p_q > 0.0) | (nodes.p_w != 0.0), 0.0, PIVOT_REGULARISATION)
     matrix[: 2 * n : 2, : 2 * n : 2] = by_pressure * nodes.p_q + np.diag(leak)
     matrix[: 2 * n : 2, 1 : 2 * n : 2] = by_pressure * nodes.p_w + by_film * nodes.h_w
     matrix[[0, 2 * n - 2], -1] = -d.end_row_coefficient
@@ -58,8 +58,8 @@ def dense(problem, at, dropped):
         for k, j in enumerate(range(i - 2, i + 2)):
             if 0 <= j < n:
                 matrix[2 * i + 1, [2 * j, 2 * j + 1]] = row[2 * k], row[2 * k + 1] * nodes.h_w[j]
-    matrix[2 * dropped + 1] = 0.0
-    matrix[2 * dropped + 1, 2 * dropped + 1] = 1.0
+    matrix[2 * inactive_nodes + 1] = 0.0
+    matrix[2 * inactive_nodes + 1, 2 * inactive_nodes + 1] = 1.0
     matrix[2 * n, : 2 * n : 2], matrix[2 * n, 1 : 2 * n : 2] = (
         problem.dx * nodes.p_q,
         problem.dx * nodes.p_w,
@@ -73,15 +73,15 @@ def test_it_solves_its_matrix(model):
     scales = Scales.of(case)
     n, at, film = scales.nx, state(case, scales), expected_film(case, scales)
     assert n % GROUP  # the last group is not full
-    dropped = TOUCHING if model == "direct" else TOUCHING[:0]
+    inactive_nodes = TOUCHING if model == "direct" else TOUCHING[:0]
     cuts = [n // GROUP * k // ranks.size * GROUP for k in range(ranks.size)] + [n]
     first, last = cuts[ranks.rank], cuts[ranks.rank + 1]
     whole, part = EHLProblem(case, scales, film, 0, n), EHLProblem(case, scales, film, first, last)
     right = np.random.default_rng(2).standard_normal(2 * n + 1)
-    right[2 * dropped + 1] = 0.0
+    right[2 * inactive_nodes + 1] = 0.0
     lu = DistributedLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)
-    mine = dropped[(dropped >= first) & (dropped < last)] - first
-    kept = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
+    mine = inactive_nodes[(inactive_nodes >= first) & (inactive_nodes < last)] - first
+    active_dofs = np.setdiff1d(np.arange(2 * (last - first)), 2 * mine + 1)
     nodes = part.model.state(at[0][part.window], at[1][part.window])
     derivatives = whole.evaluate(*at, whole.inputs()).reynolds_derivatives[first:last]
     entries = part.model.band_entries(nodes, derivatives, lu.band.stencil)
@@ -90,11 +90,13 @@ def test_it_solves_its_matrix(model):
         separation_second=np.zeros_like(entries.p_first),
         reynolds_derivatives=3.0 * entries.reynolds_derivatives,
     )
-    lu.factor(other, dropped[:0])  # what it leaves must not matter
+    lu.factor(other, inactive_nodes[:0])  # what it leaves must not matter
     lu.factor(entries, mine)
-    found, approach = lu.solve(right[2 * first : 2 * last][kept], kept, right[-1] if last == n else 0.0)
+    found, approach = lu.solve(
+        right[2 * first : 2 * last][active_dofs], active_dofs, right[-1] if last == n else 0.0
+    )
     part.model.from_band(nodes, part.own, found.reshape(-1, 2))
-    expected = np.linalg.solve(dense(whole, at, dropped), right)
+    expected = np.linalg.solve(dense(whole, at, inactive_nodes), right)
     scale = np.tile(np.abs(expected[:-1]).reshape(-1, 2).max(axis=0), last - first)
     np.testing.assert_allclose(found / scale, expected[2 * first : 2 * last] / scale, rtol=0, atol=1e-7)
     assert abs(approach / expected[-1] - 1.0) < 1e-7

@@ -10,7 +10,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import CurvatureProduct
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.interleaving import firsts
+from ehlpetsc.discretisation.interleaving import q_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -73,4 +73,4 @@ def test_the_problems_film_leaves_no_residual_in_its_deflection_rows(model):
     assert film.min() > 0.0
     evaluation = problem.evaluate(q, problem.model.w_from_film(film), h00, problem.inputs(phi))
     terms = problem.deflection.curvature_coefficient * film.max()
-    assert np.abs(firsts(evaluation.residual, problem.n)).max() < 1e-12 * terms
+    assert np.abs(q_of(evaluation.residual, problem.n)).max() < 1e-12 * terms

@@ -13,11 +13,15 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import BLOCK
-from ehlpetsc.discretisation.interleaving import firsts, second_of, seconds
+from ehlpetsc.discretisation.interleaving import q_of, w_index, w_of
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE
 from ehlpetsc.nonlinear.newton import NewtonSolver
-from ehlpetsc.nonlinear.operators.jacobian_operator import LEAK, JacobianOperator, NearFieldMatrix
+from ehlpetsc.nonlinear.operators.jacobian_operator import (
+    PIVOT_REGULARISATION,
+    JacobianOperator,
+    NearFieldMatrix,
+)
 from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 from ehlpetsc.nonlinear.systems.two_fields import TwoFields
 from ehlpetsc.physics.film_formulas import expected_film
@@ -58,7 +62,7 @@ class Scene:
     def residual(self, state):
         system = self.solver.system
         n = system.n
-        parts = firsts(state, n).copy(), seconds(state, n).copy(), state[-1]
+        parts = q_of(state, n).copy(), w_of(state, n).copy(), state[-1]
         return system.problem.evaluate(*parts, self.inputs).residual.copy()
 
 
@@ -95,7 +99,7 @@ def differences(at, direction, step):
 def linearised(at):
     """The system with its Jacobian at the state, as SNES asks for it."""
     system, n = at.solver.system, at.solver.system.n
-    system.set_initial_guess(firsts(at.state, n), seconds(at.state, n), at.state[-1], at.inputs)
+    system.set_initial_guess(q_of(at.state, n), w_of(at.state, n), at.state[-1], at.inputs)
     at.solver.snes.computeJacobian(system.x, system.operator, system.preconditioned)
     return system
 
@@ -129,7 +133,7 @@ def test_every_column_is_the_difference_of_residuals(name):
 
 @pytest.mark.parametrize("name", ["direct", "mixed", "dry"])
 def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
-    """What other preconditioners get: with a near field as wide as the mesh, the Jacobian and its leaks."""
+    """What other preconditioners get: with a near field as wide as the mesh, the Jacobian, regularised."""
     at = scene(name)
     system, size = linearised(at), len(at.state)
     problem, jacobian = system.problem, system.jacobian
@@ -139,12 +143,12 @@ def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
     matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)
     NearFieldMatrix(problem, problem.n, matrix).fill(jacobian.state, jacobian.reynolds_derivatives)
     assembled, whole = columns_of(matrix, size), columns_of(exact, size)
-    leaks = np.diag(assembled - whole)
-    np.testing.assert_allclose(assembled - np.diag(leaks), whole, rtol=1e-9, atol=1e-12 * np.abs(whole).max())
+    added = np.diag(assembled - whole)
+    np.testing.assert_allclose(assembled - np.diag(added), whole, rtol=1e-9, atol=1e-12 * np.abs(whole).max())
     blind = jacobian.state.p_q == 0.0
     assert blind.any() == (problem.fluid is not None)
-    np.testing.assert_allclose(firsts(leaks, problem.n), np.where(blind, LEAK, 0.0), atol=1e-9)
-    np.testing.assert_allclose(seconds(leaks, problem.n), 0.0, atol=1e-9)
+    np.testing.assert_allclose(q_of(added, problem.n), np.where(blind, PIVOT_REGULARISATION, 0.0), atol=1e-9)
+    np.testing.assert_allclose(w_of(added, problem.n), 0.0, atol=1e-9)
     # the product inside GMRES has the far kernel to its own tolerance
     far = (
         LINEAR_TOLERANCE
@@ -159,9 +163,11 @@ def test_a_restricted_operator_is_the_block_of_the_whole(name):
     """What SNESVI keeps of the system."""
     at = scene(name)
     system, size = linearised(at), len(at.state)
-    kept = np.setdiff1d(np.arange(size), second_of(np.array(at.touching))).astype(np.int32)
-    block = system.operator.createSubMatrix(PETSc.IS().createGeneral(kept, comm=PETSc.COMM_SELF))
+    active_dofs = np.setdiff1d(np.arange(size), w_index(np.array(at.touching))).astype(np.int32)
+    block = system.operator.createSubMatrix(PETSc.IS().createGeneral(active_dofs, comm=PETSc.COMM_SELF))
     whole = columns_of(system.operator, size)
-    np.testing.assert_allclose(columns_of(block, len(kept)), whole[np.ix_(kept, kept)], rtol=1e-12)
+    np.testing.assert_allclose(
+        columns_of(block, len(active_dofs)), whole[np.ix_(active_dofs, active_dofs)], rtol=1e-12
+    )
     context = block.getPythonContext()
-    np.testing.assert_array_equal(context.dropped, at.touching)
+    np.testing.assert_array_equal(context.inactive_nodes, at.touching)

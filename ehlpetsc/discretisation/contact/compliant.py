@@ -18,7 +18,7 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
 from ehlpetsc.discretisation.contact.node_state import NodeState, full_of_oil, limit_cavitation
-from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+from ehlpetsc.discretisation.interleaving import q_columns, w_columns
 from ehlpetsc.physics.asperities import (
     CONTACT_PRESSURE,
     asperity_pressure,
@@ -145,7 +145,7 @@ class CompliantContact(SeparatedContact):
         separation_second = np.where(stiff, 0.0, state.separation_w)
         slope = np.where(full, state.p_w, 0.0)[stencil]
         derivatives = derivatives.copy()
-        by_q, by_h = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+        by_q, by_h = q_columns(derivatives), w_columns(derivatives)
         old_q, old_h, stiff = by_q.copy(), by_h.copy(), stiff[stencil]
         by_q[:] = np.where(stiff, old_h * h_p[stencil], old_q)
         by_h[:] = np.where(stiff, old_q, old_h - old_q * slope)

@@ -23,7 +23,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     limit_cavitation,
 )
 from ehlpetsc.discretisation.contact.yielding import Hardening
-from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+from ehlpetsc.discretisation.interleaving import q_columns, w_columns
 from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
 
 
@@ -113,10 +113,10 @@ class CompliantYieldingContact(Hardening, CompliantContact):
         p_first = np.where(y.yielding, y.hardening, entries.p_first)
         separation_first = np.where(y.yielding, -self.compliance, entries.separation_first)
         separation_second = np.where(closed, 0.0, np.where(by_oil, 1.0, entries.separation_second))
-        old_q, old_h = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+        old_q, old_h = q_columns(derivatives), w_columns(derivatives)
         by_first, by_second = (
-            firsts_of_rows(entries.reynolds_derivatives),
-            seconds_of_rows(entries.reynolds_derivatives),
+            q_columns(entries.reynolds_derivatives),
+            w_columns(entries.reynolds_derivatives),
         )
         slope = np.where(by_oil, y.reynolds_w, 0.0)[stencil]
         by_oil, closed = by_oil[stencil], closed[stencil]

@@ -21,7 +21,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     full_of_oil,
     limit_cavitation,
 )
-from ehlpetsc.discretisation.interleaving import firsts_of_rows, seconds_of_rows
+from ehlpetsc.discretisation.interleaving import q_columns, w_columns
 
 
 class SeparatedContact(ContactModel):
@@ -130,7 +130,7 @@ def swap_pairs(derivatives, swapped, blind):
     if not blind.any():
         return derivatives
     derivatives = derivatives.copy()
-    by_first, by_second = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
+    by_first, by_second = q_columns(derivatives), w_columns(derivatives)
     by_second[:] = np.where(swapped, by_first, by_second)
     by_first[:] = np.where(blind, 0.0, by_first)
     return derivatives

@@ -1,7 +1,7 @@
-"""The Jacobian as PETSc's matrices: matrix-free with the exact deflection, and its near field assembled.
+"""The Jacobian as PETSc's matrices: matrix-free with the whole deflection, and its near field assembled.
 
-The Krylov method multiplies by the whole Jacobian (:class:`JacobianOperator`, a Python matrix); the
-default preconditioner takes what it needs from that operator, by ``pc.getOperators()``. Other preconditioners
+The Krylov method multiplies by the whole Jacobian (:class:`JacobianOperator`, a Python matrix), from which
+the default preconditioner takes its coefficients (``pc.getOperators()``). Other preconditioners
 (``-pc_type lu`` ...) get :class:`NearFieldMatrix`.
 """
 
@@ -10,79 +10,60 @@ import numpy as np
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.interleaving import (
-    count,
-    first_of,
-    firsts,
-    firsts_of_rows,
-    nodes_of_seconds,
-    second_of,
-    seconds,
-    seconds_of_rows,
+    n_dofs,
+    nodes_of_w,
+    q_columns,
+    q_index,
+    q_of,
+    w_columns,
+    w_index,
+    w_of,
 )
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.operators.python_matrix import Restrictable
+from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 
-LEAK = 1e-3  # of dp/dq at cavitated nodes, in preconditioners alone: a pivot that is never zero
+PIVOT_REGULARISATION = 1e-3  # of dp/dq: at cavitated nodes, in preconditioners alone
 
 
-def leaks(*derivatives):
-    """What preconditioners add to the diagonal of the deflection rows: where they do not know q, a little.
+def pivot_regularisation(*derivatives):
+    """Addition to the diagonal of the deflection rows in preconditioners, where no entry depends on q.
 
     Parameters
     ----------
     derivatives : ndarray
-        Of all that the rows have of q at their own node.
+        All derivatives of the rows with respect to q of their own node.
     """
-    known = np.any([d != 0.0 for d in derivatives], axis=0)
-    return np.where(known, 0.0, LEAK)
+    has_entry = np.any([d != 0.0 for d in derivatives], axis=0)
+    return np.where(has_entry, 0.0, PIVOT_REGULARISATION)
 
 
-class BandSystem:
-    """What the default preconditioner asks of an operator on some of the pairs (q, w), h00 last.
-
-    Attributes
-    ----------
-    kept : ndarray of int
-        Local places, of the pairs alone, that are in the system.
-    dropped : ndarray of int
-        Local nodes whose second unknown is not.
-    """
-
-    def rows_for_band(self, b):
-        """A right-hand side as the rows of `kept` and the load's, which the last rank has."""
-        return b[: len(self.kept)], b[len(self.kept) :]
-
-    def take_from_band(self, solution, approach, out):
-        """Fill in the unknowns from the local pairs and h00."""
-        count = len(self.kept)
-        out[:count] = solution if count == len(solution) else solution[self.kept]
-        out[count:] = approach  # on the last rank
-
-
-class JacobianOperator(BandSystem, Restrictable):
-    """Context of PETSc's Python matrix.
+class JacobianOperator:
+    """Matrix-free Jacobian, context of PETSc's Python matrix.
 
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
     exchange : halo_exchange.HaloExchange
-    factors : object
-        Keeps the default preconditioner's factors between solves, see :mod:`.preconditioner`.
+    factors : preconditioner.far_field_band.Factors or None
+        Of the default preconditioner, kept between solves.
 
     Attributes
     ----------
     model, state, reynolds_derivatives
         Of the linearisation, as in `ehl_problem.Evaluation`.
+    active_dofs : ndarray of int
+        Local indices of the unknowns in the system, without h00.
+    inactive_nodes : ndarray of int
+        Local nodes whose second unknown is not in the system.
     """
 
     def __init__(self, problem, exchange, factors):
-        super().__init__(RestrictedOperator)
         self.problem, self.exchange, self.factors = problem, exchange, factors
-        self.kept = np.arange(count(problem.local))
-        self.dropped = np.arange(0)
+        self.active_dofs, self.inactive_nodes = np.arange(n_dofs(problem.local)), np.arange(0)
+        self.model = self.state = self.reynolds_derivatives = None
 
     def linearise(self, evaluation):
-        """Take the derivatives of a state."""
+        """Set the state whose derivatives the products have."""
         self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
         self.state = self.model.linearised(evaluation.state, self.problem.own, self._ranks_sum)
 
@@ -100,21 +81,25 @@ class JacobianOperator(BandSystem, Restrictable):
         with events.PRODUCT:
             out.array[:] = self.times(v.array_r)
 
+    def createSubMatrix(self, mat, rows, columns, out=None):
+        """Matrix of the unknowns that SNESVI keeps; rows and columns are the same."""
+        return python_matrix(RestrictedOperator(self, rows, mat), rows.getSizes(), mat.comm)
 
-class RestrictedOperator(BandSystem):
-    """The Jacobian of the unknowns that SNESVI has kept; context of a Python matrix."""
+
+class RestrictedOperator:
+    """Jacobian of the unknowns that SNESVI keeps, context of a Python matrix."""
 
     def __init__(self, whole, rows, mat):
         self.whole, self.problem, self.factors = whole, whole.problem, whole.factors
         local, load = self.problem.local, self.problem.load_is_local
-        self.places = rows.indices - mat.getOwnershipRange()[0]
-        self.kept = self.places[: len(self.places) - load]
-        self.size = count(local) + load
-        self.dropped = whole.dropped
-        if len(self.places) < self.size:
-            seconds_kept = np.zeros(local, dtype=bool)
-            seconds_kept[nodes_of_seconds(self.kept)] = True
-            self.dropped = np.flatnonzero(~seconds_kept)
+        self.dof_indices = rows.indices - mat.getOwnershipRange()[0]
+        self.active_dofs = self.dof_indices[: len(self.dof_indices) - load]
+        self.size = n_dofs(local) + load
+        self.inactive_nodes = whole.inactive_nodes
+        if len(self.dof_indices) < self.size:
+            is_active = np.zeros(local, dtype=bool)
+            is_active[nodes_of_w(self.active_dofs)] = True
+            self.inactive_nodes = np.flatnonzero(~is_active)
 
     @property
     def model(self):
@@ -131,12 +116,12 @@ class RestrictedOperator(BandSystem):
     def mult(self, mat, v, out):
         """PETSc's product."""
         with events.PRODUCT:
-            if len(self.places) == self.size:
+            if len(self.dof_indices) == self.size:
                 out.array[:] = self.whole.times(v.array_r)
                 return
             full = np.zeros(self.size)
-            full[self.places] = v.array_r
-            out.array[:] = self.whole.times(full)[self.places]
+            full[self.dof_indices] = v.array_r
+            out.array[:] = self.whole.times(full)[self.dof_indices]
 
 
 class NearFieldMatrix:
@@ -164,11 +149,11 @@ class NearFieldMatrix:
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-self.near, self.near + 1)
         self.there = (nodes >= 0) & (nodes < n)
         self.nodes = np.clip(nodes, 0, n - 1)
-        by_q = np.where(self.there, first_of(self.nodes), -1)
-        by_w = np.where(self.there, second_of(self.nodes), -1)
+        by_q = np.where(self.there, q_index(self.nodes), -1)
+        by_w = np.where(self.there, w_index(self.nodes), -1)
         approach = np.full((p.local, 1), -1)
         for end in p.deflection.ends:
-            approach[end - p.first] = count(n)
+            approach[end - p.first] = n_dofs(n)
         self.columns = np.hstack([by_q, by_w, approach]).astype(np.int32)
 
     def _pattern(self):
@@ -176,7 +161,7 @@ class NearFieldMatrix:
         for deflection, reynolds in zip(self.columns, p.reynolds_columns, strict=True):
             rows += [deflection[deflection >= 0], reynolds[reynolds >= 0]]
         if p.load_is_local:
-            rows.append(np.arange(count(p.n) + 1))
+            rows.append(np.arange(n_dofs(p.n) + 1))
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
     def fill(self, state, derivatives):
@@ -191,28 +176,28 @@ class NearFieldMatrix:
             bend[row, near] = d.end_row_coefficient
         by_q = kernel * state.p_q[self.nodes] + bend * state.separation_q[self.nodes]
         own = slice(p.first, p.last)
-        by_q[:, near] += leaks(state.p_q[own], state.separation_q[own])
+        by_q[:, near] += pivot_regularisation(state.p_q[own], state.separation_q[own])
         by_w = kernel * state.p_w[self.nodes] + bend * state.separation_w[self.nodes]
         approach = np.full((p.local, 1), -d.end_row_coefficient)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
-        set_rows(self.matrix, first_of(nodes), self.columns, np.hstack([by_q, by_w, approach]))
-        set_rows(self.matrix, second_of(nodes), p.reynolds_columns, self._by_unknowns(state, derivatives))
+        set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
+        set_rows(self.matrix, w_index(nodes), p.reynolds_columns, self._by_unknowns(state, derivatives))
         if p.load_is_local:
-            load = np.zeros(count(p.n))
-            firsts(load, p.n)[:], seconds(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
-            self.matrix.setValues([count(p.n)], np.arange(count(p.n), dtype=np.int32), load)
+            load = np.zeros(n_dofs(p.n))
+            q_of(load, p.n)[:], w_of(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
+            self.matrix.setValues([n_dofs(p.n)], np.arange(n_dofs(p.n), dtype=np.int32), load)
         self.matrix.assemble()
 
     def _by_unknowns(self, state, derivatives):
-        """Reynolds' rows by q and w."""
+        """Derivatives of the Reynolds rows with respect to q and w."""
         p, values = self.problem, derivatives.copy()
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
         nodes = np.clip(nodes, 0, p.n - 1)
-        by_unknown, by_film = firsts_of_rows(derivatives), seconds_of_rows(derivatives)
-        seconds_of_rows(values)[:] = by_film * state.h_w[nodes]
+        by_unknown, by_film = q_columns(derivatives), w_columns(derivatives)
+        w_columns(values)[:] = by_film * state.h_w[nodes]
         if state.plastic is not None:
-            firsts_of_rows(values)[:] = by_unknown * state.plastic.reynolds_q[nodes]
-            seconds_of_rows(values)[:] += by_unknown * state.plastic.reynolds_w[nodes]
+            q_columns(values)[:] = by_unknown * state.plastic.reynolds_q[nodes]
+            w_columns(values)[:] += by_unknown * state.plastic.reynolds_w[nodes]
         return values
 
 

@@ -1,10 +1,10 @@
-r"""The contact's matrix with the far deflection in it: block tridiagonal, with M unknowns more to a group.
+r"""Block tridiagonal matrix of a contact with the far deflection, by M more unknowns in every group of nodes.
 
 A group of `GROUP` nodes has the unknowns (h_2, h_1, Q_1 .. Q_M, q_1 .. q_4, h_3, h_4): sums of
-:mod:`.exponential_kernel` and the pairs of its nodes, so ordered that what the groups behind and before take
-of it stands together (:mod:`.block_lu`). It is coupled with its two neighbours alone. What does not fit,
-three dense rows (the whole deflection at both end nodes; the load), is kept apart. A rank holds the groups of
-its nodes; what its outer groups take of other ranks stands where a group before or behind would.
+:mod:`.exponential_kernel` and the pairs of its nodes, in an order in which those that the group behind or
+before couples to are contiguous (:mod:`.block_lu`). Three dense rows, the whole deflection at both end nodes
+and the load, are stored separately. A rank has the groups of its nodes, the last one of several from right to
+left; the coefficients of other ranks' groups are stored as those of a group before or behind.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
-from ehlpetsc.nonlinear.operators.jacobian_operator import leaks
+from ehlpetsc.nonlinear.operators.jacobian_operator import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
 
@@ -22,7 +22,7 @@ FIRST_PRESSURE = FIRST_SUM + TERMS
 
 
 class BandedJacobian:
-    """Places and values of the local entries.
+    """Indices and values of the local entries.
 
     Parameters
     ----------
@@ -40,8 +40,8 @@ class BandedJacobian:
     entries : contact.band.BandEntries or None
         Of the state last filled in.
     dense : ndarray, shape (3, nodes)
-        Of the same: what the band lacks of both end nodes' deflection, and the load, under
-        the local first unknowns.
+        Of the same state: deflection at both end nodes that the band lacks, and the load, in the
+        columns of the local first unknowns.
     """
 
     def __init__(self, problem):
@@ -53,7 +53,7 @@ class BandedJacobian:
         self.size = self.groups * LINE
         self.dofs = np.stack([self._pressure(self.nodes), self._film(self.nodes)], axis=1).ravel()
         self.end_groups = np.stack([np.arange(LINE), np.arange(self.size - LINE, self.size)])
-        self.values = np.zeros(self.size * WIDTH + 1)  # the last one: what stands nowhere
+        self.values = np.zeros(self.size * WIDTH + 1)  # the last one: entries that do not exist
         self.columns = self.values[:-1].reshape(self.groups, WIDTH, LINE)
         self._recurrences()
         self._padding()
@@ -88,7 +88,7 @@ class BandedJacobian:
         return self._dof(self._group(node), FILMS[self._in_group(node)])
 
     def _at(self, row, column):
-        """Place of an entry among `values`; the last one where it stands nowhere."""
+        """Index of an entry in `values`; the last one where it does not exist."""
         (group, r), (other, c) = np.divmod(row, LINE), np.divmod(column, LINE)
         beside = np.abs(other - group) <= 1
         starts = np.choose(
@@ -103,7 +103,7 @@ class BandedJacobian:
         for towards, outer, at_end in ((-1, 0, p.first == 0), (1, -1, p.last == p.n)):
             beyond = self._at(row, self._sums(groups + towards))
             self.values[beyond] = -1.0
-            if at_end:  # no pressure beyond: the sum falls on as the exponential does
+            if at_end:  # no pressure beyond: the sum decays as the exponential
                 self.values[beyond[outer]] = 0.0
                 self.values[self._at(row[outer], row[outer])] -= np.exp(-self.rates)
 
@@ -114,7 +114,7 @@ class BandedJacobian:
             self.values[self._at(spare, spare)] = 1.0
 
     def _under_films(self):
-        """What the deflection rows have of films (nodes of the window, values, places), and of the sums."""
+        """Entries of the deflection rows: films (nodes of the window, values, indices), and sums."""
         d, inner = self.problem.deflection, self._inner()
         ends = np.array(d.ends, dtype=int)
         row = self._pressure(inner)
@@ -130,7 +130,7 @@ class BandedJacobian:
         self.values[self._at(row[:, None], self._sums(self._group(inner)))] = -self.weights
 
     def _under_pressures(self):
-        """Under first unknowns, of recurrences and deflection rows: nodes in the window, values, places."""
+        """Entries of recurrences and deflection rows in the columns of first unknowns."""
         p, inner, d = self.problem, self._inner(), self.problem.deflection
         own = np.repeat(self.nodes, TERMS)
         rows = [self._sums(self._group(self.nodes)).ravel()]
@@ -175,7 +175,7 @@ class BandedJacobian:
         return self.nodes[self._group(self.nodes) == self._group(end)]
 
     def _under_reynolds(self):
-        """Places of Reynolds' stencil, q and h of the nodes i-2 .. i+1 of the window in each row."""
+        """Indices of the Reynolds stencil, q and h of the nodes i-2 .. i+1 in each row."""
         p = self.problem
         node = self.nodes[:, None] + np.arange(-2, 2)
         both = np.stack([self._pressure(node), self._film(node)], axis=2).reshape(len(node), -1)
@@ -184,14 +184,14 @@ class BandedJacobian:
         place = self._at(self._film(self.nodes)[:, None], both)
         self.reynolds_place = np.where(there, place, self.values.size - 1)
 
-    def fill(self, entries, dropped):
-        """Values for one state.
+    def fill(self, entries, inactive_nodes):
+        """Entries at one state.
 
         Parameters
         ----------
         entries : contact.band.BandEntries
-        dropped : ndarray of int
-            Local nodes whose second unknown stays as it is.
+        inactive_nodes : ndarray of int
+            Local nodes whose second unknown is not in the system.
 
         Returns
         -------
@@ -199,7 +199,7 @@ class BandedJacobian:
             As :class:`.block_lu.BlockLU` takes them.
         """
         self._fill_deflection(entries)
-        put(entries.reynolds_derivatives, self.reynolds_place, dropped, OWN + 1, self.values)
+        put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
         return self.columns
 
     def _fill_deflection(self, entries):
@@ -217,7 +217,7 @@ class BandedJacobian:
             self.values[self.pressure_place[some]] = values
             own = self.problem.own
             local = np.flatnonzero(changed[own])
-            self.values[self.diagonal[local]] += leaks(pressure[own][local], depth[own][local])
+            self.values[self.diagonal[local]] += pivot_regularisation(pressure[own][local], depth[own][local])
             self.dense = self.under_pressure * pressure[own]
         if film_changed.any():
             some = np.flatnonzero(film_changed[self.film_nodes])
@@ -226,14 +226,14 @@ class BandedJacobian:
 
 
 @compiled
-def put(entries, places, dropped, diagonal, values):
-    """Put rows of entries at their places among values; of a row dropped, a one on its diagonal alone.
+def put(entries, places, inactive_nodes, diagonal, values):
+    """Put rows of entries at their places among values; of a row inactive_nodes, a one on its diagonal alone.
 
     Parameters
     ----------
     entries : ndarray, shape (rows, width)
     places : ndarray of int, shape (rows, width)
-    dropped : ndarray of int
+    inactive_nodes : ndarray of int
     diagonal : int
         Column of the entry on the diagonal.
     values : ndarray
@@ -241,6 +241,6 @@ def put(entries, places, dropped, diagonal, values):
     for i in range(entries.shape[0]):
         for k in range(entries.shape[1]):
             values[places[i, k]] = entries[i, k]
-    for i in dropped:
+    for i in inactive_nodes:
         for k in range(entries.shape[1]):
             values[places[i, k]] = 1.0 if k == diagonal else 0.0

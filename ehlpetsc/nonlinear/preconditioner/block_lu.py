@@ -7,7 +7,7 @@ Rows are exchanged within a block alone. L contains some of the unknowns of the 
 group behind. A solve is three products of small matrices with vectors in each group, a sixth of the time of
 LAPACK's substitution in a band; the factors take half as long as LAPACK's.
 
-All matrices are kept by columns, each with room for `LINE` numbers, three vectors of the processor. Numba
+All matrices are stored by columns, each with room for `LINE` numbers, three vectors of the processor. Numba
 makes vectors of a loop only where it can tell that nothing written is read again; :func:`axpy_four` reads
 before it writes, so that it need not ask. Loops count in unsigned numbers or to constants: numba takes twice
 as long over indices that may be negative, and over short loops whose length it does not know. It keeps what

@@ -52,15 +52,15 @@ class DistributedLU:
                 self._interface = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], self._interface])
             self._reduced = ReducedSystem(LEFT, RIGHT, ranks.rank, ranks.size)
 
-    def factor(self, entries, dropped, anew=True):
+    def factor(self, entries, inactive_nodes, anew=True):
         """Factor for one state; unless `anew`, not where the last factors are nearly its own; collective.
 
         Other arguments as of :meth:`.banded_jacobian.BandedJacobian.fill`.
         """
-        if not anew and all_ranks(self.ranks, self._is_still_good(entries, dropped)):
+        if not anew and all_ranks(self.ranks, self._is_still_good(entries, inactive_nodes)):
             return
-        self._factored = dropped, entries.reynolds_derivatives
-        columns = self.band.fill(entries, dropped)
+        self._factored = inactive_nodes, entries.reynolds_derivatives
+        columns = self.band.fill(entries, inactive_nodes)
         self._lu.factor(columns)
         if self.ranks.size > 1:
             self._factor_interface(columns[0, :LEFT], columns[-1, LEFT + SIZE :])
@@ -136,28 +136,28 @@ class DistributedLU:
         border_sums(y, self.band.dofs, self.band.dense, load, sums)
         return sums if self.ranks.size == 1 else self._gather(sums).sum(axis=0)
 
-    def _is_still_good(self, entries, dropped):
+    def _is_still_good(self, entries, inactive_nodes):
         """Whether the factors of this rank are nearly those of the given state."""
         before, rows = self._factored
         return (
-            np.array_equal(dropped, before)
+            np.array_equal(inactive_nodes, before)
             and entries.same_deflection(self.band.entries)
             and is_close(entries.reynolds_derivatives, rows, CLOSE)
         )
 
-    def solve(self, b, kept, load):
+    def solve(self, b, active_dofs, load):
         """Solution of the local (q, h, q, h, ...), shape (2 nodes,), and h00; collective.
 
         Parameters
         ----------
         b : ndarray
-            Right-hand side of the rows `kept` (of 2 nodes); that of all others is zero.
-        kept : ndarray of int
+            Right-hand side of the rows `active_dofs` (of 2 nodes); that of all others is zero.
+        active_dofs : ndarray of int
         load : float
             Right-hand side of the load's row on the rank that has it, else 0.
         """
         y, dofs = self._y, self.band.dofs
-        scatter(dofs, kept, b, y)
+        scatter(dofs, active_dofs, b, y)
         self._solve_band(y, 0)
         first, last, approach = self._border_inverse @ self._border_sums(y, load)[0]
         solution = np.empty(len(dofs))
@@ -166,11 +166,11 @@ class DistributedLU:
 
 
 @compiled
-def scatter(dofs, kept, b, y):
-    """Fill in y (1, size): zero, but ``b[i]`` at ``dofs[kept[i]]``."""
+def scatter(dofs, active_dofs, b, y):
+    """Fill in y (1, size): zero, but ``b[i]`` at ``dofs[active_dofs[i]]``."""
     y[:] = 0.0
-    for i in range(len(kept)):
-        y[0, dofs[kept[i]]] = b[i]
+    for i in range(len(active_dofs)):
+        y[0, dofs[active_dofs[i]]] = b[i]
 
 
 @compiled

@@ -2,8 +2,8 @@
 
 Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.preconditioner.FarFieldBand`` (the default).
 
-The band of :mod:`.banded_jacobian`, far deflection included, split between ranks by :mod:`.distributed_lu`.
-What GMRES has left to do is the error of three exponentials, the same on any number of ranks.
+The band of :mod:`.banded_jacobian` includes the far deflection; :mod:`.distributed_lu` splits it by ranks.
+The error left to GMRES is that of three exponentials, the same on any number of ranks.
 """
 
 from ehlpetsc.nonlinear import events
@@ -12,8 +12,9 @@ from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
 
 
 class Factors:
-    """The factors of one scene, kept from one matrix to the next: PETSc makes a preconditioner anew
-    whenever the contact set changes.
+    """Factors of one scene, kept from one matrix to the next.
+
+    PETSc creates a new preconditioner whenever the contact set changes.
 
     Parameters
     ----------
@@ -33,24 +34,25 @@ class Factors:
         """Factor for the state of a :mod:`ehlpetsc.nonlinear.operators.jacobian_operator`."""
         state, derivatives = operator.state, operator.reynolds_derivatives
         entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
-        self.lu.factor(entries, operator.dropped, anew=not self.fresh)
+        self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
 
 
 class FarFieldBand:
-    """PETSc calls `setUp` for a new matrix and `apply` for every right-hand side."""
+    """Context of PETSc's Python preconditioner."""
 
     def setUp(self, pc):
-        """Take the state from the operator and factor for it."""
+        """Factor for the state of the operator."""
         with events.FACTOR:
             self.operator = pc.getOperators()[0].getPythonContext()
             self.operator.factors.factor(self.operator)
 
     def apply(self, pc, x, y):
-        """Solve."""
-        o, problem = self.operator, self.operator.problem
+        """Solve for one right-hand side."""
+        o, b, out = self.operator, x.array_r, y.array
+        active = len(o.active_dofs)  # h00 follows on the last rank
         with events.BACK_SOLVE:
-            rows, load = o.rows_for_band(x.array_r)
-            solution, approach = o.factors.lu.solve(rows, o.kept, load.sum())
-            o.model.from_band(o.state, problem.own, solution.reshape(-1, 2))
-            o.take_from_band(solution, approach, y.array)
+            solution, approach = o.factors.lu.solve(b[:active], o.active_dofs, b[active:].sum())
+            o.model.from_band(o.state, o.problem.own, solution.reshape(-1, 2))
+            out[:active] = solution if active == len(solution) else solution[o.active_dofs]
+            out[active:] = approach

@@ -13,7 +13,7 @@ from petsc4py import PETSc
 from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
-from ehlpetsc.discretisation.interleaving import count, firsts, pairs, seconds
+from ehlpetsc.discretisation.interleaving import n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, HaloExchange, all_ranks, global_max
@@ -68,13 +68,13 @@ class TwoFields:
         self.inputs = self.x_evaluated = self.rows = self.operator = None
 
     def _create_vectors(self):
-        sizes = (count(self.local) + self.problem.load_is_local, count(self.n) + 1)
+        sizes = (n_dofs(self.local) + self.problem.load_is_local, n_dofs(self.n) + 1)
         self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
         self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
         self.lower.set(PETSc.NINFINITY)
         self.upper.set(PETSc.INFINITY)
         if self.model.lower_bound is not None:
-            seconds(self.lower.array, self.local)[:] = self.model.lower_bound
+            w_of(self.lower.array, self.local)[:] = self.model.lower_bound
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self._made = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
 
@@ -109,7 +109,7 @@ class TwoFields:
         """
         self.inputs, self.x_evaluated, self.rows = inputs, None, None
         mine = slice(self.problem.first, self.problem.last)
-        firsts(self.x.array, self.local)[:], seconds(self.x.array, self.local)[:] = q[mine], w[mine]
+        q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = q[mine], w[mine]
         if self.problem.load_is_local:
             self.x.array[-1] = h00
 
@@ -120,7 +120,7 @@ class TwoFields:
     def _pairs_of(self, v):
         self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
         whole = self.all.array_r
-        return firsts(whole, self.n).copy(), seconds(whole, self.n).copy(), whole[-1]
+        return q_of(whole, self.n).copy(), w_of(whole, self.n).copy(), whole[-1]
 
     def residual(self):
         """Rows of the solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
@@ -175,7 +175,7 @@ class TwoFields:
 
     def reaches_bound(self, x, y):
         """Whether the step y takes a film to its bound, on any rank."""
-        film = seconds(x.array_r, self.local) - seconds(y.array_r, self.local)
+        film = w_of(x.array_r, self.local) - w_of(y.array_r, self.local)
         is_clear = film.min() > self.model.lower_bound + self.model.bound_tolerance
         return not all_ranks(self.exchange.ranks, is_clear)
 
