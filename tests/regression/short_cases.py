@@ -43,6 +43,7 @@ SHORT = {
     "running_in": (*QUICK, "time.passes=2", "contact.yield_pressure=1.1e9"),
     "stribeck": (*QUICK, "series.values=[5.0, 0.05]"),
     "table1_damage": QUICK,
+    "table1_heat": QUICK,
     "table1_mixed": QUICK,
     "table1_rough": QUICK,
     "table1_smooth": (),
