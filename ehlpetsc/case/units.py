@@ -46,15 +46,15 @@ def in_si(data, model):
     return settings, faults
 
 
-def converted(value, unit):
+def converted(value, unit, depth=2):
     """A text with a unit, or a list with such texts, in `unit`; anything else as it is.
 
     Raises
     ------
     UnitFault
     """
-    if isinstance(value, list):
-        return [converted(item, unit) for item in value]
+    if isinstance(value, list) and depth:
+        return [converted(item, unit, depth - 1) for item in value]
     found = VALUE.fullmatch(value) if isinstance(value, str) else None
     if not found:
         return value
@@ -90,7 +90,7 @@ def _texts(data, model, above=()):
         name, value = field.alias, data.get(field.alias) if isinstance(data, dict) else None
         keys, unit = [*above, name], field.field_info.extra.get("unit")
         if isinstance(value, dict):
-            inner = SYNTHETIC.get(value.get("kind")) if name == "synthetic" else field.type_
+            inner = SYNTHETIC.get(str(value.get("kind"))) if name == "synthetic" else field.type_
             if isinstance(inner, type) and issubclass(inner, Table):
                 yield from _texts(value, inner, keys)
         elif unit and unit not in TEXT_UNITS and _has_text(value):
@@ -100,9 +100,9 @@ def _texts(data, model, above=()):
 
 
 def _of_series(series, model):
-    keys = [series["key"]] if "key" in series else series.get("keys") or []
+    keys = [series["key"]] if "key" in series else series.get("keys")
     values = series.get("values")
-    for number, key in enumerate(keys):
+    for number, key in enumerate(keys if isinstance(keys, list) else ()):
         unit = _unit_of(key, model)
         if unit is None or not isinstance(values, list) or number >= len(values):
             continue
@@ -123,5 +123,7 @@ def _unit_of(key, model):
     return None if unit in TEXT_UNITS else unit
 
 
-def _has_text(value):
-    return isinstance(value, str) or isinstance(value, list) and any(_has_text(item) for item in value)
+def _has_text(value, depth=2):
+    if isinstance(value, list) and depth:
+        return any(_has_text(item, depth - 1) for item in value)
+    return isinstance(value, str)

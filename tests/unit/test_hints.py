@@ -46,6 +46,11 @@ def test_a_fault_names_what_was_probably_meant(key, value, hint):
     assert hint in fault({key: value})
 
 
+@pytest.mark.parametrize("value", [10**400, float("nan"), float("inf"), 0, -206])
+def test_numbers_that_no_power_of_ten_mends_have_no_hint(value):
+    assert not re.search(r"; \S*e\d+\?$", fault({"contact.youngs_modulus": value}))
+
+
 def test_hints_are_tables_and_keys_there_are():
     assert nearest("movement", Case) == 'did you mean "motion"?'
     assert nearest("oil", Case) == 'did you mean "fluid"?'

@@ -85,6 +85,8 @@ def test_a_series_takes_units():
         ("contact.radius", "12 mmm", 'contact.radius = "12 mmm": unknown unit'),
         ("contact.radius", "twelve", 'contact.radius = "twelve": allowed: a number'),
         ("motion.slide_roll_ratio", "25 %", "allowed: a number"),
+        ("surface.1.synthetic", {"kind": ["sine"], "amplitude": "1 um"}, '"ground" | "sine"'),
+        ("series", {"keys": 5, "values": ["1 mm"]}, "series.keys = 5"),
         ("contact.load", "-1 N/mm", "contact.load = -1000.0: allowed: a number"),
     ],
 )
