@@ -18,10 +18,11 @@ from ehlpetsc.study.lines import (
     RADIUS,
     ROELANDS,
     TABLE_1,
+    ground,
     inlet_of,
     load_of,
+    wave,
 )
-from ehlpetsc.study.rough_lines import ground, wave
 from ehlpetsc.study.runs import run
 
 HEAD = ("number", "status", "steps", "retries", "newton", "file", "words", "overrides")

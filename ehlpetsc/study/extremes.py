@@ -6,10 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.study.far_lines import far_lines
-from ehlpetsc.study.lines import steady_lines
+from ehlpetsc.study.lines import cases
 from ehlpetsc.study.reasons import why
-from ehlpetsc.study.rough_lines import time_lines
 from ehlpetsc.study.runs import run
 
 HEAD = (
@@ -44,7 +42,7 @@ def lines(short=False, far=False, model=None):
     model : str, optional
         Contact model of all lines that do not choose their own: "direct", "mixed" or "compliant".
     """
-    whole = far_lines() if far else [*steady_lines(), *time_lines()]
+    whole = cases("far") if far else cases("steady", "time")
     if short:
         whole = [_shortened(line) for line in whole if line.short]
     return [_of_model(line, model) for line in whole] if model else whole

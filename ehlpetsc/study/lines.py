@@ -1,4 +1,4 @@
-"""The lines of the table of extremes: what a user may ask for at the edge of the ranges."""
+"""The cases of the tables of extremes: read from extremes.toml, changes of a base case."""
 
 import math
 import tomllib
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ehlpetsc.physics.film_formulas import moes_central_film
-from ehlpetsc.physics.scales import hertz_line, moes_groups, reduced_modulus
+from ehlpetsc.physics.scales import moes_groups, reduced_modulus
 
 PROFILES = Path(__file__).parents[2] / "cases" / "profiles"
 FLOODED = 20.0  # central films in the undeformed gap at the inlet: further out the film does not feel it
@@ -39,6 +39,19 @@ points_per_half_width = 100
 BARUS = TABLE_1.replace('law = "seed"', 'law = "barus"')
 ROELANDS = TABLE_1.replace('law = "seed"', 'law = "roelands"\nroelands_z = 0.68\nroelands_pressure = 0.196e9')
 MOES = BARUS.replace("eyring_stress = 10e6", "").replace('"dowson-higginson"', '"incompressible"')
+
+DRY = TABLE_1[: TABLE_1.index("[fluid]")] + TABLE_1[TABLE_1.index("[motion]") :]
+NEWTON = TABLE_1.replace("eyring_stress = 10e6\n", "")
+BASES = {
+    "table_1": TABLE_1,
+    "barus": BARUS,
+    "roelands": ROELANDS,
+    "moes": MOES,
+    "dry": DRY,
+    "newton": NEWTON,
+}
+CORRELATION = 25e-6  # m
+SHORT_DOMAIN = ("mesh.inlet=-1.5", "mesh.outlet=1.3", "output.every=1000000", 'output.fields=["pressure"]')
 
 _TABLE = tomllib.loads(TABLE_1)
 RADIUS, LOAD = (_TABLE["contact"][key] for key in ("radius", "load"))  # R [m], w' [N/m]
@@ -84,122 +97,41 @@ def inlet_of(load, viscosity, speed, alpha=11.1e-9, modulus=MODULUS):
     return -max(2.5, math.ceil(10.0 * math.sqrt(1.0 + 2.0 * FLOODED * film)) / 10.0)
 
 
-def steady_lines():
-    """Viscosity law, load, Moes numbers, speed, materials, sliding, starvation: no time steps."""
-    return [*_viscosity(), *_load(), *_moes(), *_speed(), *_materials(), *_sliding(), *_starved()]
+def ground(ra, seed=1, correlation=CORRELATION):
+    """Setting of a random ground profile."""
+    shape = f"correlation = {correlation:g}, skewness = -1.0"
+    return f'{{ kind = "ground", ra = {ra:g}, {shape}, seed = {seed} }}'
 
 
-def _viscosity():
-    lines = []
-    for eta in (0.0005, 0.001, 0.002, 0.01, 0.1, 1.0):
-        overrides = (f"fluid.viscosity={eta}", f"mesh.inlet={inlet_of(LOAD, eta, SPEED)}")
-        lines.append(Line("viscosity law", f"seed, eta0 {eta:g} Pa s", overrides, short=eta in (0.0005, 1.0)))
-    for alpha in (11.1, 18, 25):
-        overrides = (f"fluid.pressure_viscosity={alpha}e-9",)
-        lines.append(Line("viscosity law", f"Barus, alpha {alpha:g}/GPa", overrides, BARUS, alpha == 25))
-    for z in (0.5, 0.68, 0.8):
-        overrides = (f"fluid.roelands_z={z}", "fluid.pressure_viscosity=22e-9")
-        lines.append(Line("viscosity law", f"Roelands, z {z:g}, alpha 22/GPa", overrides, ROELANDS, z == 0.8))
-    return lines
+def wave(kind, amplitude, wavelength):
+    """Setting of a sine, square, ridge or dent."""
+    return f'{{ kind = "{kind}", amplitude = {amplitude:g}, wavelength = {wavelength:g} }}'
 
 
-def _load():
-    return [
-        Line(
-            "load",
-            f"p0 {p:g} GPa",
-            (
-                f"contact.load={load_of(p * 1e9):.6g}",
-                f"mesh.inlet={inlet_of(load_of(p * 1e9), 0.005, SPEED)}",
-            ),
-            short=p in (0.2, 3.0),
-        )
-        for p in (0.2, 0.5, 1.0, 2.0, 3.0)
-    ]
+def cases(*groups):
+    """Lines of groups of ``extremes.toml``.
+
+    Parameters
+    ----------
+    *groups : {"steady", "time", "far"}
+
+    Returns
+    -------
+    list of Line
+    """
+    tables = tomllib.loads(Path(__file__).with_name("extremes.toml").read_text(encoding="utf-8"))
+    return [_line(tables["synthetic"], **entry) for group in groups for entry in tables[group]]
 
 
-def _moes():
-    lines = []
-    for ell in (5.0, 15.0):
-        # alpha fixed: L gives viscosity times speed, M then the load
-        two_u = (ell / (22e-9 * MODULUS)) ** 4
-        viscosity = two_u * MODULUS * RADIUS / (2.0 * SPEED)
-        for m in (5.0, 20.0, 100.0, 500.0, 2000.0):
-            load = m * MODULUS * RADIUS * math.sqrt(two_u)
-            overrides = (
-                f"contact.load={load:.8g}",
-                f"fluid.viscosity={viscosity:.8g}",
-                "fluid.pressure_viscosity=22e-9",
-                f"mesh.inlet={inlet_of(load, viscosity, SPEED, 22e-9)}",
-            )
-            if m >= 500.0:  # the inlet sweep is the narrower the heavier the load
-                overrides += ("mesh.points_per_half_width=400",)
-            p0 = 1e-9 * hertz_line(load, RADIUS, MODULUS)[1]
-            lines.append(
-                Line(
-                    "Moes",
-                    f"M {m:g}, L {ell:g} (p0 {p0:.2g} GPa)",
-                    overrides,
-                    MOES,
-                    m in (5.0, 100.0) and ell == 5.0,
-                )
-            )
-    return lines
+def _line(synthetic, axis, value, base="table_1", travel=None, short=False, before=None, **given):
+    """One line; with `travel` on a short domain, so that few time steps fill the contact."""
+    settings = () if travel is None else (*SHORT_DOMAIN, f"time.travel={travel}")
+    for side in ("1", "2"):
+        if f"surface_{side}" in given:
+            settings += (f"surface.{side}.synthetic={synthetic[given[f'surface_{side}']]}",)
 
+    def with_settings(overrides):
+        return (*settings, *(text.replace("{profiles}", str(PROFILES)) for text in overrides))
 
-def _speed():
-    finer = {0.01: 400, 0.1: 200}  # the thinner the film, the narrower the inlet sweep
-    return [
-        Line(
-            "speed",
-            f"u {u:g} m/s",
-            (
-                f"motion.entrainment_speed={u}",
-                f"mesh.inlet={inlet_of(LOAD, 0.005, u)}",
-                *([f"mesh.points_per_half_width={finer[u]}"] if u in finer else []),
-            ),
-            short=u in (0.01, 50.0),
-        )
-        for u in (0.01, 0.1, 1.0, 10.0, 50.0)
-    ]
-
-
-def _materials():
-    lines = []
-    for modulus in (3, 207, 600):
-        first = "[3e9, 207e9]" if modulus == 3 else f"[{modulus}e9, {modulus}e9]"
-        overrides = [f"contact.youngs_modulus={first}"]
-        if modulus == 3:  # a polymer carries a tenth of the load
-            overrides += [
-                "contact.load=20e3",
-                f"mesh.inlet={inlet_of(20e3, 0.005, SPEED, modulus=reduced_modulus((3e9, 207e9), POISSON))}",
-            ]
-        lines.append(
-            Line(
-                "materials",
-                f"E {modulus} GPa" + " on steel" * (modulus == 3),
-                tuple(overrides),
-                short=modulus == 3,
-            )
-        )
-    return lines
-
-
-def _sliding():
-    return [
-        Line("sliding", f"xi {xi:g}", (f"motion.slide_roll_ratio={xi}",), short=xi in (0.0, 4.0, -4.0))
-        for xi in (0.0, 0.1, -0.1, 1.0, -1.0, 1.9, -1.9, 2.0, -2.0, 4.0, -4.0)
-    ]
-
-
-def _starved():
-    flooded = 0.165e-6  # central film of TABLE_1
-    return [
-        Line(
-            "starvation",
-            f"inlet film {share:g} of the flooded one",
-            (f"fluid.inlet_film={share * flooded:.4g}",),
-            short=share == 0.2,
-        )
-        for share in (2.0, 1.0, 0.6, 0.4, 0.2)
-    ]
+    overrides = with_settings(given.get("set", ()))
+    return Line(axis, value, overrides, BASES[base], short, before and with_settings(before))

@@ -66,7 +66,7 @@ def environment(wheel, tmp_path_factory):
 
 
 def test_the_wheel_holds_the_package_and_nothing_else(wheel):
-    parts = {".py", ".html", ".css", ".js"}
+    parts = {".py", ".html", ".css", ".js", ".toml"}
     inside = [path for path in (ROOT / "ehlpetsc").rglob("*") if path.suffix in parts]
     modules = {str(path.relative_to(ROOT)) for path in inside}
     with zipfile.ZipFile(wheel) as archive:
