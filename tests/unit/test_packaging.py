@@ -74,7 +74,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel):
         about = {Path(name).name for name in archive.namelist()} - {Path(name).name for name in names}
     assert names == modules
     assert about <= {"METADATA", "WHEEL", "RECORD", "LICENSE", "entry_points.txt", "top_level.txt"}
-    assert wheel.stat().st_size < 500_000
+    assert wheel.stat().st_size < 600_000
 
 
 def test_petsc_and_mpi_are_asked_for_by_the_solver_alone(wheel):
