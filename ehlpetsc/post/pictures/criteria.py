@@ -29,7 +29,7 @@ def criteria_picture(result, surface):
     plots.profile(axes[0, 0], result, surface, ends)
     axes[0, 0].set_xlim(*ends)
     axes[0, 0].set_title(
-        f"{surface} surface, slide/roll ratio {result.ratio:.3g}; profile and criteria",
+        f"surface {surface}, slide/roll ratio {result.ratio:.3g}; profile and criteria",
         fontsize=9,
         loc="left",
     )

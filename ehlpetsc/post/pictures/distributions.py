@@ -26,7 +26,7 @@ def depth_picture(result):
         _sureness(axes, result.under[k], result.attrs["regression"], color)
     _explain_marks(axes)
     _finish(
-        axes, f"{result.height.size} asperities, {result.main} surface, slide/roll ratio {result.ratio:.3g}"
+        axes, f"{result.height.size} asperities, surface {result.main}, slide/roll ratio {result.ratio:.3g}"
     )
     return figure
 
@@ -38,7 +38,7 @@ def ratio_picture(results, z):
     for result, color in zip(results, _colours(len(results)), strict=True):
         k = int(np.argmin(np.abs(result.z - z)))
         _curve(axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color)
-    _finish(axes, f"z/a = {z:g}, {results[0].main} surface")
+    _finish(axes, f"z/a = {z:g}, surface {results[0].main}")
     return figure
 
 

@@ -117,7 +117,7 @@ def damage_picture(result, surface):
         plots.profile(axes[0], result, surface, ends)
     s, z = result.worst_point(surface)
     axes[0].set_title(
-        f"{surface} surface, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g} at "
+        f"surface {surface}, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g} at "
         f"{plots.along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})",
         fontsize=9,
     )
@@ -219,7 +219,7 @@ def history_picture(path, result, point):
     top.set_xlabel("time [µs]")
     marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
     top.set_title(
-        f"{surface} surface, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "
+        f"surface {surface}, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "
         f"{z:g}: {len(cycles)} cycles of {plots.COMPONENTS[channel]}, {marked} marked, damage "
         f"{damages.sum():.3g}",
         fontsize=9,

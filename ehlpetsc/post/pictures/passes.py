@@ -31,7 +31,7 @@ def passes_picture(results, surface):
     top.set_ylabel("D of a pass")
     first, scatter = found.life[worst].min(), np.median((found.deviation / found.mean)[worst])
     top.set_title(
-        f"{surface} surface, z/a = {results[0].z[worst]:g}, {len(results)} passes: first failure expected "
+        f"surface {surface}, z/a = {results[0].z[worst]:g}, {len(results)} passes: first failure expected "
         f"after {first:.3g} passes\nscatter of D from pass to pass, at half of the points below "
         f"{scatter:.2g} of its mean",
         fontsize=9,
