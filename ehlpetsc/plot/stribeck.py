@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, conditions, legend_beside, new_figure
@@ -194,7 +194,7 @@ def draw_stribeck(results, _options):
     axes[0].set_title("\n".join(filter(None, [title, about])) + note, fontsize="medium")
     for panel in axes:
         panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-        panel.xaxis.set_minor_formatter(NullFormatter())
+        panel.xaxis.set_minor_formatter(FuncFormatter(_few))
         panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
     axes[2].yaxis.set_minor_formatter(FuncFormatter(_few))
     return figure
