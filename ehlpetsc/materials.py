@@ -134,3 +134,26 @@ STEELS = {
     ),
 }
 DEFAULT = "SAE4340"
+
+
+def elastic_constants(contact):
+    """Elastic moduli [Pa] and Poisson's ratios of a table `[contact]`: given there, else those of its steels.
+
+    Parameters
+    ----------
+    contact : dict
+
+    Returns
+    -------
+    youngs_modulus, poisson_ratio : pair of float
+
+    Raises
+    ------
+    KeyError
+        The table has neither.
+    """
+    names = contact.get("material")
+    steels = [STEELS[name] for name in ([names] * 2 if isinstance(names, str) else names or ())]
+    keys = ("youngs_modulus", "poisson_ratio")
+    given = {key: [getattr(steel, key) for steel in steels] for key in keys if steels} | contact
+    return given["youngs_modulus"], given["poisson_ratio"]

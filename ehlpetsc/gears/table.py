@@ -6,10 +6,9 @@ import numpy as np
 
 from ehlpetsc.gears.losses import gear_loss_factor, ohlendorf_loss_factor
 from ehlpetsc.gears.path import describe
-from ehlpetsc.materials import STEELS
+from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
-ELASTIC = ("youngs_modulus", "poisson_ratio")
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 
 
@@ -23,10 +22,7 @@ def hertz(path, contact):
         `youngs_modulus` and `poisson_ratio` of the solids, or their `material`.
     """
     try:
-        names = contact.get("material")
-        steels = [STEELS[name] for name in ([names] * 2 if isinstance(names, str) else names or ())]
-        given = {key: [getattr(steel, key) for steel in steels] for key in ELASTIC} | contact
-        modulus = reduced_modulus(*(given[key] for key in ELASTIC))
+        modulus = reduced_modulus(*elastic_constants(contact))
         pairs = zip(path.load, path.radius, strict=True)
         found = [hertz_line(w, r, modulus) if w > 0 else (0.0, 0.0) for w, r in pairs]
     except (KeyError, TypeError, ValueError, ZeroDivisionError):

@@ -5,6 +5,7 @@ import tomllib
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.scales import reduced_modulus
 
@@ -31,7 +32,7 @@ def film_at_contact(result):
 
 def layer_film(contact):
     """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; contact: table of a stored case."""
-    modulus = 0.5 * reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])
+    modulus = 0.5 * reduced_modulus(*elastic_constants(contact))
     prefactor = contact.get("asperity_stiffness", 1.0) * modulus
     return asperity_separation(CONTACT_PRESSURE, GAMMA * contact["asperity_height"], prefactor)
 

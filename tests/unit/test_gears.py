@@ -291,3 +291,14 @@ def test_friction_of_a_run_whose_sliding_reverses_is_averaged_by_its_magnitude(t
         steps["speed_2"] = np.zeros(n)
     with read_result(path) as result:
         assert means(result)["friction_coefficient"] == pytest.approx(mean, abs=2e-3)
+
+
+def test_the_table_knows_the_moduli_of_a_steel(case, tmp_path, capsys):
+    path = case()
+    moduli = "youngs_modulus = [206e9, 206e9]\npoisson_ratio = [0.3, 0.3]\n"
+    shown = []
+    for constants in (moduli, 'material = "16MnCr5"\n'):
+        path.write_text(path.read_text().replace(moduli, constants))
+        assert main([str(path), "--no-picture"]) == 0
+        shown.append([line for line in capsys.readouterr().out.splitlines() if line.startswith("p0, GPa")])
+    assert shown[0] == shown[1] and len(shown[0]) == 1
