@@ -24,8 +24,8 @@ DEFAULTS = {
 }
 # Direct contact makes up or loses percents of the oil where solids touch, and no figure changes in six digits
 # below 1e-5; mixed contact promises the oil's balance to 1e-6, which is what 1e-7 gives.
-# A compliant layer makes the load nonlinear in the film: 2e-8 balances it to 1e-10.
-ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "2e-8"}
+# A compliant layer makes the load nonlinear in the film: 1e-8 balances it to 1e-10.
+ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 # PETSc's LU and ILU do not exchange rows, and pivots of the deflection's rows come out as zero by chance
 OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
