@@ -141,9 +141,7 @@ def load(case, overrides=None):
     data = plain(case) if text is None else parse_toml(path, text)
     from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
     settings, faults = _override(path, data, overrides)
-    converted, wrong = in_si(data, Case)
-    if wrong:
-        raise CaseError([*faults, *(f"{path}: {line}" for line in wrong)])
+    converted = in_si(path, data, Case)
     measured, unresolved = resolve_measured_layer(path, data)
     settings, faults = settings + converted + measured, faults + [f"{path}: {line}" for line in unresolved]
     if unresolved:

@@ -9,6 +9,7 @@ from functools import cache
 
 from ehlpetsc.case.tables.surface import SYNTHETIC
 from ehlpetsc.case.tables.table import Table
+from ehlpetsc.errors import CaseError
 
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
 TEXT_UNITS = {"half widths": None, "half-widths": None, "boundary films": None, "1": None}  # not convertible
@@ -19,11 +20,13 @@ class UnitFault(ValueError):
     """A value with a unit that cannot be converted; the text says why."""
 
 
-def in_si(data, model):
+def in_si(path, data, model):
     """Values with a unit in the tables of a case, in SI units.
 
     Parameters
     ----------
+    path : path-like
+        Of the case, for faults.
     data : dict
         Tables; these values are replaced in them.
     model : type
@@ -33,8 +36,10 @@ def in_si(data, model):
     -------
     settings : list of (list of str, value)
         What was replaced: keys taken apart and the number.
-    faults : list of str
-        One line each.
+
+    Raises
+    ------
+    CaseError
     """
     settings, faults = [], []
     for keys, table, name, unit in list(_texts(data, model)):
@@ -42,8 +47,10 @@ def in_si(data, model):
             table[name] = converted(table[name], unit)
             settings.append((keys, table[name]))
         except UnitFault as error:
-            faults.append(f"{'.'.join(keys)} = {error}")
-    return settings, faults
+            faults.append(f"{path}: {'.'.join(keys)} = {error}")
+    if faults:
+        raise CaseError(faults)
+    return settings
 
 
 def converted(value, unit, depth=2):
