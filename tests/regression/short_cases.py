@@ -37,6 +37,7 @@ SHORT = {
     "fig6": (*QUICK, MESHES),
     "fig7": (*QUICK, MESHES, "output.every=10"),
     "fzg": ("mesh.points_per_half_width=25", "time.travel=1.0"),
+    "mixed": QUICK,
     "moes": (),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
