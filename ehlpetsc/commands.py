@@ -19,6 +19,7 @@ SUBCOMMANDS = {  # name: module, function, what it needs, what it does
     "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.compare", "main", NUMERICS, "two results field by field"),
     "gears": ("ehlpetsc.gears.__main__", "main", DRAWING, "path of contact of spur gears, and runs along it"),
+    "life": ("ehlpetsc.life.__main__", "main", DRAWING, "wear against fatigue over many passes"),
     "study": ("ehlpetsc.study.__main__", "main", DRAWING, "accuracy, speed, robustness"),
     "ensemble": (
         "ehlpetsc.analysis.ensemble",

@@ -21,6 +21,7 @@ from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.solids import with_material
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.heat import Heat
+from ehlpetsc.case.tables.life import Life
 from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.post import Post
 from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time, Wear
@@ -61,6 +62,7 @@ class Case(Table):
     heat: Heat | None = Field(None, description="left out: isothermal; needs [motion]")
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
+    life: Life | None = Field(None, description="read by ehlpetsc.life alone")
     petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
     series: Series | None = Field(None, description="one key swept over values")
     _text: str | partial = PrivateAttr("")

@@ -45,6 +45,7 @@ MAY_IMPORT = {
     "post": {"case", "results", "physics", "quantities"},
     "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
     "compare": {"analysis"},
+    "life": {"run", "post", "api", "effects", "case", "surfaces", "results", "physics"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
     "__main__": {"run", "case", "commands"},
     "commands": set(),  # starts each command by its name
@@ -52,8 +53,8 @@ MAY_IMPORT = {
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
-    "mpi4py": {"run", "nonlinear"},
-    "matplotlib": {"plot", "post", "study", "api", "gears"},
+    "mpi4py": {"run", "nonlinear", "life"},
+    "matplotlib": {"plot", "post", "study", "api", "gears", "life"},
     "numba": {"compiled"},
 }
 

@@ -1,0 +1,163 @@
+"""A body over its life: wear, pits and damage in columns of cells below its surface."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.life import laws
+from ehlpetsc.surfaces.body_field import BodyField
+
+
+class LifeBody(NamedTuple):
+    """Columns of a body and their cells.
+
+    Attributes
+    ----------
+    s : ndarray, shape (n,)
+        Middles of the columns over the body's abscissa, equally spaced [m].
+    edges : ndarray, shape (cells + 1,)
+        Depths of the edges of the cells below the surface as made [m].
+    height : ndarray, shape (n,)
+        Of the surface as made [m].
+    wear, pit : ndarray, shape (n,)
+        Depths worn off and broken out [m].
+    damage : ndarray, shape (cells, n)
+        Miner's sum; of cells that are gone that at their end.
+    failed : ndarray, shape (cells, n)
+        Passes after which D reached 1; inf: it did not.
+    is_pitted : ndarray of bool, shape (n,)
+        Columns in which failed cells have reached the surface.
+    volume : float
+        Worn off since the first pass, beyond the columns too [m^2].
+    """
+
+    s: np.ndarray
+    edges: np.ndarray
+    height: np.ndarray
+    wear: np.ndarray
+    pit: np.ndarray
+    damage: np.ndarray
+    failed: np.ndarray
+    is_pitted: np.ndarray
+    volume: float = 0.0
+
+    @classmethod
+    def new(cls, s, height, edges):
+        """Without wear and damage."""
+        cells, zero = (len(edges) - 1, len(s)), np.zeros(len(s))
+        return cls(
+            s, edges, height, zero, zero, np.zeros(cells), np.full(cells, np.inf), np.zeros(len(s), bool)
+        )
+
+    @property
+    def recession(self):
+        """Depth of the present surface below that as made [m], shape (n,)."""
+        return self.wear + self.pit
+
+    @property
+    def profile(self):
+        """Present heights [m], shape (n,)."""
+        return self.height - self.recession
+
+    @property
+    def ra(self):
+        """Mean deviation of the present heights [m]."""
+        return float(np.abs(self.profile - self.profile.mean()).mean())
+
+    @property
+    def pitted_share(self):
+        """Share of the columns that are pitted."""
+        return float(self.is_pitted.mean())
+
+    @property
+    def pits(self):
+        """Number of pits."""
+        return laws.number_of_pits(self.is_pitted)
+
+    @property
+    def is_there(self):
+        """Cells that are not gone, shape (cells, n)."""
+        return self.edges[1:, None] > self.recession
+
+    @property
+    def largest_damage(self):
+        """Of the cells that are not gone."""
+        return float(np.max(self.damage, initial=0.0, where=self.is_there))
+
+    def met(self, stretch):
+        """Columns within a stretch of the abscissa [m], with half a column either side."""
+        slack = 0.25 * (self.s[1] - self.s[0])
+        return (self.s >= stretch[0] - slack) & (self.s <= stretch[1] + slack)
+
+    def gap_field(self, stretch, reach):
+        """Depth of the present surface for the solver; beyond the stretch its mean.
+
+        The contact begins and ends on parts of the bodies that are not followed: they wear as the mean.
+
+        Parameters
+        ----------
+        stretch : (float, float)
+            Abscissas that pass the whole contact [m].
+        reach : (float, float)
+            Abscissas that the mesh meets [m].
+
+        Returns
+        -------
+        surfaces.body_field.BodyField
+        """
+        width, met = self.s[1] - self.s[0], self.met(stretch)
+        depth = self.recession[met]
+        first, last = self.s[met][[0, -1]]
+        before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)
+        after = max(int(np.ceil((reach[1] - last) / width)) + 1, 0)
+        depth = np.pad(depth, (before, after), constant_values=depth.mean())
+        faces = first + width * (np.arange(len(depth) + 1) - before - 0.5)
+        return BodyField.zero(width).add(faces, depth)
+
+    def faces(self):
+        """Faces of the columns [m], shape (n + 1,)."""
+        width = self.s[1] - self.s[0]
+        return np.append(self.s - 0.5 * width, self.s[-1] + 0.5 * width)
+
+    def rates(self, of_pass):
+        """Wear [m] and damage, shapes (n,) and (cells, n), that a pass adds to every column.
+
+        Parameters
+        ----------
+        of_pass : one_pass.OfBody
+        """
+        met = self.met((of_pass.s[0], of_pass.s[-1]))
+        worn = np.diff([field.means(self.faces()) for field in of_pass.depth], axis=0)[0]
+        wear = np.where(met, np.maximum(worn, 0.0), 0.0)
+        at = np.where(met, self.s, np.nan)
+        columns = np.array([np.interp(at, of_pass.s, row) for row in of_pass.damage])
+        columns = np.where(met, columns, 0.0)
+        # the surface recedes within the jump: by less than the wear allowed, and cells are at its begin
+        depths = laws.cell_depths(self.edges, self.recession)
+        return wear, laws.damage_at(of_pass.depths, columns, depths)
+
+    def after(self, wear, added, passes, done, breaks, volume):
+        """The body after a jump.
+
+        Parameters
+        ----------
+        wear, added : ndarray
+            As of `rates`.
+        passes, done : int
+            Passes of the jump, and before it.
+        breaks : bool
+            Whether failed cells break out; else they are counted.
+        volume : float
+            Worn off by one pass [m^2].
+        """
+        failed = np.minimum(self.failed, laws.failures(self.damage, added, passes, done))
+        body = self._replace(
+            wear=self.wear + passes * wear,
+            damage=self.damage + passes * added,
+            failed=failed,
+            volume=self.volume + passes * volume,
+        )
+        bottom = laws.broken_out(body.damage, body.edges, body.recession)
+        is_new = bottom > body.recession
+        pit = bottom - body.wear if breaks else body.pit
+        return body._replace(is_pitted=body.is_pitted | is_new, pit=np.where(is_new, pit, body.pit))

@@ -1,0 +1,161 @@
+r"""Laws of a surface over its life: size of a jump, damage of cells under a receding surface, micropits.
+
+A body is divided into columns along its surface and cells of depth Z below the surface as made. Wear and
+pits lower the surface of a column to the depth r; a cell at Z is then at the depth :math:`z=Z-r`. A pass adds
+:math:`D(s,z)`, and N passes add N times as much (Palmgren-Miner), of which D = 1 is failure. Wear takes off
+the cells in which damage accumulates (Morales-Espejel and Brizmer, Tribology Transactions 54 (2011) 625).
+"""
+
+import numpy as np
+
+FINE_CELLS = 12  # cells of equal thickness below the surface as made
+GROWTH = 1.25  # of the thickness of the cells below them
+
+
+def passes_to_jump(left, wear, wear_allowed, added, damage, damage_allowed):
+    r"""Number of passes for which one solved pass may stand.
+
+    .. math:: N = \max(1, \min(\Delta r/\max dr, \Delta D/\max D, N_\mathrm{left}))
+
+    Parameters
+    ----------
+    left : int
+        Passes to go.
+    wear : ndarray
+        Depth by which a pass wears each column [m].
+    wear_allowed : float
+        Depth of wear in one jump [m].
+    added, damage : ndarray, shape (cells, columns)
+        D of a pass and the sum so far. Cells that have failed or are gone do not count.
+    damage_allowed : float
+        Damage in one jump.
+
+    Returns
+    -------
+    int
+    """
+    intact = (damage < 1.0) & np.isfinite(damage)
+    rates = (
+        np.max(wear, initial=0.0) / wear_allowed,
+        np.max(added, initial=0.0, where=intact) / damage_allowed,
+    )
+    fastest = max(rates)
+    return int(max(1, min(left, 1.0 / fastest if fastest * left > 1.0 else left)))
+
+
+def cell_edges(thickness, deepest):
+    """Depths of the edges of the cells of a column [m]: equal ones at the surface, growing below.
+
+    Parameters
+    ----------
+    thickness : float
+        Of the first cells [m].
+    deepest : float
+        Depth that they reach at least [m].
+    """
+    edges = [0.0]
+    while edges[-1] < deepest or len(edges) < 2:
+        number = max(len(edges) - FINE_CELLS, 0)
+        edges.append(edges[-1] + thickness * GROWTH**number)
+    return np.array(edges)
+
+
+def cell_depths(edges, recession):
+    """Depths of the centres of cells below the present surface [m]; nan where a cell is gone.
+
+    Parameters
+    ----------
+    edges : ndarray, shape (cells + 1,)
+    recession : ndarray, shape (columns,)
+        Depth of the present surface below that as made [m].
+
+    Returns
+    -------
+    ndarray, shape (cells, columns)
+        Of a cell that is worn in part the centre of the rest counts.
+    """
+    top = np.maximum(edges[:-1, None], recession)
+    bottom = edges[1:, None]
+    return np.where(bottom > recession, 0.5 * (top + bottom) - recession, np.nan)
+
+
+def damage_at(depths, damage, at):
+    """Damage of a pass at depths between those computed, in each column.
+
+    Straight lines of ln D over depth, of D where one end is 0; 0 below the deepest.
+
+    Parameters
+    ----------
+    depths : ndarray, shape (n,)
+        Increasing from 0 [m].
+    damage : ndarray, shape (n, columns)
+    at : ndarray, shape (cells, columns)
+        Depths [m]; nan: 0.
+    """
+    if len(depths) == 1:
+        return np.where(at <= depths[0], damage[0], 0.0)
+    known = np.isfinite(at)
+    z = np.where(known, np.maximum(at, depths[0]), depths[-1])
+    k = np.clip(np.searchsorted(depths, z, "right") - 1, 0, len(depths) - 2)
+    weight = (z - depths[k]) / (depths[k + 1] - depths[k])
+    low, high = np.take_along_axis(damage, k, 0), np.take_along_axis(damage, k + 1, 0)
+    both = (low > 0.0) & (high > 0.0)
+    logs = np.log(np.where(both, low, 1.0)), np.log(np.where(both, high, 1.0))
+    found = np.where(both, np.exp(logs[0] + weight * (logs[1] - logs[0])), low + weight * (high - low))
+    return np.where(known & (z <= depths[-1]), found, 0.0)
+
+
+def failures(damage, added, passes, done):
+    """Numbers of passes after which cells fail within a jump; inf where they do not, or did before.
+
+    Parameters
+    ----------
+    damage, added : ndarray
+        Sum before the jump, and D of a pass.
+    passes, done : int
+        Passes of the jump, and before it.
+    """
+    fails = (damage < 1.0) & (damage + passes * added >= 1.0)
+    rate = np.where(fails, added, 1.0)
+    return np.where(fails, done + (1.0 - damage) / rate, np.inf)
+
+
+def broken_out(damage, edges, recession):
+    """Depths to which columns break out: failed cells connected with the surface, and all above them.
+
+    Parameters
+    ----------
+    damage : ndarray, shape (cells, columns)
+    edges : ndarray, shape (cells + 1,)
+        [m].
+    recession : ndarray, shape (columns,)
+        Depth of the present surface [m].
+
+    Returns
+    -------
+    ndarray, shape (columns,)
+        Below the surface as made [m]; `recession` where nothing breaks out.
+    """
+    from scipy.ndimage import label
+
+    there = edges[1:, None] > recession
+    failed = there & (damage >= 1.0)
+    if not failed.any():
+        return np.array(recession, float)
+    numbers, _ = label(failed)
+    top = there.argmax(axis=0)
+    columns = np.arange(damage.shape[1])
+    at_surface = np.unique(numbers[top, columns][there.any(axis=0)])
+    breaks = np.isin(numbers, at_surface[at_surface > 0])
+    bottom = np.where(breaks, edges[1:, None], 0.0).max(axis=0)
+    return np.maximum(bottom, recession)
+
+
+def number_of_pits(is_pitted):
+    """Number of runs of neighbouring pitted columns.
+
+    Parameters
+    ----------
+    is_pitted : ndarray of bool, shape (columns,)
+    """
+    return int(np.count_nonzero(np.diff(np.append(False, is_pitted).astype(int)) > 0))

@@ -1,0 +1,71 @@
+"""Picture of a life: damage under the profile, and pits, wear, Ra and friction over passes."""
+
+import numpy as np
+
+SHOWN = 3  # instants of the life
+
+
+def draw(life, path):
+    """Draw a life and save the picture.
+
+    Parameters
+    ----------
+    life : history.LifeHistory
+    path : path-like
+    """
+    from matplotlib import pyplot
+
+    if not life.rows:
+        raise OSError(f"{path}: not written, no pass is solved yet")
+    figure = pyplot.figure(figsize=(11.0, 8.5), layout="constrained")
+    top, bottom = figure.subfigures(2, 1, height_ratios=(2, 1))
+    chosen = np.unique(np.linspace(0, len(life.rows) - 1, SHOWN).round().astype(int))
+    above = []
+    for column, row in enumerate(chosen):
+        for k in range(2):
+            above.append(top.add_subplot(2, len(chosen), k * len(chosen) + column + 1))
+            image = _under_profile(above[-1], life.bodies[row][k])
+            above[-1].set_title(f"surface {k + 1}, {life.rows[row]['passes']:.3g} passes", fontsize="small")
+    top.colorbar(image, ax=above, label="log10 D", shrink=0.6)
+    passes = life("passes")
+    panels = (
+        ("pitted_share", "pitted share", 1.0),
+        ("wear_volume", "worn [µm²]", 1e12),
+        ("ra", "Ra [µm]", 1e6),
+        ("friction", "friction", 1.0),
+    )
+    for column, (name, label, unit) in enumerate(panels):
+        axes = bottom.add_subplot(1, 4, column + 1)
+        if name == "friction":
+            axes.plot(passes - life("jump") + 1, life(name), ".-")
+        else:
+            for k in (1, 2):
+                axes.plot(passes, unit * life(f"{name}_{k}"), ".-", label=f"surface {k}")
+            axes.legend(fontsize="x-small")
+        axes.set(xscale="log", xlabel="passes", ylabel=label)
+    figure.suptitle(life.title)
+    figure.savefig(path, dpi=130)
+    pyplot.close(figure)
+
+
+def _under_profile(axes, body):
+    """Damage of the cells that are left below the present profile; returns the image."""
+    micro = 1e6
+    damage = np.where(body.is_there, body.damage, np.nan)
+    with np.errstate(divide="ignore"):
+        values = np.clip(np.log10(damage), -6.0, 0.0)
+    # columns of one height each: cells hang below the profile as made
+    s, edges = np.repeat(micro * body.faces(), 2)[1:-1], micro * body.edges
+    top = micro * np.repeat(body.height, 2)
+    image = axes.pcolormesh(
+        np.broadcast_to(s, (len(edges), len(s))),
+        top - edges[:, None],
+        np.repeat(values, 2, axis=1)[:, :-1],
+        vmin=-6.0,
+        vmax=0.0,
+        cmap="magma_r",
+    )
+    axes.plot(s, micro * np.repeat(body.profile, 2), "k", lw=0.8)
+    span = max(np.ptp(top), edges[1])
+    axes.set(xlabel="s [µm]", ylabel="height [µm]", ylim=(top.min() - 4.0 * span, top.max() + 0.3 * span))
+    return image

@@ -1,0 +1,135 @@
+"""Laws of a surface over its life: jumps, ageing of cells under a receding surface, micropits, its file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError, OutputError
+from ehlpetsc.life import laws, read_life
+from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.driver import check_case
+from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.life.one_pass import OfBody
+from ehlpetsc.surfaces.body_field import BodyField
+
+CASES = Path(__file__).parents[2] / "cases"
+EDGES = np.array([0.0, 1.0, 2.0, 4.0])
+
+
+def jump(wear=0.0, added=0.0, damage=0.0, left=1000):
+    cells = [np.full((2, 3), value) for value in (added, damage)]
+    return laws.passes_to_jump(left, np.array([0.0, wear]), 0.05, cells[0], cells[1], 0.1)
+
+
+def test_a_jump_ends_where_wear_or_damage_reach_what_is_allowed():
+    assert jump(wear=0.05 / 64) == 64
+    assert jump(added=0.1 / 32) == 32
+    assert jump(wear=0.05 / 64, added=0.1 / 32) == 32
+    assert jump() == 1000, "nothing changes: all the rest at once"
+    assert jump(wear=1.0) == 1, "one pass at least"
+    assert jump(added=0.01, damage=1.0) == 1000, "cells that have failed do not count"
+    assert jump(added=0.01, damage=np.nan) == 1000, "nor do those that are gone"
+
+
+def test_cells_reach_the_depth_and_grow_below_the_first_ones():
+    edges = laws.cell_edges(0.5, 100.0)
+    assert edges[0] == 0.0 and edges[-1] >= 100.0 > edges[-2]
+    assert np.diff(edges)[: laws.FINE_CELLS] == pytest.approx(0.5)
+    assert np.diff(edges)[-1] / np.diff(edges)[-2] == pytest.approx(laws.GROWTH)
+
+
+def test_cells_come_nearer_to_a_surface_that_recedes_and_end_when_it_passes_them():
+    depths = laws.cell_depths(EDGES, np.array([0.0, 0.5, 1.0, 3.0]))
+    expected = [[0.5, 0.25, np.nan, np.nan], [1.5, 1.0, 0.5, np.nan], [3.0, 2.5, 2.0, 0.5]]
+    assert depths == pytest.approx(np.array(expected), nan_ok=True)
+
+
+def test_damage_between_depths_is_exponential_and_exact_at_them():
+    depths, damage = np.array([0.0, 1.0, 3.0]), np.array([[1e-4], [1e-2], [0.0]])
+    at = np.array([[0.0], [0.5], [1.0], [2.0], [3.0], [3.1], [np.nan]])
+    found = laws.damage_at(depths, damage, at)
+    assert found[:, 0] == pytest.approx([1e-4, 1e-3, 1e-2, 5e-3, 0.0, 0.0, 0.0], rel=1e-12)
+
+
+def test_cells_fail_where_miners_sum_is_one():
+    damage, added = np.array([0.0, 0.5, 0.99, 1.2]), np.array([1e-3, 1e-2, 1e-5, 1.0])
+    found = laws.failures(damage, added, 100, 7)
+    assert found.tolist() == [np.inf, pytest.approx(57.0), np.inf, np.inf]
+
+
+def test_failed_cells_break_out_only_with_those_that_reach_the_surface():
+    damage = np.zeros((3, 5))
+    damage[0, 1] = damage[1, 1] = damage[1, 2] = 1.0  # at the surface, and beside it below
+    damage[2, 4] = 1.0  # inside the body
+    assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 0.0, 0.0]
+    lowered = np.array([0.0, 2.5, 0.0, 0.0, 2.5])
+    assert laws.broken_out(damage, EDGES, lowered).tolist() == [0.0, 2.5, 0.0, 0.0, 4.0]
+    assert laws.number_of_pits(np.array([True, True, False, True])) == 2
+
+
+def body(columns=8):
+    return LifeBody.new(np.arange(columns) * 1.0, np.zeros(columns), EDGES)
+
+
+def of_pass(damage, depth=0.01, columns=8):
+    faces = np.arange(columns + 1) - 0.5
+    none = BodyField(0.25, 0, np.zeros(0))
+    worn = none.add(faces, np.full(columns, depth))
+    rows = np.array([np.full(columns, damage), np.full(columns, 0.1 * damage)])
+    return OfBody(np.arange(columns) * 1.0, np.array([0.0, 4.0]), rows, (none, worn))
+
+
+def test_wear_faster_than_damage_leaves_no_cell_to_fail():
+    """A cell at Z fails before it is gone where the sum over its way to the surface reaches 1."""
+    ends = {}
+    for depth in (0.01, 0.2):
+        one = body()
+        for _ in range(12):
+            wear, added = one.rates(of_pass(0.02, depth))
+            one = one.after(wear, added, 1, 0, True, 8.0 * depth)
+        ends[depth] = one
+    assert ends[0.2].wear == pytest.approx(12 * 0.2) and ends[0.2].volume == pytest.approx(12 * 1.6)
+    assert ends[0.2].largest_damage < ends[0.01].largest_damage
+    slow = ends[0.01]
+    wear, added = slow.rates(of_pass(0.02, 0.01))
+    pitted = slow.after(wear, added, 100, 12, True, 0.08)
+    counted = slow.after(wear, added, 100, 12, False, 0.08)
+    assert pitted.is_pitted.all() and pitted.pits == 1 and pitted.pit.min() > 0.0
+    assert counted.is_pitted.all() and not counted.pit.any(), "failed cells are counted alone"
+
+
+def test_the_surfaces_beside_the_stretch_are_worn_as_its_mean():
+    one = body()._replace(wear=np.arange(8.0))
+    field = one.gap_field((2.0, 5.0), (-3.0, 12.0))
+    faces = np.array([-3.0, 1.5, 2.5, 3.5, 4.5, 5.5, 12.0])
+    assert field.means(faces) == pytest.approx([3.5, 2.0, 3.0, 4.0, 5.0, 3.5])
+
+
+def test_a_life_is_read_as_it_was_stored(tmp_path):
+    life, path = LifeHistory("text", "title"), tmp_path / "a.life.h5"
+    for passes in (10, 30):
+        life.add({"passes": passes, "jump": 10, "friction": 0.1}, (body(), body(5)), {"x.depth": np.ones(2)})
+    life.save(path)
+    found = read_life(path)
+    assert found.rows == life.rows and found.done == 30 and found.case == "text"
+    for one, other in zip(found.bodies[1], life.bodies[1], strict=True):
+        assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+    assert found.plastic["x.depth"].tolist() == [1.0, 1.0]
+    path.write_bytes(path.read_bytes()[:100])
+    with pytest.raises(OutputError):
+        read_life(path)
+
+
+@pytest.mark.parametrize(
+    "file, keys, text",
+    [
+        ("table1_mixed.toml", {}, "no \\[life\\] table"),
+        ("table1_smooth.toml", {"life.passes": 10.0}, "rough"),
+        ("table1_mixed.toml", {"life.passes": 10.0, "output.every": 2}, "output.every = 1"),
+    ],
+)
+def test_cases_without_a_life_are_refused(file, keys, text):
+    with pytest.raises(CaseError, match=text):
+        check_case(load(CASES / file, keys))
