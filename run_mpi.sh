@@ -338,7 +338,7 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
-    plot | post | summary | compare | gears | study | ensemble | collisions | contacts | explain | keys | template | python)
+    plot | post | summary | compare | gears | life | study | ensemble | collisions | contacts | explain | keys | template | python)
         prepare "$run_modules" "$drawing"
         exec "$python" -m ehlpetsc "$@"
         ;;
