@@ -172,7 +172,9 @@ class TimeStepping:
         a moving body comes in through the inlet. The growth covers `RAMP_LENGTH` at the mean speed.
         """
         try:
-            state = self._steady(self._inputs_of(self._step_end()), records, watch)
+            end = self._step_end()
+            inputs = self._with_effects(self._inputs_of(end), records, end)
+            state = self._steady(replace(inputs, phi=np.zeros(self.problem.n)), records, watch)
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton

@@ -63,12 +63,12 @@ def test_moving_flux_in_time(peclet):
     one = body(speed, dx, nodes)
     record = one.cold()
     for step in range(1, 1000 if peclet < 5.0 else 500):
-        moved = one.advance(record, 0.5 * step * dx, 0.5 * dx / speed)
+        moved = one.advance(record, 0.5 * step * dx, 0.5 * dx / speed, speed)
         record = one.accept(moved, flux)
         rise = moved.history + moved.response * flux
     np.testing.assert_allclose(rise, exact, atol=0.01 * exact.max())
     begun = one.record(flux, one.steady(flux, speed)[1])
-    moved = one.advance(begun, 0.5 * dx, 0.5 * dx / speed)
+    moved = one.advance(begun, 0.5 * dx, 0.5 * dx / speed, speed)
     np.testing.assert_allclose(moved.history + moved.response * flux, exact, atol=0.01 * exact.max())
 
 
@@ -107,10 +107,21 @@ def test_a_sinusoid_along_the_surface(ratio):
     assert swing > 0.99 * exact
 
 
+def test_a_distance_counted_from_elsewhere_moves_no_heat():
+    """Before time 0 a run counts distances anew."""
+    dx, speed = 2e-6, 5.0
+    one, flux = body(speed, dx, 60), np.full(60, FLUX)
+    begun = one.record(flux, one.steady(flux, speed)[1])
+    rises = [
+        one.advance(begun, start + 0.5 * dx, 0.5 * dx / speed, speed).history for start in (0.0, -40 * dx)
+    ]
+    np.testing.assert_allclose(rises[1], rises[0], rtol=1e-12)
+
+
 @pytest.mark.parametrize("fraction", [0.0, 0.3])
 def test_cells_of_the_body_take_all_heat(fraction):
     one = body(5.0, 2e-6, 60)
-    moved = one.advance(one.cold(), -fraction * 2e-6, 2e-7)
+    moved = one.advance(one.cold(), -fraction * 2e-6, 2e-7, 5.0)
     flux = np.random.default_rng(1).uniform(0.0, FLUX, 60)
     assert one.accept(moved, flux).flux.sum() == pytest.approx(flux.sum(), rel=1e-14)
 

@@ -9,6 +9,7 @@ from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponen
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
+RENUMBERED = 2.0  # cells between the distance travelled and the step by the speed
 SLOW = 1e-3  # m^2 over the diffusivity: history of a body that hardly moves, at most [s]
 
 
@@ -84,7 +85,7 @@ class Body:
         zeros = np.zeros((cells, len(self.rates)))
         return BodyHeat(-self.padding, zeros, np.zeros(cells), self.rates, self.weights)
 
-    def advance(self, body, travelled, dt):
+    def advance(self, body, travelled, dt, speed):
         """The body at the end of a step.
 
         Parameters
@@ -95,6 +96,8 @@ class Body:
             Distance travelled at the end [m].
         dt : float
             [s]
+        speed : float
+            [m/s], signed.
 
         Returns
         -------
@@ -105,6 +108,9 @@ class Body:
         base = int(np.floor(position))
         padding = (cells - self.n - 1) // 2
         shift = base - padding - body.first
+        moved = -speed * dt / self.dx
+        if abs(shift - moved) > RENUMBERED:  # the distance is counted from another place now
+            shift = int(np.floor(moved))
         terms, flux = shifted(body.terms, shift), shifted(body.flux, shift)
         step = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
         given = step.decay * terms + flux[:, None] * step.begin

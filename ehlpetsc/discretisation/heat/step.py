@@ -89,8 +89,9 @@ class HeatStep:
             pairs = (record.wall_1, record.flux_1), (record.wall_2, record.flux_2)
             walls = [w - r * q for (w, q), r in zip(pairs, responses, strict=True)]
         else:
-            both = zip(self.bodies, (record.body_1, record.body_2), step.travelled, strict=True)
-            self._moved = [body.advance(one, way, step.dt) for body, one, way in both]
+            records, speeds = (record.body_1, record.body_2), (step.conditions.u1, step.conditions.u2)
+            both = zip(self.bodies, records, step.travelled, speeds, strict=True)
+            self._moved = [body.advance(one, way, step.dt, speed) for body, one, way, speed in both]
             walls = [bulk + one.history for bulk, one in zip(self.bulk, self._moved, strict=True)]
             responses = [np.full(n, one.response) for one in self._moved]
             if inputs.history is not None:
