@@ -45,7 +45,7 @@ def test_roughness_at_rest_is_marched_to_where_no_steady_solution_is_found(monke
     known = next(iter(Simulation(rough("1", -2.0, 1.0))))
     found = time_stepping.steady
 
-    def only_smooth(solver, film, inputs):
+    def only_smooth(solver, film, inputs, watch=None):
         if inputs.phi.any():
             raise NoSteadyStart("none", None, 0)
         return found(solver, film, inputs)
