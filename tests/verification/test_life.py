@@ -1,0 +1,101 @@
+"""Surfaces over their life: Miner's sum, Archard's volume, wear against fatigue, jumps, restart."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.life import laws, read_life, run_life
+from ehlpetsc.life.driver import CELL
+from ehlpetsc.post.run import Job
+from ehlpetsc.post.run import run as post
+from ehlpetsc.results.post_result import PostResult
+from ehlpetsc.run.simulation import Simulation
+
+CASES = Path(__file__).parents[2] / "cases"
+SHORT = {"mesh.points_per_half_width": 10, "surface.1.scale": 1.0, "surface.2.scale": 1.0}
+
+
+def case(keys):
+    return load(CASES / "life.toml", SHORT | keys)
+
+
+def scaled(scale):
+    return {"surface.1.scale": scale, "surface.2.scale": scale}
+
+
+def test_without_wear_cells_fail_after_the_passes_of_the_damage_of_one_pass(tmp_path):
+    keys = {"wear": None, "life.pits": False, "life.damage_jump": 0.5, "life.passes": 1e12}
+    scene = Simulation(case(keys)).scene
+    edges = laws.cell_edges(CELL * scene.rq, 6 * CELL * scene.rq)
+    depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]
+    life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", most=3)
+    post(Job(str(tmp_path / "a.life.pass.h5"), str(tmp_path / "a.post.h5")))
+    found = PostResult(tmp_path / "a.post.h5")
+    failed = 0
+    for name, body in zip(("1", "2"), life.bodies[-1], strict=True):
+        columns = np.abs(found.s[:, None] - body.s).argmin(axis=0)
+        damage = found.damage[name][1:, columns]
+        known = np.isfinite(body.failed[: len(damage)])
+        failed += np.count_nonzero(known)
+        assert body.failed[: len(damage)][known] == pytest.approx(1.0 / damage[known], rel=1e-9)
+        assert body.damage[: len(damage)] == pytest.approx(life.done * damage, rel=1e-9)
+        assert not body.wear.any() and body.volume == 0.0
+    assert failed >= 3
+
+
+@pytest.mark.parametrize("scale", [0.5, 1.0])
+def test_the_worn_volume_is_k_times_load_times_sliding_whatever_the_roughness(scale, tmp_path):
+    passes, k = 200_000, (1e-18, 3e-18)
+    one = case(scaled(scale) | {"wear.coefficient": list(k), "life.passes": passes, "life.wear_jump": 0.02})
+    life = run_life(one, tmp_path / "a.life.h5")
+    scales = Simulation(one).scales
+    sliding = passes * abs(scales.u1 - scales.u2) * scales.duration
+    assert len(life.rows) >= 2 and life.done == passes
+    for body, coefficient in zip(life.bodies[-1], k, strict=True):
+        # the steps end within a step's length after the travel asked for, and the mesh holds the load
+        assert body.volume == pytest.approx(coefficient * one.contact.load * sliding, rel=1e-6)
+
+
+def test_wear_wins_at_a_high_rate_and_fatigue_at_a_low_one(tmp_path):
+    """As in Morales-Espejel and Brizmer (2011): mild wear takes off the layer in which micropits begin."""
+    ends = {}
+    for k in (1e-15, 1e-20):
+        keys = {"wear.coefficient": k, "life.damage_jump": 0.5, "life.wear_jump": 0.1, "time.travel": 6.0}
+        keys["mesh.points_per_half_width"] = 12
+        ends[k] = run_life(case(keys), tmp_path / f"{k}.life.h5", most=8)
+    polished, pitted = ends[1e-15], ends[1e-20]
+    new = polished.bodies[0][0]
+    new = new._replace(wear=np.zeros_like(new.wear))
+    assert polished.rows[-1]["ra_1"] < 0.95 * new.ra
+    assert max(polished("damage_1")) < 0.1 and polished.rows[-1]["pits_1"] == 0
+    assert pitted.rows[-1]["pits_1"] >= 1 and pitted.rows[-1]["pitted_share_1"] > 0.0
+
+
+def test_half_the_allowed_jump_changes_pits_and_wear_by_less_than_a_tenth(tmp_path):
+    ends = []
+    for part in (1.0, 0.5):
+        keys = {"life.wear_jump": 0.05 * part, "life.damage_jump": 0.1 * part, "life.pits": False}
+        keys |= {"wear.coefficient": 1e-18, "life.passes": 3e4}
+        ends.append(run_life(case(keys), tmp_path / f"{part}.life.h5").rows[-1])
+    for name in ("wear_volume_1", "wear_volume_2", "damage_1", "damage_2"):
+        assert ends[1][name] == pytest.approx(ends[0][name], rel=0.1), name
+    assert abs(ends[1]["pitted_share_1"] - ends[0]["pitted_share_1"]) < 0.1
+
+
+def test_a_life_continued_is_the_one_that_was_not_stopped(tmp_path):
+    keys = {"wear.coefficient": 1e-18, "life.passes": 1e9, "time.pass_shift": 50e-6, "life.partners": 2}
+    one = case(keys | {"contact.yield_pressure": 2e9, "life.damage_jump": 0.5})
+    once = run_life(one, tmp_path / "once.life.h5", most=4)
+    stopped = tmp_path / "stopped.life.h5"
+    run_life(one, stopped, most=1)
+    run_life(one, stopped, most=2)
+    again = run_life(one, stopped, most=1)
+    for life in (again, read_life(stopped)):
+        assert life("passes").tolist() == once("passes").tolist()
+        for both, others in zip(life.bodies, once.bodies, strict=True):
+            for body, other in zip(both, others, strict=True):
+                assert body.wear == pytest.approx(other.wear, rel=1e-9)
+                assert body.damage == pytest.approx(other.damage, rel=1e-9)
+    assert len(once.bodies[0][1].s) > len(once.bodies[0][0].s) - 20
