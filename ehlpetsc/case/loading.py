@@ -19,12 +19,14 @@ from ehlpetsc.case.oil_grade import with_grade
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.solids import with_material
+from ehlpetsc.case.tables.contact import Contact
+from ehlpetsc.case.tables.fluid import Fluid
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.heat import Heat
 from ehlpetsc.case.tables.life import Life
 from ehlpetsc.case.tables.operation import Operation
 from ehlpetsc.case.tables.post import Post
-from ehlpetsc.case.tables.schema import Contact, Fluid, Mesh, Motion, Output, Series, Time, Wear
+from ehlpetsc.case.tables.schema import Mesh, Motion, Output, Series, Time, Wear
 from ehlpetsc.case.tables.surface import Surface
 from ehlpetsc.case.tables.table import Needs, Table, is_plain
 from ehlpetsc.case.tables.validation import Field, PrivateAttr, ValidationError, validator

@@ -38,7 +38,7 @@ class StepInputs:
         Contribution of the roughness to the gap, in a^2/R.
     history : reynolds.FilmHistory or None
         Previous time levels; None: steady.
-    fluid : case.tables.schema.Fluid or None
+    fluid : case.tables.fluid.Fluid or None
         None: dry.
     inlet_film : float or None
         Oil given at the inlet in a^2/R; None: flooded.

@@ -46,7 +46,7 @@ def smooth_films(fluid, modulus, conditions):
 
     Parameters
     ----------
-    fluid : case.tables.schema.Fluid
+    fluid : case.tables.fluid.Fluid
     modulus : float
         E' [Pa].
     conditions : physics.operation.Conditions

@@ -78,7 +78,7 @@ def expected_friction(fluid, boundary_friction, scales, film):
 
     Parameters
     ----------
-    fluid : case.tables.schema.Fluid or None
+    fluid : case.tables.fluid.Fluid or None
     boundary_friction : float
     scales : physics.scales.Scales
     film : float

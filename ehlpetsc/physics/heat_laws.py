@@ -26,7 +26,7 @@ def film_law(fluid, heat, sliding):
 
     Parameters
     ----------
-    fluid : case.tables.schema.Fluid or None
+    fluid : case.tables.fluid.Fluid or None
         None: dry.
     heat : case.tables.heat.Heat
     sliding : float

@@ -22,7 +22,7 @@ def viscosity(p, fluid):
     ----------
     p : ndarray
         Pressure [Pa].
-    fluid : case.tables.schema.Fluid
+    fluid : case.tables.fluid.Fluid
 
     Returns
     -------

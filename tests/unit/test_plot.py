@@ -11,7 +11,7 @@ from made_results import P0, A, make_result, with_solids
 from matplotlib.figure import Figure
 from PIL import Image as image
 
-from ehlpetsc.case.tables import schema
+from ehlpetsc.case.loading import Case
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot import figures, labels, movies, over_time, stribeck
@@ -225,7 +225,7 @@ def test_two_results_are_told_apart_and_do_not_overwrite_the_picture_of_one(tmp_
 def test_defaults_that_tell_results_apart_are_those_of_the_cases():
     for key, value in swept.DEFAULTS.items():
         table, name = key.split(".")
-        fields = schema.__dict__[table.capitalize()].__fields__
+        fields = Case.__fields__[table].type_.__fields__
         assert fields[name].default == value
 
 
