@@ -1,7 +1,6 @@
 """Keys of `[fluid]` that follow from the grade of an oil, as data sheets give it."""
 
 from ehlpetsc.case.tables.table import is_of
-from ehlpetsc.physics.thermal_viscosity import gold_pressure_viscosity, walther, walther_constants
 
 MM2 = 1e6  # mm^2/s in m^2/s
 
@@ -31,6 +30,8 @@ def with_grade(tables):
         return tables
     if not (2e-6 < v100 < v40 < 1.0 and 200.0 < temperature < 700.0):
         return tables
+    from ehlpetsc.physics.thermal_viscosity import gold_pressure_viscosity, walther, walther_constants
+
     nu = float(walther(temperature, *walther_constants(v40, v100))[0])
     found = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}
     tables = tables | {"fluid": found | fluid}

@@ -86,7 +86,7 @@ class GearPair:
     @property
     def normal_load(self):
         r"""Load on the flanks per face width [N/m], :math:`T_1/(r_{b1}b)`."""
-        return self.torque / (self.base_radii[0] * self.face_width)
+        return self.torque / self.face_width / self.base_radii[0]
 
     @property
     def points(self):

@@ -93,7 +93,8 @@ def stands(path):
         return path.exists() or "\0" in str(path) and path.stat() is None  # stat refuses what exists takes
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise OutputError(f"{str(path)!r}: cannot be looked at, {reason}") from error
+        name = str(path) if str(path).isprintable() else repr(str(path))
+        raise OutputError(f"{name}: cannot be looked at, {reason}") from error
 
 
 def check_index(path, rows, files=()):

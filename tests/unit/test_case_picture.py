@@ -47,13 +47,13 @@ def test_peaks_and_valleys_beside_a_plateau():
 def test_the_part_that_passes_is_that_of_the_travel():
     case = load(CASES / "fig1.toml")
     scales = Scales.of(case)
-    profile = Roughness.of(case, scales).fast
+    profile = Roughness.of(case, scales).surface_1
     begin, end = passing(profile, case, scales)
     assert begin == profile.X[0]
     assert end - begin == pytest.approx((case.time.travel - 1.5 - 2.0) * scales.a, rel=1e-9)
     short = load(CASES / "fig1.toml", ["time.travel=3"])
     scales = Scales.of(short)
-    assert np.ptp(passing(Roughness.of(short, scales).fast, short, scales)) == 0.0
+    assert np.ptp(passing(Roughness.of(short, scales).surface_1, short, scales)) == 0.0
 
 
 def test_a_case_is_drawn_with_its_parameters_and_the_part_that_passes(tmp_path, capsys):

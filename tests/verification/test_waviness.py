@@ -29,7 +29,7 @@ def amplitude_left(ratio, points, nodes, half_periods):
     Over the last whole period of the run, which has a whole number of steps; the wave's amplitude is a tenth
     of the smooth central film on the same mesh.
     """
-    mesh = (f"mesh.points_per_half_width={points}", "mesh.inlet=-2.0")
+    mesh = (f"mesh.points_per_half_width={points}", "mesh.inlet=-2.0", "time.travel=60")
     smooth = Scene("waviness.toml", *mesh).start()
     amplitude = 0.1 * smooth.film[smooth.centre]
     s = smooth.scales
