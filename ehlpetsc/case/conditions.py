@@ -7,6 +7,8 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 import numpy as np
 
 from ehlpetsc.case.conditions_file import TableFault, read_table
+from ehlpetsc.case.tables.gears import Gears
+from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.case.tables.operation import COLUMNS
 from ehlpetsc.errors import CaseError
 from ehlpetsc.gears import path_of_contact
@@ -42,8 +44,9 @@ def conditions_of(tables, folder):
         raise TableFault("[gears] gives the same conditions; allowed: one of both")
     if isinstance(gears, dict):
         try:
+            Gears(**gears)
             return of_gears(path_of_contact(gears))
-        except CaseError:  # found by the schema too
+        except (ValidationError, CaseError):  # the schema names both
             return None
     if not isinstance(operation, dict):
         return None

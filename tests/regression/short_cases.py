@@ -37,6 +37,7 @@ SHORT = {
     "fig6": (*QUICK, MESHES),
     "fig7": (*QUICK, MESHES, "output.every=10"),
     "fzg": ("mesh.points_per_half_width=25", "time.travel=1.0"),
+    "life": ("time.travel=0.6",),
     "mixed": QUICK,
     "moes": (),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
