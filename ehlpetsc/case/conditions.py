@@ -8,8 +8,8 @@ import numpy as np
 
 from ehlpetsc.case.conditions_file import TableFault, read_table
 from ehlpetsc.case.tables.gears import Gears
-from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.case.tables.operation import COLUMNS
+from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import CaseError
 from ehlpetsc.gears import path_of_contact
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
