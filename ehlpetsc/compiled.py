@@ -4,7 +4,10 @@ The solver needs numba. Post-processing does without it: the same functions then
 to the same bit.
 """
 
+import contextlib
+import hashlib
 import os
+from pathlib import Path
 
 import numpy as np
 
@@ -18,6 +21,36 @@ except ImportError:
 # what indices are that cannot be negative, over which numba takes half the time
 unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
 ZERO = np.int64(0)  # to hand to compiled functions, which numba would compile once more for a literal 0
+
+
+def drop_stale_code(package):
+    """Remove code that numba has kept of other sources of a package.
+
+    numba notices a change of the file of a function, not of the files of functions that it calls, nor that a
+    module has moved.
+
+    Parameters
+    ----------
+    package : Path
+    """
+    stamp = package / "__pycache__" / "compiled.stamp"
+    found = sorted((str(path.relative_to(package)), path.stat()) for path in package.rglob("*.py"))
+    text = repr([(name, about.st_size, about.st_mtime_ns) for name, about in found])
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    with contextlib.suppress(OSError):  # of others, or read-only: then numba keeps its code elsewhere
+        if stamp.exists() and stamp.read_text() == digest:
+            return
+        for path in package.rglob("__pycache__/*.nb[ic]"):
+            path.unlink(missing_ok=True)
+        beside = stamp.with_suffix(f".{os.getpid()}")
+        beside.parent.mkdir(exist_ok=True)
+        beside.write_text(digest)
+        beside.replace(stamp)
+
+
+if COMPILED:
+    with contextlib.suppress(OSError):  # a module is removed meanwhile
+        drop_stale_code(Path(__file__).parent)
 
 
 def compiled(function=None, **options):

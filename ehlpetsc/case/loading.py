@@ -6,19 +6,19 @@ from pathlib import Path
 
 from ehlpetsc.case.case_file import parse_toml, read_text
 from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
-from ehlpetsc.case.conditions import (
+from ehlpetsc.case.derived.conditions import (
     TableFault,
     conditions_of,
     reversal_faults,
     with_columns,
     with_reference_state,
 )
+from ehlpetsc.case.derived.measured_layer import resolve_measured_layer
+from ehlpetsc.case.derived.oil_grade import with_grade
+from ehlpetsc.case.derived.solids import with_material
 from ehlpetsc.case.faults import describe, shortened, show
-from ehlpetsc.case.measured_layer import resolve_measured_layer
-from ehlpetsc.case.oil_grade import with_grade
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put, text_with
-from ehlpetsc.case.solids import with_material
 from ehlpetsc.case.tables.contact import Contact
 from ehlpetsc.case.tables.fluid import Fluid
 from ehlpetsc.case.tables.gears import Gears

@@ -1,11 +1,11 @@
 r"""Heat: temperatures of the film and of both surfaces, and the viscosity at them.
 
-Equations and the temperature of a node: :mod:`ehlpetsc.physics.heat_film`; conduction into the bodies:
-:mod:`ehlpetsc.physics.half_space_conduction`. In the solve of a step the temperature of a node follows from
-its pressure and film, with the response of both surfaces to the flux of the step; heat of the pressure flow
-and of rubbing solids, and the heat that the film carries along, are those of the last level there. Of the
-accepted solution all temperatures and fluxes are then computed with its own flow, so that the energy balance
-holds in every step.
+Equations and the temperature of a node: :mod:`ehlpetsc.physics.heat.film`; conduction into the bodies:
+:mod:`ehlpetsc.physics.heat.half_space_conduction`. In the solve of a step the temperature of a node follows
+from its pressure and film, with the response of both surfaces to the flux of the step; heat of the pressure
+flow and of rubbing solids, and the heat that the film carries along, are those of the last level there. Of
+the accepted solution all temperatures and fluxes are then computed with its own flow, so that the energy
+balance holds in every step.
 """
 
 from functools import cached_property
@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.physics.body_heat import BodyHeat
+from ehlpetsc.physics.heat.body_heat import BodyHeat
 from ehlpetsc.quantity import Field, Figure
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
@@ -33,7 +33,7 @@ class HeatRecord(NamedTuple):
     source
         Heat that does not depend on the film's temperature in a step [W/m^2].
     spread
-        Of :func:`ehlpetsc.physics.heat_film.shear_stress`.
+        Of :func:`ehlpetsc.physics.heat.film.shear_stress`.
     flow
         Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
     response_1, response_2
@@ -144,8 +144,8 @@ class Heat(Effect):
 
     def log_viscosity(self, record, pressure):
         """ln(eta/eta0) at the temperatures of a record; None without oil."""
-        from ehlpetsc.physics.heat_laws import film_law
-        from ehlpetsc.physics.thermal_viscosity import log_viscosity
+        from ehlpetsc.physics.heat.laws import film_law
+        from ehlpetsc.physics.heat.thermal_viscosity import log_viscosity
 
         case = self.scene.case
         if case.fluid is None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.case.solids import FATIGUE_KEYS
+from ehlpetsc.case.derived.solids import FATIGUE_KEYS
 from ehlpetsc.errors import OutputError, PostError
 from ehlpetsc.materials import DEFAULT
 from ehlpetsc.post.counters import PAPER, Counters, columns

@@ -16,7 +16,7 @@ class AcceptedState:
     fields : dict of str to ndarray, shape (nx,)
         In SI units.
     in_contact : ndarray of bool, shape (nx,)
-    solution : stepping.time_stepping.State
+    solution : stepping.state.State
         Unknowns, and what the next step needs of the past.
     """
 

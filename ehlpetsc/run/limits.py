@@ -5,7 +5,7 @@ Fed by the figures that are kept of all steps anyway; the sentences go into the 
 
 import numpy as np
 
-from ehlpetsc.physics.flash_temperature import WORTH_HEAT, flash_temperature
+from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, flash_temperature
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.stepping.observables import MOLECULES
 from ehlpetsc.surfaces.mesh_fit import SHARE

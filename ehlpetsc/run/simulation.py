@@ -63,7 +63,7 @@ class Simulation:
         Of the passes of both bodies over each other, from 1.
     state : AcceptedState or None
         The last one of this process.
-    solution : stepping.time_stepping.State or None
+    solution : stepping.state.State or None
         Its unknowns, or those of a restart file.
 
     Raises
@@ -96,7 +96,7 @@ class Simulation:
         self.operation = operation_of(case, self.scales)
         self.pass_number = check_pass(case, self.scales, after, pass_number)
         positions = SurfacePositions.at_rest(self.scales)
-        one, other = (case.conditions and case.conditions.begins) or (0.0, 0.0)
+        one, other = (case.conditions and case.derived.conditions.begins) or (0.0, 0.0)
         shift = (self.pass_number - 1) * case.time.pass_shift if case.time else 0.0
         positions = replace(positions, profile_offsets=(one, other + shift))
         if faults := domain_faults(case, self.scales):
@@ -160,7 +160,7 @@ class Simulation:
 
         Parameters
         ----------
-        solution : stepping.time_stepping.State
+        solution : stepping.state.State
         baseline : pair of ndarray, shape (nx,)
             Steady q and w, for the predictor.
         positions : surfaces.roughness.SurfacePositions

@@ -20,7 +20,7 @@ def observe(scene, problem, effects, state, started):
     scene : effects.effect.Scene
     problem : discretisation.ehl_problem.EHLProblem
     effects : list of effects.effect.Effect
-    state : stepping.time_stepping.State
+    state : stepping.state.State
     started : float
         Monotonic clock at the begin of the step [s].
 

@@ -15,7 +15,7 @@ from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.way_on import way_on
 from ehlpetsc.stepping.predictor import TimeLevel
-from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.stepping.state import State
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"

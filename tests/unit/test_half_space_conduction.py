@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ehlpetsc.discretisation.heat.bodies import Body
-from ehlpetsc.physics.body_heat import Solid
-from ehlpetsc.physics.flash_temperature import blok_flash_temperature, moving_band
-from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials
+from ehlpetsc.physics.heat.body_heat import Solid
+from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature, moving_band
+from ehlpetsc.physics.heat.half_space_conduction import StepWeights, diffuse, exponentials
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 FLUX = 1e9  # W/m^2

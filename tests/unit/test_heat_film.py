@@ -9,8 +9,8 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.physics.heat_film import FilmHeat, FilmLaw, film_temperature
-from ehlpetsc.physics.heat_laws import film_law
+from ehlpetsc.physics.heat.film import FilmHeat, FilmLaw, film_temperature
+from ehlpetsc.physics.heat.laws import film_law
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.physics.heat_laws import thermal_law
-from ehlpetsc.physics.thermal_viscosity import WALTHER
+from ehlpetsc.physics.heat.laws import thermal_law
+from ehlpetsc.physics.heat.thermal_viscosity import WALTHER
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 GRADE = {"fluid.grade": {"v40": 220e-6, "v100": 19e-6, "density": 880.0}}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ehlpetsc.physics import thermal_viscosity as thermal
+from ehlpetsc.physics.heat import thermal_viscosity as thermal
 
 PRESSURE = (4.0, 0.196e9, 0.5)
 V40, V100 = 220e-6, 19e-6

@@ -12,7 +12,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.stepping.observables import observe
-from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.stepping.state import State
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 NEWTONIAN, EYRING = 1e12, 10e6

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.physics.body_heat import Solid
-from ehlpetsc.physics.flash_temperature import blok_flash_temperature, moving_band
+from ehlpetsc.physics.heat.body_heat import Solid
+from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature, moving_band
 from ehlpetsc.run.simulation import Simulation
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -13,7 +13,7 @@ from ehlpetsc.gears.along_path import GearRun
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.stepping.state import State
 
 COARSE = {"mesh.points_per_half_width": 50, "mesh.inlet": -2.5, "mesh.outlet": 1.5}
 

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.body_heat import BodyHeat
-from ehlpetsc.physics.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
+from ehlpetsc.physics.heat.body_heat import BodyHeat
+from ehlpetsc.physics.heat.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
@@ -42,7 +42,7 @@ class Body:
 
     Parameters
     ----------
-    solid : physics.body_heat.Solid
+    solid : physics.heat.body_heat.Solid
     speed : float
         Of its surface at the start [m/s].
     scales : physics.scales.Scales

@@ -1,6 +1,6 @@
 r"""Heat in the film: its temperature in the Reynolds equation, dissipation, and transport along the film.
 
-In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.physics.heat_film`, whose derivatives are
+In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.physics.heat.film`, whose derivatives are
 part of those of the viscosity. Of an accepted solution the transport with the surfaces' mean speed u is
 upwind and implicit,
 
@@ -25,7 +25,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     P,
     positive_extrapolation,
 )
-from ehlpetsc.physics.heat_film import _log_viscosity, film_temperature
+from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
 from ehlpetsc.physics.rheology import mobilities
 
 SWEEPS = 50

@@ -9,9 +9,9 @@ from ehlpetsc.discretisation.heat.bodies import Body
 from ehlpetsc.discretisation.heat.film import faces, transport
 from ehlpetsc.discretisation.heat.mixing import mixing
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.physics.body_heat import Solid
-from ehlpetsc.physics.heat_film import FilmHeat
-from ehlpetsc.physics.heat_laws import film_law
+from ehlpetsc.physics.heat.body_heat import Solid
+from ehlpetsc.physics.heat.film import FilmHeat
+from ehlpetsc.physics.heat.laws import film_law
 
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve

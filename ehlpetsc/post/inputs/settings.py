@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.case.solids import fatigue_constants, named_steels
+from ehlpetsc.case.derived.solids import fatigue_constants, named_steels
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material

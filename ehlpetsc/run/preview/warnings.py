@@ -3,7 +3,7 @@
 import numpy as np
 
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.flash_temperature import WORTH_HEAT, expected_friction, flash_temperature
+from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, expected_friction, flash_temperature
 from ehlpetsc.run.preview.domain import domain_warnings
 from ehlpetsc.surfaces.arrival import arrival_warnings
 from ehlpetsc.surfaces.mesh_fit import mesh_warnings

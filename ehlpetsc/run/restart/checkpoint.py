@@ -12,7 +12,7 @@ from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart.contents import RECORD, TOTAL, fault
 from ehlpetsc.run.restart.rescaling import rescale
 from ehlpetsc.stepping.predictor import TimeLevel
-from ehlpetsc.stepping.time_stepping import State
+from ehlpetsc.stepping.state import State
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
@@ -25,7 +25,7 @@ class Checkpoint:
 
     Attributes
     ----------
-    state : time_stepping.State
+    state : stepping.state.State
         Its `m` is None where the contact has another size than when it was saved: that of the state is meant.
     baseline : pair of ndarray
         Steady q and w that the predictor starts from.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.physics.body_heat import Solid
+from ehlpetsc.physics.heat.body_heat import Solid
 from ehlpetsc.physics.rheology import viscosity, wall_shear
 
 STEEL = Solid(46.0, 7850.0, 470.0)

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.physics import thermal_viscosity
+from ehlpetsc.physics.heat import thermal_viscosity
 
 LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 200

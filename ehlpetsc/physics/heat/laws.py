@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ehlpetsc.physics import thermal_viscosity as thermal
-from ehlpetsc.physics.heat_film import FilmLaw
+from ehlpetsc.physics.heat import thermal_viscosity as thermal
+from ehlpetsc.physics.heat.film import FilmLaw
 from ehlpetsc.physics.rheology import viscosity_constants
 
 BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05

@@ -6,7 +6,7 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 
 import numpy as np
 
-from ehlpetsc.case.conditions_file import TableFault, read_table
+from ehlpetsc.case.derived.conditions_file import TableFault, read_table
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.operation import COLUMNS
 from ehlpetsc.case.tables.validation import ValidationError
