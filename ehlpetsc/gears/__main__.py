@@ -8,12 +8,14 @@ post-processed, RESULT.post.h5, also the damage along both flanks.
 
 import argparse
 import sys
-import tomllib
 from pathlib import Path
 
 from ehlpetsc import environment
+from ehlpetsc.case.case_file import parse_toml, read_text
 from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, not_written
+from ehlpetsc.results.output_guard import PICTURES, check_derived
+from ehlpetsc.results.whole_file import replacing, write_whole
 
 
 def arguments():
@@ -26,7 +28,7 @@ def arguments():
     parser.add_argument("case", help="case file with a [gears] table, or a result of one")
     parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
-    parser.add_argument("--csv", metavar="FILE", help="the path as a table for [operation]")
+    parser.add_argument("--csv", metavar="FILE.csv", help="the path as a table for [operation]")
     return parser
 
 
@@ -50,11 +52,11 @@ def main(argv=None):
 def run(chosen):
     """Print the table, write picture and CSV file."""
     from ehlpetsc.gears.path import path_of_contact
-    from ehlpetsc.gears.table import csv, hertz, rows
+    from ehlpetsc.gears.table import COLUMNS, csv, hertz, rows
 
     if Path(chosen.case).suffix == ".h5":
         return _run_of(chosen)
-    case = _read(chosen.case)
+    case = parse_toml(chosen.case, read_text(chosen.case))
     if not isinstance(case.get("gears"), dict):
         raise CaseError([f"{chosen.case}: no [gears] table; allowed: a case with one"])
     try:
@@ -63,17 +65,19 @@ def run(chosen):
         raise CaseError([f"{chosen.case}: {fault}" for fault in error.faults]) from None
     contact = case.get("contact")
     stresses = hertz(path, contact if isinstance(contact, dict) else {})
+    target = _picture(chosen)
+    if chosen.csv is not None:
+        head = ", ".join(COLUMNS).encode()
+        check_derived(Path(chosen.csv), [Path(chosen.case)], {".csv": head, ".txt": head}, "--csv")
     print("\n".join(rows(path, stresses)))
-    if chosen.csv:
-        _check_target(chosen.csv, chosen.case)
-        Path(chosen.csv).write_text(csv(path), encoding="utf-8")
+    if chosen.csv is not None:
+        write_whole(chosen.csv, csv(path).encode())
         print(chosen.csv)
-    if not chosen.no_picture:
+    if target:
         from ehlpetsc.gears.picture import draw
 
-        target = chosen.output or f"{Path(chosen.case).stem}.gears.png"
-        _check_target(target, chosen.case)
-        draw(path, stresses, target, str(case.get("title", chosen.case)))
+        with replacing(target, keep_ending=True) as beside:
+            draw(path, stresses, beside, str(case.get("title", chosen.case)))
         print(target)
 
 
@@ -82,35 +86,35 @@ def _run_of(chosen):
     from ehlpetsc.gears.along_path import GearRun
     from ehlpetsc.gears.flanks import FlankDamage
 
+    if chosen.csv is not None:
+        raise OutputError(f"{chosen.case}: a result; allowed for --csv: a case with a [gears] table")
     found = GearRun(chosen.case)
-    print("\n".join(found.lines()))
-    if not chosen.no_picture:
-        target = chosen.output or f"{Path(chosen.case).stem}.gears.png"
-        _check_target(target, chosen.case)
-        found.draw(target)
-        print(target)
     post = Path(chosen.case).with_suffix(".post.h5")
+    target = _picture(chosen)
+    flanks = target and target.with_suffix(".flanks.png")
+    if flanks and post.exists():
+        check_derived(flanks, [Path(chosen.case), post], PICTURES)
+    print("\n".join(found.lines()))
+    if target:
+        with replacing(target, keep_ending=True) as beside:
+            found.draw(beside)
+        print(target)
     if post.exists():
         damage = FlankDamage(post, found.begins)
         print("\n".join(damage.lines()))
-        if not chosen.no_picture:
-            flanks = Path(target).with_suffix(".flanks.png")
-            damage.draw(found.path.pair, flanks, found.title)
+        if flanks:
+            with replacing(flanks, keep_ending=True) as beside:
+                damage.draw(found.path.pair, beside, found.title)
             print(flanks)
 
 
-def _read(path):
-    try:
-        return tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
-    except OSError as error:
-        raise CaseError([f"{path}: cannot be read: {error.strerror}"]) from None
-    except (ValueError, RecursionError) as error:
-        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
-
-
-def _check_target(target, case):
-    if Path(target).resolve() == Path(case).resolve():
-        raise ValueError(f"{target}: is the case; give another file")
+def _picture(chosen):
+    """Where the picture goes, checked; None: it is not wanted."""
+    if chosen.no_picture:
+        return None
+    target = Path(f"{Path(chosen.case).stem}.gears.png" if chosen.output is None else chosen.output)
+    check_derived(target, [Path(chosen.case)], PICTURES)
+    return target
 
 
 if __name__ == "__main__":

@@ -52,8 +52,8 @@ def main(argv=None):
             from ehlpetsc.life.history import read_life
             from ehlpetsc.life.picture import draw
 
-            target = path.with_suffix(".png")
-            draw(read_life(path), target)
+            life, target = read_life(path), _picture(path, [path])
+            draw(life, target)
             print(target)
     except CaseError as error:
         print("\n".join(error.faults), file=sys.stderr)
@@ -73,6 +73,15 @@ def main(argv=None):
     return ExitStatus.BAD_INPUT
 
 
+def _picture(path, inputs):
+    """Where the picture of a life goes, checked."""
+    from ehlpetsc.results.output_guard import PICTURES, check_derived
+
+    target = path.with_suffix(".png")
+    check_derived(target, inputs, PICTURES)
+    return target
+
+
 def _run(chosen):
     """Run a life; its file on the first rank, else None."""
     from ehlpetsc.api import need_solver
@@ -82,11 +91,15 @@ def _run(chosen):
     from mpi4py import MPI
 
     from ehlpetsc.life.driver import run_life
+    from ehlpetsc.results.output_guard import inputs_of
+    from ehlpetsc.run.on_root import on_root
     from ehlpetsc.run.stop import StopRequest
 
     comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)
-    path = Path(chosen.output or f"{Path(case.path).stem}.life.h5")
+    path = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
     is_root = comm.rank == 0
+    if path.name and not chosen.no_picture:
+        on_root(comm, _picture, path, inputs_of(case))
 
     def show(text):
         if is_root:

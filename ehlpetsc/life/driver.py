@@ -1,8 +1,10 @@
 """The passes of a life: one is solved, those like it are jumped, the next one meets the changed surfaces."""
 
 import time as clock
+import tomllib
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 from ehlpetsc.case.loading import Case, load
@@ -10,7 +12,9 @@ from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.results.hdf5.opening import open_for_reading
 
+PASS = ".pass.h5"  # ending of the last pass's result, beside the life
 CELL = 0.25  # of the combined Rq: thickness of the first cells
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
 
@@ -47,14 +51,14 @@ def run_life(case, output=None, *, overwrite=False, comm=None, show=None, stop=N
     need_solver()
     from mpi4py import MPI
 
-    from ehlpetsc.results.output_guard import Lock, check_place, inputs_of
+    from ehlpetsc.results.output_guard import Lock
     from ehlpetsc.run.on_root import on_root
 
     case = case if isinstance(case, Case) else load(case)
     check_case(case)
     comm = comm or MPI.COMM_SELF
-    path = Path(output or f"{Path(case.path).stem}.life.h5")
-    on_root(comm, lambda: check_place(path, inputs_of(case), "-o"))
+    path = Path(f"{Path(case.path).stem}.life.h5" if output is None else output)
+    on_root(comm, check_files, path, case)
     lock = Lock(path, "wait for it, or give another -o")
     on_root(comm, lock.take)
     try:
@@ -82,6 +86,39 @@ def check_case(case):
         faults.append(f"[life] needs output.every = 1 and the fields {', '.join(NEEDED)}")
     if faults:
         raise CaseError([f"{case.path}: {fault}" for fault in faults])
+
+
+def check_files(path, case):
+    """Refuse to write over an input, over what is no life, and over a result that is none of a life's passes.
+
+    Parameters
+    ----------
+    path : Path
+        The life.
+    case : case.loading.Case
+
+    Raises
+    ------
+    OutputError
+    """
+    from ehlpetsc.results.output_guard import check_derived, check_place, inputs_of, stands
+
+    check_derived(path, inputs_of(case), {".h5": b"\x89HDF"})
+    one_pass = path.with_suffix(PASS)
+    check_place(one_pass, inputs_of(case), "-o")
+    if stands(one_pass) and one_pass.stat().st_size and not _is_pass(one_pass):
+        raise OutputError(f"{one_pass}: exists and is no pass of a life; remove it or give another -o")
+
+
+def _is_pass(path):
+    """Whether a file is the result of a life's pass, or one of HDF5 that a killed run has left damaged."""
+    try:
+        with open_for_reading(path) as file:
+            return "life" in tomllib.loads(str(file.attrs.get("case", "")))
+    except OutputError:
+        return h5py.is_hdf5(path)
+    except ValueError:
+        return False
 
 
 def stored_or_new(case, path, overwrite):
@@ -134,7 +171,7 @@ class _Life:
         if self.bodies is not None:
             records = self._records(simulation)
             simulation = start(self.case, self.comm, self.scales, position, records)
-        return run_pass(simulation, records, self.path.with_suffix(".pass.h5"), stop), simulation
+        return run_pass(simulation, records, self.path.with_suffix(PASS), stop), simulation
 
     def _records(self, simulation):
         """Records of the effects for the next pass."""

@@ -100,7 +100,7 @@ def read_life(path):
             raise OutputError(f"{path}: not a file of ehlpetsc.life")
         try:
             return _read(file)
-        except (KeyError, ValueError, TypeError, OSError) as error:
+        except (AttributeError, LookupError, ValueError, TypeError, OSError) as error:
             raise OutputError(f"{path}: damaged ({error})") from error
 
 

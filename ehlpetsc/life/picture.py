@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ehlpetsc.results.whole_file import replacing
+
 SHOWN = 3  # instants of the life
 
 
@@ -44,8 +46,11 @@ def draw(life, path):
             axes.legend(fontsize="x-small")
         axes.set(xscale="log", xlabel="passes", ylabel=label)
     figure.suptitle(life.title)
-    figure.savefig(path, dpi=130)
-    pyplot.close(figure)
+    try:
+        with replacing(path, keep_ending=True) as beside:
+            figure.savefig(beside, dpi=130)
+    finally:
+        pyplot.close(figure)
 
 
 def _under_profile(axes, body):

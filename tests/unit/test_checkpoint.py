@@ -249,5 +249,6 @@ def test_only_a_restart_file_that_fits_the_result_is_named_as_the_way_on(tmp_pat
     told = way_on(path, Scene(*other).case, stored)
     assert told.endswith(f"go on with -ehl_restart {path} (step 3)") == there
     assert told.startswith("there is no restart file of it") != there
+    assert there or told.endswith("run it anew with -ehl_overwrite"), "what lies there would be refused"
     path.unlink()
-    assert way_on(path, scene.case, stored).endswith("run it anew with -ehl_overwrite")
+    assert way_on(path, scene.case, stored).endswith("the same command begins anew")

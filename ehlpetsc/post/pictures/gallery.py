@@ -16,6 +16,7 @@ from ehlpetsc.post.pictures.distributions import depth_picture, ratio_picture
 from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
+from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.whole_file import replacing
 
@@ -33,11 +34,12 @@ def _save(figure, stem):
     figure.get_layout_engine().execute(figure)
     figure.set_layout_engine(None)
     around = figure.get_tightbbox().padded(matplotlib.rcParams["savefig.pad_inches"])
-    names = []
-    for kind in FORMATS:
-        names.append(f"{stem}.{kind}")
+    names = [f"{stem}.{kind}" for kind in FORMATS]
+    for name in names:
+        check_derived(Path(name), (), PICTURES, "--pictures")
+    for kind, name in zip(FORMATS, names, strict=True):
         metadata = {"Date": None} if kind == "svg" else None
-        with replacing(names[-1], keep_ending=True) as beside:
+        with replacing(name, keep_ending=True) as beside:
             figure.savefig(beside, dpi=DPI, bbox_inches=around, metadata=metadata)
     return names
 

@@ -26,4 +26,5 @@ def way_on(restart, case, step):
             return f"once this is mended, go on with -ehl_restart {restart} (step {attributes['step']})"
     except (OutputError, KeyError):
         pass  # none, an older one that is damaged, or another program's
-    return "there is no restart file of it: once this is mended, run it anew with -ehl_overwrite"
+    again = "run it anew with -ehl_overwrite" if restart.exists() else "the same command begins anew"
+    return f"there is no restart file of it: once this is mended, {again}"

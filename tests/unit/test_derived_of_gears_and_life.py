@@ -1,0 +1,193 @@
+"""Files that gears, life and post --pictures write: what lies in their place, what is no input."""
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from made_results import make_result
+from post_result_file import Scene, write
+from test_derived_files import PROFILE, foreign
+from test_output import file_size_limit
+
+from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import OutputError
+from ehlpetsc.gears.__main__ import main as gears
+from ehlpetsc.life.__main__ import main as life
+from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.driver import run_life
+from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.post import run as post_run
+from ehlpetsc.post.command import main as post
+from ehlpetsc.results.restart_file import save_restart
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.fixture
+def pair(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return shutil.copyfile(CASES / "fzg.toml", tmp_path / "pair.toml")
+
+
+@pytest.fixture
+def lived(tmp_path):
+    """A life of one pass."""
+    edges = np.array([0.0, 1e-6, 2e-6])
+    body = LifeBody.new(np.linspace(0.0, 1e-5, 11), np.zeros(11), edges)
+    figures = dict.fromkeys(["pitted_share", "wear_volume", "ra"], 0.1)
+    row = {"passes": 10, "jump": 10, "friction": 0.1}
+    found = LifeHistory("text", "title")
+    found.add(row | {f"{name}_{k}": v for name, v in figures.items() for k in (1, 2)}, (body, body), {})
+    found.save(tmp_path / "a.life.h5")
+    return tmp_path / "a.life.h5"
+
+
+def refused(capsys, command, *words):
+    """The one sentence that a command ends with, after notes."""
+    capsys.readouterr()
+    assert command([str(word) for word in words]) == 2
+    *notes, told = capsys.readouterr().err.splitlines()
+    assert all(re.search("note: |warning: |already there", line) for line in notes), notes
+    return told
+
+
+@pytest.mark.parametrize(
+    "option, ending", [("-o", ".png"), ("--csv", ".csv"), ("--csv", ".toml"), ("-o", ".h5")]
+)
+def test_gears_replaces_nothing_but_files_of_its_own(pair, tmp_path, capsys, option, ending):
+    other = foreign(tmp_path, f"other{ending}")
+    before = other.read_bytes()
+    told = refused(capsys, gears, pair, option, other)
+    assert f"{other}: " in told and option in told
+    assert other.read_bytes() == before
+
+
+@pytest.mark.parametrize("option", ["-o", "--csv"])
+@pytest.mark.parametrize("name", ["", "/", ".", "sub", "x.xyz", "pair.toml", "none/x.png"])
+def test_gears_refuses_nonsense_for_a_file(pair, tmp_path, capsys, option, name):
+    (tmp_path / "sub").mkdir()
+    before = pair.read_bytes()
+    assert refused(capsys, gears, pair, option, name)
+    assert pair.read_bytes() == before
+    assert sorted(os.listdir(tmp_path)) == ["pair.toml", "sub"]
+
+
+def test_gears_writes_its_files_again_and_a_full_disk_leaves_them(pair, tmp_path, capsys):
+    words = [str(pair), "--csv", "mesh.csv"]
+    assert gears(words) == 0 and gears(words) == 0
+    files = [tmp_path / "mesh.csv", tmp_path / "pair.gears.png"]
+    before = [path.read_bytes() for path in files]
+    for words in ((pair, "--csv", "mesh.csv", "--no-picture"), (pair,)):
+        with file_size_limit(1024):
+            assert "not written, File too large" in refused(capsys, gears, *words)
+    assert [path.read_bytes() for path in files] == before
+    assert len(os.listdir(tmp_path)) == 3
+
+
+@pytest.mark.parametrize("command", [gears, life, summary])
+@pytest.mark.parametrize("name", ["", "/", "sub", "sub.h5", "a.png", "a.restart.h5", "none.h5"])
+def test_what_is_no_input_is_told_in_one_sentence(tmp_path, monkeypatch, capsys, command, name):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("sub", "sub.h5"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0")
+    save_restart(tmp_path / "a.restart.h5", {}, {"case": "a"})
+    told = refused(capsys, command, name)
+    assert not told.startswith(" "), "an empty name is shown as such"
+    assert len(os.listdir(tmp_path)) == 4
+
+
+@pytest.mark.parametrize("name", ["other.h5", "other.restart.h5", "case.toml", "profile.csv", "a.png"])
+def test_a_summary_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, name):
+    result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
+    before = other.read_bytes()
+    assert f"{other}: " in refused(capsys, summary, result, "-o", other)
+    assert other.read_bytes() == before
+
+
+def test_the_picture_of_a_life_replaces_pictures_alone(lived, tmp_path, capsys):
+    assert life([str(lived)]) == 0 and life([str(lived)]) == 0
+    picture = tmp_path / "a.life.png"
+    before = picture.read_bytes()
+    with file_size_limit(4096):
+        assert refused(capsys, life, lived) == f"ehlpetsc.life: {picture}: not written, File too large"
+    assert picture.read_bytes() == before
+    make_result(picture)
+    before = picture.read_bytes()
+    assert "exists and is not of that kind" in refused(capsys, life, lived)
+    assert picture.read_bytes() == before
+    assert sorted(os.listdir(tmp_path)) == ["a.life.h5", "a.life.png"]
+
+
+def test_a_damaged_life_is_told_in_one_sentence(lived, capsys):
+    with h5py.File(lived, "a") as file:
+        del file["figures"]
+        file["figures"] = 1.0
+    assert "damaged" in refused(capsys, life, lived)
+
+
+@pytest.mark.parametrize("name", ["", "case.toml", "profile.csv", "a.png", "sub", "sub.h5"])
+def test_a_life_is_written_to_no_other_file(tmp_path, monkeypatch, capsys, name):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("sub", "sub.h5"):
+        (tmp_path / folder).mkdir()
+    if name in ("case.toml", "profile.csv", "a.png"):
+        foreign(tmp_path, name)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    assert refused(capsys, life, CASES / "life.toml", "-o", name, "--overwrite")
+    assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+
+
+def test_a_life_keeps_a_result_in_the_place_of_its_pass(tmp_path):
+    other = make_result(tmp_path / "x.life.pass.h5")
+    before = other.read_bytes()
+    with pytest.raises(OutputError, match="is no pass of a life"):
+        run_life(load(CASES / "life.toml"), tmp_path / "x.life.h5", most=1)
+    assert other.read_bytes() == before
+
+
+@pytest.fixture
+def crossing(tmp_path):
+    return write(tmp_path / "run.h5", Scene(per_width=20, ratio=0.5, travel=9.0), depths=(0.0, 0.5))
+
+
+@pytest.mark.parametrize("name", ["run.stress.png", "run.stress.svg"])
+def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, name):
+    other = tmp_path / "p" / name
+    other.parent.mkdir()
+    other.write_text(PROFILE)
+    assert f"{other}: exists and is not of that kind" in refused(
+        capsys, post, crossing, "--pictures", other.parent
+    )
+    assert other.read_text() == PROFILE
+
+
+@pytest.mark.parametrize("folder", ["/proc", "file"])
+def test_post_tells_of_a_folder_that_cannot_be_written(crossing, tmp_path, capsys, folder):
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / folder  # /proc: of its own
+    assert f"{folder}" in refused(capsys, post, crossing, "-o", folder / "x.post.h5")
+    assert f"{folder}" in refused(capsys, post, crossing, "--pictures", folder)
+    assert (tmp_path / "file").read_text() == ""
+
+
+@pytest.mark.parametrize("left", [None, "a file"])
+def test_post_tells_of_a_folder_that_went_during_the_run(crossing, tmp_path, capsys, monkeypatch, left):
+    out, solve = tmp_path / "out", post_run.solve
+    out.mkdir()
+
+    def go(*arguments):
+        values = solve(*arguments)
+        shutil.rmtree(out, ignore_errors=True)
+        if left and not out.exists():
+            out.write_text(left)
+        return values
+
+    monkeypatch.setattr(post_run, "solve", go)
+    assert "not written" in refused(capsys, post, crossing, "-o", out / "x.post.h5")
+    assert (out.read_text() == left) if left else not out.exists()
