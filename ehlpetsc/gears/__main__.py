@@ -8,14 +8,16 @@ post-processed, RESULT.post.h5, also the damage along both flanks.
 
 import argparse
 import sys
+import tomllib
 from pathlib import Path
 
 from ehlpetsc import environment
-from ehlpetsc.case.case_file import parse_toml, read_text
 from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, not_written
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.whole_file import replacing, write_whole
+
+MOST_BYTES = 2**26  # of a case file
 
 
 def arguments():
@@ -56,7 +58,7 @@ def run(chosen):
 
     if Path(chosen.case).suffix == ".h5":
         return _run_of(chosen)
-    case = parse_toml(chosen.case, read_text(chosen.case))
+    case = _read(chosen.case)
     if not isinstance(case.get("gears"), dict):
         raise CaseError([f"{chosen.case}: no [gears] table; allowed: a case with one"])
     try:
@@ -106,6 +108,19 @@ def _run_of(chosen):
             with replacing(flanks, keep_ending=True) as beside:
                 damage.draw(found.path.pair, beside, found.title)
             print(flanks)
+
+
+def _read(path):
+    try:
+        with open(path, "rb") as file:  # a device has no end
+            whole = file.read(MOST_BYTES + 1)
+        if len(whole) > MOST_BYTES:
+            raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
+        return tomllib.loads(whole.decode("utf-8-sig"))
+    except OSError as error:
+        raise CaseError([f"{path or repr(path)}: cannot be read: {error.strerror}"]) from None
+    except (ValueError, RecursionError) as error:
+        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
 
 
 def _picture(chosen):

@@ -1,14 +1,42 @@
 """Checks of the arguments that Python callers give to a simulation."""
 
 import math
+import os
 from numbers import Integral, Real
+from pathlib import Path
 
 import numpy as np
+from mpi4py import MPI
 
 from ehlpetsc.errors import UsageError
 
 SAME = 1e-9  # relative: nodes and half widths nearer than this are equal
 SHORTEST = 1e-9  # of the nominal time step
+
+
+def check_file(name, path):
+    """Refuse what cannot be the name of a file.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument.
+    path : path-like or None
+
+    Raises
+    ------
+    UsageError
+    """
+    if path is not None and not isinstance(path, str | Path):
+        known = os.fspath(path) if isinstance(path, os.PathLike) else path
+        if not isinstance(known, str):
+            raise UsageError(f"{name} = {path!r}: allowed: the name of a file")
+
+
+def check_comm(comm):
+    """Refuse what is no communicator; UsageError."""
+    if comm is not None and not isinstance(comm, MPI.Comm):
+        raise UsageError(f"comm = {comm!r}: allowed: a communicator of mpi4py, as mpi4py.MPI.COMM_WORLD")
 
 
 def option_texts(options):

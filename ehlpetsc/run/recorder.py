@@ -8,6 +8,7 @@ from ehlpetsc.results.output_guard import Lock, check_place, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.whole_file import remove_left
+from ehlpetsc.run.arguments import check_file
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.outputs.restart_file import RestartFile
 from ehlpetsc.run.outputs.result_file import ResultFile
@@ -34,6 +35,7 @@ class Recorder:
 
     def __init__(self, simulation, output):
         self.simulation, self.comm = simulation, simulation.comm
+        check_file("output", output)
         self.output = None if output is None else Path(output)
         self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
         self._lock = None
@@ -74,6 +76,7 @@ class Recorder:
         ------
         OutputError
         """
+        check_file("restart", restart)
         if self.output is None:
             return restart
         return self.comm.bcast(on_root(self.comm, self._reserve, restart, overwrite))

@@ -19,7 +19,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.accepted_state import AcceptedState
-from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts
+from ehlpetsc.run.arguments import check_comm, check_pass, check_time_step, option_texts
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
@@ -90,6 +90,7 @@ class Simulation:
             raise CaseError(
                 [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
             )
+        check_comm(comm)
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.contact.law, case.petsc, option_texts(options))
         self.scales = Scales.of(case)

@@ -90,7 +90,7 @@ def test_gears_writes_its_files_again_and_a_full_disk_leaves_them(pair, tmp_path
 
 
 @pytest.mark.parametrize("command", [gears, life, summary])
-@pytest.mark.parametrize("name", ["", "/", "sub", "sub.h5", "a.png", "a.restart.h5", "none.h5"])
+@pytest.mark.parametrize("name", ["", "/", "sub", "sub.h5", "a.png", "a.restart.h5", "none.h5", "/dev/zero"])
 def test_what_is_no_input_is_told_in_one_sentence(tmp_path, monkeypatch, capsys, command, name):
     monkeypatch.chdir(tmp_path)
     for folder in ("sub", "sub.h5"):

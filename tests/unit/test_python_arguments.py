@@ -169,3 +169,26 @@ def test_the_nearest_frame_is_near_to_something(result):
     for given in ({}, {"step": 1, "time": 0.0}):
         with pytest.raises(OutputError, match="either time or step"):
             result.nearest_frame(**given)
+
+
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        ("output", 5),
+        ("output", True),
+        ("output", b"x.h5"),
+        ("restart", 5),
+        ("comm", "x"),
+        ("comm", 5),
+        ("comm", 0),
+    ],
+)
+def test_an_argument_of_another_kind_is_named(case, name, value):
+    with pytest.raises(UsageError, match=rf"^{name} = {value!r}: allowed: "):
+        ehlpetsc.solve(case, **{name: value})
+
+
+@pytest.mark.parametrize("path", [5, None, b"x.h5"])
+def test_a_result_that_is_read_has_a_name(path):
+    with pytest.raises(OutputError, match="allowed: the name of a result file"):
+        ehlpetsc.read_result(path)

@@ -28,6 +28,8 @@ def open_for_reading(path, **options):
         No such file, or not one HDF5 can read.
     """
     try:
+        if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
+            raise OutputError(f"{path!r}: allowed: the name of a result file")
         if not Path(path).is_file():
             raise OutputError(f"{path}: no such file")
         return h5py.File(path, "r", swmr=_marked_as_being_written(path), **options)
