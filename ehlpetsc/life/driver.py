@@ -12,6 +12,7 @@ from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading
 
 PASS = ".pass.h5"  # ending of the last pass's result, beside the life
@@ -114,7 +115,7 @@ def _is_pass(path):
     """Whether a file is the result of a life's pass, or one of HDF5 that a killed run has left damaged."""
     try:
         with open_for_reading(path) as file:
-            return "life" in tomllib.loads(str(file.attrs.get("case", "")))
+            return "life" in tomllib.loads(str(plain(file.attrs.get("case", ""))))
     except OutputError:
         return h5py.is_hdf5(path)
     except ValueError:

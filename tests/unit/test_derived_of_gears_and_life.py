@@ -151,6 +151,16 @@ def test_a_life_keeps_a_result_in_the_place_of_its_pass(tmp_path):
     assert other.read_bytes() == before
 
 
+def test_a_life_goes_over_the_passes_of_its_own_alone(tmp_path):
+    case, path = load(CASES / "life.toml"), tmp_path / "x.life.h5"
+    first = run_life(case, path, most=1).done
+    assert run_life(case, path, most=1).done > first, "continued, over the result of the pass before"
+    assert run_life(case, path, most=1, overwrite=True).done == first
+    one_pass = tmp_path / "x.life.pass.h5"
+    one_pass.write_bytes(one_pass.read_bytes()[:4096])  # as of a run killed while it writes
+    assert run_life(case, path, most=1, overwrite=True).done == first
+
+
 @pytest.fixture
 def crossing(tmp_path):
     return write(tmp_path / "run.h5", Scene(per_width=20, ratio=0.5, travel=9.0), depths=(0.0, 0.5))
