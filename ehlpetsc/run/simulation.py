@@ -97,7 +97,7 @@ class Simulation:
         self.operation = operation_of(case, self.scales)
         self.pass_number = check_pass(case, self.scales, after, pass_number)
         positions = SurfacePositions.at_rest(self.scales)
-        one, other = (case.conditions and case.derived.conditions.begins) or (0.0, 0.0)
+        one, other = (case.conditions and case.conditions.begins) or (0.0, 0.0)
         shift = (self.pass_number - 1) * case.time.pass_shift if case.time else 0.0
         positions = replace(positions, profile_offsets=(one, other + shift))
         if faults := domain_faults(case, self.scales):

@@ -61,7 +61,7 @@ def directed_speeds(case, scales):
         return speeds
     return tuple(
         direction * max(abs(speed), 1e-3 * scales.u_max)
-        for direction, speed in zip(case.derived.conditions.directions(), speeds, strict=True)
+        for direction, speed in zip(case.conditions.directions(), speeds, strict=True)
     )
 
 

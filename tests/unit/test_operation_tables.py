@@ -48,14 +48,14 @@ def test_columns_by_other_names_separators_or_in_order(with_table, head):
     lines = TABLE.replace("   # heaviest", "").splitlines()[1:]
     text = "\n".join([head] * bool(head) + lines) + "\n"
     case = load(with_table(text.replace(",", ";") if head and ";" in head else text))
-    np.testing.assert_array_equal(case.derived.conditions.load, [400e3, 527e3, 300e3])
-    np.testing.assert_array_equal(case.derived.conditions.u2, [4.0, 3.0, 4.5])
+    np.testing.assert_array_equal(case.conditions.load, [400e3, 527e3, 300e3])
+    np.testing.assert_array_equal(case.conditions.u2, [4.0, 3.0, 4.5])
 
 
 def test_a_column_left_out_is_constant(with_table):
     case = load(with_table("time, load\n0, 527e3\n1e-4, 600e3\n"))
-    assert set(case.derived.conditions.radius) == {0.0191}
-    u1, u2 = case.derived.conditions.u1[0], case.derived.conditions.u2[0]
+    assert set(case.conditions.radius) == {0.0191}
+    u1, u2 = case.conditions.u1[0], case.conditions.u2[0]
     assert (0.5 * (u1 + u2), u1 - u2) == pytest.approx((5.0, 1.25))
 
 
@@ -111,7 +111,7 @@ def test_columns_may_stand_in_the_case_or_come_from_python():
     tables = {"operation": {"time": np.array([0.0, 1e-4]), "load": [5e5, 6e5]}}
     overrides = {f"operation.{key}": value for key, value in tables["operation"].items()}
     case = load(CASE, overrides)
-    np.testing.assert_array_equal(case.derived.conditions.load, [5e5, 6e5])
+    np.testing.assert_array_equal(case.conditions.load, [5e5, 6e5])
     with pytest.raises(CaseError, match="entry 2: time"):
         load(CASE, overrides | {"operation.time": [0.0, 0.0]})
 
