@@ -33,7 +33,7 @@ def main(argv):
 
         if first_rank():
             print(options_list())
-        return told()
+        return output_status()
     if command.explain or command.ranks:
         return explain(command)
     nowhere = environment.no_place()
@@ -70,7 +70,7 @@ def tell_keys(words):
         return refuse(f"ehlpetsc: {error}")
     if first_rank():
         print(text, end="")
-    return told()
+    return output_status()
 
 
 def explain(command):
@@ -87,10 +87,10 @@ def explain(command):
         return refuse("\n".join(error.faults))
     if first_rank():
         print(text)
-    return told()
+    return output_status()
 
 
-def told():
+def output_status():
     """Status of a command whose output is all there is of it: bad input where that has no room."""
     sys.stdout.flush()
     lost = getattr(sys.stdout, "lost", None)
@@ -155,8 +155,8 @@ def stops_raise():
     One that comes inside a callback of numba's compiler is lost there: `stop.asked` is for who handles
     signals next.
     """
-    stop, told = EarlyStop(), sys.unraisablehook
-    sys.unraisablehook = lambda lost: None if isinstance(lost.exc_value, Interrupted) else told(lost)
+    stop, previous_hook = EarlyStop(), sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if isinstance(lost.exc_value, Interrupted) else previous_hook(lost)
     for name in STOPS:
         if signal.getsignal(name) is not signal.SIG_IGN:  # nohup
             signal.signal(name, stop)

@@ -1,4 +1,4 @@
-"""Case files: read as text, parsed as TOML, faults in words."""
+"""Case files: read as text, parsed as TOML, with validation messages."""
 
 import contextlib
 import difflib

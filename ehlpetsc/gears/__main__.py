@@ -44,8 +44,8 @@ def main(argv=None):
     except OutputError as error:
         print(f"ehlpetsc.gears: {error}", file=sys.stderr)
     except (OSError, ValueError) as error:
-        told = not_written(error) if isinstance(error, OSError) else str(error)
-        print(f"ehlpetsc.gears: {told}", file=sys.stderr)
+        message = not_written(error) if isinstance(error, OSError) else str(error)
+        print(f"ehlpetsc.gears: {message}", file=sys.stderr)
     else:
         return ExitStatus.DONE
     return ExitStatus.BAD_INPUT

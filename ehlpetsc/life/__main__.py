@@ -66,8 +66,8 @@ def main(argv=None):
     except (OutputError, PostError, UsageError) as error:
         print(f"ehlpetsc.life: {error}", file=sys.stderr)
     except (OSError, ImportError) as error:
-        told = not_written(error) if isinstance(error, OSError) else str(error)
-        print(f"ehlpetsc.life: {told}", file=sys.stderr)
+        message = not_written(error) if isinstance(error, OSError) else str(error)
+        print(f"ehlpetsc.life: {message}", file=sys.stderr)
     else:
         return ExitStatus.DONE
     return ExitStatus.BAD_INPUT

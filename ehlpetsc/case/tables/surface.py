@@ -118,7 +118,7 @@ def with_current_sides(surface):
     Raises
     ------
     ValueError
-        One surface stands there under both names.
+        One surface is given under both names.
     """
     for former, side in FORMER.items():
         if former in surface and side in surface:
