@@ -21,7 +21,7 @@ def main(argv):
     if missing:
         return refuse(environment.advice(missing, argv[1:]))
     if argv[1:2] in (["--keys"], ["--template"]):
-        return tell_keys(argv[1:])
+        return print_keys(argv[1:])
     from ehlpetsc.run.command_line import options_list, parse_command_line
 
     try:
@@ -36,7 +36,7 @@ def main(argv):
         return output_status()
     if command.explain or command.ranks:
         return explain(command)
-    nowhere = environment.no_place()
+    nowhere = environment.startup_problem()
     if nowhere:
         return refuse(f"ehlpetsc: {nowhere}")
     import petsc4py
@@ -58,7 +58,7 @@ def first_only_help(words):
     return words == ["-help"]
 
 
-def tell_keys(words):
+def print_keys(words):
     """Print every key of a case file, of one table, or a commented case."""
     from ehlpetsc.case import key_page
     from ehlpetsc.environment import first_rank
@@ -106,11 +106,11 @@ def refuse(text):
     return ExitStatus.BAD_INPUT
 
 
-def guarded(argv):
+def run_guarded(argv):
     """Run `main`; an unexpected error on one rank ends all of them, with its traceback."""
     if not sys.warnoptions:  # those of numpy are for developers: python3 -W default shows them
         warnings.simplefilter("ignore")
-    streams.protect()
+    streams.harden_std_streams()
     asked = stops_raise()
     try:
         status = main(argv)
@@ -182,4 +182,4 @@ def ended(error, asked):
 if __name__ == "__main__":
     from ehlpetsc.commands import dispatch
 
-    sys.exit(dispatch(lambda: guarded(sys.argv)))
+    sys.exit(dispatch(lambda: run_guarded(sys.argv)))

@@ -153,7 +153,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
         progress = on_terminal(sys.stdout) or in_notebook()
     recorder = Recorder(simulation, output)
     with simulation.options, recorder:
-        restart = recorder.reserve(restart, overwrite)
+        restart = recorder.lock_output(restart, overwrite)
         if restart is not None:
             recorder.resume(restart)
         shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []
@@ -161,7 +161,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     if failure:
         raise failure
     if output is None:
-        return Result(h5py.File(io.BytesIO(recorder.result.image()), "r"), Path("memory.h5"))
+        return Result(h5py.File(io.BytesIO(recorder.result.to_bytes()), "r"), Path("memory.h5"))
     return read_result(output)
 
 

@@ -47,7 +47,7 @@ complete -o default -F _ehlpetsc ehlpetsc
 
 def solver():
     """``ehlpetsc CASE.toml [options]``: run a case; or a subcommand."""
-    return dispatch(lambda: importlib.import_module("ehlpetsc.__main__").guarded(sys.argv))
+    return dispatch(lambda: importlib.import_module("ehlpetsc.__main__").run_guarded(sys.argv))
 
 
 def post():

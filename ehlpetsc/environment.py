@@ -133,7 +133,7 @@ def advice(lacks, arguments):
     )
 
 
-def no_place():
+def startup_problem():
     """What a run lacks to be started in, in words; None: nothing."""
     try:
         os.getcwd()

@@ -9,7 +9,7 @@ writer and reader, progress, the summary line, totals of runs and series, the fo
 from dataclasses import replace
 
 from ehlpetsc.effects import EFFECTS
-from ehlpetsc.quantity import Column, Field, Figure
+from ehlpetsc.quantity import Column, Field, StepScalar
 
 REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
 """From the values of the steps, in their order, to the one of a run."""
@@ -43,7 +43,7 @@ STORED = [name for name, field in FIELDS.items() if not field.on_request]
 """Fields that a case stores unless it names its own."""
 
 STEP_SCALARS = {
-    "step": Figure(
+    "step": StepScalar(
         "1",
         "number of the time step",
         dtype="i8",
@@ -53,9 +53,9 @@ STEP_SCALARS = {
         label="steps",
         progress=Column("step", 1, "{:>8d}"),
     ),
-    "time": Figure("s", "time at the end of the step", progress=Column("time/us", 1e6, "{:>11.4f}")),
-    "dt": Figure("s", "time step", progress=Column("dt/us", 1e6, "{:>9.5f}")),
-    "newton": Figure(
+    "time": StepScalar("s", "time at the end of the step", progress=Column("time/us", 1e6, "{:>11.4f}")),
+    "dt": StepScalar("s", "time step", progress=Column("dt/us", 1e6, "{:>9.5f}")),
+    "newton": StepScalar(
         "1",
         "Newton iterations of the step, retries included",
         dtype="i4",
@@ -63,8 +63,8 @@ STEP_SCALARS = {
         summary="d",
         progress=Column("newton", 1, "{:>6d}"),
     ),
-    "retries": Figure("1", "attempts that did not converge", dtype="i4", over_run="sum"),
-    "h_min": Figure(
+    "retries": StepScalar("1", "attempts that did not converge", dtype="i4", over_run="sum"),
+    "h_min": StepScalar(
         "m",
         "least film thickness",
         over_run="min",
@@ -72,7 +72,7 @@ STEP_SCALARS = {
         progress=Column("h_min/um", 1e6, "{:>9.5f}", "h_min {:.4f} um"),
         compared=True,
     ),
-    "p_max": Figure(
+    "p_max": StepScalar(
         "Pa",
         "greatest pressure",
         over_run="max",
@@ -80,7 +80,7 @@ STEP_SCALARS = {
         progress=Column("p_max/GPa", 1e-9, "{:>9.4f}", "p_max {:.3f} GPa"),
         compared=True,
     ),
-    "contacts": Figure(
+    "contacts": StepScalar(
         "1",
         "nodes in contact",
         dtype="i4",
@@ -89,34 +89,34 @@ STEP_SCALARS = {
         progress=Column("contacts", 1, "{:>8d}", "contacts {:d}"),
         compared=True,
     ),
-    "load": Figure("N/m", "integral of the pressure", compared=True),
-    "load_error": Figure("1", "relative error of the load", over_run="max", summary=".2e"),
-    "mass_error": Figure(
+    "load": StepScalar("N/m", "integral of the pressure", compared=True),
+    "load_error": StepScalar("1", "relative error of the load", over_run="max", summary=".2e"),
+    "mass_error": StepScalar(
         "1",
         "oil lost or made at all nodes over the oil that the contact carries through",
         over_run="max",
         summary=".2e",
     ),
-    "approach": Figure("m", "undeformed separation h00", compared=True),
-    "friction": Figure("N/m", "friction force on surface 2", compared=True),
-    "friction_1": Figure("N/m", "friction force on surface 1, in +x", compared=True),
-    "friction_coefficient": Figure(
+    "approach": StepScalar("m", "undeformed separation h00", compared=True),
+    "friction": StepScalar("N/m", "friction force on surface 2", compared=True),
+    "friction_1": StepScalar("N/m", "friction force on surface 1, in +x", compared=True),
+    "friction_coefficient": StepScalar(
         "1", "mean friction force of both walls over load", over_run="last", summary=".4g"
     ),
-    "film_central": Figure(
+    "film_central": StepScalar(
         "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"
     ),
-    "lambda_ratio": Figure(
+    "lambda_ratio": StepScalar(
         "1", "expected smooth minimum film over the combined Rq", over_run="last", summary=".4g"
     ),
-    "mean_gap_ratio": Figure("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
-    "oil_pressure": Figure(
+    "mean_gap_ratio": StepScalar("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
+    "oil_pressure": StepScalar(
         "Pa", "greatest pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
     ),
-    "molecular_films": Figure(
+    "molecular_films": StepScalar(
         "1", "nodes out of contact under less than 1 nm of oil", dtype="i4", over_run="sum", only="fluid"
     ),
-    "contact_share": Figure(
+    "contact_share": StepScalar(
         "1",
         "share of the load on the solids",
         over_run="max",
@@ -125,28 +125,32 @@ STEP_SCALARS = {
         compared=True,
         only="mixed",
     ),
-    "contact_length": Figure(
+    "contact_length": StepScalar(
         "m",
         "length where solids carry; of a compliant layer, integral of the real area fraction",
         compared=True,
         only="mixed",
     ),
-    "contact_length_10mpa": Figure(
+    "contact_length_10mpa": StepScalar(
         "m", "length where asperities carry more than 10 MPa", compared=True, only="compliant"
     ),
-    "contact_length_100mpa": Figure(
+    "contact_length_100mpa": StepScalar(
         "m", "length where asperities carry more than 100 MPa", compared=True, only="compliant"
     ),
-    "thin_length": Figure("m", "length where the film is thin", compared=True, only="mixed"),
-    "thin_share": Figure("1", "share of the load where the film is thin", compared=True, only="mixed"),
+    "thin_length": StepScalar("m", "length where the film is thin", compared=True, only="mixed"),
+    "thin_share": StepScalar("1", "share of the load where the film is thin", compared=True, only="mixed"),
     **{name: replace(one, only=kind.name) for kind in EFFECTS for name, one in kind.scalars.items()},
-    "radius": Figure("m", "radius of relative curvature", only="variable"),
-    "load_given": Figure("N/m", "load of the operating conditions", only="variable"),
-    "speed_1": Figure("m/s", "speed of surface 1", only="variable"),
-    "speed_2": Figure("m/s", "speed of surface 2", only="variable"),
-    "displacement_1": Figure("m", "distance travelled by surface 1 since time 0, signed", only="variable"),
-    "displacement_2": Figure("m", "distance travelled by surface 2 since time 0, signed", only="variable"),
-    "wall": Figure("s", "wall clock time of the step", over_run="sum"),
+    "radius": StepScalar("m", "radius of relative curvature", only="variable"),
+    "load_given": StepScalar("N/m", "load of the operating conditions", only="variable"),
+    "speed_1": StepScalar("m/s", "speed of surface 1", only="variable"),
+    "speed_2": StepScalar("m/s", "speed of surface 2", only="variable"),
+    "displacement_1": StepScalar(
+        "m", "distance travelled by surface 1 since time 0, signed", only="variable"
+    ),
+    "displacement_2": StepScalar(
+        "m", "distance travelled by surface 2 since time 0, signed", only="variable"
+    ),
+    "wall": StepScalar("s", "wall clock time of the step", over_run="sum"),
 }
 """Scalars of every time step, below ``steps/``, in the order in which progress and summary tell them."""
 

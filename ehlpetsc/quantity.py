@@ -45,7 +45,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Figure(Field):
+class StepScalar(Field):
     """A scalar of every time step.
 
     Attributes

@@ -5,7 +5,7 @@ import os
 import sys
 
 
-def protect():
+def harden_std_streams():
     """Let a run outlive its standard output and error.
 
     What cannot be written is dropped from then on, by this process and by the libraries in it; of standard
@@ -19,11 +19,11 @@ def protect():
             os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")  # names of files need not be text
-    sys.stdout = Lasting(sys.stdout, 1, "standard output")
-    sys.stderr = Lasting(sys.stderr, 2)
+    sys.stdout = FaultTolerantStream(sys.stdout, 1, "standard output")
+    sys.stderr = FaultTolerantStream(sys.stderr, 2)
 
 
-class Lasting:
+class FaultTolerantStream:
     """A text stream that is quiet once it cannot be written.
 
     Parameters

@@ -120,7 +120,7 @@ def compare(one, other):
             yield _field(one, other, name, x, times, same_mesh or name != "in_contact")
     shares = [Line(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
     yield _curves(Difference("contact_count", "share"), shares, x=x)
-    both = set(one.figures) & set(other.figures)
+    both = set(one.scalars) & set(other.scalars)
     step_times = common_points(one.steps("time"), other.steps("time"), "time steps")
     for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in both]:
         values = [_scalar(r, name, step_times) for r in (one, other)]

@@ -24,11 +24,11 @@ from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.series_index import differences, open_all
-from ehlpetsc.results.whole_file import write_whole
 
 RESAMPLES = 2000
 MOST_RESAMPLES = 100_000
@@ -56,7 +56,7 @@ class Ensemble:
 
     name: str
     values: dict
-    figures: dict
+    scalars: dict
 
 
 def bootstrap(values, resamples=RESAMPLES, seed=1, confidence=CONFIDENCE):
@@ -98,7 +98,7 @@ def run_figures(result):
         kept = dt > 0.0 if dt.any() else np.ones(len(time), bool)
     weights = dt[kept] if dt.any() else np.ones(1)
     found = {}
-    for name in result.figures:
+    for name in result.scalars:
         values = result.steps(name)[kept].astype(float)
         if name in NO_FIGURES or not np.isfinite(values).all():
             continue
@@ -149,7 +149,7 @@ def table(found, resamples=RESAMPLES, seed=1):
     """Rows by the names of `HEAD`, one for each figure of each ensemble."""
     rows = []
     for one in found:
-        for name, values in one.figures.items():
+        for name, values in one.scalars.items():
             units = STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
             low, high = bootstrap(values, resamples, seed)
             told = (one.name, name, units, values.size, values.mean(), low, high, values.min(), values.max())
@@ -174,7 +174,7 @@ def write(rows, path):
         writer.writeheader()
         writer.writerows(rows)
     try:
-        write_whole(path, table.getvalue().encode())
+        atomic_write(path, table.getvalue().encode())
     except OSError as error:
         raise OutputError(not_written(error, path)) from None
 

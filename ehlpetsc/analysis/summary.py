@@ -18,10 +18,10 @@ from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.series_index import in_order, open_all, series_values, told_apart
-from ehlpetsc.results.whole_file import write_whole
 
 LEFT_OUT = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)
@@ -58,7 +58,7 @@ def statistics(result):
     kept = kept if kept.any() else np.ones(len(time), bool)
     weights = np.ones(len(time)) if len(time) == 1 else dt
     rows = []
-    for name in [name for name in STEP_SCALARS if name in result.figures and name not in LEFT_OUT]:
+    for name in [name for name in STEP_SCALARS if name in result.scalars and name not in LEFT_OUT]:
         values = result.steps(name).astype(float)
         known = kept & np.isfinite(values) & (weights > 0.0)
         if known.any():
@@ -97,7 +97,7 @@ def main(arguments=None):
             if chosen.output:
                 read = [*map(Path, chosen.results), *(result.path for result in results)]
                 check_derived(chosen.output, read, {".csv": ",".join(HEAD[:4]).encode()})
-                write_whole(chosen.output, text.getvalue().encode())
+                atomic_write(chosen.output, text.getvalue().encode())
                 print(chosen.output)
             else:
                 print(text.getvalue(), end="")

@@ -15,7 +15,7 @@ import numpy as np
 
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.heat.body_heat import BodyHeat
-from ehlpetsc.quantity import Field, Figure
+from ehlpetsc.quantity import Field, StepScalar
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
 LEAST_RISE = 1e-3  # K
@@ -68,7 +68,7 @@ class HeatRecord(NamedTuple):
 
 
 def _temperature(name, over_run):
-    return Figure("K", name, over_run=over_run, summary=".5g" if over_run == "max" else "", compared=True)
+    return StepScalar("K", name, over_run=over_run, summary=".5g" if over_run == "max" else "", compared=True)
 
 
 class Heat(Effect):
@@ -90,8 +90,8 @@ class Heat(Effect):
         "temperature_1_mean": _temperature("temperature of surface 1, mean over the Hertz contact", "last"),
         "temperature_2_max": _temperature("highest temperature of surface 2", "max"),
         "temperature_2_mean": _temperature("temperature of surface 2, mean over the Hertz contact", "last"),
-        "heat": Figure("W/m", "heat dissipated", over_run="last", summary=".4g", compared=True),
-        "heat_error": Figure(
+        "heat": StepScalar("W/m", "heat dissipated", over_run="last", summary=".4g", compared=True),
+        "heat_error": StepScalar(
             "1",
             "imbalance of the heat dissipated with that taken by bodies and oil, over the first",
             over_run="max",

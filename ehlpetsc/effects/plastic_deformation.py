@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.quantity import Field, Figure
+from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
 
 
@@ -31,8 +31,10 @@ class PlasticDeformation(Effect):
         "set_2": Field("m", "depth by which surface 2 has yielded", on_request=True),
     }
     scalars = {
-        "yielding": Figure("1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True),
-        "set_volume": Figure(
+        "yielding": StepScalar(
+            "1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True
+        ),
+        "set_volume": StepScalar(
             "m^2",
             "plastic deformation of both solids since the first pass",
             over_run="last",

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.quantity import Field, Figure
+from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
 
 
@@ -48,7 +48,7 @@ class Wear(Effect):
         "wear_2": Field("m", "wear depth of surface 2", on_request=True),
     }
     scalars = {
-        "wear_volume": Figure(
+        "wear_volume": StepScalar(
             "m^2",
             "worn volume of both surfaces since the first pass",
             over_run="last",

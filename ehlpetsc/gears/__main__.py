@@ -14,8 +14,8 @@ from pathlib import Path
 from ehlpetsc import environment
 from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, not_written
+from ehlpetsc.results.atomic_write import atomic_write, replacing
 from ehlpetsc.results.output_guard import PICTURES, check_derived
-from ehlpetsc.results.whole_file import replacing, write_whole
 
 MOST_BYTES = 2**26  # of a case file
 
@@ -73,7 +73,7 @@ def run(chosen):
         check_derived(Path(chosen.csv), [Path(chosen.case)], {".csv": head, ".txt": head}, "--csv")
     print("\n".join(rows(path, stresses)))
     if chosen.csv is not None:
-        write_whole(chosen.csv, csv(path).encode())
+        atomic_write(chosen.csv, csv(path).encode())
         print(chosen.csv)
     if target:
         from ehlpetsc.gears.picture import draw

@@ -55,7 +55,7 @@ class GearRun:
                 raise CaseError([f"{file}: its case has no [gears] table; allowed: a gear run"])
             self.path, self.title = path_of_contact(tables["gears"]), str(result.attrs["title"])
             rolling = result.steps("speed_1")[:]
-            self.scalars = {name: result.steps(name)[:] for name, _, _ in ROWS if name in result.figures}
+            self.scalars = {name: result.steps(name)[:] for name, _, _ in ROWS if name in result.scalars}
             self.friction = np.abs(result.steps("friction_coefficient")[:])
         self.rho = rolling / self.path.pair.angular_speeds[0]
         self.position = self.rho - self.path.pair.points["C"]

@@ -61,13 +61,13 @@ def run_life(case, output=None, *, overwrite=False, comm=None, show=None, stop=N
     path = Path(f"{Path(case.path).stem}.life.h5" if output is None else output)
     on_root(comm, check_files, path, case)
     lock = Lock(path, "wait for it, or give another -o")
-    on_root(comm, lock.take)
+    on_root(comm, lock.acquire)
     try:
         history = comm.bcast(on_root(comm, stored_or_new, case, path, overwrite))
         life = _Life(case, path, comm, history, show or (lambda text: None))
         return life.run(stop, most)
     finally:
-        lock.give_back()
+        lock.release()
 
 
 def check_case(case):
@@ -102,12 +102,12 @@ def check_files(path, case):
     ------
     OutputError
     """
-    from ehlpetsc.results.output_guard import check_derived, check_place, inputs_of, stands
+    from ehlpetsc.results.output_guard import check_derived, check_output_path, exists, inputs_of
 
     check_derived(path, inputs_of(case), {".h5": b"\x89HDF"})
     one_pass = path.with_suffix(PASS)
-    check_place(one_pass, inputs_of(case), "-o")
-    if stands(one_pass) and one_pass.stat().st_size and not _is_pass(one_pass):
+    check_output_path(one_pass, inputs_of(case), "-o")
+    if exists(one_pass) and one_pass.stat().st_size and not _is_pass(one_pass):
         raise OutputError(f"{one_pass}: exists and is no pass of a life; remove it or give another -o")
 
 

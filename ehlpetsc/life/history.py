@@ -8,8 +8,8 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.life.body import LifeBody
+from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.hdf5.opening import open_for_reading
-from ehlpetsc.results.whole_file import write_whole
 
 FIXED = {"s": "m", "edges": "m", "height": "m"}  # of a body
 CHANGING = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
@@ -73,7 +73,7 @@ class LifeHistory:
             for name, value in self.plastic.items():
                 file[f"records/{name}"] = value
         try:
-            write_whole(path, image.getvalue())
+            atomic_write(path, image.getvalue())
         except OSError as error:
             raise OutputError(f"{path}: not written, {error.strerror}") from error
 

@@ -123,7 +123,7 @@ def run_pass(simulation, before, file, stop=None):
     """
     recorder = Recorder(simulation, file)
     with simulation.options, recorder:
-        recorder.reserve(overwrite=True)
+        recorder.lock_output(overwrite=True)
         status, failure = solve_run(simulation, [recorder], stop)
     if failure:
         raise failure

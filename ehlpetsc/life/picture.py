@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.results.whole_file import replacing
+from ehlpetsc.results.atomic_write import replacing
 
 SHOWN = 3  # instants of the life
 

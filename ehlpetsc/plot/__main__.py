@@ -22,9 +22,9 @@ from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
+from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
-from ehlpetsc.results.whole_file import replacing
 
 DPI = 160
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture

@@ -26,7 +26,7 @@ SHOWN = {  # figure: label, factor from SI units
 def draw_ensemble(results, _options):
     """Figure of every per-run figure, a panel each, against what differs beside the seeds."""
     found = ensembles(results)
-    names = [name for name in SHOWN if all(name in one.figures for one in found)]
+    names = [name for name in SHOWN if all(name in one.scalars for one in found)]
     if not names:
         raise OutputError("no figure that all runs have")
     rows = -(-len(names) // COLUMNS)
@@ -61,7 +61,7 @@ def _places(found):
         if all(isinstance(value, int | float) for value in values):
             return [float(v) for v in values], UNITS.get(keys[0], keys[0]), None
     if len(found) == 1:
-        return [0.0], f"{len(next(iter(found[0].figures.values())))} runs", [" "]
+        return [0.0], f"{len(next(iter(found[0].scalars.values())))} runs", [" "]
     return list(map(float, range(len(found)))), "", [one.name for one in found]
 
 
@@ -75,7 +75,7 @@ def _fill(panel, found, places, name):
     low, high = _margins(places)
     shift = 0.02 * (high - low)
     for place, one in zip(places, found, strict=True):
-        values = factor * one.figures[name]
+        values = factor * one.scalars[name]
         panel.plot(np.full(values.size, place - shift), values, "o", color=RUNS_COLOUR, ms=3, mew=0)
         mean, ends = values.mean(), bootstrap(values)
         panel.plot(place + shift, mean, "o", color=SINGLE_COLOUR, ms=5)

@@ -67,7 +67,7 @@ def choose_frames(results, step=None, time=None):
 
 def _load_on_solids(result):
     """By which results of a series are compared: largest share of the load on solids, then the pressure."""
-    share = np.nanmax(result.steps("contact_share")) if "contact_share" in result.figures else 0.0
+    share = np.nanmax(result.steps("contact_share")) if "contact_share" in result.scalars else 0.0
     return (share if share > SHARE else 0.0), np.nanmax(result.steps("p_max"))
 
 
@@ -93,7 +93,7 @@ def frame_to_show(result, reached=np.inf):
         allowed = filled
     rows = np.searchsorted(result.steps("step"), result.step)
     values = result.steps("p_max")[rows]
-    if "contact_share" in result.figures:
+    if "contact_share" in result.scalars:
         share = np.nan_to_num(result.steps("contact_share")[rows])
         values = share if share[allowed].max() > SHARE else values
     return int(np.argmax(np.where(allowed, np.nan_to_num(values), -1.0)))

@@ -9,7 +9,7 @@ from matplotlib.animation import FFMpegWriter, PillowWriter
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import fill_frame, two_panels
 from ehlpetsc.plot.frames import choose_frames
-from ehlpetsc.results.whole_file import replacing
+from ehlpetsc.results.atomic_write import replacing
 
 FRAMES = 150
 RATE = 15  # frames per second

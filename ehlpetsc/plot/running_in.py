@@ -29,7 +29,7 @@ def draw_running_in(results, _options):
     """
     if len(results) < 2:
         raise OutputError("one pass alone; allowed: --running-in of two passes or more")
-    if any("set_volume" not in result.figures for result in results):
+    if any("set_volume" not in result.scalars for result in results):
         raise OutputError("solids that do not yield: there is no set; needs contact.yield_pressure")
     rows = [pass_figures(result, filled_from(result)) for result in results]
     found = [damage_beside(result) for result in results]

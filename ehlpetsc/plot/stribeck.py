@@ -52,7 +52,7 @@ class Point:
     """
 
     speed: float
-    figures: dict
+    scalars: dict
     smooth: float
     boundary: float
 
@@ -101,10 +101,10 @@ def stribeck_point(result, speed):
     if not kept.any():
         return None
     weights = np.ones(1) if steady else np.nan_to_num(result.steps("dt"))[kept]
-    figures = {name: spread(per_step(result, name)[kept], weights) for name in QUANTITIES}
+    scalars = {name: spread(per_step(result, name)[kept], weights) for name in QUANTITIES}
     contact = tomllib.loads(result.attrs["case"]).get("contact", {})
     smooth = float(per_step(result, "friction_coefficient")[0])
-    return Point(speed, figures, smooth, float(contact.get("boundary_friction", 0.0)))
+    return Point(speed, scalars, smooth, float(contact.get("boundary_friction", 0.0)))
 
 
 def stribeck_points(results):
@@ -166,7 +166,7 @@ def draw_stribeck(results, _options):
     figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
     for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
-        found = [point.figures[name] for point in points]
+        found = [point.scalars[name] for point in points]
         mean, low, high = np.transpose([(one.mean, one.low, one.high) for one in found])
         panel.fill_between(speeds, low, high, color=SINGLE_COLOUR, alpha=0.2, lw=0)
         panel.plot(speeds, mean, "o-", color=SINGLE_COLOUR, ms=3.5, lw=1.2)
@@ -178,10 +178,10 @@ def draw_stribeck(results, _options):
     for number, (label, compared) in enumerate(others):
         _draw_means(axes, compared, label, f"C{number + 1}")
     _references(axes[0], points, speeds)
-    shares = [p.figures["contact_share"].high for p in points]
+    shares = [p.scalars["contact_share"].high for p in points]
     highest = 0.0 if others else np.nanmax(shares, initial=0.0)
     axes[1].set_ylim(0.0, min(1.02, 1.15 * highest) if highest > 0.0 else 1.02)
-    if np.isfinite([p.figures["mean_gap_ratio"].mean for p in points]).any():
+    if np.isfinite([p.scalars["mean_gap_ratio"].mean for p in points]).any():
         axes[2].set_yscale("log")
     axes[2].set_xlabel(UNITS[SPEED])
     band = f"{BAND[0]:g} to {BAND[1]:g} % of the time"
@@ -211,7 +211,7 @@ def _draw_means(axes, results, label, colour):
     points = sorted(filter(None, found), key=lambda point: point.speed)
     speeds = [abs(point.speed) for point in points]
     for panel, name in zip(axes, QUANTITIES, strict=True):
-        means = [point.figures[name].mean for point in points]
+        means = [point.scalars[name].mean for point in points]
         panel.plot(speeds, means, "s--", color=colour, ms=3.0, lw=0.9, label=label)
 
 

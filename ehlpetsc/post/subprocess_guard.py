@@ -10,7 +10,7 @@ import sys
 import traceback
 
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.results.hdf5.stored import announced_to
+from ehlpetsc.results.hdf5.lazy_dataset import announced_to
 
 MAX_READ_SECONDS = 60  # for one read of some megabytes; longer, and it will not come
 MAX_STOP_SECONDS = 10  # to end in order after a signal

@@ -31,7 +31,7 @@ MOVIES = {".gif": b"GIF8", ".mp4": b"ftyp", ".webm": b"webm"}
 PAGES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
 
 
-def check_place(path, inputs, option="-ehl_output"):
+def check_output_path(path, inputs, option="-ehl_output"):
     """Refuse an output that is an input, or no plain file.
 
     Parameters
@@ -46,7 +46,7 @@ def check_place(path, inputs, option="-ehl_output"):
     ------
     OutputError
     """
-    if stands(path) and not path.is_file():
+    if exists(path) and not path.is_file():
         kind = "a folder" if path.is_dir() else "a device or pipe"
         raise OutputError(f"{path}: {kind}, not a file to write a result to; give another {option}")
     for read in inputs:
@@ -73,11 +73,11 @@ def check_derived(path, inputs, kinds, option="-o"):
     ------
     OutputError
     """
-    check_place(path, inputs, option)
+    check_output_path(path, inputs, option)
     mark = kinds.get(path.suffix.lower())
     if mark is None:
         raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(kinds)}")
-    if stands(path):
+    if exists(path):
         try:
             with open(path, "rb") as file:
                 head = file.read(HEAD)
@@ -87,7 +87,7 @@ def check_derived(path, inputs, kinds, option="-o"):
             raise OutputError(f"{path}: exists and is not of that kind; remove it or give another {option}")
 
 
-def stands(path):
+def exists(path):
     """Whether there is something of that name; OutputError where nobody may tell, in a folder of others."""
     try:
         return path.exists() or "\0" in str(path) and path.stat() is None  # stat refuses what exists takes
@@ -116,7 +116,7 @@ def check_index(path, rows, files=()):
     OutputError
     """
     known = set()
-    if stands(path):
+    if exists(path):
         try:
             known = {row["file"] for row in json.loads(path.read_text())[rows]}
         except (OSError, ValueError, KeyError, TypeError):
@@ -136,7 +136,7 @@ def _is_ours(path):
 
 
 class Lock:
-    """Keeps an output for one run; for a ``with`` statement, or :meth:`take` and :meth:`give_back`.
+    """Keeps an output for one run; for a ``with`` statement, or :meth:`acquire` and :meth:`release`.
 
     The lock is one of the operating system's on ``OUTPUT.lock``: a killed run loses it.
 
@@ -153,13 +153,13 @@ class Lock:
         self._way = way
 
     def __enter__(self):
-        self.take()
+        self.acquire()
         return self
 
     def __exit__(self, *_):
-        self.give_back()
+        self.release()
 
-    def take(self):
+    def acquire(self):
         """Take it; OutputError names who has it."""
         file = self._locked()
         while not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
@@ -186,7 +186,7 @@ class Lock:
             pass  # a file system without locks
         return file
 
-    def give_back(self):
+    def release(self):
         """Give it back; once is enough."""
         if self._file:
             with contextlib.suppress(OSError):

@@ -8,8 +8,8 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import Attributes
+from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.hdf5.opening import open_for_reading
-from ehlpetsc.results.hdf5.stored import reading
 from ehlpetsc.sides import current_name, stored_name
 
 SURFACES = ("2", "1")

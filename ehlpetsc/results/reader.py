@@ -7,8 +7,8 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import Attributes
+from ehlpetsc.results.hdf5.lazy_dataset import LazyDataset, reading
 from ehlpetsc.results.hdf5.opening import open_result
-from ehlpetsc.results.hdf5.stored import Stored, reading
 from ehlpetsc.sides import current_name, stored_name
 
 CHECKED = 1024  # frames at a time
@@ -88,16 +88,16 @@ class Result:
             self.steps = Steps(file["steps"], _whole_rows(file["steps"], path), path)
             datasets = {n: d for n, d in file.items() if isinstance(d, h5py.Dataset)}
             self.fields = [current_name(name) for name, dataset in datasets.items() if dataset.ndim == 2]
-        self.figures = self.steps.names
+        self.scalars = self.steps.names
         self.x, self.contact_count = self["x"][:], self["contact_count"][:]
         self.time, self.step = self["time"][: self._frames], self["step"][: self._frames]
         for times in (self.time, self.steps("time")):
             if not (np.isfinite(times).all() and (np.diff(times) >= 0.0).all()):
                 raise OutputError(f"{path}: damaged, its times do not increase")
-        for steps in (self.step, self.steps("step")) if "step" in self.figures else ():
+        for steps in (self.step, self.steps("step")) if "step" in self.scalars else ():
             if not (np.diff(steps) > 0).all():
                 raise OutputError(f"{path}: damaged, its numbers of steps do not increase")
-        if "step" in self.figures and not np.isin(self.step, self.steps("step")).all():
+        if "step" in self.scalars and not np.isin(self.step, self.steps("step")).all():
             raise OutputError(f"{path}: damaged, a frame is of a step that it does not have")
 
     def __enter__(self):
@@ -116,7 +116,7 @@ class Result:
             dataset = self._file.get(stored_name(self._file, name))
             if not isinstance(dataset, h5py.Dataset):
                 raise OutputError(f"{self.path}: does not store {name}")
-            return Stored(dataset, self.path)
+            return LazyDataset(dataset, self.path)
 
     def __contains__(self, name):
         return stored_name(self._file, name) in self._file
@@ -159,10 +159,10 @@ class Result:
             return xarray.Variable(dims, values, about)
 
         fields = {name: variable(("time", "x"), name, getattr(self, name)) for name in self.fields}
-        names = set(self.figures) - {"step", "time"}
-        figures = {name: variable("step", f"steps/{name}", self.steps(name)) for name in names}
+        names = set(self.scalars) - {"step", "time"}
+        scalars = {name: variable("step", f"steps/{name}", self.steps(name)) for name in names}
         return xarray.Dataset(
-            fields | figures | {"contact_count": variable("x", "contact_count", self.contact_count)},
+            fields | scalars | {"contact_count": variable("x", "contact_count", self.contact_count)},
             {
                 "x": variable("x", "x", self.x),
                 "time": variable("time", "time", self.time),
@@ -178,7 +178,7 @@ class Result:
         for name in ["step", *self.fields]:
             for begin in range(0, self._frames, CHECKED):
                 self[name][begin : min(begin + CHECKED, self._frames)]
-        for name in self.figures:
+        for name in self.scalars:
             self.steps(name)
 
     def frame(self, name, index):

@@ -11,10 +11,10 @@ from pathlib import Path
 import h5py
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.atomic_write import atomic_write, os_reason
 from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.hdf5.opening import open_result
 from ehlpetsc.results.output_guard import WAYS
-from ehlpetsc.results.whole_file import plain_reason, write_whole
 
 VERSION = 3
 HEAD = 512  # bytes
@@ -42,9 +42,9 @@ def save_restart(path, arrays, attrs):
             file[name] = array
     body = image.getbuffer()[HEAD:]
     try:
-        write_whole(path, _head(body) + bytes(body))
+        atomic_write(path, _head(body) + bytes(body))
     except OSError as error:
-        raise OutputError(f"{path}: restart file not written, {plain_reason(error)}") from error
+        raise OutputError(f"{path}: restart file not written, {os_reason(error)}") from error
 
 
 def load_restart(path):

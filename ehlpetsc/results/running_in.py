@@ -25,11 +25,11 @@ def pass_figures(result, begin):
     """
     steps = result.steps
     dt = np.where(steps("time") >= begin, steps("dt"), 0.0)
-    names = [name for name in MEANS if name in result.figures]
+    names = [name for name in MEANS if name in result.scalars]
     found = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
     found |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
     found["halved"] = int(np.count_nonzero(steps("retries")))
-    found |= {name: float(steps(name)[-1]) for name in result.figures if STEP_SCALARS[name].units == "m^2"}
+    found |= {name: float(steps(name)[-1]) for name in result.scalars if STEP_SCALARS[name].units == "m^2"}
     found.setdefault("set_volume", 0.0)
     return found | {side: statistics(result, side) for side in ("1", "2")}
 

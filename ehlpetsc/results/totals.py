@@ -31,7 +31,7 @@ class Totals:
         ----------
         result : ehlpetsc.results.reader.Result
         """
-        names = [name for name in REDUCED if name in result.figures]
+        names = [name for name in REDUCED if name in result.scalars]
         steps = {name: result.steps(name).tolist() for name in names}
         return cls({n: REDUCTIONS[REDUCED[n].over_run](v) for n, v in steps.items() if v}, means(result))
 
@@ -49,15 +49,15 @@ class Totals:
         of_all = {name: [values[name] for values in known if name in values] for name in names}
         return cls({name: REDUCTIONS[named[name]](values) for name, values in of_all.items()})
 
-    def add(self, figures):
+    def add(self, scalars):
         """Take those of the next step.
 
         Parameters
         ----------
         figures : dict of str to number
         """
-        for name in REDUCED.keys() & figures.keys():
-            one, other = self.values.get(name, figures[name]), figures[name]
+        for name in REDUCED.keys() & scalars.keys():
+            one, other = self.values.get(name, scalars[name]), scalars[name]
             both = [one, other] if name in self.values else [other]
             self.values[name] = REDUCTIONS[REDUCED[name].over_run](both)
 
@@ -75,7 +75,7 @@ class Totals:
 
 def _sliding_reverses(result):
     """Whether the sliding speed has both signs during the run: friction then is averaged by its magnitude."""
-    if "speed_1" not in result.figures:
+    if "speed_1" not in result.scalars:
         return False
     sliding = result.steps("speed_1") - result.steps("speed_2")
     return bool((sliding > 0.0).any() and (sliding < 0.0).any())
@@ -97,7 +97,7 @@ def means(result):
     weights = np.ones(1) if len(time) == 1 else np.where(both_fill(result, time), dt, 0.0)
     found = {}
     for name in MEANS if weights.any() else ():
-        values = result.steps(name).astype(float) if name in result.figures else np.full(len(time), np.nan)
+        values = result.steps(name).astype(float) if name in result.scalars else np.full(len(time), np.nan)
         if name == "friction_coefficient" and _sliding_reverses(result):
             values = np.abs(values)
         known = np.isfinite(values)

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.atomic_write import os_reason, replacing
 from ehlpetsc.results.hdf5.attributes import change, put
 from ehlpetsc.results.hdf5.batch import Batch
 from ehlpetsc.results.hdf5.continuation import copy_up_to
 from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, last_row, lay_out, room
 from ehlpetsc.results.hdf5.opening import FORMAT_VERSION
 from ehlpetsc.results.provenance import git_commit, versions
-from ehlpetsc.results.whole_file import plain_reason, replacing
 
 LIMITS_ROOM = 2000  # characters kept free for what close() may have to say
 FLUSH_SECONDS = 2.0  # between two flushes, if steps are quicker; what a kill can lose beside the step in hand
@@ -35,7 +35,7 @@ class ResultWriter:
     Parameters
     ----------
     path : str, path-like or None
-        None: in memory, for :meth:`image`.
+        None: in memory, for :meth:`to_bytes`.
     layout : results.hdf5.datasets.Layout
         What it stores.
     attributes : dict
@@ -152,7 +152,7 @@ class ResultWriter:
         self._close_after_a_fault()
         raise OutputError(f"{self.path}: result file removed or replaced by others during the run")
 
-    def image(self):
+    def to_bytes(self):
         """The bytes of a file in memory, once it is closed."""
         self._file.flush()
         return self._file.id.get_file_image()
@@ -167,7 +167,7 @@ class ResultWriter:
         except (OSError, RuntimeError) as error:
             self._close_after_a_fault()
             kept = f"; {self._kept()}" if hasattr(self, "_batch") else ""
-            raise OutputError(f"{self.path}: result file {what}, {plain_reason(error)}{kept}") from error
+            raise OutputError(f"{self.path}: result file {what}, {os_reason(error)}{kept}") from error
 
     def _kept(self):
         if self.written is None:

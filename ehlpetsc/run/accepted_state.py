@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass, field
 
-from ehlpetsc.stepping.observables import observe
+from ehlpetsc.stepping.observables import diagnostics
 
 
 @dataclass(frozen=True)
 class AcceptedState:
-    """A time level that a simulation has come to; every figure and field is also an attribute.
+    """A time level that a simulation has come to; every scalar and field is also an attribute.
 
     Attributes
     ----------
@@ -20,13 +20,13 @@ class AcceptedState:
         Unknowns, and what the next step needs of the past.
     """
 
-    figures: dict
+    scalars: dict
     fields: dict = field(repr=False)
     in_contact: object = field(repr=False)
     solution: object = field(repr=False)
 
     def __getattr__(self, name):
-        for values in (vars(self).get("figures", {}), vars(self).get("fields", {})):
+        for values in (vars(self).get("scalars", {}), vars(self).get("fields", {})):
             if name in values:
                 return values[name]
         raise AttributeError(name)
@@ -42,8 +42,8 @@ class AcceptedState:
             Monotonic clock at the begin of the step [s].
         """
         stepper, solution = simulation.stepper, simulation.solution
-        figures, fields, in_contact = observe(
+        scalars, fields, in_contact = diagnostics(
             simulation.scene, stepper.problem, stepper.effects, solution, started
         )
-        figures |= {"step": solution.step, "time": solution.time}
-        return cls(figures, fields, in_contact, solution)
+        scalars |= {"step": solution.step, "time": solution.time}
+        return cls(scalars, fields, in_contact, solution)

@@ -57,7 +57,7 @@ class Progress:
         self._shown = None
         self._pending = None
 
-    def step(self, figures):
+    def step(self, scalars):
         """Take note of an accepted step, and show it if it is the first or the last one was shown long ago.
 
         Parameters
@@ -66,7 +66,7 @@ class Progress:
             Of the step, as below ``steps/`` of a result file.
         """
         now = clock.monotonic()
-        self._pending = figures
+        self._pending = scalars
         wait = SECONDS_BETWEEN_BARS if self._bar else SECONDS_BETWEEN_LINES
         if self._shown is None or now - self._shown >= wait:
             self._show(now)
@@ -80,16 +80,16 @@ class Progress:
             self._stream.flush()
 
     def _show(self, now):
-        figures, self._pending = self._pending, None
-        done = (figures["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
+        scalars, self._pending = self._pending, None
+        done = (scalars["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
         done = min(max(done, 0.0), 1.0)
-        left = self._left(now, figures["time"])
+        left = self._left(now, scalars["time"])
         if self._bar:
-            self._draw_bar(done, left, figures)
+            self._draw_bar(done, left, scalars)
         else:
             if self._shown is None:
-                self._stream.write(_heading(figures))
-            self._stream.write(_line(figures, left))
+                self._stream.write(_heading(scalars))
+            self._stream.write(_line(scalars, left))
         self._stream.flush()
         self._shown = now
 
@@ -103,8 +103,8 @@ class Progress:
             return "0s" if time >= self._end else "?"
         return duration((now - since[0]) * max(self._end - time, 0.0) / (time - since[1]))
 
-    def _draw_bar(self, done, left, figures):
-        shown = [column.bar.format(value) for column, value in _scaled(figures) if column.bar]
+    def _draw_bar(self, done, left, scalars):
+        shown = [column.bar.format(value) for column, value in _scaled(scalars) if column.bar]
         text = "  ".join([f" {100 * done:5.1f} %", *shown, f"{left} left"])
         columns = shutil.get_terminal_size().columns
         width = max(10, columns - len(text) - 3)
@@ -138,10 +138,10 @@ class ProgressOutput:
         self._simulation, self._stream = simulation, stream
         self._progress = None if simulation.solution is None else self._of(simulation.solution.time)
 
-    def take(self, state):
+    def write(self, state):
         """Show a step; the steady start is none."""
         if self._progress is not None:
-            self._progress.step(state.figures)
+            self._progress.step(state.scalars)
         elif not self._simulation.finished:  # of a steady case nothing follows
             self._progress = self._of(state.time)
 
@@ -154,21 +154,21 @@ class ProgressOutput:
         return Progress(time, self._simulation.end, self._stream)
 
 
-def _scaled(figures):
+def _scaled(scalars):
     """Columns and values of those figures that the step has."""
     for name, column in _COLUMNS.items():
-        if name in figures:
+        if name in scalars:
             whole = STEP_SCALARS[name].dtype[0] == "i"
-            yield column, int(figures[name]) if whole else column.factor * figures[name]
+            yield column, int(scalars[name]) if whole else column.factor * scalars[name]
 
 
-def _heading(figures):
-    cells = [column.heading.rjust(len(column.form.format(0))) for column, _ in _scaled(figures)]
+def _heading(scalars):
+    cells = [column.heading.rjust(len(column.form.format(0))) for column, _ in _scaled(scalars)]
     return " ".join([*cells, _REMAINING.format("remaining")]) + "\n"
 
 
-def _line(figures, left):
-    cells = [column.form.format(value) for column, value in _scaled(figures)]
+def _line(scalars, left):
+    cells = [column.form.format(value) for column, value in _scaled(scalars)]
     return " ".join([*cells, _REMAINING.format(left)]) + "\n"
 
 

@@ -4,16 +4,16 @@ import contextlib
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus, OutputError
-from ehlpetsc.results.output_guard import Lock, check_place, inputs_of
+from ehlpetsc.results.atomic_write import remove_stale
+from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.results.whole_file import remove_left
 from ehlpetsc.run.arguments import check_file
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.outputs.restart_file import RestartFile
 from ehlpetsc.run.outputs.result_file import ResultFile
 from ehlpetsc.run.restart import checkpoint
-from ehlpetsc.run.restart.way_on import way_on
+from ehlpetsc.run.restart.resume_advice import resume_advice
 
 
 class Recorder:
@@ -55,9 +55,9 @@ class Recorder:
                 self.result.abandon(ExitStatus.STOPPED)
         finally:
             if self._lock:
-                self._lock.give_back()
+                self._lock.release()
 
-    def reserve(self, restart=None, overwrite=False):
+    def lock_output(self, restart=None, overwrite=False):
         """Check, before anything is computed, that the result may be written; lock it until the end.
 
         Parameters
@@ -84,12 +84,12 @@ class Recorder:
     def _reserve(self, restart, overwrite):
         case = self.simulation.case
         read = inputs_of(case)
-        check_place(self.output, [*read, Path(restart)] if restart else read)
-        check_place(self.restart, read)
+        check_output_path(self.output, [*read, Path(restart)] if restart else read)
+        check_output_path(self.restart, read)
         self._lock = Lock(self.output)
-        self._lock.take()
+        self._lock.acquire()
         for path in (self.output, self.restart):
-            remove_left(path)
+            remove_stale(path)
         if restart or overwrite:
             return restart
         return restart_of_same(self.output, self.restart, case.text)
@@ -111,7 +111,7 @@ class Recorder:
         self._restart_file.note_stored()
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
 
-    def take(self, state):
+    def write(self, state):
         """Store an accepted state.
 
         Parameters
@@ -119,9 +119,9 @@ class Recorder:
         state : run.accepted_state.AcceptedState
         """
         with self._guard_write():
-            self.result.take(state)
-            self.totals.add(state.figures)
-            self._restart_file.take(state)
+            self.result.write(state)
+            self.totals.add(state.scalars)
+            self._restart_file.write(state)
 
     def checkpoint(self):
         """Write the restart file, where there is one."""
@@ -150,5 +150,5 @@ class Recorder:
             step = self._restart_file.stored_step
             if self.comm.rank == 0:
                 self._restart_file.save_stored()
-            advice = way_on(self.restart, self.simulation.case, step) if self.comm.rank == 0 else None
+            advice = resume_advice(self.restart, self.simulation.case, step) if self.comm.rank == 0 else None
             raise OutputError(f"{error}; {self.comm.bcast(advice)}") from error

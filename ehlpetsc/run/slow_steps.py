@@ -24,15 +24,15 @@ class SlowSteps:
         self._ranks, self._show = ranks, show
         self._seen, self._first, self._latest, self._warned = 0, [], [], False
 
-    def take(self, state):
+    def write(self, state):
         """Compare the latest steps with the first ones; the steady start counts as none."""
-        figures = state.figures
-        if figures["step"] == 0 or not figures["newton"]:
+        scalars = state.scalars
+        if scalars["step"] == 0 or not scalars["newton"]:
             return
         self._seen += 1
         if self._seen <= SKIPPED:
             return
-        time = figures["wall"] / figures["newton"]
+        time = scalars["wall"] / scalars["newton"]
         if len(self._first) < STEPS:
             self._first.append(time)
             return

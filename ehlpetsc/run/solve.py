@@ -49,7 +49,7 @@ def solve(simulation, outputs, stop=None):
     try:
         for state in simulation.states(stop):
             for output in outputs:
-                output.take(state)
+                output.write(state)
     except NotConverged as error:
         status, failure = ExitStatus.NOT_CONVERGED, error
     except Stopped:
@@ -72,7 +72,7 @@ class UnusedOptions:
     def __init__(self, options, show):
         self._options, self._show, self._noted = options, show, None
 
-    def take(self, state):
+    def write(self, state):
         """Note them once PETSc has read the options of its solver."""
         if state.step >= 1 and self._noted is None:
             self.note()
@@ -115,7 +115,7 @@ class Run:
         restart : path-like, optional
             Restart file to resume from.
         overwrite : bool
-            As of `Recorder.reserve`.
+            As of `Recorder.lock_output`.
 
         Returns
         -------
@@ -139,7 +139,7 @@ class Run:
 
     def _solve(self, restart, overwrite):
         with self.simulation.options, self.recorder:
-            restart = self.recorder.reserve(restart, overwrite)
+            restart = self.recorder.lock_output(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._looser = self.simulation.options.loose_tolerances()

@@ -27,8 +27,8 @@ def profiles(simulation):
     for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
         profile = rough and rough.side(side)
         if profile:
-            figures = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
-            found[side] = profile.s + offset, profile.z, speeds[k], figures, depths
+            scalars = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
+            found[side] = profile.s + offset, profile.z, speeds[k], scalars, depths
         else:
             found[side] = _smooth_side(simulation, k, offset, depths) if depths else None
     return found

@@ -12,7 +12,7 @@ MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
 ATOM = 1e-10  # m: least film that oil balances are held against
 
 
-def observe(scene, problem, effects, state, started):
+def diagnostics(scene, problem, effects, state, started):
     """Scalars of the step and fields, in SI units.
 
     Parameters

@@ -9,7 +9,7 @@ from sandbox import process, word_of
 
 import ehlpetsc.discretisation.ehl_problem
 import ehlpetsc.physics.rheology  # noqa: F401
-from ehlpetsc.__main__ import guarded
+from ehlpetsc.__main__ import run_guarded
 from ehlpetsc.results.reader import read_result
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
@@ -177,7 +177,7 @@ class Draw:
 
         def work():
             os.chdir(self.folder)
-            return int(guarded(arguments))
+            return int(run_guarded(arguments))
 
         return process(work, self.folder / "said", LIMIT)
 

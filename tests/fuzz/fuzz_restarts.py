@@ -28,7 +28,7 @@ class Draw:
         simulation = Simulation(self.case)
         with Recorder(simulation, folder / "sound.h5") as recorder:
             for _ in range(4):
-                recorder.take(simulation.advance())
+                recorder.write(simulation.advance())
             recorder.checkpoint()
         self.sound, self.path = folder / "sound.restart.h5", folder / "run.restart.h5"
         self.state = self._load(self.sound)
@@ -69,10 +69,10 @@ class Draw:
             if not forged:
                 return 0
             with Recorder(simulation, self.folder / "run.h5") as recorder:
-                recorder.reserve(self.path)
+                recorder.lock_output(self.path)
                 recorder.resume(self.path)
                 if not simulation.finished:
-                    recorder.take(simulation.advance())
+                    recorder.write(simulation.advance())
             return 0
         except OutputError as error:
             print(f"ehlpetsc: {error}")

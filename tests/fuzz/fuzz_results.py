@@ -64,7 +64,7 @@ def content(path):
         found = {f"attribute {name}": repr(value).encode() for name, value in result.attrs.items()}
         names = ["x", "time", "step", "contact_count", *result.fields]
         found |= {name: np.asarray(result[name][:]).tobytes() for name in names}
-        found |= {f"steps/{name}": result.steps(name).tobytes() for name in result.figures}
+        found |= {f"steps/{name}": result.steps(name).tobytes() for name in result.scalars}
         for side in ("1", "2"):
             profile = result.profile(side)
             found[side] = repr(

@@ -63,7 +63,7 @@ def marched(comm, model):
         np.array([s.film_thickness for s in states]) / scales.h,
         np.array([s.in_contact for s in states]),
         np.array([s.newton for s in states]),
-        states[-1].figures.get("set_volume"),
+        states[-1].scalars.get("set_volume"),
     )
 
 

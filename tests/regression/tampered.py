@@ -12,7 +12,7 @@ import signal
 import sys
 from types import SimpleNamespace
 
-from ehlpetsc.__main__ import guarded
+from ehlpetsc.__main__ import run_guarded
 from ehlpetsc.environment import prepare
 from ehlpetsc.run.command_line import parse_command_line
 
@@ -20,7 +20,7 @@ from ehlpetsc.run.command_line import parse_command_line
 def kill_at_index(rank, count):
     from mpi4py import MPI
 
-    from ehlpetsc.results import whole_file
+    from ehlpetsc.results import atomic_write
 
     replace, seen = os.replace, []
 
@@ -30,7 +30,7 @@ def kill_at_index(rank, count):
             os.kill(os.getpid(), signal.SIGKILL)
         replace(beside, path)
 
-    whole_file.os = SimpleNamespace(**{name: getattr(os, name) for name in dir(os)} | {"replace": killing})
+    atomic_write.os = SimpleNamespace(**{name: getattr(os, name) for name in dir(os)} | {"replace": killing})
 
 
 def tamper(accident, rank, step):
@@ -69,4 +69,4 @@ if __name__ == "__main__":
         kill_at_index(int(rank), int(step))
     else:
         tamper(accident, int(rank), int(step))
-    sys.exit(guarded([sys.argv[0], *rest]))
+    sys.exit(run_guarded([sys.argv[0], *rest]))

@@ -71,7 +71,7 @@ def test_an_index_that_cannot_be_written_ends_the_run_in_words(tmp_path, monkeyp
     def full(path, content):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("ehlpetsc.run.series.passes.write_whole", full)
+    monkeypatch.setattr("ehlpetsc.run.series.passes.atomic_write", full)
     case = load(CASE, [*SHORT, "time.travel=0.05"])
     told = "r.passes.json: index not written, No space left on device; r.pass1.h5 is whole"
     with pytest.raises(OutputError, match=told):
@@ -89,9 +89,9 @@ def passes(case, path=None, stop=None):
     if stop is None:
         return second, list(second)
     with Recorder(second, path) as recorder:
-        recorder.reserve()
+        recorder.lock_output()
         for state in second:
-            recorder.take(state)
+            recorder.write(state)
             if state.step == stop:
                 recorder.checkpoint()
                 break
@@ -106,7 +106,7 @@ def test_a_pass_goes_on_in_its_middle(tmp_path):
     _, restart = passes(case, tmp_path / "r.h5", stop=40)
     resumed = Simulation(case, pass_number=2)
     with Recorder(resumed, tmp_path / "r.h5") as recorder:
-        recorder.reserve(restart)
+        recorder.lock_output(restart)
         recorder.resume(restart)
         after = list(resumed)
     assert after[0].step == 41 and after[-1].step == states[-1].step

@@ -141,7 +141,7 @@ def test_warnings_of_numpy_reach_no_user():
     """They are for developers: python3 -W default shows them."""
     code = "import sys; import numpy; from ehlpetsc import __main__ as command\n"
     code += "command.main = lambda argv: numpy.log(numpy.zeros(1)) is None\n"
-    code += "sys.exit(command.guarded(['ehlpetsc']))"
+    code += "sys.exit(command.run_guarded(['ehlpetsc']))"
     told = {}
     for words in ((), ("-W", "default")):
         done = subprocess.run(

@@ -13,7 +13,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart import checkpoint
-from ehlpetsc.run.restart.way_on import way_on
+from ehlpetsc.run.restart.resume_advice import resume_advice
 from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.state import State
 from ehlpetsc.surfaces.roughness import SurfacePositions
@@ -246,9 +246,9 @@ def test_only_a_restart_file_that_fits_the_result_is_named_as_the_way_on(tmp_pat
     path = tmp_path / "f.restart.h5"
     scene = Scene()
     scene.save(path, *state_of(scene))
-    told = way_on(path, Scene(*other).case, stored)
+    told = resume_advice(path, Scene(*other).case, stored)
     assert told.endswith(f"go on with -ehl_restart {path} (step 3)") == there
     assert told.startswith("there is no restart file of it") != there
     assert there or told.endswith("run it anew with -ehl_overwrite"), "what lies there would be refused"
     path.unlink()
-    assert way_on(path, scene.case, stored).endswith("the same command begins anew")
+    assert resume_advice(path, scene.case, stored).endswith("the same command begins anew")

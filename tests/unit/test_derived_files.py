@@ -12,9 +12,9 @@ from test_output import file_size_limit
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
-from ehlpetsc.results.whole_file import replacing
 from ehlpetsc.study.__main__ import main as study
 
 ROOT = Path(__file__).parents[2]

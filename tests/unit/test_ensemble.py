@@ -51,7 +51,7 @@ def test_members_that_differ_in_seeds_alone_are_one_ensemble(tmp_path):
         {"motion.entrainment_speed": 1.0},
     ]
     assert found[1].name == "entrainment_speed = 1.0"
-    assert all(values.shape == (6,) for one in found for values in one.figures.values())
+    assert all(values.shape == (6,) for one in found for values in one.scalars.values())
 
 
 def test_figures_of_a_run_are_means_over_its_time_and_extremes(tmp_path):
@@ -132,7 +132,7 @@ def test_every_run_and_every_mean_is_drawn(tmp_path, speeds, seeds):
     paths = made(tmp_path, speeds, seeds)
     axes = draw_ensemble(opened(paths), None).axes
     panel = next(one for one in axes if one.get_ylabel() == "share of the load\non the solids")
-    shares = [one.figures["contact_share"] for one in ensemble.ensembles(opened(paths))]
+    shares = [one.scalars["contact_share"] for one in ensemble.ensembles(opened(paths))]
     expected = [part for values in shares for part in (values, [values.mean()])]
     assert [len(values) for values in shares] == [len(seeds)] * len(speeds)
     assert len(panel.lines) == len(expected)

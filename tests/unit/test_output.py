@@ -20,7 +20,7 @@ from ehlpetsc import quantities
 from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, of_every_case
 from ehlpetsc.results.hdf5.datasets import Layout
-from ehlpetsc.results.output_guard import check_index, check_place
+from ehlpetsc.results.output_guard import check_index, check_output_path
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import ResultWriter
@@ -38,7 +38,7 @@ def make_writer(path, every=1, attributes=SCALES, resume_step=None, contact_coun
     layout = dict(
         x=X,
         fields=STORED,
-        figures=list(STEP_SCALARS),
+        scalars=list(STEP_SCALARS),
         profiles={"1": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "2": None},
     )
     attributes = {"title": "ä", "case": 'title = "ä"\n'} | attributes
@@ -403,7 +403,7 @@ def without_rows(path):
 @pytest.mark.parametrize(
     "act, told",
     [
-        (lambda path: check_place(path, []), "cannot be looked at"),
+        (lambda path: check_output_path(path, []), "cannot be looked at"),
         (lambda path: check_index(path, "members"), "cannot be looked at"),
         (read_result, "not read"),
         (load_restart, "not read"),

@@ -445,9 +445,9 @@ def test_the_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
     assert [p.speed for p in points] == list(SPEEDS) and short == []
     for point in points:
         share = 1.0 / (1.0 + 5.0 * point.speed)
-        friction = point.figures["friction_coefficient"]
+        friction = point.scalars["friction_coefficient"]
         assert friction.mean == pytest.approx(0.03 + 0.09 * share, rel=0.02)
-        assert point.figures["contact_share"].mean == pytest.approx(share, rel=0.02)
+        assert point.scalars["contact_share"].mean == pytest.approx(share, rel=0.02)
         # of a cosine of amplitude 0.2 5 and 95 % lie at 0.2 cos(0.05 pi)
         assert friction.high / friction.mean == pytest.approx(1 + 0.2 * np.cos(0.05 * np.pi), abs=0.02)
         assert friction.low / friction.mean == pytest.approx(1 - 0.2 * np.cos(0.05 * np.pi), abs=0.02)
@@ -462,7 +462,7 @@ def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, 
     # the slower surface, 0.88 u, from -2.5 a to a, and the ramp
     points, short = stribeck.stribeck_points([slow, fast])
     assert ([p.speed for p in points], short) == ([40.0], ["5.0.h5"])  # 40 us are too short for 5 m/s
-    assert np.isnan(points[0].figures["contact_share"].mean)
+    assert np.isnan(points[0].scalars["contact_share"].mean)
     with pytest.raises(OutputError, match="needs a series over motion.entrainment_speed"):
         stribeck.stribeck_points([slow])
     unfinished = [read_result(make_result(tmp_path / f"u{u}.h5", speed=u, status="running")) for u in (1, 2)]

@@ -22,7 +22,7 @@ from ehlpetsc.post import subprocess_guard
 from ehlpetsc.post.command import main
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.subprocess_guard import SubprocessGuard
-from ehlpetsc.results.hdf5.stored import reading
+from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import PostResult
 

@@ -119,7 +119,7 @@ def test_states_can_be_left_and_gone_on_with(case, result):
     rest = list(simulation)
     assert [state.step for state in rest] == [3, 4] and simulation.finished
     np.testing.assert_array_equal(rest[-1].film_thickness, result.film_thickness[-1])
-    assert rest[-1].figures["h_min"] == rest[-1].h_min == result.steps.h_min[-1]
+    assert rest[-1].scalars["h_min"] == rest[-1].h_min == result.steps.h_min[-1]
 
 
 def test_options_are_used_and_given_back(case, capfd):
@@ -186,7 +186,7 @@ def test_a_run_goes_on_from_a_restart_file(case, result, tmp_path):
     simulation = ehlpetsc.Simulation(case)
     with Recorder(simulation, recorded) as recorder:
         for _ in range(3):
-            recorder.take(simulation.advance())
+            recorder.write(simulation.advance())
         recorder.checkpoint()
     whole = ehlpetsc.solve(case, recorded, restart=tmp_path / "run.restart.h5")
     assert list(whole.steps.step) == [0, 1, 2, 3, 4]
@@ -198,7 +198,7 @@ def test_an_error_in_the_middle_leaves_a_whole_file(case, tmp_path):
 
     simulation = ehlpetsc.Simulation(case)
     with pytest.raises(KeyboardInterrupt), Recorder(simulation, tmp_path / "r.h5") as recorder:
-        recorder.take(simulation.advance())
+        recorder.write(simulation.advance())
         raise KeyboardInterrupt
     left = ehlpetsc.read_result(tmp_path / "r.h5")
     assert left.attrs["status"] == "stopped" and len(left.time) == 1

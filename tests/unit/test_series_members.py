@@ -14,7 +14,7 @@ from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.series.member import Member, named
-from ehlpetsc.run.series.series import Named
+from ehlpetsc.run.series.series import PrefixedStream
 from ehlpetsc.stepping.step_control import next_step, on_level
 
 
@@ -110,10 +110,10 @@ def test_a_whole_file_of_the_same_case_is_done(tmp_path, monkeypatch):
     member = series(tmp_path)[0]
     assert member.state_of_files() == "waiting" and member.totals().values == {}
     make_result(member.output)
-    assert member.state_of_files() == "waiting" and member.is_foreign()  # of another case
+    assert member.state_of_files() == "waiting" and member.is_of_another_case()  # of another case
     with read_result(member.output) as result:
         member.case._text = str(result.attrs["case"])
-    assert not member.is_foreign()
+    assert not member.is_of_another_case()
     assert member.state_of_files() == "done"
     raw = bytearray(member.output.read_bytes())
     with read_result(member.output) as result:
@@ -166,7 +166,7 @@ def test_totals_of_steps_are_those_of_their_file(tmp_path):
     totals = Totals()
     with read_result(make_result(tmp_path / "r.h5")) as result:
         for row in range(len(result.steps("step"))):
-            totals.add({name: result.steps(name)[row].item() for name in result.figures})
+            totals.add({name: result.steps(name)[row].item() for name in result.scalars})
         stored = Totals.of_result(result)
     assert str(Totals(totals.values, stored.means)) == str(stored)
     assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
@@ -182,7 +182,7 @@ def test_frames_are_those_of_every_so_many_steps(every):
 def test_lines_are_named(capsys):
     import sys
 
-    stream = Named("xi=1", sys.stdout)
+    stream = PrefixedStream("xi=1", sys.stdout)
     print("one\ntwo", 3, file=stream)
     assert capsys.readouterr().out == "[xi=1] one\n[xi=1] two 3\n"
 

@@ -12,7 +12,7 @@ def warned(times, ranks=2):
     lines = []
     output = SlowSteps(ranks, lines.append)
     for step, wall in enumerate([60.0] * (SKIPPED + 1) + times):
-        output.take(SimpleNamespace(figures={"step": step, "newton": 4, "wall": wall}))
+        output.write(SimpleNamespace(scalars={"step": step, "newton": 4, "wall": wall}))
     output.close(None)
     return lines
 

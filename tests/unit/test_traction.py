@@ -11,7 +11,7 @@ from ehlpetsc.effects.effect import Scene
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.physics.variable_operation import operation_of
-from ehlpetsc.stepping.observables import observe
+from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
@@ -123,7 +123,7 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
         w = h / scales.h
         w[[30, 60]] = left
         state = State(p / scales.p0, w, 0.0, h=w, m=w, imbalance=np.zeros_like(w))
-        _, fields, touching = observe(
+        _, fields, touching = diagnostics(
             Scene(case, scales, operation_of(case, scales), None), problem, [], state, 0.0
         )
         assert touching.sum() == (0 if left else 2)

@@ -41,7 +41,7 @@ def friction_of_both(simulation, state):
 )
 def test_values_of_an_independent_solver(keys, values):
     simulation, [state] = solved("table1_smooth.toml", HEAT, *WIDE, *keys)
-    figures = state.figures
+    figures = state.scalars
     middle = np.argmin(np.abs(simulation.scales.x))
     rises = [figures[f"{name}_max"] - BULK for name in ("film_temperature", "temperature_1", "temperature_2")]
     films = 1e6 * state.film_thickness[middle], 1e6 * state.h_min
@@ -57,20 +57,20 @@ def test_a_steady_solution_stays_as_it_is_in_time():
     np.testing.assert_allclose(end.film_temperature, begin.film_temperature, atol=0.1)
     np.testing.assert_allclose(end.temperature_1, begin.temperature_1, atol=0.05)
     np.testing.assert_allclose(end.temperature_2, begin.temperature_2, atol=0.05)
-    assert max(state.figures["heat_error"] for state in states) < 1e-9
+    assert max(state.scalars["heat_error"] for state in states) < 1e-9
 
 
 @pytest.mark.parametrize("name", ["table1_rough.toml", "table1_mixed.toml", "table1_damage.toml"])
 def test_energy_balance_of_rough_contacts(name):
     """Every step balances; no temperature falls below bulk."""
     simulation, states = solved(name, HEAT, *COARSE, "mesh.inlet=-1.5", "time.travel=3.0")
-    assert max(state.figures["heat_error"] for state in states) < 1e-6
+    assert max(state.scalars["heat_error"] for state in states) < 1e-6
     assert min(state.film_temperature.min() for state in states) > BULK - 1e-6
     assert min(min(state.temperature_1.min(), state.temperature_2.min()) for state in states) > BULK - 1e-6
     sliding = simulation.scales.u1 - simulation.scales.u2
     for state in states[1:]:
         work = abs(friction_of_both(simulation, state) * state.load * sliding)
-        assert state.figures["heat"] > work * (1.0 - 1e-6)  # the pressure flow dissipates too
+        assert state.scalars["heat"] > work * (1.0 - 1e-6)  # the pressure flow dissipates too
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.25, 1.0, 1.9, 2.0, -0.5])
@@ -106,7 +106,7 @@ def test_dry_friction():
     keys = ["contact.boundary_friction=0.1", "motion.entrainment_speed=10.0", "motion.slide_roll_ratio=0.4"]
     simulation, [state] = solved("dry_hertz.toml", HEAT, *keys)
     s, steel = simulation.scales, Solid(46.0, 7850.0, 470.0)
-    assert state.figures["heat"] == pytest.approx(0.1 * state.load * (s.u1 - s.u2), rel=1e-9)
+    assert state.scalars["heat"] == pytest.approx(0.1 * state.load * (s.u1 - s.u2), rel=1e-9)
     carries = state.pressure > 1e-3 * s.p0
     np.testing.assert_allclose(state.temperature_1[carries], state.temperature_2[carries], rtol=1e-9)
     rise = moving_band(s.x * s.a, state.heat_flux_2, steel.diffusivity, steel.conductivity, s.u2)

@@ -132,7 +132,7 @@ def test_after_a_load_step_the_contact_settles_as_after_a_restart_from_a_file(tm
     )
     with Recorder(first, tmp_path / "light.h5") as recorder:
         for state in first:
-            recorder.take(state)
+            recorder.write(state)
         recorder.checkpoint()
     under_heavy = load(CASES / "table1_smooth.toml", mesh | {"time.travel": end * u_1 / a})
     restarted = ehlpetsc.solve(
@@ -270,7 +270,7 @@ def test_a_gear_run_that_was_stopped_resumes_as_if_it_had_not_been(tmp_path, cap
     simulation = Simulation(case)
     with Recorder(simulation, tmp_path / "gear.h5") as recorder:
         for _ in range(43):
-            recorder.take(simulation.advance())
+            recorder.write(simulation.advance())
         recorder.checkpoint()
     resumed = ehlpetsc.solve(case, tmp_path / "gear.h5", restart=tmp_path / "gear.restart.h5")
     assert len(resumed.steps.time) == len(whole.steps.time) > 90

@@ -178,7 +178,7 @@ def test_friction_and_films(run):
 def test_figures_of_the_oil_and_of_thin_films(run):
     case, result, _ = run
     if case.fluid is None:
-        assert "oil_pressure" not in result.figures
+        assert "oil_pressure" not in result.scalars
         return
     touching, steps = result.in_contact.astype(bool), result.steps
     if case.contact.model == "mixed":
@@ -193,7 +193,7 @@ def test_figures_of_the_oil_and_of_thin_films(run):
 def test_shares_and_lengths_of_mixed_contact(run):
     case, result, _ = run
     if case.contact.model == "direct":
-        assert "contact_share" not in result.figures
+        assert "contact_share" not in result.scalars
         return
     dx, steps = spacing(result), result.steps
     solids, load = result.contact_pressure, dx * result.pressure.sum(axis=1)

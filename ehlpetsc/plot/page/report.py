@@ -5,7 +5,7 @@ import json
 from importlib.resources import files
 
 from ehlpetsc.plot.page.report_data import report_data
-from ehlpetsc.results.whole_file import write_whole
+from ehlpetsc.results.atomic_write import atomic_write
 
 PARTS = {"style": "report.css", "script": "report.js"}
 
@@ -29,4 +29,4 @@ def save_report(result, path):
     text = text.replace("{{facts}}", rows)
     # within a script element only "<" can end it
     text = text.replace("{{data}}", json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
-    write_whole(path, text.encode())
+    atomic_write(path, text.encode())

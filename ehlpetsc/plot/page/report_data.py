@@ -136,7 +136,7 @@ def step_figures(result):
     if len(time) < 2:
         return {"time": _packed([]), "figures": []}
     width, figures = -(-len(time) // ROWS), []
-    for name in sorted(set(result.figures) - UNSHOWN, key=_place):
+    for name in sorted(set(result.scalars) - UNSHOWN, key=_place):
         values = result.steps(name).astype(float)[1:]
         known = values[np.isfinite(values)]
         if not known.size or np.ptp(known) <= STEADY * max(np.abs(known).max(), name in ERRORS):

@@ -156,7 +156,7 @@ class Loads:
 
     def step_scalar(self, name):
         """Scalar ``steps/name`` at each stored frame; None where the file does not hold it."""
-        if name not in self._result.figures or "step" not in self._result.figures:
+        if name not in self._result.scalars or "step" not in self._result.scalars:
             return None
         rows = np.searchsorted(self._result.steps("step"), self.step)
         return self._result.steps(name)[rows].astype(float)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.whole_file import write_whole
+from ehlpetsc.results.atomic_write import atomic_write
 
 FINGERPRINT = "mark"
 
@@ -38,7 +38,7 @@ class DepthCache:
             stored = self.folder / FINGERPRINT
             if not stored.is_file() or stored.read_bytes() != fingerprint.encode():
                 self._empty()
-                write_whole(stored, fingerprint.encode())
+                atomic_write(stored, fingerprint.encode())
         except BaseException:
             self.remove()
             raise
@@ -74,7 +74,7 @@ class DepthCache:
         """Store one depth."""
         image = io.BytesIO()
         np.save(image, values)
-        write_whole(self._path(surface, depth), image.getbuffer())
+        atomic_write(self._path(surface, depth), image.getbuffer())
 
     def remove(self):
         """Delete all depths: the result holds them, or there is nothing to continue from."""

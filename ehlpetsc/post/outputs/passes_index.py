@@ -3,11 +3,11 @@
 import json
 from pathlib import Path
 
+from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import read_index
-from ehlpetsc.results.whole_file import write_whole
 
 
 def is_of_passes(path):
@@ -42,5 +42,5 @@ def note_damage(index):
             if known is not None:
                 row["damage"] = known.summary()
                 found.append((row["pass"], row["damage"]))
-        write_whole(index, json.dumps(content, indent=1).encode())
+        atomic_write(index, json.dumps(content, indent=1).encode())
     return found

@@ -9,9 +9,9 @@ import h5py
 
 from ehlpetsc import __version__
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.output_guard import check_place
+from ehlpetsc.results.atomic_write import atomic_write
+from ehlpetsc.results.output_guard import check_output_path
 from ehlpetsc.results.post_result import PostResult
-from ehlpetsc.results.whole_file import write_whole
 
 FORMAT_VERSION = 1
 DESCRIPTIONS = {
@@ -79,7 +79,7 @@ def check_output(path, inputs):
         raise OutputError(f"the folder of the output {path} does not exist")
     if path.is_symlink() and not path.exists():
         raise OutputError(f"the output {path} is a link to nowhere")
-    check_place(path, map(Path, inputs), "-o")
+    check_output_path(path, map(Path, inputs), "-o")
     if path.exists() and stored_fingerprint(path) is None:
         raise OutputError(
             f"the output {path} exists and is not a result of post-processing: remove it or give another -o"
@@ -114,7 +114,7 @@ def write_result(path, datasets, attrs, group_attrs):
         for name, values in group_attrs.items():
             file.require_group(name).attrs.update(values)
         _scales(file)
-    write_whole(path, image.getbuffer())
+    atomic_write(path, image.getbuffer())
 
 
 def _plain(name):

@@ -26,9 +26,9 @@ class Batch:
 
     def __init__(self, file, nodes):
         self._file = file
-        figures = {name: d for name, d in file["steps"].items() if name != "time"}
+        scalars = {name: d for name, d in file["steps"].items() if name != "time"}
         self._times = np.empty(STEPS)
-        self._columns = {name: np.empty(STEPS, dtype=d.dtype) for name, d in figures.items()}
+        self._columns = {name: np.empty(STEPS, dtype=d.dtype) for name, d in scalars.items()}
         frames, fields = max(1, FIELD_BYTES // (8 * nodes)), {n: file[n] for n in frame_fields(file)}
         self._frames = {name: np.empty((frames, d.shape[1]), d.dtype) for name, d in fields.items()}
         self._frame_times, self._frame_steps = np.empty(frames), np.empty(frames, dtype="i8")

@@ -75,8 +75,8 @@ def _misfit(file, old, step, count_from_file):
         return "it was computed on another mesh, or for another half width"
     if set(old.fields) != set(frame_fields(file)):
         return f"it stores other fields ({', '.join(old.fields)})"
-    if set(old.figures) != set(file["steps"]):
-        return f"it stores other figures of its steps ({', '.join(old.figures)})"
+    if set(old.scalars) != set(file["steps"]):
+        return f"it stores other figures of its steps ({', '.join(old.scalars)})"
     if last is not None and last < step:  # None: stopped before its first step
         return f"it ends at step {last}, before step {step} of the restart file"
     if count_from_file and last is not None and last > step:

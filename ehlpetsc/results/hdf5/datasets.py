@@ -41,7 +41,7 @@ class Layout:
 
     x: np.ndarray
     fields: list
-    figures: list = field(default_factory=lambda: of_every_case(STEP_SCALARS))
+    scalars: list = field(default_factory=lambda: of_every_case(STEP_SCALARS))
     precision: str = "float64"
     profiles: dict = field(default_factory=dict)
 
@@ -60,7 +60,7 @@ def lay_out(file, layout):
         _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
     _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
     _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
-    for name in sorted(layout.figures, key="time".__ne__):  # the scale of the others comes first
+    for name in sorted(layout.scalars, key="time".__ne__):  # the scale of the others comes first
         _growing(file, f"steps/{name}", STEP_SCALARS[name], CHUNK_STEPS)
     for surface, profile in layout.profiles.items():
         if profile is not None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.attributes import plain
-from ehlpetsc.results.hdf5.stored import reading
+from ehlpetsc.results.hdf5.lazy_dataset import reading
 
 FORMAT_VERSION = 1
 """Version of the layout; a reader refuses files of a later one."""

@@ -30,7 +30,7 @@ class RestartFile:
         """Last step that the result file holds with all before it, on rank 0; None: none is known."""
         return self._stored and self._stored.state.step
 
-    def take(self, state):
+    def write(self, state):
         """Remember a state that the result file holds; write the file where it is due."""
         self.note_stored()
         due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint

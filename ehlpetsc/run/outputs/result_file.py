@@ -44,7 +44,7 @@ class ResultFile:
         on_root(self.comm, self._create, step, contact_count)
         self.is_open = True
 
-    def take(self, state):
+    def write(self, state):
         """Append the step and, where it is due, a frame."""
         if not self.is_open:
             self.open()
@@ -65,9 +65,9 @@ class ResultFile:
         if self._writer:
             self._writer.close(status.words)
 
-    def image(self):
+    def to_bytes(self):
         """The bytes of a result in memory, on every rank."""
-        image = self._writer.image() if self.comm.rank == 0 else None
+        image = self._writer.to_bytes() if self.comm.rank == 0 else None
         if self.comm.size == 1:
             return image
         size = self.comm.bcast(image and len(image))
@@ -87,7 +87,7 @@ class ResultFile:
     def _append(self, state):
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
         frame = every == 1 or steady or on_level(self.simulation.level(state.time), every)
-        self._writer.append(state.step, state.time, state.fields, state.figures, state.in_contact, frame)
+        self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
 
     def _close(self, status):
         simulation = self.simulation
@@ -111,7 +111,7 @@ class ResultFile:
         layout = Layout(
             x=scales.x * scales.a,
             fields=[name for name in case.output.fields if name in stored],
-            figures=of_case(STEP_SCALARS, case),
+            scalars=of_case(STEP_SCALARS, case),
             precision=case.output.precision,
             profiles=profiles(self.simulation),
         )

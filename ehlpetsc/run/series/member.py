@@ -87,7 +87,7 @@ class Member:
             pass
         return "waiting"
 
-    def is_foreign(self):
+    def is_of_another_case(self):
         """Whether in the place of its result there is that of another case."""
         try:
             with read_result(self.output) as result:

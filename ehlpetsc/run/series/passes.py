@@ -9,12 +9,12 @@ import json
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.results.atomic_write import atomic_write, remove_stale
 from ehlpetsc.results.filling import filled_from
-from ehlpetsc.results.output_guard import Lock, check_index, check_place, inputs_of
+from ehlpetsc.results.output_guard import Lock, check_index, check_output_path, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
-from ehlpetsc.results.whole_file import remove_left, write_whole
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
@@ -67,14 +67,14 @@ class Passes:
         ------
         OutputError
         """
-        on_root(self.comm, lambda: check_place(self.index, inputs_of(self.case)))
+        on_root(self.comm, lambda: check_output_path(self.index, inputs_of(self.case)))
         lock = Lock(self.index)
-        on_root(self.comm, lock.take)
-        on_root(self.comm, remove_left, self.index)
+        on_root(self.comm, lock.acquire)
+        on_root(self.comm, remove_stale, self.index)
         try:
             return self._run(restart, overwrite)
         finally:
-            lock.give_back()
+            lock.release()
 
     def _run(self, restart, overwrite):
         if not overwrite:
@@ -92,7 +92,7 @@ class Passes:
             if status is not ExitStatus.DONE:
                 return status
             on_root(self.comm, self._note, number, simulation)
-        self._tell_end()
+        self._print_end()
         return status
 
     def _unfinished(self):
@@ -136,13 +136,13 @@ class Passes:
         self.rows.append(row)
         text = json.dumps({"title": self.case.title, "case": self.case.text, "passes": self.rows}, indent=1)
         try:
-            write_whole(self.index, text.encode())
+            atomic_write(self.index, text.encode())
         except OSError as error:
             whole = f"{self.file(number).name} is whole"
             raise OutputError(f"{self.index}: index not written, {error.strerror}; {whole}") from error
         self._say(line(row))
 
-    def _tell_end(self):
+    def _print_end(self):
         if self.comm.rank != 0:
             return
         self._say(f"passes: {self.index}")

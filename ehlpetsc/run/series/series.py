@@ -17,9 +17,9 @@ from ehlpetsc.case.loading import members
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.atomic_write import atomic_write, remove_stale
 from ehlpetsc.results.output_guard import Lock, check_index
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.results.whole_file import remove_left, write_whole
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.progress import summary_line
@@ -29,7 +29,7 @@ from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 
 
-class Named:
+class PrefixedStream:
     """A stream that puts a name before every line; for output only."""
 
     def __init__(self, name, stream):
@@ -47,7 +47,7 @@ class Named:
         return False  # no bar: several members would draw over each other
 
 
-class Serving:
+class PollingStop:
     """A request to stop that serves the other groups whenever it is asked; as of run.stop.StopRequest."""
 
     def __init__(self, queue, stop):
@@ -99,20 +99,22 @@ class Series:
         overwrite = options.getBool("ehl_overwrite", False)
         if not overwrite:
             on_root(world, lambda: check_index(self.index, "members", [m.output for m in self.members]))
-        foreign = world.bcast([m.output for m in self.members if m.is_foreign()] if world.rank == 0 else None)
+        foreign = world.bcast(
+            [m.output for m in self.members if m.is_of_another_case()] if world.rank == 0 else None
+        )
         if foreign and not overwrite:
             raise OutputError(
                 f"{', '.join(map(str, foreign))}: the result of another case, or of other -ehl_set; "
                 "give another -ehl_output, or -ehl_overwrite to lose it"
             )
         self._lock = Lock(self.index)
-        on_root(world, self._lock.take)
-        on_root(world, remove_left, self.index)
+        on_root(world, self._lock.acquire)
+        on_root(world, remove_stale, self.index)
         self.states = world.bcast([m.state_of_files() for m in self.members] if world.rank == 0 else None)
         self.states = ["waiting" if state == "begun" else state for state in self.states]
         missing = [n for n, state in enumerate(self.states) if state != "done"]
         missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
-        self.queue = WorkQueue(world, ranks, missing, self._take)
+        self.queue = WorkQueue(world, ranks, missing, self._note_end)
         self.failures, self.unwritten = {}, None
         self._announce(ranks, len(missing))
 
@@ -128,15 +130,17 @@ class Series:
         try:
             return self.queue.finish(lambda: self._conclude(clock.monotonic() - begun))
         finally:
-            self._lock.give_back()
+            self._lock.release()
 
     def _run_member(self, member):
         """Run one member on this group; its exit status and why it failed."""
         group = self.queue.group
-        out, err = Named(member.name, sys.stdout), Named(member.name, sys.stderr)
+        out, err = PrefixedStream(member.name, sys.stdout), PrefixedStream(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
-            one = Run(Simulation(member.case, group), member.output, Serving(self.queue, self.stop), out, err)
+            one = Run(
+                Simulation(member.case, group), member.output, PollingStop(self.queue, self.stop), out, err
+            )
             outcome = one.run(member.restart if begun else None, overwrite=True)  # looked at before: ours
             return outcome.status, str(outcome.failure or "")
         except (CaseError, OutputError, UsageError) as error:
@@ -144,7 +148,7 @@ class Series:
                 print(f"ehlpetsc: {error}", file=err, flush=True)
             return ExitStatus.BAD_INPUT, str(error)
 
-    def _take(self, report):
+    def _note_end(self, report):
         """Note on the first rank how a member ended."""
         number, status, failure = report
         self.states[number] = status.words
@@ -189,7 +193,7 @@ class Series:
             "case": self.case.text,
         }
         try:
-            write_whole(self.index, (json.dumps(index, indent=1, default=str) + "\n").encode())
+            atomic_write(self.index, (json.dumps(index, indent=1, default=str) + "\n").encode())
         except OSError as error:
             raise OutputError(f"{self.index}: index file not written, {error.strerror}") from error
 

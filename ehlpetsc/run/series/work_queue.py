@@ -31,8 +31,8 @@ class WorkQueue:
         The group this rank is in.
     """
 
-    def __init__(self, world, ranks, order, take):
-        self.world, self.take = world, take
+    def __init__(self, world, ranks, order, on_report):
+        self.world, self.on_report = world, on_report
         self.group = world.Split(world.rank // ranks, world.rank)
         self._waiting = list(order)
         self._others = -(-world.size // ranks) - 1  # groups that are yet to hear that nothing is left
@@ -43,7 +43,7 @@ class WorkQueue:
         Parameters
         ----------
         report : object or None
-            Handed to `take`; that of the group's first rank counts.
+            Handed to `on_report`; that of the group's first rank counts.
         ending : bool
             True: deal nothing more, to no group.
 
@@ -82,7 +82,7 @@ class WorkQueue:
 
     def _deal(self, report, ending):
         if report is not None:
-            self.take(report)
+            self.on_report(report)
         if ending:
             self._waiting.clear()
         return self._waiting.pop(0) if self._waiting else None

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.results.whole_file import replacing
+from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.study.accuracy.errors import MEASURES
 
 MARKERS = "osD^vP"

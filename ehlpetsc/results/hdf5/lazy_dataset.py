@@ -44,7 +44,7 @@ def reading(path, name=""):
         _announce()
 
 
-class Stored:
+class LazyDataset:
     """A dataset as in the file; slices of it are arrays.
 
     Attributes

@@ -4,7 +4,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.restart_file import load_restart
 
 
-def way_on(restart, case, step):
+def resume_advice(restart, case, step):
     """How to go on, once what was in the way is mended.
 
     Parameters

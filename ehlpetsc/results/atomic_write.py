@@ -39,7 +39,7 @@ def replacing(path, keep_ending=False):
         raise
 
 
-def write_whole(path, content):
+def atomic_write(path, content):
     """Write bytes, forced to the disk, in the place of `path`; OSError leaves nothing behind."""
     with replacing(path) as beside, open(beside, "wb") as file:
         file.write(content)
@@ -47,14 +47,14 @@ def write_whole(path, content):
         os.fsync(file.fileno())
 
 
-def remove_left(path):
+def remove_stale(path):
     """Remove what killed runs have left beside `path`; for who has the lock on it."""
     for beside in Path(path).parent.glob(f".{glob.escape(Path(path).name)}.*.tmp*"):
         with contextlib.suppress(OSError):
             beside.unlink()
 
 
-def plain_reason(error):
+def os_reason(error):
     """What the operating system said, without HDF5's own wording."""
     if error.args and "errno = " in str(error):
         code = int(str(error).split("errno = ")[1].split(",")[0])
