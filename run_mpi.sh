@@ -8,6 +8,7 @@ usage() {
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
 ./run_mpi.sh plot|post|summary|compare|gears|study ...    the same as ehlpetsc plot ..., each with -h
+./run_mpi.sh docs [FOLDER]                          the pages as one site, opened in a browser or built there
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
 ./run_mpi.sh --commands FOLDER                      put the command ehlpetsc (on one rank; ehlpetsc plot,
@@ -22,9 +23,10 @@ END
 
 # what cannot be imported -> the Debian packages that have it
 declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3-petsc4py-real [mpirun]=openmpi-bin
-    [xdist]=python3-pytest-xdist)
+    [xdist]=python3-pytest-xdist [myst_parser]=python3-myst-parser [furo]="furo libjs-mathjax")
 run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
 drawing="matplotlib xarray h5netcdf pint" # pictures, reading of results, values with units
+site="sphinx myst_parser furo" # the pages as one site
 testing="$drawing pytest xdist hypothesis pip hatchling"
 
 commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"
@@ -338,7 +340,8 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
-    plot | post | summary | compare | gears | life | study | ensemble | collisions | contacts | explain | keys | template | python)
+    plot | post | summary | compare | gears | life | study | ensemble | collisions | contacts | explain | keys | template | docs | python)
+        [ "$1" != docs ] || run_modules+=" $site"
         prepare "$run_modules" "$drawing"
         exec "$python" -m ehlpetsc "$@"
         ;;

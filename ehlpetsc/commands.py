@@ -28,6 +28,7 @@ SUBCOMMANDS = {  # name: module, function, what it needs, what it does
         "means over runs of several seeds",
     ),
     "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),
+    "docs": ("ehlpetsc.docs.__main__", "main", (), "these pages as one site, opened in a browser"),
     "contacts": ("ehlpetsc.analysis.contact_statistics", "main", NUMERICS, "counts and lengths of contact"),
 }
 OF_A_CASE = {

@@ -45,6 +45,7 @@ MAY_IMPORT = {
     "post": {"case", "results", "physics", "quantities"},
     "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
     "compare": {"analysis"},
+    "docs": set(),  # the pages as one site
     "life": {"run", "post", "api", "effects", "case", "surfaces", "results", "physics"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
     "__main__": {"run", "case", "commands"},

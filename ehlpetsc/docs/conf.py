@@ -1,0 +1,49 @@
+"""Configuration of Sphinx: Markdown pages where they are, equations by the machine's MathJax, no network."""
+
+import shutil
+from pathlib import Path
+
+from ehlpetsc import __version__
+from ehlpetsc.docs.mathjax import PARTS, SETTINGS, mathjax_folder
+from ehlpetsc.docs.pages import FRONT, PAGES, contents
+
+project, author, release = "ehlpetsc", "", __version__
+html_title, html_theme, html_show_copyright, html_show_sphinx = f"ehlpetsc {release}", "furo", False, False
+html_copy_source = html_show_sourcelink = False
+extensions = ["myst_parser", "sphinx.ext.mathjax"]
+root_doc = FRONT
+include_patterns = [f"{page}.md" for page in PAGES]
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4  # levels that can be linked to, by the names that Git hosts give them
+myst_update_mathjax = False  # for MathJax 3
+mathjax_path = "mathjax/MathJax.js"
+mathjax2_config = SETTINGS
+smartquotes = False
+pygments_style = "friendly"
+
+
+def _with_contents(_app, page, source):
+    if page == FRONT:
+        source[0] += contents()
+
+
+def _complete(app, failure):
+    """MathJax beside the pages, and the front page under the name that a server looks for."""
+    if failure is None:
+        shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
+        folder = mathjax_folder()
+        for part in PARTS:
+            target = Path(app.outdir, "_static", "mathjax", part)
+            if not target.exists():
+                (shutil.copytree if (folder / part).is_dir() else shutil.copy)(folder / part, _made(target))
+
+
+def _made(path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def setup(app):
+    """Connect to Sphinx: the contents of the site, and what it needs beside its pages."""
+    app.connect("source-read", _with_contents)
+    app.connect("build-finished", _complete)

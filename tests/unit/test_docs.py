@@ -1,0 +1,97 @@
+"""The pages as one site: every page is in it, equations are numbered one after the other, and it is built."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from ehlpetsc.docs import __main__ as docs
+from ehlpetsc.docs.pages import PAGES, ROOT, SECTIONS, contents
+
+TEXTS = {page: (ROOT / f"{page}.md").read_text(encoding="utf-8") for page in PAGES}
+needs_generator = pytest.mark.skipif(
+    bool(docs.lacking()), reason=f"not installed: {' '.join(docs.lacking())}"
+)
+
+
+def test_every_page_is_in_the_site_once():
+    paths = (path for path in ROOT.rglob("*.md") if not any(part.startswith(".") for part in path.parts))
+    here = {str(path.relative_to(ROOT).with_suffix("")) for path in paths}
+    assert sorted(PAGES) == sorted(here)
+    assert all(f"\n{page}\n" in contents() for pages in SECTIONS.values() for page in pages)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_has_one_title_and_steps_down_one_level_at_a_time(page):
+    text = re.sub(r"^```.*?^```", "", TEXTS[page], flags=re.DOTALL | re.MULTILINE)
+    levels = [len(marks) for marks in re.findall(r"^(#+) ", text, re.MULTILINE)]
+    assert levels[0] == 1 and levels.count(1) == 1
+    assert all(below <= above + 1 for above, below in zip(levels, levels[1:], strict=False))
+
+
+def test_equations_of_the_theory_are_numbered_one_after_the_other():
+    displayed = re.findall(r"\$\$(.*?)\$\$", TEXTS["ehlpetsc/model"], re.DOTALL)
+    assert not re.search(r"\\[^a-zA-Z]", "".join(displayed))  # which Markdown would take for an escape
+    numbers = [re.findall(r"\\tag\{(\d+)\}", equation) for equation in displayed]
+    assert numbers == [[str(k)] for k in range(1, len(displayed) + 1)] and len(numbers) > 10
+
+
+def test_without_the_generator_one_sentence_names_its_packages(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(docs, "has", lambda name: name != "furo")
+    monkeypatch.setattr(docs, "mathjax_folder", lambda: None)
+    assert docs.main([str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert error == "ehlpetsc docs: packages are missing; type: sudo apt-get install furo libjs-mathjax\n"
+
+
+def test_a_folder_of_other_files_is_kept(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(docs, "lacking", list)
+    (tmp_path / "mine.txt").touch()
+    assert docs.main([str(tmp_path)]) == 2
+    assert capsys.readouterr().err.endswith("holds other files; give a folder that is new or empty\n")
+    assert docs.main([str(tmp_path / "mine.txt")]) == 2
+    assert capsys.readouterr().err.endswith("a file, not a folder for the site\n")
+
+
+def test_an_installed_package_says_where_the_pages_are(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(docs, "ROOT", tmp_path)
+    assert docs.main([]) == 2
+    assert "an installed package has no pages" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site") / "new"
+    docs.build(folder)
+    return folder
+
+
+@needs_generator
+@pytest.mark.slow
+def test_the_site_has_every_page_with_search_and_equations_and_asks_no_network(site):
+    assert all((site / f"{page}.html").exists() for page in (*PAGES, "index", "search"))
+    model = (site / "ehlpetsc" / "model.html").read_text(encoding="utf-8")
+    assert model.count(r"\[") > 10 and r"\frac{\partial" in model
+    assert (site / "_static" / "mathjax" / "MathJax.js").exists()
+    assert "viscosity" in (site / "searchindex.js").read_text(encoding="utf-8")
+    loaded = [
+        address
+        for page in site.rglob("*.html")
+        for address in re.findall(
+            r"<(?:script|link|img)\b[^>]*?(?:src|href)=\"(http[^\"]*)", page.read_text()
+        )
+    ]
+    assert loaded == []
+
+
+@needs_generator
+@pytest.mark.slow
+def test_it_opens_what_it_has_built(tmp_path, monkeypatch, capsys):
+    opened = []
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(docs.webbrowser, "open", opened.append)
+    monkeypatch.setattr(docs.subprocess, "run", lambda *_, **__: subprocess.CompletedProcess([], 0))
+    assert docs.main([]) == 0
+    page = Path(capsys.readouterr().out.strip())
+    assert page == tmp_path / "ehlpetsc" / "docs" / "README.html" and opened == [page.as_uri()]
