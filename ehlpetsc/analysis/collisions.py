@@ -20,7 +20,7 @@ from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.series_index import WITH_FILM, command, from_thick_to_thin
 
 BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
-SAME = 1e-3  # of the interval between frames: times nearer than this are the same
+TIME_TOLERANCE = 1e-3  # of the interval between frames: times nearer than this are the same
 BLOCK = 256  # frames read at a time
 
 
@@ -129,7 +129,7 @@ class _Reader:
     def has(self, time):
         """Whether a frame of just that time is stored: meshes share only some of their levels."""
         stored = self.result.time
-        return bool(np.abs(stored - time).min() < SAME * np.diff(stored).max())
+        return bool(np.abs(stored - time).min() < TIME_TOLERANCE * np.diff(stored).max())
 
     def __call__(self, x, time):
         frame = self.result.nearest_frame(time=time)

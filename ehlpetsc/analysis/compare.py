@@ -23,7 +23,7 @@ from ehlpetsc.results.reader import read_result
 
 RTOL = 1e-6
 BLOCK_BYTES = 2**24
-ROUNDING = 1e-9  # of the extent: what computed coordinates may differ by and still be equal
+ABSCISSA_TOLERANCE = 1e-9  # of the extent: what computed coordinates may differ by and still be equal
 
 
 @dataclass
@@ -84,7 +84,7 @@ def common_points(one, other, what):
     """
     if len(one) == len(other) == 1:  # two steady solutions, whatever their times
         return one
-    slack = ROUNDING * max(np.ptp(one), np.ptp(other))
+    slack = ABSCISSA_TOLERANCE * max(np.ptp(one), np.ptp(other))
     low, high = max(one[0], other[0]) - slack, min(one[-1], other[-1]) + slack
     inside = [grid[(grid >= low) & (grid <= high)] for grid in (one, other)]
     points = min(inside, key=len)

@@ -31,13 +31,13 @@ from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.series_index import differences, open_all
 
 RESAMPLES = 2000
-MOST_RESAMPLES = 100_000
+MAX_RESAMPLES = 100_000
 CONFIDENCE = 0.95
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
 NO_FIGURES = ("step", "time", "dt", "wall", "load", "approach")
 TABLES = {".csv": b"ensemble,figure,units,runs,", ".json": b'"ensemble":'}  # endings, and how they begin
-HEAD = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
+COLUMNS = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
 
 
 @dataclass(frozen=True)
@@ -146,14 +146,14 @@ def ensembles(results):
 
 
 def table(found, resamples=RESAMPLES, seed=1):
-    """Rows by the names of `HEAD`, one for each figure of each ensemble."""
+    """Rows by the names of `COLUMNS`, one for each figure of each ensemble."""
     rows = []
     for one in found:
         for name, values in one.scalars.items():
             units = STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
             low, high = bootstrap(values, resamples, seed)
             told = (one.name, name, units, values.size, values.mean(), low, high, values.min(), values.max())
-            rows.append(dict(zip(HEAD, told, strict=True)))
+            rows.append(dict(zip(COLUMNS, told, strict=True)))
     return rows
 
 
@@ -170,7 +170,7 @@ def write(rows, path):
         plain = [{k: None if v != v else v for k, v in row.items()} for row in rows]
         json.dump(plain, table, indent=1, default=float)
     else:
-        writer = csv.DictWriter(table, HEAD)
+        writer = csv.DictWriter(table, COLUMNS)
         writer.writeheader()
         writer.writerows(rows)
     try:
@@ -181,12 +181,12 @@ def write(rows, path):
 
 def text(rows):
     """The table for the eye, a line a row."""
-    widths = [max(len(name), *(len(str(row[name])) for row in rows)) for name in HEAD[:4]]
-    lines = [" ".join(f"{n:<{w}}" for n, w in zip(HEAD, widths, strict=False))]
-    lines[0] += "".join(f"{name:>12}" for name in HEAD[4:])
+    widths = [max(len(name), *(len(str(row[name])) for row in rows)) for name in COLUMNS[:4]]
+    lines = [" ".join(f"{n:<{w}}" for n, w in zip(COLUMNS, widths, strict=False))]
+    lines[0] += "".join(f"{name:>12}" for name in COLUMNS[4:])
     for row in rows:
-        line = " ".join(f"{row[n]!s:<{w}}" for n, w in zip(HEAD, widths, strict=False))
-        lines.append(line + "".join(f"{row[name]:>12.4g}" for name in HEAD[4:]))
+        line = " ".join(f"{row[n]!s:<{w}}" for n, w in zip(COLUMNS, widths, strict=False))
+        lines.append(line + "".join(f"{row[name]:>12.4g}" for name in COLUMNS[4:]))
     return lines
 
 
@@ -195,8 +195,8 @@ def arguments(argv):
     parser = CommandParser(prog=program("ehlpetsc.analysis.ensemble"), description=__doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
-    samples = f"of the bootstrap, 1 to {MOST_RESAMPLES} [{RESAMPLES}]"
-    parser.add_argument("--resamples", type=_within(1, MOST_RESAMPLES), default=RESAMPLES, help=samples)
+    samples = f"of the bootstrap, 1 to {MAX_RESAMPLES} [{RESAMPLES}]"
+    parser.add_argument("--resamples", type=_within(1, MAX_RESAMPLES), default=RESAMPLES, help=samples)
     parser.add_argument("--seed", type=_within(0, 2**63), default=1, help="of the bootstrap [1]")
     return parser.parse_args(argv)
 

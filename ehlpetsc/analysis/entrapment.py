@@ -7,8 +7,8 @@ import numpy as np
 from ehlpetsc.analysis.collisions import points_in_contact
 from ehlpetsc.errors import OutputError
 
-NARROWEST = 3  # mesh spacings between the contacts: two nodes of oil
-WIDEST = 0.05  # half widths between them
+MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
+MAX_GAP = 0.05  # half widths between them
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ def find(result):
         There is none.
     """
     frames, nodes = points_in_contact(result)
-    widest = WIDEST * result.attrs["a"] / float(np.diff(result.x).min())
+    widest = MAX_GAP * result.attrs["a"] / float(np.diff(result.x).min())
     apart = np.diff(nodes)
-    pairs = np.flatnonzero((np.diff(frames) == 0) & (apart >= NARROWEST) & (apart <= widest))
+    pairs = np.flatnonzero((np.diff(frames) == 0) & (apart >= MIN_GAP_NODES) & (apart <= widest))
     found = []
     for frame, left, right in zip(frames[pairs], nodes[pairs], nodes[pairs + 1], strict=True):
         pressure = result["pressure"][frame, left : right + 1].astype(float)
@@ -52,7 +52,9 @@ def find(result):
             excess = float(pressure[peak] / highest - 1.0)
             found.append(Entrapment(int(frame), int(left), int(right), int(left) + peak, excess))
     if not found:
-        raise OutputError(f"{result.path}: no pressure maximum between two contacts {WIDEST} a apart or less")
+        raise OutputError(
+            f"{result.path}: no pressure maximum between two contacts {MAX_GAP} a apart or less"
+        )
     return sorted(found, key=lambda e: e.excess * result["pressure"][e.frame, e.peak], reverse=True)
 
 

@@ -25,7 +25,7 @@ from ehlpetsc.results.series_index import in_order, open_all, series_values, tol
 
 LEFT_OUT = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)
-HEAD = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
+COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
 
 
 def weighted_percentiles(values, weights, percentiles):
@@ -51,7 +51,7 @@ def statistics(result):
     Returns
     -------
     list of tuple
-        As `HEAD` from "scalar" on.
+        As `COLUMNS` from "scalar" on.
     """
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
     kept = both_fill(result, time)
@@ -76,7 +76,7 @@ def table(results):
     key, values = series_values(results)
     cases = [f"{key} = {v:g}" for v in values] if key else told_apart(results)
     cases = cases or [str(result.attrs["title"]) for result in results]
-    rows = [HEAD]
+    rows = [COLUMNS]
     for result, case in zip(results, cases, strict=True):
         rows += [(result.path.name, case, *row) for row in statistics(result)]
     return rows
@@ -96,7 +96,7 @@ def main(arguments=None):
             csv.writer(text, lineterminator="\n").writerows(table(results))
             if chosen.output:
                 read = [*map(Path, chosen.results), *(result.path for result in results)]
-                check_derived(chosen.output, read, {".csv": ",".join(HEAD[:4]).encode()})
+                check_derived(chosen.output, read, {".csv": ",".join(COLUMNS[:4]).encode()})
                 atomic_write(chosen.output, text.getvalue().encode())
                 print(chosen.output)
             else:

@@ -7,11 +7,11 @@ import re
 import tomllib
 from pathlib import Path
 
-from ehlpetsc.case.settings import PARTS
+from ehlpetsc.case.settings import MAX_PARTS
 from ehlpetsc.errors import CaseError
 
-MOST_BYTES = 2**26  # of a case file: far more than any profile written out in it
-LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{PARTS}}}""")
+MAX_BYTES = 2**26  # of a case file: far more than any profile written out in it
+LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MAX_PARTS}}}""")
 
 
 def read_text(path):
@@ -27,9 +27,9 @@ def read_text(path):
         if not str(path):
             raise CaseError(["'': no name of a case file; allowed: a TOML file"])
         with open(path, "rb") as file:  # a device has no size, and no end
-            whole = file.read(MOST_BYTES + 1)
-        if len(whole) > MOST_BYTES:
-            raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
+            whole = file.read(MAX_BYTES + 1)
+        if len(whole) > MAX_BYTES:
+            raise CaseError([f"{path}: larger than {MAX_BYTES >> 20} MB; allowed: a TOML file of a case"])
         return whole.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
@@ -58,7 +58,7 @@ def parse_toml(path, text):
     found = LONG_KEY.search(text)
     if found:  # tomllib takes the square of their number in time
         line = text.count("\n", 0, found.start()) + 1
-        raise CaseError([f"{path}: line {line}: a key of more than {PARTS} parts; allowed: table.key"])
+        raise CaseError([f"{path}: line {line}: a key of more than {MAX_PARTS} parts; allowed: table.key"])
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through

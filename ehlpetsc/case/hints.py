@@ -5,7 +5,7 @@ import math
 
 from ehlpetsc.case.tables.table import item_type
 
-LARGEST = 1e100
+MAX_NUMBER = 1e100
 POWERS = {"Pa": (9, 6), "1/Pa": (-9,), "m": (-3, -6, -9)}  # of units that values are often written in
 SYNONYMS = {
     "movement": "motion",
@@ -58,7 +58,7 @@ def slip(field, value):
     number = value[0] if isinstance(value, (list, tuple)) and value else value
     if isinstance(number, bool) or not isinstance(number, int | float) or low is None:
         return ""
-    if not 0.0 < abs(number) < LARGEST:  # a whole number of thousands of digits is no float
+    if not 0.0 < abs(number) < MAX_NUMBER:  # a whole number of thousands of digits is no float
         return ""
     unit = field.field_info.extra.get("unit", "")
     for power in POWERS.get(unit, ()):

@@ -7,7 +7,7 @@ import tomlkit
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.sides import stored_name
 
-PARTS = 50  # of a dotted key: more than any case has
+MAX_PARTS = 50  # of a dotted key: more than any case has
 
 
 def parsed(override):
@@ -24,7 +24,7 @@ def parsed(override):
         raise ValueError(override)
     name, equals, raw = override.partition("=")
     keys = name.strip().split(".")
-    if not equals or not all(keys) or len(keys) > PARTS:
+    if not equals or not all(keys) or len(keys) > MAX_PARTS:
         raise ValueError(override)
     try:
         found = tomllib.loads(f"value = {raw}")

@@ -102,7 +102,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
 
 
 @compiled
-def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
+def balance(at, first, law, then, extrapolated, k, rate, imbalance, derivatives):
     """Fill in the cells' mass balance, outflow less inflow and what is stored, and its derivatives.
 
     Parameters
@@ -113,8 +113,8 @@ def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
         Node of the first cell.
     law : tuple of 5 floats
         `per_length`, `per_film`, `eyring`, `slip` and `entrainment` of :func:`flux_through`.
-    then, carried : ndarray, shape (cells,)
-        m and what is carried over, of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
+    then, extrapolated : ndarray, shape (cells,)
+        m and what is extrapolated over, of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
     k, rate : float
         Of the same, and the spacing over its step; 0: steady.
     imbalance : ndarray, shape (cells,)
@@ -127,7 +127,7 @@ def balance(at, first, law, then, carried, k, rate, imbalance, derivatives):
         node, row = first + i, derivatives[i]
         outflow = flux_through(at, node, *law)
         stored, by_m, _ = positive_extrapolation(at[M, node], then[i], k)
-        imbalance[i] = outflow[0] - inflow[0] + (stored - carried[i]) * rate
+        imbalance[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]
         row[2], row[3] = outflow[1] - inflow[3], outflow[2] - inflow[4]
         row[4] = outflow[3] - inflow[5] + by_m * at[M_Q, node] * rate

@@ -15,7 +15,7 @@ Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import ROUNDING, full_of_oil
+from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, full_of_oil
 from ehlpetsc.discretisation.finite_volumes import (
     DP,
     FLUIDITY,
@@ -57,14 +57,14 @@ class FilmHistory:
     ----------
     k : float
         How far the extrapolation of the two levels of a step goes.
-    carried : ndarray, shape (nx,)
+    extrapolated : ndarray, shape (nx,)
         The extrapolation of the two older levels.
     """
 
     def __init__(self, m, m_older, dt, dt_older=None):
         self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
         self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
-        self.carried = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
+        self.extrapolated = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
 
     def mirrored(self):
         """The same history with the nodes in reverse order."""
@@ -156,7 +156,7 @@ class Reynolds:
         at, first = self.properties(q, h, inputs), self.row_in_given
         then = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
-            then = history.m[rows], history.carried[rows], history.k, self.dx / history.dt
+            then = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
         imbalance = np.empty(self.local.stop - self.local.start)
         derivatives = np.zeros((len(imbalance), n_dofs(STENCIL)))
         inner = slice(int(self.has_inlet), None)
@@ -202,7 +202,7 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     nodes = len(q)
     for i in range(at.shape[1]):
         here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
-        p, left, full = max(here, 0.0), 1.0 + min(here, 0.0), here > -ROUNDING
+        p, left, full = max(here, 0.0), 1.0 + min(here, 0.0), here > -AMBIENT_TOLERANCE
         rho, rho_p = _compression(p0 * p, *density)
         ln_eta, ln_eta_p = _power_law(p0 * p, *viscosity)
         at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * gap

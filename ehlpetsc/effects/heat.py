@@ -18,7 +18,7 @@ from ehlpetsc.physics.heat.body_heat import BodyHeat
 from ehlpetsc.quantity import Field, StepScalar
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
-LEAST_RISE = 1e-3  # K
+MIN_TEMPERATURE_RISE = 1e-3  # K
 
 
 class HeatRecord(NamedTuple):
@@ -139,7 +139,7 @@ class Heat(Effect):
 
     def is_settled(self, before, after):
         """Whether a steady solution and its temperatures agree."""
-        rise = max(np.abs(after.film - self._steps.inlet).max(), LEAST_RISE)
+        rise = max(np.abs(after.film - self._steps.inlet).max(), MIN_TEMPERATURE_RISE)
         return self.scene.case.fluid is None or np.abs(after.film - before.film).max() < STEADY * rise
 
     def log_viscosity(self, record, pressure):

@@ -15,7 +15,7 @@ from ehlpetsc import environment
 from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, not_written
 from ehlpetsc.results.atomic_write import atomic_write, replacing
-from ehlpetsc.results.output_guard import PICTURES, check_derived
+from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 
 MOST_BYTES = 2**26  # of a case file
 
@@ -95,14 +95,14 @@ def _run_of(chosen):
     target = _picture(chosen)
     flanks = target and target.with_suffix(".flanks.png")
     if flanks and post.exists():
-        check_derived(flanks, [Path(chosen.case), post], PICTURES)
+        check_derived(flanks, [Path(chosen.case), post], PICTURE_SIGNATURES)
     print("\n".join(found.lines()))
     if target:
         with replacing(target, keep_ending=True) as beside:
             found.draw(beside)
         print(target)
     if post.exists():
-        damage = FlankDamage(post, found.begins)
+        damage = FlankDamage(post, found.profile_offsets)
         print("\n".join(damage.lines()))
         if flanks:
             with replacing(flanks, keep_ending=True) as beside:
@@ -128,7 +128,7 @@ def _picture(chosen):
     if chosen.no_picture:
         return None
     target = Path(f"{Path(chosen.case).stem}.gears.png" if chosen.output is None else chosen.output)
-    check_derived(target, [Path(chosen.case)], PICTURES)
+    check_derived(target, [Path(chosen.case)], PICTURE_SIGNATURES)
     return target
 
 

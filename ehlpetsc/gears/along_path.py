@@ -61,7 +61,7 @@ class GearRun:
         self.position = self.rho - self.path.pair.points["C"]
 
     @property
-    def begins(self):
+    def profile_offsets(self):
         """Arc lengths of both flanks at the begin of the run, from A [m]."""
         return tuple(float(arc) for arc in self.path.pair.flank_arcs(self.rho[0]))
 

@@ -17,7 +17,7 @@ class FlankDamage:
     ----------
     file : path-like
         Result of post-processing, ``RESULT.post.h5``.
-    begins : (float, float)
+    profile_offsets : (float, float)
         Arc lengths from A at which both flanks are at x = 0 at time 0 [m].
 
     Attributes
@@ -35,14 +35,14 @@ class FlankDamage:
         The file cannot be read.
     """
 
-    def __init__(self, file, begins):
+    def __init__(self, file, profile_offsets):
         try:
             with h5py.File(file) as stored:
                 group = stored["damage"]
                 self.depths = group["z_over_a"][:] * float(stored.attrs["a"])
                 names = [stored_name(group, side) for side in SIDES]
                 self.damage = [group[name][:][:, ::-1] if name in group else None for name in names]
-                self.arcs = [begin - group["s"][:][::-1] for begin in begins]
+                self.arcs = [begin - group["s"][:][::-1] for begin in profile_offsets]
         except (OSError, KeyError, RuntimeError) as error:
             raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
 

@@ -75,10 +75,10 @@ def main(argv=None):
 
 def _picture(path, inputs):
     """Where the picture of a life goes, checked."""
-    from ehlpetsc.results.output_guard import PICTURES, check_derived
+    from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 
     target = path.with_suffix(".png")
-    check_derived(target, inputs, PICTURES)
+    check_derived(target, inputs, PICTURE_SIGNATURES)
     return target
 
 

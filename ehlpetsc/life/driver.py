@@ -214,7 +214,7 @@ class _Life:
         """Columns of a body from the points of the first pass; of body 2 in all of its positions."""
         s, dx = one.bodies[k].s, self.scales.dx
         profile = simulation.roughness.side("12"[k])
-        if profile is not None and profile.enters:  # not where its heights come in over the ramp
+        if profile is not None and profile.is_moving:  # not where its heights come in over the ramp
             X = (
                 self.scales.x[0] * self.scales.a - s
                 if profile.speed > 0

@@ -12,7 +12,7 @@ Residual and coefficients are those of :class:`ehlpetsc.discretisation.ehl_probl
 B are derivatives of the Reynolds rows at the state before the last sweeps, so that sweeps solve what
 Newton's method linearises; C and D are exact. Between two evaluations of A and B
 
-* pressures further away than `NEAR` nodes act on E by FFT with their values of the last evaluation;
+* pressures further away than `NEAR_FIELD_NODES` act on E by FFT with their values of the last evaluation;
 * h00 moves with the load that is missing, by a part of what Hertz' contact would need;
 * where the gap is open, wider than `OPEN` expected films and under less than `LOW` p0, h is put to the whole
   integral of p, as it is at the two ends in any case. Second differences alone tell a change of h00 or of a
@@ -40,7 +40,7 @@ from ehlpetsc.nonlinear.sweeps import DeflectionForm, Linearised, sweep
 # half widths: between two evaluations of the coefficients as many sweeps as there are nodes in it
 REACH, STEADY_REACH = 0.6, 4.0
 EVALUATIONS = 400  # before a solve is given up
-NEAR = 100  # nodes on either side whose pressures act at once
+NEAR_FIELD_NODES = 100  # nodes on either side whose pressures act at once
 OPEN, LOW = 3.0, 0.1  # gaps wider than so many expected films, at pressures below this in p0, are open
 IN_OPEN_GAP, IN_FILM = 1.85, 1.3  # over-relaxation there, and in the film of a time step
 APPROACH = 0.2  # of the change of h00 that the missing load asks for
@@ -67,7 +67,7 @@ class GaussSeidelSolver:
         self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
         self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
         self.tolerance = tolerance
-        curvature, near = self.deflection.curvature, min(NEAR, scales.nx - 1)
+        curvature, near = self.deflection.curvature, min(NEAR_FIELD_NODES, scales.nx - 1)
         self.kernel = np.concatenate([curvature[near:0:-1], curvature[: near + 1]])
         distant = curvature.copy()
         distant[: near + 1] = 0.0

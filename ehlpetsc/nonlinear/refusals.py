@@ -4,7 +4,7 @@ import importlib
 
 from ehlpetsc.errors import UsageError
 
-MOST = 512  # options that PETSc's table holds
+MAX_OPTIONS = 512  # options that PETSc's table holds
 LOOSER = {"snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
 DIFFERENCES = "PETSc's differences would stand in for the Jacobian, a product here; leave it out"
 REFUSED = {"snes_mf": DIFFERENCES, "snes_mf_operator": DIFFERENCES}
@@ -49,9 +49,10 @@ def check_options(options, own):
     ------
     UsageError
     """
-    if len(options) + own > MOST:
+    if len(options) + own > MAX_OPTIONS:
         raise UsageError(
-            f"{len(options)} options for PETSc, whose table holds {MOST} with the program's own; give fewer"
+            f"{len(options)} options for PETSc, whose table holds {MAX_OPTIONS} with the program's own; "
+            "give fewer"
         )
     for name, value in options.items():
         if name in REFUSED and str(value).lower() not in ("false", "no", "0"):

@@ -30,7 +30,7 @@ class ConditionsTable(NamedTuple):
         [N/m], [m], [m/s], [m/s].
     repeat : int
         Number of times that the table is run through.
-    begins : (float, float), optional
+    profile_offsets : (float, float), optional
         Abscissas of both profiles that are at x = 0 at time 0 [m]: they lie under the whole contact from then
         on, as flanks of teeth do. None: they enter at the inlet.
     """
@@ -41,7 +41,7 @@ class ConditionsTable(NamedTuple):
     u1: np.ndarray
     u2: np.ndarray
     repeat: int = 1
-    begins: tuple | None = None
+    profile_offsets: tuple | None = None
 
     @property
     def varies(self):

@@ -23,12 +23,12 @@ from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.atomic_write import replacing
-from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
+from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
-KINDS = {"movie": MOVIES, "report": PAGES}
+KINDS = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
 WITHOUT_FRAMES = ("contacts", "stribeck", "ensemble")  # kinds that need the figures of the steps alone
 
 
@@ -102,7 +102,7 @@ def _draw_case(options, cases):
     if len(options.results) > 1:
         raise OutputError(f"{cases[0]}: a case is drawn alone, without results")
     output = options.output or Path(Path(cases[0]).stem + ".case.png")
-    check_derived(output, [Path(cases[0])], PICTURES)
+    check_derived(output, [Path(cases[0])], PICTURE_SIGNATURES)
     figure = draw_case(cases[0], options.ehl_set or ())
     with replacing(output, keep_ending=True) as beside:
         figure.savefig(beside, dpi=DPI)
@@ -131,7 +131,7 @@ def main(arguments=None):
         with contextlib.ExitStack() as stack:
             results = in_order(open_all(options.results, stack))
             inputs = [*map(Path, options.results), *(r.path for r in results)]
-            check_derived(output, inputs, KINDS.get(kind, PICTURES))
+            check_derived(output, inputs, KINDS.get(kind, PICTURE_SIGNATURES))
             draw(results, kind, options, output)
     except OSError as error:
         print(f"ehlpetsc.plot: {not_written(error, error.filename or output)}", file=sys.stderr)

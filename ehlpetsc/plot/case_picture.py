@@ -6,7 +6,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.plot import labels
-from ehlpetsc.surfaces.arrival import arrival
+from ehlpetsc.surfaces.entry_times import entry_times
 from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameters
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -66,7 +66,7 @@ def passing(profile, case, scales):
         Abscissas [m]; equal where none does.
     """
     first, last = float(profile.X[0]), float(profile.X[-1])
-    arrives = arrival(profile, scales)
+    arrives = entry_times(profile, scales)
     if arrives is None:
         return first, last
     if not profile.repeats:
@@ -100,9 +100,9 @@ def _heights(axes, profile, case, scales, side):
 
 
 def _said(profile, case, scales, begin, end):
-    coarse = profile.short_share(scales.dx)
+    coarse = profile.unresolved_variance(scales.dx)
     mesh = f"{100 * coarse:.2g} % of the height variance in waves of fewer than 4 nodes"
-    if case.time is None or not profile.enters:
+    if case.time is None or not profile.is_moving:
         return f"under the domain from the start; {mesh}"
     if end >= profile.X[-1] > begin:
         part = f"all of it passes the whole contact within travel {case.time.travel:g} a"
@@ -110,7 +110,7 @@ def _said(profile, case, scales, begin, end):
         part = f"dark: passes the whole contact within travel {case.time.travel:g} a"
     else:
         part = f"none of it passes the contact within travel {case.time.travel:g} a"
-    arrives = arrival(profile, scales)
+    arrives = entry_times(profile, scales)
     enters = f"its left end enters first and reaches the contact at travel {arrives[0]:.2f} a"
     return f"{enters}\n{part}; {mesh}"
 

@@ -15,7 +15,7 @@ SIZE = (8.4, 5.6)  # inches
 TALL = 7.6  # inches: with the surfaces
 AROUND_WIDTH = 0.5  # of a view around a place, half widths
 COLLISION_WIDTH = 0.12
-POINTS = 8  # most contact points in one picture
+MAX_POINTS = 8  # most contact points in one picture
 
 
 def two_panels():
@@ -123,7 +123,7 @@ def draw_collision(results, options):
 def draw_points(results, _options):
     """Figure of film and pressure at the points of contact against the swept value."""
     results, values, key = from_thick_to_thin(results)
-    points = film_breakdown.spread(film_breakdown.contact_points(collisions.find(results)), POINTS)
+    points = film_breakdown.spread(film_breakdown.contact_points(collisions.find(results)), MAX_POINTS)
     if not points:
         raise OutputError("no contact point with two full films before it and two members in contact")
     figure, axes = two_panels()

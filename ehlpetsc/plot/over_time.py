@@ -11,8 +11,8 @@ from ehlpetsc.results.filling import travelled
 
 MAP_ROWS = 1000  # rows of pixels worth drawing in a space-time map
 FEW_CONTACTS = 3000  # nodes in contact in a map that would be lost as single pixels
-HIGHEST = 99.9  # percentile of pressure at which colours end: a few sharp peaks would darken all the rest
-WIDTH = 0.1  # half-widths of a mean along the contact
+COLOUR_PERCENTILE = 99.9  # of pressure, where colours end: a few sharp peaks would darken all the rest
+MEAN_WIDTH = 0.1  # half-widths of a mean along the contact
 POLYNOMIAL_ORDER = 8  # Holmes et al. 2005, figure 7 (ii)
 
 
@@ -58,7 +58,7 @@ def space_time_map(axes, result, window, highest):
 
 def colour_limit(results, window):
     """Pressure [GPa] at which the colours of all results end."""
-    return max(float(np.percentile(_over_time(result, window)[2], HIGHEST)) for result in results)
+    return max(float(np.percentile(_over_time(result, window)[2], COLOUR_PERCENTILE)) for result in results)
 
 
 def _over_time(result, window):
@@ -83,8 +83,8 @@ def _contacts(result, columns, stride):
 def contact_rates(axes, results, colours, polynomial=False):
     """Contacts per millisecond along the contact: raw above, smoothed below.
 
-    Smoothed by a mean over `WIDTH` or, with `polynomial`, by a polynomial of 8th order as in Holmes et al.
-    2005, figure 7 (ii), which needs many contacts: through few of them it oscillates.
+    Smoothed by a mean over `MEAN_WIDTH` or, with `polynomial`, by a polynomial of 8th order as in Holmes et
+    al. 2005, figure 7 (ii), which needs many contacts: through few of them it oscillates.
 
     Returns
     -------
@@ -107,11 +107,11 @@ def contact_rates(axes, results, colours, polynomial=False):
             smooth = np.linspace(-1.0, 1.0, 401)
             lower.plot(smooth, fit(smooth), color=colour, lw=1.4)
         else:
-            count = min(max(1, round(WIDTH / np.diff(x).mean())), len(x))
+            count = min(max(1, round(MEAN_WIDTH / np.diff(x).mean())), len(x))
             lower.plot(x, np.convolve(rate, np.full(count, 1.0 / count), mode="same"), color=colour, lw=1.4)
         means.append(float(rate[inside].mean()))
     upper.set_ylabel("contacts per ms")
-    smoothed = f"polynomial of order {POLYNOMIAL_ORDER}" if polynomial else f"mean over {WIDTH:g} a"
+    smoothed = f"polynomial of order {POLYNOMIAL_ORDER}" if polynomial else f"mean over {MEAN_WIDTH:g} a"
     lower.set_ylabel(f"contacts per ms,\n{smoothed}")
     lower.set_xlabel(ACROSS)
     lower.set_xlim(-1.5, 1.5)

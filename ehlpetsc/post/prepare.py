@@ -115,7 +115,7 @@ def _flank(loads, surface):
     case, number = loads.case, int(surface in ("2", "2"))
     if case.gears is None:
         return NO_FLANK
-    pair, begin = case.gears.pair, case.conditions.begins[number]
+    pair, begin = case.gears.pair, case.conditions.profile_offsets[number]
     arc = pair.flank_arcs(pair.points["E"])[number]
     ended = loads.time[-1] > (1.0 - ENDED) * loads.operation.duration
     return begin - arc if ended else np.inf, begin

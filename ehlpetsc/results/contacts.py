@@ -9,7 +9,7 @@ from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.scales import reduced_modulus
 
-ROUNDING = 1e-6  # of the bound: films may be stored in single precision
+BOUND_TOLERANCE = 1e-6  # of the bound: films may be stored in single precision
 
 
 def film_at_contact(result):
@@ -61,4 +61,4 @@ def in_contact(result, frames, nodes=slice(None)):
         return np.asarray(result["in_contact"][frames, nodes], dtype=bool)
     if "film_thickness" not in result:
         raise OutputError(f"{result.path}: stores neither in_contact nor film_thickness")
-    return result["film_thickness"][frames, nodes] <= film_at_contact(result) * (1.0 + ROUNDING)
+    return result["film_thickness"][frames, nodes] <= film_at_contact(result) * (1.0 + BOUND_TOLERANCE)

@@ -12,10 +12,10 @@ import h5py
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.opening import open_for_reading
 
-WAIT = "wait for it, or give another -ehl_output"
-WAYS = "give another -ehl_output, or -ehl_overwrite to lose it"
-HEAD = 512  # bytes of a file that say what it is
-PICTURES = {
+WAIT_ADVICE = "wait for it, or give another -ehl_output"
+OVERWRITE_ADVICE = "give another -ehl_output, or -ehl_overwrite to lose it"
+SIGNATURE_BYTES = 512  # bytes of a file that say what it is
+PICTURE_SIGNATURES = {
     ".png": b"\x89PNG",
     ".svg": b"<svg",
     ".pdf": b"%PDF",
@@ -27,8 +27,8 @@ PICTURES = {
     ".tiff": b"II*",
     ".webp": b"WEBP",
 }
-MOVIES = {".gif": b"GIF8", ".mp4": b"ftyp", ".webm": b"webm"}
-PAGES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
+MOVIE_SIGNATURES = {".gif": b"GIF8", ".mp4": b"ftyp", ".webm": b"webm"}
+PAGE_SIGNATURES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
 
 
 def check_output_path(path, inputs, option="-ehl_output"):
@@ -80,7 +80,7 @@ def check_derived(path, inputs, kinds, option="-o"):
     if exists(path):
         try:
             with open(path, "rb") as file:
-                head = file.read(HEAD)
+                head = file.read(SIGNATURE_BYTES)
         except OSError as error:
             raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
         if head and mark not in head:
@@ -120,10 +120,10 @@ def check_index(path, rows, files=()):
         try:
             known = {row["file"] for row in json.loads(path.read_text())[rows]}
         except (OSError, ValueError, KeyError, TypeError):
-            raise OutputError(f"{path}: stands there and is not an index of ehlpetsc; {WAYS}") from None
+            raise OutputError(f"{path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}") from None
     for file in files:
         if file.is_file() and file.stat().st_size and file.name not in known and not _is_ours(file):
-            raise OutputError(f"{file}: stands there and is not a result of ehlpetsc; {WAYS}")
+            raise OutputError(f"{file}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}")
 
 
 def _is_ours(path):
@@ -148,7 +148,7 @@ class Lock:
         What to do where another process has it.
     """
 
-    def __init__(self, path, way=WAIT):
+    def __init__(self, path, way=WAIT_ADVICE):
         self._output, self._path, self._file = path, path.with_name(path.name + ".lock"), None
         self._way = way
 

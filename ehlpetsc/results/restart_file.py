@@ -14,10 +14,10 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.atomic_write import atomic_write, os_reason
 from ehlpetsc.results.hdf5 import attributes
 from ehlpetsc.results.hdf5.opening import open_result
-from ehlpetsc.results.output_guard import WAYS
+from ehlpetsc.results.output_guard import OVERWRITE_ADVICE
 
 VERSION = 3
-HEAD = 512  # bytes
+HEADER_BYTES = 512  # bytes
 MARK = b"ehlpetsc restart file"
 
 
@@ -36,11 +36,11 @@ def save_restart(path, arrays, attrs):
         It could not be written; an older file of the name is as it was.
     """
     path, image = Path(path), io.BytesIO()
-    with h5py.File(image, "w", libver="latest", userblock_size=HEAD) as file:
+    with h5py.File(image, "w", libver="latest", userblock_size=HEADER_BYTES) as file:
         attributes.put(file, attrs)
         for name, array in arrays.items():
             file[name] = array
-    body = image.getbuffer()[HEAD:]
+    body = image.getbuffer()[HEADER_BYTES:]
     try:
         atomic_write(path, _head(body) + bytes(body))
     except OSError as error:
@@ -74,11 +74,11 @@ def load_restart(path):
 
 def _head(body):
     text = b"%s %d\nsha256 %s\n" % (MARK, VERSION, hashlib.sha256(body).hexdigest().encode())
-    return text.ljust(HEAD, b"\0")
+    return text.ljust(HEADER_BYTES, b"\0")
 
 
 def _check(path, whole):
-    kind, _, version = whole[:HEAD].partition(b"\n")[0].rpartition(b" ")
+    kind, _, version = whole[:HEADER_BYTES].partition(b"\n")[0].rpartition(b" ")
     if kind != MARK:
         known = b"format_version" in whole or b"restart_version" in whole
         other = (
@@ -88,7 +88,7 @@ def _check(path, whole):
     if version != b"%d" % VERSION:
         shown = version[:20].decode(errors="replace")
         raise OutputError(f"{path}: a restart file of version {shown}, this ehlpetsc reads {VERSION}")
-    if whole[:HEAD] != _head(memoryview(whole)[HEAD:]):
+    if whole[:HEADER_BYTES] != _head(memoryview(whole)[HEADER_BYTES:]):
         raise OutputError(f"{path}: damaged restart file: its content does not agree with its checksum")
 
 
@@ -119,10 +119,10 @@ def restart_of_same(path, restart, case_text):
     try:
         same = load_restart(restart)[1]["case"] == case_text
     except (OutputError, KeyError) as error:
-        raise OutputError(f"{error}; remove it, {WAYS}") from None
+        raise OutputError(f"{error}; remove it, {OVERWRITE_ADVICE}") from None
     if not same or status is None:
         which = "whose result is gone" if same else "of another case, or of other -ehl_set"
-        way = f"go on with -ehl_restart {restart}, {WAYS}"
+        way = f"go on with -ehl_restart {restart}, {OVERWRITE_ADVICE}"
         raise OutputError(f"{restart}: a restart file waits there, {which}; {way}")
     return restart
 
@@ -136,9 +136,9 @@ def _status_of_same(path, case_text):
                 attributes.plain(file.attrs.get("case")),
             )
     except OutputError:
-        raise OutputError(f"{path}: stands there and is not a result of ehlpetsc; {WAYS}") from None
+        raise OutputError(f"{path}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}") from None
     if case != case_text:
         unfinished = "" if status == "done" else f" that is {status}, not done"
         what = f"a run{unfinished}" if unfinished else "the result"
-        raise OutputError(f"{path}: holds {what} of another case, or of other -ehl_set; {WAYS}")
+        raise OutputError(f"{path}: holds {what} of another case, or of other -ehl_set; {OVERWRITE_ADVICE}")
     return status

@@ -13,7 +13,7 @@ from ehlpetsc.environment import program
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.reader import read_result
 
-LONGEST = 80  # characters of a name
+MAX_NAME_LENGTH = 80  # characters of a name
 DEFAULTS = {
     "contact.model": "direct",
     "contact.boundary_friction": 0.0,
@@ -24,7 +24,7 @@ DEFAULTS = {
     "time.pass_shift": 0.0,
     "output.every": 1,
 }  # of keys that a case leaves out
-OTHERS = (".post.h5", ".restart.h5")  # beside results, and matched by the same pattern of a shell
+OTHER_ENDINGS = (".post.h5", ".restart.h5")  # beside results, and matched by the same pattern of a shell
 WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
 
 
@@ -44,16 +44,18 @@ def open_all(paths, stack):
     OutputError
         A file cannot be read, or no member of a series has one.
     """
-    kept = [path for path in paths if not str(path).endswith(OTHERS)]
+    kept = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
     if not kept:
         kinds = {".post.h5": "of post-processing", ".restart.h5": "of a restart"}
-        told = ", ".join(f"{path}: a file {kinds[OTHERS[str(path).endswith(OTHERS[1])]]}" for path in paths)
+        told = ", ".join(
+            f"{path}: a file {kinds[OTHER_ENDINGS[str(path).endswith(OTHER_ENDINGS[1])]]}" for path in paths
+        )
         raise OutputError(f"{told}; give the result, {_result_of(paths[0])}")
     return [stack.enter_context(read_result(file)) for path in kept for file in files_of(path)]
 
 
 def _result_of(path):
-    for ending in OTHERS:
+    for ending in OTHER_ENDINGS:
         path = str(path).removesuffix(ending)
     return f"{path}.h5"
 
@@ -171,7 +173,7 @@ def told_apart(results):
         ", ".join(_shown(*named) for named in zip(differing, words, row, strict=True))
         for row in zip(*differing.values(), strict=True)
     ]
-    if len(set(names)) < len(results) or max(map(len, names)) > LONGEST:
+    if len(set(names)) < len(results) or max(map(len, names)) > MAX_NAME_LENGTH:
         return None
     return names
 

@@ -10,8 +10,8 @@ from mpi4py import MPI
 
 from ehlpetsc.errors import UsageError
 
-SAME = 1e-9  # relative: nodes and half widths nearer than this are equal
-SHORTEST = 1e-9  # of the nominal time step
+NODE_TOLERANCE = 1e-9  # relative: nodes and half widths nearer than this are equal
+MIN_STEP_RATIO = 1e-9  # of the nominal time step
 
 
 def check_file(name, path):
@@ -96,7 +96,7 @@ def check_pass(case, scales, after, pass_number):
             f"after: contact.law is {case.contact.law}, of the pass before {after.case.contact.law}"
         )
     x, before = scales.x * scales.a, after.scales.x * after.scales.a
-    if len(x) != len(before) or np.abs(x - before).max() > SAME * np.ptp(before):
+    if len(x) != len(before) or np.abs(x - before).max() > NODE_TOLERANCE * np.ptp(before):
         raise UsageError("after: the pass before has other nodes; allowed: the same [mesh] and half width")
     return int(number)
 
@@ -121,7 +121,7 @@ def check_time_step(dt, simulation):
     if simulation.solution is None:
         raise UsageError(f"dt = {dt!r}: the first state is the steady start, which has no time step")
     left = simulation.end - simulation.solution.time
-    shortest = SHORTEST * simulation.scales.dt
+    shortest = MIN_STEP_RATIO * simulation.scales.dt
     known = isinstance(dt, Real) and not isinstance(dt, bool) and math.isfinite(dt)
-    if not known or not shortest <= dt <= left * (1.0 + SAME):
+    if not known or not shortest <= dt <= left * (1.0 + NODE_TOLERANCE):
         raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")

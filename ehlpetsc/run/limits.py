@@ -8,13 +8,13 @@ import numpy as np
 from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, flash_temperature
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.stepping.observables import MOLECULES
-from ehlpetsc.surfaces.mesh_fit import SHARE
-from ehlpetsc.surfaces.profile import SHORT
+from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
+from ehlpetsc.surfaces.profile import WAVE_NODES
 
-YIELD = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
-MEASURED = 1e7  # Pa s: highest viscosities that have been measured of oils
-BALANCE = 0.05  # of the oil that the contact carries
-MOST_DECADES = 300  # of a viscosity that is printed
+ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
+MAX_MEASURED_VISCOSITY = 1e7  # Pa s: highest viscosities that have been measured of oils
+MAX_MASS_ERROR = 0.05  # of the oil that the contact carries
+MAX_DECADES = 300  # of a viscosity that is printed
 
 
 def limits(case, scales, rough, totals):
@@ -41,11 +41,11 @@ def limits(case, scales, rough, totals):
 
 
 def _yield(case, totals):
-    if case.contact.yield_pressure is not None or totals["p_max"] <= YIELD:
+    if case.contact.yield_pressure is not None or totals["p_max"] <= ASPERITY_YIELD_PRESSURE:
         return None
     return (
         f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
-        f"{1e-9 * YIELD:g} to 8 GPa, and these solids are elastic; "
+        f"{1e-9 * ASPERITY_YIELD_PRESSURE:g} to 8 GPa, and these solids are elastic; "
         "in mixed contact yield_pressure lets them flow"
     )
 
@@ -65,9 +65,9 @@ def _heat(case, scales, totals):
 def _viscosity(fluid, totals):
     pressure = totals["oil_pressure"]
     decades = (float(viscosity(np.array([pressure]), fluid)[0][0]) + np.log(fluid.viscosity)) / np.log(10.0)
-    if decades <= np.log10(MEASURED):
+    if decades <= np.log10(MAX_MEASURED_VISCOSITY):
         return None
-    value = f"{10.0**decades:.1e}" if decades < MOST_DECADES else f"1e{decades:.0f}"
+    value = f"{10.0**decades:.1e}" if decades < MAX_DECADES else f"1e{decades:.0f}"
     return (
         f"viscosity: {value} Pa s by the law at the oil's greatest pressure, {1e-9 * pressure:.2f} GPa; "
         "oils are measured up to about 1e7 Pa s"
@@ -76,7 +76,7 @@ def _viscosity(fluid, totals):
 
 def _balance(case, totals):
     error = totals["mass_error"]
-    if error <= BALANCE:
+    if error <= MAX_MASS_ERROR:
         return None
     figure = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
     cure = "a finer mesh or smaller snes_atol loses less"
@@ -97,11 +97,13 @@ def _molecules(totals):
 
 def _mesh(rough, scales):
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
-    shares = {side: rough.side(side).short_share(scales.dx) for side in sides}
-    coarse = [f"{100 * share:.1f} % of surface.{side}" for side, share in shares.items() if share > SHARE]
+    shares = {side: rough.side(side).unresolved_variance(scales.dx) for side in sides}
+    coarse = [
+        f"{100 * share:.1f} % of surface.{side}" for side, share in shares.items() if share > MAX_UNRESOLVED
+    ]
     if not coarse:
         return None
     return (
-        f"mesh: of the height variance, {' and '.join(coarse)} lie in waves of fewer than {SHORT} nodes; "
-        "asperities of so few nodes are the mesh's as much as the surface's"
+        f"mesh: of the height variance, {' and '.join(coarse)} lie in waves of fewer than {WAVE_NODES} "
+        "nodes; asperities of so few nodes are the mesh's as much as the surface's"
     )

@@ -9,7 +9,7 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
-SURE = 1.0  # s behind the first step, which waits for the compiler, before time to go is told
+MIN_RATE_TIME = 1.0  # s behind the first step, which waits for the compiler, before time to go is told
 
 _COLUMNS = {name: figure.progress for name, figure in STEP_SCALARS.items() if figure.progress}
 _REMAINING = "{:>9s}"
@@ -99,7 +99,7 @@ class Progress:
             self._marks.append((now, time))
         begun = self._marks[0][0]
         since = next(mark for mark in reversed(self._marks) if mark[0] <= begun + 0.5 * (now - begun))
-        if now - begun < SURE and time < self._end or time <= since[1]:
+        if now - begun < MIN_RATE_TIME and time < self._end or time <= since[1]:
             return "0s" if time >= self._end else "?"
         return duration((now - since[0]) * max(self._end - time, 0.0) / (time - since[1]))
 

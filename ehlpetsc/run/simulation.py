@@ -25,7 +25,13 @@ from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
-FOLLOWED = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
+MONITOR_OPTIONS = (
+    "snes_monitor",
+    "snes_vi_monitor",
+    "snes_converged_reason",
+    "ksp_monitor",
+    "ksp_converged_reason",
+)
 
 
 class Simulation:
@@ -97,7 +103,7 @@ class Simulation:
         self.operation = operation_of(case, self.scales)
         self.pass_number = check_pass(case, self.scales, after, pass_number)
         positions = SurfacePositions.at_rest(self.scales)
-        one, other = (case.conditions and case.conditions.begins) or (0.0, 0.0)
+        one, other = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
         shift = (self.pass_number - 1) * case.time.pass_shift if case.time else 0.0
         positions = replace(positions, profile_offsets=(one, other + shift))
         if faults := domain_faults(case, self.scales):
@@ -108,7 +114,7 @@ class Simulation:
         self.state = self.solution = None
         with self.options:
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
-            self._followed = not self.options.user_set.isdisjoint(FOLLOWED)
+            self._followed = not self.options.user_set.isdisjoint(MONITOR_OPTIONS)
         before = after.solution.records if after else {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}

@@ -2,8 +2,8 @@
 
 import statistics
 
-STEPS = 20  # of a median
-SKIPPED = 3  # first steps, which load and compile
+MEDIAN_STEPS = 20  # of a median
+SKIPPED_STEPS = 3  # first steps, which load and compile
 SLOWDOWN = 3.0  # contact and finer films take up to twice the time of an iteration
 
 
@@ -30,14 +30,14 @@ class SlowSteps:
         if scalars["step"] == 0 or not scalars["newton"]:
             return
         self._seen += 1
-        if self._seen <= SKIPPED:
+        if self._seen <= SKIPPED_STEPS:
             return
         time = scalars["wall"] / scalars["newton"]
-        if len(self._first) < STEPS:
+        if len(self._first) < MEDIAN_STEPS:
             self._first.append(time)
             return
-        self._latest = [*self._latest[1 - STEPS :], time]
-        if len(self._latest) == STEPS and not self._warned:
+        self._latest = [*self._latest[1 - MEDIAN_STEPS :], time]
+        if len(self._latest) == MEDIAN_STEPS and not self._warned:
             self._compare()
 
     def close(self, status):

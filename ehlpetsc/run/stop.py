@@ -7,7 +7,7 @@ import numpy as np
 from mpi4py import MPI
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1)
-PATIENCE = 0.4  # s for the step in hand: mpirun kills one second after the signal that it hands on
+GRACE_TIME = 0.4  # s for the step in hand: mpirun kills one second after the signal that it hands on
 
 
 class StopRequest:
@@ -39,4 +39,4 @@ class StopRequest:
 
     def overdue(self, comm):
         """Whether the step in hand has been waited for long enough; the same on every rank."""
-        return comm.allreduce(clock.monotonic() >= self.until + PATIENCE, MPI.LOR)
+        return comm.allreduce(clock.monotonic() >= self.until + GRACE_TIME, MPI.LOR)

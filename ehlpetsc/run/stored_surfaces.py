@@ -5,7 +5,7 @@ A body point s is at x = s + speed time; where a result begins after a change of
 
 import numpy as np
 
-SAME_PLACE = 1e-6  # mesh spacings: ways nearer than this differ by rounding
+OFFSET_TOLERANCE = 1e-6  # mesh spacings: ways nearer than this differ by rounding
 
 
 def profiles(simulation):
@@ -63,7 +63,7 @@ def _offsets(simulation):
     now = simulation.solution.travelled
     constant = simulation.operation.travelled(simulation.solution.time)
     apart = [way - steady for way, steady in zip(now, constant, strict=True)]
-    return [offset if abs(offset) > SAME_PLACE * simulation.scales.dx else 0.0 for offset in apart]
+    return [offset if abs(offset) > OFFSET_TOLERANCE * simulation.scales.dx else 0.0 for offset in apart]
 
 
 def _smooth_side(simulation, side, offset, depths):

@@ -11,8 +11,8 @@ import numpy as np
 
 from ehlpetsc.stepping.first_guess import AMBIENT, load_of, smoothed, undeformed_gap
 
-LARGEST = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
-MOST = 1000  # steps
+MAX_EIGENVALUE = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
+MAX_STEPS = 1000  # steps
 STILL = 1e-5  # change in a step, of the yield pressure, that ends it
 HALVINGS = 60  # of an interval: to rounding
 
@@ -33,10 +33,10 @@ def bounded_pressure(problem, inputs):
     """
     limit, load = problem.model.yield_pressure, load_of(problem, inputs)
     total, phi = 0.5 * np.pi * load / problem.dx, undeformed_gap(problem, inputs)
-    rate = 1.0 / (LARGEST * (problem.x[-1] - problem.x[0]))
+    rate = 1.0 / (MAX_EIGENVALUE * (problem.x[-1] - problem.x[0]))
     p = ahead = project(np.sqrt(np.maximum(load - problem.x**2, 0.0)), limit, total)
     momentum = 1.0
-    for _ in range(MOST):
+    for _ in range(MAX_STEPS):
         new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
         if np.abs(new - p).max() < STILL * limit:
             break

@@ -16,7 +16,7 @@ import numpy as np
 from ehlpetsc.errors import SolveFailed
 
 SLACK = 1.0 + 1e-6  # of a tolerance: sums taken in another order
-LEAST_OIL = 1e-9  # void fractions beyond 1 by no more than this are rounding
+VOID_TOLERANCE = 1e-9  # void fractions beyond 1 by no more than this are rounding
 
 
 def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
@@ -51,7 +51,7 @@ def find_fault(problem, q, w, h00, rows, tolerance):
     deflection, reynolds, load = rows
     if not np.isfinite([q.sum(), w.sum(), h00, deflection.sum(), reynolds.sum(), load]).all():
         return "it is not finite"
-    if problem.fluid is not None and q.min() < -1.0 - LEAST_OIL:
+    if problem.fluid is not None and q.min() < -1.0 - VOID_TOLERANCE:
         return f"a node has {q.min() + 1.0:.2g} of its gap full of oil"
     bound = SLACK * tolerance
     fault, reynolds = problem.model.check(w, reynolds, bound)

@@ -27,11 +27,11 @@ from ehlpetsc.stepping.bounded_contact import bounded_start
 from ehlpetsc.stepping.certificate import solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
 
-LEAST_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
+MIN_STIFFNESS_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
 FROM = 0.8  # of the load under which Hertz' pressure is the yield pressure
 PRESSED = 1.2  # growth of the load from there
-LEAST_GROWTH = 1e-3  # of the share, from one solution to the next
-MOST_ATTEMPTS = 100  # at a solution of one start, those that fail too
+MIN_RAMP_INCREMENT = 1e-3  # of the share, from one solution to the next
+MAX_ATTEMPTS = 100  # at a solution of one start, those that fail too
 
 
 def steady(solver, film, inputs, watch=None):
@@ -99,13 +99,13 @@ def yielding_start(solver, film, inputs, watch=None):
             state, reached, load = nearer, load, min(load * PRESSED, 1.0)
             continue
         load = 0.5 * (reached + load)
-        if load < reached * (1.0 + LEAST_GROWTH) or not reached:
+        if load < reached * (1.0 + MIN_RAMP_INCREMENT) or not reached:
             raise NoSteadyStart(attempt.failure, None, attempt.spent)
     return *state, attempt.spent
 
 
 class SolveAttempts:
-    """Certified solves from one state or another, `MOST_ATTEMPTS` at most.
+    """Certified solves from one state or another, `MAX_ATTEMPTS` at most.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ class SolveAttempts:
 
     def __call__(self, begin, inputs):
         """q, w and h00; None: Newton's method does not arrive."""
-        if self.made == MOST_ATTEMPTS:
+        if self.made == MAX_ATTEMPTS:
             told = f"given up after {self.made} attempts and {self.spent} Newton iterations; the last failure"
             raise NoSteadyStart(f"{told}: {self.failure}", None, self.spent)
         self.made += 1
@@ -150,19 +150,19 @@ class Continuation:
         rough = self.inputs.phi.any()
         state = self._try(begin, 1.0, 0.0) if rough else None
         if state is None:
-            state = self._grown(*self._easier(begin), lambda share: (share, 0.0))
-        return self._grown(state, 0.0, lambda share: (1.0, share)) if rough else state
+            state = self._ramp(*self._softened(begin), lambda share: (share, 0.0))
+        return self._ramp(state, 0.0, lambda share: (1.0, share)) if rough else state
 
-    def _easier(self, begin):
+    def _softened(self, begin):
         share = 0.5 if self.inputs.fluid else 0.0  # without oil there is nothing to make easier
-        while share >= LEAST_SHARE:
+        while share >= MIN_STIFFNESS_SHARE:
             state = self._try(begin, share, 0.0)
             if state is not None:
                 return state, share
             share *= 0.5
         raise NoSteadyStart(self.attempt.failure, None, self.attempt.spent)
 
-    def _grown(self, state, share, of):
+    def _ramp(self, state, share, of):
         growth = share or 0.5
         while share < 1.0:
             nearer = self._try(state, *of(min(share + growth, 1.0)))
@@ -170,7 +170,7 @@ class Continuation:
                 state, share, growth = nearer, min(share + growth, 1.0), 1.5 * growth
                 continue
             growth *= 0.4
-            if growth < LEAST_GROWTH:
+            if growth < MIN_RAMP_INCREMENT:
                 raise NoSteadyStart(self.attempt.failure, share, self.attempt.spent)
         return state
 

@@ -94,10 +94,10 @@ def check_outputs(head, *outputs, case=None):
 
     `head` are the names of the first columns of the table.
     """
-    from ehlpetsc.results.output_guard import PICTURES, check_derived, inputs_of
+    from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived, inputs_of
 
     for path in outputs:
-        kinds = PICTURES | {".csv": ",".join(head[:3]).encode()}
+        kinds = PICTURE_SIGNATURES | {".csv": ",".join(head[:3]).encode()}
         check_derived(Path(path), inputs_of(case) if case else (), kinds)
         if not Path(path).parent.is_dir():
             raise OutputError(f"{path}: not written, No such file or directory")
@@ -107,35 +107,35 @@ def check_outputs(head, *outputs, case=None):
 
 def extremes(chosen):
     """The table of extremes."""
-    from ehlpetsc.study.extremes import HEAD, table
+    from ehlpetsc.study.extremes import COLUMNS, table
 
     model = chosen.models[0] if len(chosen.models) == 1 else None  # both: each line as it stands
     path = f"{chosen.output or 'extremes'}.csv"
-    check_outputs(HEAD, path)
+    check_outputs(COLUMNS, path)
     table(path, chosen.short, chosen.limit, say, far=chosen.far, model=model)
     return 0
 
 
 def random_cases(chosen):
     """Random cases: 1 where one ended in another status than 0 and 3, or left a broken file."""
-    from ehlpetsc.study.draws import HEAD, run_all
+    from ehlpetsc.study.draws import COLUMNS, run_all
 
     table = f"{chosen.output or 'random'}.csv"
-    check_outputs(HEAD, table)
+    check_outputs(COLUMNS, table)
     return 1 if run_all(chosen.random, chosen.seed, table, chosen.limit, say) else 0
 
 
 def contact(chosen):
     """How much contact there is."""
     from ehlpetsc.case.loading import load
-    from ehlpetsc.study.contact import HEAD, settings, table
+    from ehlpetsc.study.contact import COLUMNS, settings, table
     from ehlpetsc.study.runs import check_damage
 
     if "compliant" in chosen.models:
         raise CaseError(["--models compliant: --contact takes direct and mixed; leave it out"])
     stem = chosen.output or f"{Path(chosen.case).stem}.contact"
     case = load(chosen.case, chosen.set)
-    check_outputs(HEAD, f"{stem}.csv", case=case)
+    check_outputs(COLUMNS, f"{stem}.csv", case=case)
     if chosen.damage:
         check_damage(case, "1", min(chosen.meshes))
     runs = settings(chosen.models, chosen.meshes, chosen.courant, chosen.boundary_films)
@@ -149,13 +149,13 @@ def accuracy(chosen):
     """Error against run time."""
     from ehlpetsc.study.accuracy.picture import draw
     from ehlpetsc.study.accuracy.plan import MESH, plan
-    from ehlpetsc.study.accuracy.table import HEAD, Study
+    from ehlpetsc.study.accuracy.table import COLUMNS, Study
     from ehlpetsc.study.runs import check_damage
 
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:
         study = Study(chosen.case, chosen.set, folder, chosen.limit, chosen.damage)
-        check_outputs(HEAD, f"{stem}.csv", f"{stem}.png", case=study.case)
+        check_outputs(COLUMNS, f"{stem}.csv", f"{stem}.png", case=study.case)
         references, runs = plan(study.case, chosen.meshes, chosen.courant, chosen.ranks)
         if chosen.damage:
             check_damage(study.case, "2", min(setting.values[MESH] for setting in (*references, *runs)))

@@ -154,7 +154,7 @@ def order(coarse, middle, fine):
     return float(np.log2(ratio)), float(fine - other / (ratio - 1.0))
 
 
-HEAD = [*Setting.__dataclass_fields__, *Measured.__dataclass_fields__]
+COLUMNS = [*Setting.__dataclass_fields__, *Measured.__dataclass_fields__]
 
 
 def settings(models, meshes, courants, boundary_films):
@@ -209,8 +209,8 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
     rows = []
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(HEAD)
-        say(" ".join(f"{name:>13}" for name in HEAD))
+        writer.writerow(COLUMNS)
+        say(" ".join(f"{name:>13}" for name in COLUMNS))
         for setting in chosen:
             outcome = _run(case, overrides, setting, damage, folder, limit)
             found = None

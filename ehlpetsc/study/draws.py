@@ -25,7 +25,7 @@ from ehlpetsc.study.lines import (
 )
 from ehlpetsc.study.runs import run
 
-HEAD = ("number", "status", "steps", "retries", "newton", "file", "words", "overrides")
+COLUMNS = ("number", "status", "steps", "retries", "newton", "file", "words", "overrides")
 STEPS = 50
 OPENING = 3.0  # films that the gap may open from one node to the next beside the contact
 STEEL, SOFT_AND_HARD = [207e9, 207e9], ([3e9, 207e9], [600e9, 600e9])  # Young's moduli [Pa]
@@ -110,7 +110,7 @@ def run_all(count, seed, path, limit, say=print):
     """
     wrong, converged = 0, 0
     with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, HEAD)
+        writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
         for number in range(count):
             row = run_one(seed + number, Path(folder), limit)

@@ -10,7 +10,7 @@ from ehlpetsc.study.lines import cases
 from ehlpetsc.study.reasons import why
 from ehlpetsc.study.runs import run
 
-HEAD = (
+COLUMNS = (
     "axis",
     "value",
     "converged",
@@ -82,12 +82,12 @@ def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):
     Returns
     -------
     list of dict
-        A row a line, by the names of `HEAD`.
+        A row a line, by the names of `COLUMNS`.
     """
     rows = []
-    say(_text(dict(zip(HEAD, HEAD, strict=True))))
+    say(_text(dict(zip(COLUMNS, COLUMNS, strict=True))))
     with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, HEAD)
+        writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
         for line in lines(short, far, model):
             rows.append(row(line, Path(folder), limit))
@@ -137,7 +137,7 @@ WIDTHS = (13, 42, 10, 6, 7, 7, 9, 9, 10, 10, 14, 7, 0)
 
 
 def _text(row):
-    cells = (str(row[name]) for name in HEAD)
+    cells = (str(row[name]) for name in COLUMNS)
     return " ".join(
         f"{cell:<{w}}" if i < 3 else f"{cell:>{w}}"
         for i, (cell, w) in enumerate(zip(cells, WIDTHS, strict=True))

@@ -18,7 +18,7 @@ from ehlpetsc.study.runs import TIMED_OUT
 
 SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
 PLASTIC = 6.0  # GPa: asperities of hardened steel yield
-COARSE = 1.0  # films by which the gap may open within one node
+MAX_FILM_SLOPE = 1.0  # films by which the gap may open within one node
 
 
 def why(outcome, path, overrides):
@@ -65,10 +65,10 @@ def _too_coarse(case, scales):
     """Whether the inlet sweep is lost between two nodes."""
     film = moes_central_film(scales.moes_m, scales.moes_l) * math.pi / (8.0 * scales.moes_m)
     opening = inlet_opening(film, case.mesh.points_per_half_width)
-    if opening < COARSE:
+    if opening < MAX_FILM_SLOPE:
         return []
     return [
         f"the mesh is too coarse for so thin a film: beside the contact the gap opens by {opening:.1f} "
         f"films from one node to the next; try mesh.points_per_half_width="
-        f"{math.ceil(points_for_opening(film, COARSE))}"
+        f"{math.ceil(points_for_opening(film, MAX_FILM_SLOPE))}"
     ]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-FINER = 4  # cells of a body per cell of the mesh
+CELLS_PER_MESH_CELL = 4  # cells of a body per cell of the mesh
 
 
 class BodyField(NamedTuple):
@@ -32,7 +32,7 @@ class BodyField(NamedTuple):
     @classmethod
     def zero(cls, cell):
         """Depth zero, under a mesh with cells of the width `cell` [m]."""
-        return cls(cell / FINER, 0, np.zeros(0))
+        return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros(0))
 
     def fault(self):
         """Why the values cannot be a depth; None: they can."""
@@ -110,7 +110,7 @@ class MeshOnBodies:
     ----------
     scales : scales.Scales
     offsets : (float, float)
-        Abscissas at which both bodies begin to enter, as of :attr:`.profile.Profile.moved` [m].
+        Abscissas at which both bodies begin to enter, as of :attr:`.profile.Profile.body_offset` [m].
     """
 
     def __init__(self, scales, offsets=(0.0, 0.0)):

@@ -7,8 +7,8 @@ lengths; Rk, Rpk and Rvk after ISO 13565-2 from the material ratio curve.
 import numpy as np
 
 SAMPLING_LENGTHS = 5
-SECANT = 0.4  # of the material ratio: width of the secant whose least slope defines the core
-POINTS = 4001  # of the curve
+SECANT_WIDTH = 0.4  # of the material ratio: width of the secant whose least slope defines the core
+CURVE_POINTS = 4001  # of the curve
 
 
 def abbott_curve(X, z):
@@ -24,8 +24,8 @@ def abbott_curve(X, z):
     ratio, height : ndarray, shape (POINTS,)
         Ratio from 0 to 1, heights falling [m].
     """
-    even = np.interp(np.linspace(X[0], X[-1], max(len(X), POINTS)), X, z)
-    ratio = np.linspace(0.0, 1.0, POINTS)
+    even = np.interp(np.linspace(X[0], X[-1], max(len(X), CURVE_POINTS)), X, z)
+    ratio = np.linspace(0.0, 1.0, CURVE_POINTS)
     return ratio, np.quantile(even, 1.0 - ratio)
 
 
@@ -46,9 +46,9 @@ def core(ratio, height):
     dict
         "rk", "rpk", "rvk" [m], "mr1", "mr2" (1), "top", "bottom" of the core [m].
     """
-    width = round(SECANT * (len(ratio) - 1))
+    width = round(SECANT_WIDTH * (len(ratio) - 1))
     begin = int(np.argmin(height[:-width] - height[width:]))
-    slope = (height[begin + width] - height[begin]) / SECANT
+    slope = (height[begin + width] - height[begin]) / SECANT_WIDTH
     top = height[begin] - slope * ratio[begin]
     bottom = top + slope
     step = ratio[1] - ratio[0]

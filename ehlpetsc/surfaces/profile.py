@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-SHORT = 4  # nodes a wavelength below which the mesh does not carry it
+WAVE_NODES = 4  # nodes a wavelength below which the mesh does not carry it
 MAX_SAMPLES = 5_000_000  # of a profile as stored
 
 
@@ -27,7 +27,7 @@ class Profile:
         U [m/s].
     moving : bool
         False in a steady case.
-    inlet, outlet, ramp, drawn_in : float
+    inlet, outlet, ramp, swept_length : float
         Ends of the domain, length of the ramp and of the profile that enters during the run [m].
     begin : float
         Abscissa in the profile with which it begins, instead of 0 [m].
@@ -38,31 +38,31 @@ class Profile:
 
     Attributes
     ----------
-    enters : bool
+    is_moving : bool
         False where it lies under the domain from the start.
     ramp, travelled : float
         Length of the ramp, and of the profile that is drawn in [m].
-    moved : float
+    body_offset : float
         What body points s are further on in the profile's own body by `begin`, signed [m].
     ra, rq, rsk : float
         Of the samples about their mean: m, m, 1.
     """
 
     def __init__(
-        self, given, speed, moving, inlet, outlet, ramp, drawn_in, begin=0.0, reach=None, is_flank=False
+        self, given, speed, moving, inlet, outlet, ramp, swept_length, begin=0.0, reach=None, is_flank=False
     ):
         from scipy.interpolate import CubicSpline
 
         X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
         self.given, self.X, self.heights = given, X, z
-        self.enters = moving and speed != 0.0 and not is_flank
-        self._origin, self._sign = (inlet, -1.0) if self.enters and speed > 0 else (outlet, 1.0)
-        if not self.enters:
+        self.is_moving = moving and speed != 0.0 and not is_flank
+        self._origin, self._sign = (inlet, -1.0) if self.is_moving and speed > 0 else (outlet, 1.0)
+        if not self.is_moving:
             self._origin, self._sign = (0.0, -1.0) if is_flank else (inlet, 1.0)
-        self._begin, self.moved = begin, self._sign * begin
+        self._begin, self.body_offset = begin, self._sign * begin
         self.ramp = ramp
-        self.travelled = drawn_in if self.enters else outlet - inlet
-        self._ends = None if self.enters or reach is None else (inlet - reach[1], outlet - reach[0])
+        self.travelled = swept_length if self.is_moving else outlet - inlet
+        self._ends = None if self.is_moving or reach is None else (inlet - reach[1], outlet - reach[0])
         # level ends: mirrored end to end, the profile has no kink
         self._spline = CubicSpline(X, z, bc_type="clamped")
         deviation = z - z.mean()
@@ -72,9 +72,9 @@ class Profile:
     def height(self, s):
         """Heights [m] at body points s [m]."""
         X = self._sign * (s - self._origin)
-        if not self.enters:
+        if not self.is_moving:
             return self._at(X + self._begin)
-        return self._come_in(X) * self._at(np.maximum(X, 0.0) + self._begin)
+        return self._entry_factor(X) * self._at(np.maximum(X, 0.0) + self._begin)
 
     def mean_height(self, faces):
         r"""Mean height [m] of each cell between faces at body points s [m].
@@ -92,7 +92,7 @@ class Profile:
         """
         X = self._sign * (faces - self._origin)
         mean = self._level + np.diff(self._integral(X + self._begin)) / np.diff(X)
-        return self._come_in(0.5 * (X[1:] + X[:-1])) * mean if self.enters else mean
+        return self._entry_factor(0.5 * (X[1:] + X[:-1])) * mean if self.is_moving else mean
 
     def extremes_of_cells(self, cell):
         """Lowest and highest mean height [m] over cells of a mesh, wherever they lie on the profile.
@@ -107,7 +107,7 @@ class Profile:
         mean = self._level + (self._integral(start + cell) - self._integral(start)) / cell
         return float(mean.min()), float(mean.max())
 
-    def _come_in(self, X):
+    def _entry_factor(self, X):
         """Factor on the heights, 0 where X < 0, 1 beyond the ramp."""
         r = np.clip(X / self.ramp, 0.0, 1.0)
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
@@ -164,8 +164,8 @@ class Profile:
         """Heights [m] at `s`, ramp included."""
         return self.height(self.s)
 
-    def short_share(self, dx):
-        """Share of the height variance in wavelengths under `SHORT` spacings dx [m]."""
+    def unresolved_variance(self, dx):
+        """Share of the height variance in wavelengths under `WAVE_NODES` spacings dx [m]."""
         n = min(max(self.X.size, 16), 1 << 17)
         x = np.linspace(self.X[0], self.X[-1], n)
         z = self._spline(x)
@@ -173,5 +173,5 @@ class Profile:
         power = np.abs(np.fft.rfft(z)) ** 2
         power[0] = 0.0
         total = power.sum()
-        short = np.fft.rfftfreq(z.size, x[1] - x[0]) * SHORT * dx > 1.0
+        short = np.fft.rfftfreq(z.size, x[1] - x[0]) * WAVE_NODES * dx > 1.0
         return float(power[short].sum() / total) if total > 0 else 0.0

@@ -7,8 +7,8 @@ import numpy as np
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.samples import samples
 
-MOVED = 1e-9  # half widths: ends of a domain nearer than this are the same
-RAMP = 0.1  # half widths of profile over which its heights come in
+END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are the same
+RAMP_LENGTH = 0.1  # half widths of profile over which its heights come in
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class SurfacePositions:
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
 
     def offsets(self, speeds):
-        """Signed shift of the body points by `profile_offsets` [m], as `profile.Profile.moved`.
+        """Signed shift of the body points by `profile_offsets` [m], as `profile.Profile.body_offset`.
 
         Parameters
         ----------
@@ -140,16 +140,16 @@ def _profile(case, scales, spec, speed, side, positions):
         # under another load the domain may reach further out than where the profile entered
         wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
         swept_length = abs(travelled) + left * abs(speed) / scales.u_max
-        swept_length += wider if wider > MOVED * scales.a else 0.0
+        swept_length += wider if wider > END_TOLERANCE * scales.a else 0.0
     return Profile(
         samples(case.path.parent, spec, scales.dx),
         speed,
         case.time is not None,
         inlet,
         outlet,
-        RAMP * scales.a,
+        RAMP_LENGTH * scales.a,
         swept_length,
         positions.profile_offsets[side],
         reach,
-        table is not None and table.begins is not None,
+        table is not None and table.profile_offsets is not None,
     )

@@ -9,7 +9,7 @@ from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.measured.profile_files import KEYS, UNITS, Layout, checked, read_profile
 from ehlpetsc.surfaces.measured.thinning import thinned
 
-OFFSET = 1e-3  # of Rq: a mean beyond rounding
+MEAN_TOLERANCE = 1e-3  # of Rq: a mean beyond rounding
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def samples(folder, spec, cell=None):
         notes.append(f"{before[1].size} points, thinned to {z.size}: means around each go on")
         source = Samples(*_turned(*before, spec), True, True)
     mean = float(z.mean())
-    if abs(mean) > OFFSET * (z - mean).std():  # it would come in as a step and thin the film
+    if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would come in as a step and thin the film
         z = z - mean
         notes.append(f"mean height of {1e6 * mean:.4g} um taken off")
     return Samples(*_turned(X, z, spec), True, True, tuple(notes), source)

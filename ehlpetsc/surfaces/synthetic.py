@@ -2,9 +2,9 @@
 
 import numpy as np
 
-POINTS = 64  # a wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
+POINTS_PER_WAVE = 64  # a wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
-EDGE = 0.1  # of a square wave: over it, in units of the cosine, the flank rises
+FLANK_WIDTH = 0.1  # of a square wave: over it, in units of the cosine, the flank rises
 
 
 def sampled(spec):
@@ -26,11 +26,11 @@ def sampled(spec):
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
     if spec.kind in ("ridge", "dent"):
         return *bump(spec), False
-    x = np.linspace(0.0, spec.wavelength / 2, POINTS // 2 + 1)
+    x = np.linspace(0.0, spec.wavelength / 2, POINTS_PER_WAVE // 2 + 1)
     wave = np.cos(2 * np.pi * x / spec.wavelength)
     if spec.kind == "square":
-        x = np.linspace(0.0, spec.wavelength / 2, 4 * POINTS + 1)
-        wave = np.tanh(np.cos(2 * np.pi * x / spec.wavelength) / EDGE) / np.tanh(1 / EDGE)
+        x = np.linspace(0.0, spec.wavelength / 2, 4 * POINTS_PER_WAVE + 1)
+        wave = np.tanh(np.cos(2 * np.pi * x / spec.wavelength) / FLANK_WIDTH) / np.tanh(1 / FLANK_WIDTH)
     return x, spec.amplitude * wave, True
 
 
@@ -38,7 +38,7 @@ def bump(spec):
     r"""Ridge or dent, :math:`z=\pm A\exp[-(2(X-X_c)/w)^2]`, w the full width at 1/e."""
     width = spec.wavelength
     centre = 2 * width if spec.position is None else spec.position
-    x = centre + np.linspace(-3 * width, 3 * width, 6 * POINTS + 1)
+    x = centre + np.linspace(-3 * width, 3 * width, 6 * POINTS_PER_WAVE + 1)
     sign = 1.0 if spec.kind == "ridge" else -1.0
     return x, sign * spec.amplitude * np.exp(-((2 * (x - centre) / width) ** 2))
 

@@ -111,7 +111,7 @@ def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
     (tmp_path / name).write_text("mine")
     refused = series(tmp_path, ranks=0)
     assert refused.returncode == 2 and refused.stderr == (
-        f"ehlpetsc: {name}: stands there and is not {what} of ehlpetsc; "
+        f"ehlpetsc: {name}: exists and is not {what} of ehlpetsc; "
         "give another -ehl_output, or -ehl_overwrite to lose it\n"
     )
     assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
@@ -123,7 +123,7 @@ def test_another_file_of_hdf5_in_a_members_place_is_refused_and_left(tmp_path):
         file["mine"] = [1.0, 2.0]
     before = place.read_bytes()
     refused = series(tmp_path, ranks=0)
-    assert refused.returncode == 2 and f"{place.name}: stands there and is not a result" in refused.stderr
+    assert refused.returncode == 2 and f"{place.name}: exists and is not a result" in refused.stderr
     assert place.read_bytes() == before
 
 

@@ -12,8 +12,8 @@ from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.surfaces.measured import filters
-from ehlpetsc.surfaces.measured.thinning import FINEST, MANY, thinned
-from ehlpetsc.surfaces.mesh_fit import _running_median, spikes
+from ehlpetsc.surfaces.measured.thinning import MANY, MAX_POINTS_PER_CELL, thinned
+from ehlpetsc.surfaces.mesh_resolution import _running_median, spikes
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.samples import Samples
 
@@ -35,7 +35,7 @@ def test_means_over_cells_stay(even, cells, error):
         X = X + 1e-6 * np.sin(2 * np.pi * X / 1e-3) * np.sin(2 * np.pi * X / 7e-5) ** 2
         z = 1e-7 * np.cos(2 * np.pi * X / (cells * cell))
     X_thin, z_thin = thinned(X, z, cell)
-    assert X_thin.size == int(FINEST * (X[-1] - X[0]) / cell) + 1 < X.size / 30
+    assert X_thin.size == int(MAX_POINTS_PER_CELL * (X[-1] - X[0]) / cell) + 1 < X.size / 30
     assert X_thin[0] == X[0] and X_thin[-1] == X[-1]
     faces = np.arange(X[0], X[-1], 0.37 * cell)
     means = []

@@ -13,7 +13,7 @@ from ehlpetsc.analysis import ensemble
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.results.atomic_write import replacing
-from ehlpetsc.results.output_guard import PICTURES, check_derived
+from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
 from ehlpetsc.study.__main__ import main as study
 
@@ -94,7 +94,7 @@ def test_a_study_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, words
 
 def test_a_name_without_a_format_is_refused(tmp_path):
     with pytest.raises(OutputError, match=r"x\.xyz: allowed for -o: a name that ends in \.png, "):
-        check_derived(tmp_path / "x.xyz", (), PICTURES)
+        check_derived(tmp_path / "x.xyz", (), PICTURE_SIGNATURES)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from ehlpetsc.plot.running_in import draw_running_in
 from ehlpetsc.results.filling import RAMP, both_fill, filled_from, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces import roughness
-from ehlpetsc.surfaces.arrival import arrival
+from ehlpetsc.surfaces.entry_times import entry_times
 from ehlpetsc.surfaces.roughness import Roughness
 
 CONTACT = {"radius": 0.0191, "load": 527e3, "youngs_modulus": [207e9] * 2, "poisson_ratio": [0.3] * 2}
@@ -53,9 +53,9 @@ def test_it_is_the_travel_announced_before_the_run(surface, xi):
     motion = CASE["motion"] | {"slide_roll_ratio": xi}
     result = Stored(load(CASE | {"surface": surface, "motion": motion}))
     s = result.scales
-    fills = max(arrival(p, s)[1] for p in (result.rough.surface_1, result.rough.surface_2) if p)
+    fills = max(entry_times(p, s)[1] for p in (result.rough.surface_1, result.rough.surface_2) if p)
     assert filled_from(result) == pytest.approx(fills * s.a / s.u_max, rel=1e-12)
-    assert RAMP == roughness.RAMP
+    assert RAMP == roughness.RAMP_LENGTH
 
 
 def test_smooth_surfaces_fill_it_from_the_start_also_where_they_have_yielded(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.contact.node_state import ROUNDING
+from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 from ehlpetsc.physics.scales import Scales
@@ -83,7 +83,7 @@ def test_the_sign_of_rounding_does_not_matter():
     reynolds, inputs, n = rows_of([])
     q, h = state(n)
     rows = []
-    for rounding in (0.0, 1e-20, -0.5 * ROUNDING):
+    for rounding in (0.0, 1e-20, -0.5 * AMBIENT_TOLERANCE):
         q[0] = rounding
         rows.append(reynolds.evaluate(q, h, inputs)[1])
     np.testing.assert_allclose(rows[1], rows[0], rtol=1e-12)

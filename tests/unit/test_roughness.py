@@ -9,12 +9,12 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.case.tables.surface import SurfaceProfile
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.arrival import arrival
+from ehlpetsc.surfaces.entry_times import entry_times
 from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.measured.profile_files import read_profile
-from ehlpetsc.surfaces.mesh_fit import mesh_warnings, spikes
+from ehlpetsc.surfaces.mesh_resolution import mesh_warnings, spikes
 from ehlpetsc.surfaces.profile import Profile
-from ehlpetsc.surfaces.roughness import RAMP, Roughness
+from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -23,7 +23,9 @@ A = 1e-3  # half width of the domains made here, m
 
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
-    return Profile(Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP * A, abs(speed) * duration)
+    return Profile(
+        Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP_LENGTH * A, abs(speed) * duration
+    )
 
 
 def rough(name, *overrides):
@@ -188,8 +190,8 @@ def test_nothing_jumps_where_the_profile_begins():
     assert h[0] == 0.0 and h[-1] == pytest.approx(1e-6)
     slope, curvature = np.gradient(h, s), np.gradient(np.gradient(h, s), s)
     # smoothstep: slope at most 15/8 and curvature at most 10/sqrt(3) of the height over the ramp
-    assert np.abs(slope).max() == pytest.approx(15 / 8 * 1e-6 / (RAMP * A), rel=1e-4)
-    assert np.abs(curvature).max() == pytest.approx(10 / np.sqrt(3) * 1e-6 / (RAMP * A) ** 2, rel=1e-3)
+    assert np.abs(slope).max() == pytest.approx(15 / 8 * 1e-6 / (RAMP_LENGTH * A), rel=1e-4)
+    assert np.abs(curvature).max() == pytest.approx(10 / np.sqrt(3) * 1e-6 / (RAMP_LENGTH * A) ** 2, rel=1e-3)
     assert np.abs(np.diff(curvature)).max() < 0.02 * np.abs(curvature).max()
 
 
@@ -304,8 +306,8 @@ def test_the_share_of_short_waves_is_that_of_the_variance():
     X = np.arange(8193) * 1e-6
     z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)
     p = profile(X, z)
-    assert p.short_share(5e-6) == pytest.approx(0.1, abs=1e-3)  # 4 nodes are 20 um: the 16 um wave
-    assert p.short_share(3.9e-6) < 1e-3
+    assert p.unresolved_variance(5e-6) == pytest.approx(0.1, abs=1e-3)  # 4 nodes are 20 um: the 16 um wave
+    assert p.unresolved_variance(3.9e-6) < 1e-3
 
 
 def test_a_constant_offset_is_taken_off_and_told(tmp_path):
@@ -331,10 +333,10 @@ def test_spikes_narrower_than_a_cell_are_told_and_asperities_are_not():
 
 def test_the_travel_at_which_a_profile_comes_and_fills():
     r, s = rough("table1_rough.toml")  # inlet -2.5 a, slide/roll ratio 0.25: 5.625 and 4.375 m/s
-    assert arrival(r.surface_1, s) == pytest.approx((1.5, 3.5 + RAMP))
-    assert arrival(r.surface_2, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP) * 9 / 7))
+    assert entry_times(r.surface_1, s) == pytest.approx((1.5, 3.5 + RAMP_LENGTH))
+    assert entry_times(r.surface_2, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP_LENGTH) * 9 / 7))
     for profile in (r.surface_1, r.surface_2):
-        reaches, fills = arrival(profile, s)
+        reaches, fills = entry_times(profile, s)
         x = s.x * s.a
         inside = np.abs(s.x) <= 1.0
         before, then = (-Roughness(profile, None).phi(x, t * s.a / s.u_max) for t in (reaches, fills))
@@ -342,9 +344,9 @@ def test_the_travel_at_which_a_profile_comes_and_fills():
         whole = profile._at(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
         np.testing.assert_allclose(then[inside], whole, rtol=1e-9)
     backwards, s = rough("table1_rough.toml", "motion.slide_roll_ratio=-4")  # u -1, 3: enters at the outlet
-    reaches, fills = arrival(backwards.surface_1, s)
-    assert (reaches, fills) == pytest.approx((0.5 * 3, (2.5 + RAMP) * 3))
+    reaches, fills = entry_times(backwards.surface_1, s)
+    assert (reaches, fills) == pytest.approx((0.5 * 3, (2.5 + RAMP_LENGTH) * 3))
     ridge, s = rough("ridge.toml")
-    assert arrival(ridge.surface_2, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
+    assert entry_times(ridge.surface_2, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
     still, s = rough("dry_rough.toml")
-    assert arrival(still.surface_2, s) is None
+    assert entry_times(still.surface_2, s) is None

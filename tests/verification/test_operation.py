@@ -90,7 +90,7 @@ def test_a_body_that_reverses_shows_the_same_points_on_its_way_back():
     simulation = Simulation(load(CASES / "table1_mixed.toml", table | sides | BOTH_WAVY))
     x, moved = simulation.scales.x * simulation.scales.a, simulation.operation.travelled
     fast, slow = simulation.roughness.surface_1, simulation.roughness.surface_2
-    assert not fast.enters and slow.enters
+    assert not fast.is_moving and slow.is_moving
     there, back = moved(0.4e-4)[0], moved(1.6e-4)[0]
     assert there == pytest.approx(back, rel=1e-9)
     np.testing.assert_allclose(fast.height(x - there), fast.height(x - back), atol=1e-12)

@@ -104,7 +104,7 @@ def of_gears(path):
         path.pair.radius(rho),
         u1,
         u2,
-        begins=(float(arcs[0]), float(arcs[1])),
+        profile_offsets=(float(arcs[0]), float(arcs[1])),
     )
 
 

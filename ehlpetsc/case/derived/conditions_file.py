@@ -4,7 +4,7 @@ import re
 
 from ehlpetsc.case.tables.operation import COLUMNS
 
-MOST_BYTES = 2**26  # of a table
+MAX_TABLE_BYTES = 2**26  # of a table
 
 
 class TableFault(Exception):
@@ -55,8 +55,8 @@ def shown(line):
 
 def _text(path):
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise TableFault(f"larger than {MOST_BYTES >> 20} MB; allowed: a table of conditions")
+        if path.stat().st_size > MAX_TABLE_BYTES:
+            raise TableFault(f"larger than {MAX_TABLE_BYTES >> 20} MB; allowed: a table of conditions")
         return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise TableFault(f"not UTF-8 text (byte {error.start}); allowed: a CSV table") from None

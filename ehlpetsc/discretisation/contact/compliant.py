@@ -31,7 +31,7 @@ from ehlpetsc.physics.asperities import (
 HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
-LOWEST = 1e-3  # p0: asperity pressure at the edge of a dry first guess
+DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess
 STIFF = 1.0  # p0 per a^2/R: slope of p_c from which pressure and void are the pair of a cavitated node
 
 
@@ -108,11 +108,11 @@ class CompliantContact(SeparatedContact):
         return np.where(closed, self._separation(contact_pressure), self.w_from_film(h))
 
     def _separation(self, pressure):
-        return asperity_separations(np.maximum(pressure, LOWEST), *self.law)
+        return asperity_separations(np.maximum(pressure, DRY_START_EDGE_PRESSURE), *self.law)
 
     def dry_start(self, pressure, gap):
         """See :class:`.model.ContactModel`."""
-        film = np.maximum(gap, asperity_separation(LOWEST, *self.law))
+        film = np.maximum(gap, asperity_separation(DRY_START_EDGE_PRESSURE, *self.law))
         return np.zeros_like(pressure), np.where(pressure > 0.0, self._separation(pressure), film)
 
     def start_film(self, film):

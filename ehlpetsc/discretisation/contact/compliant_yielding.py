@@ -17,8 +17,8 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.compliant import FREE_RISE, CompliantContact
 from ehlpetsc.discretisation.contact.node_state import (
+    AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
-    ROUNDING,
     PlasticState,
     limit_cavitation,
 )
@@ -62,7 +62,7 @@ class CompliantYieldingContact(Hardening, CompliantContact):
         elastic = super().state(q, np.maximum(w, self.smallest))
         closed, oil, one = w < self.smallest, np.maximum(q, 0.0), np.ones_like(w)
         excess = elastic.pressure - self.yield_pressure
-        by_oil = (excess > 0.0) & (q > ROUNDING) & ~closed
+        by_oil = (excess > 0.0) & (q > AMBIENT_TOLERANCE) & ~closed
         yielding = by_oil | closed
         solids = elastic.pressure - oil
         plastic = PlasticState(
@@ -167,7 +167,7 @@ def limit_steps(now, step, law, limit, smallest, compliance):
         q, w = now[i, 0], now[i, 1]
         closed = w < smallest
         solids, slope = asperity_pressure(max(w, smallest), law[0], law[1])
-        by_oil = not closed and q > ROUNDING and q + solids > limit
+        by_oil = not closed and q > AMBIENT_TOLERANCE and q + solids > limit
         new_q, new_w = q - limit_cavitation(q, step[i, 0]), w - step[i, 1]
         if not closed:
             new_w = max(new_w, asperity_separation(max(2.0 * solids, FREE_RISE), law[0], law[1]))
@@ -186,10 +186,10 @@ def limit_steps(now, step, law, limit, smallest, compliance):
         elif closed:
             if new_w >= smallest:
                 new_q, new_w = min(new_q, tiny), edge
-            elif new_q > ROUNDING:
+            elif new_q > AMBIENT_TOLERANCE:
                 new_q, new_w = (smallest - new_w) / compliance + 2.0 * tiny, edge
         elif max(new_q, 0.0) + new_solids > limit:
-            if new_q <= ROUNDING:
+            if new_q <= AMBIENT_TOLERANCE:
                 new_w = smallest - compliance * tiny
             elif new_solids < limit - tiny:
                 new_q = limit + tiny - new_solids

@@ -6,14 +6,14 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 
-ROUNDING = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
+AMBIENT_TOLERANCE = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
 PRESSURE_AFTER_REFILL = 1e-9  # p0: pressure of a cavity, or of a gap, in the iteration that closes it
 MIN_OIL_FRACTION = 0.2  # of the oil in a cavity that one iteration must leave
 
 
 def full_of_oil(q):
     """Mask of the nodes with pressure and no void; which side of zero rounding is on must not matter."""
-    return q > -ROUNDING
+    return q > -AMBIENT_TOLERANCE
 
 
 class PlasticState(NamedTuple):

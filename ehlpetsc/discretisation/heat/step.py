@@ -95,7 +95,7 @@ class HeatStep:
             walls = [bulk + one.history for bulk, one in zip(self.bulk, self._moved, strict=True)]
             responses = [np.full(n, one.response) for one in self._moved]
             if inputs.history is not None:
-                self._stored = self.capacity * self.scales.h * inputs.history.carried / step.dt
+                self._stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
         flow, t = record.flow, record.film
         left, right = np.maximum(flow[:-1], 0.0), np.maximum(-flow[1:], 0.0)
         a = self._stored + left + right

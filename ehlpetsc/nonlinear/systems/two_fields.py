@@ -22,7 +22,7 @@ from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 from ehlpetsc.nonlinear.snes import owned
 
-ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
+RESIDUAL_ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
 STEP_LIMIT = 0.3  # p0: largest change of pressure of one Newton step
 FILM_AFTER_RELEASE = 1e-3  # of the expected film: film of a node in the iteration in which its solids part
@@ -187,7 +187,7 @@ class TwoFields:
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
         mine = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.own.start)
-        return ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
+        return RESIDUAL_ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
 
 def first_nodes(n, ranks):

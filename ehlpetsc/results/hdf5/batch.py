@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.quantities import FIELDS
 from ehlpetsc.results.hdf5.datasets import extend
 
-STEPS = 1024  # most steps held
+MAX_STEPS = 1024  # most steps held
 FIELD_BYTES = 2**20  # most of one field held
 
 
@@ -27,8 +27,8 @@ class Batch:
     def __init__(self, file, nodes):
         self._file = file
         scalars = {name: d for name, d in file["steps"].items() if name != "time"}
-        self._times = np.empty(STEPS)
-        self._columns = {name: np.empty(STEPS, dtype=d.dtype) for name, d in scalars.items()}
+        self._times = np.empty(MAX_STEPS)
+        self._columns = {name: np.empty(MAX_STEPS, dtype=d.dtype) for name, d in scalars.items()}
         frames, fields = max(1, FIELD_BYTES // (8 * nodes)), {n: file[n] for n in frame_fields(file)}
         self._frames = {name: np.empty((frames, d.shape[1]), d.dtype) for name, d in fields.items()}
         self._frame_times, self._frame_steps = np.empty(frames), np.empty(frames, dtype="i8")
@@ -37,7 +37,7 @@ class Batch:
     @property
     def full(self):
         """Whether there is no room for another step."""
-        return self._held == STEPS or self._frames_held == len(self._frame_times)
+        return self._held == MAX_STEPS or self._frames_held == len(self._frame_times)
 
     @property
     def size(self):

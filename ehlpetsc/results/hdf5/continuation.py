@@ -10,7 +10,7 @@ from ehlpetsc.results.provenance import earlier_runs
 from ehlpetsc.results.reader import read_result
 
 ROWS = 1024  # copied at a time
-SAME = 1e-9  # relative: speeds and scales nearer than this are equal
+SCALE_TOLERANCE = 1e-9  # relative: speeds and scales nearer than this are equal
 
 
 def copy_up_to(file, path, step, contact_count):
@@ -82,6 +82,8 @@ def _misfit(file, old, step, count_from_file):
     if count_from_file and last is not None and last > step:
         return f"it goes on to step {last} and the contacts up to step {step} are not known"
     for name, what in (("p0", "largest pressure of Hertz"), ("u1", "speed"), ("u2", "speed")):
-        if name in file.attrs and not np.isclose(old.attrs[name], file.attrs[name], rtol=SAME, atol=0.0):
+        if name in file.attrs and not np.isclose(
+            old.attrs[name], file.attrs[name], rtol=SCALE_TOLERANCE, atol=0.0
+        ):
             return f"it was computed for another {what} ({name} = {old.attrs[name]:.6g})"
     return None

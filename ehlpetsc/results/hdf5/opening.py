@@ -14,7 +14,7 @@ FORMAT_VERSION = 1
 """Version of the layout; a reader refuses files of a later one."""
 
 ATTRIBUTES = {"title": str, "case": str, "status": str, "a": float, "p0": float, "u1": float, "u2": float}
-BEYOND = 2000  # times the size of a file: more numbers than its packed bytes can stand for
+MAX_PACKING = 2000  # times the size of a file: more numbers than its packed bytes can stand for
 
 
 def open_for_reading(path, **options):
@@ -98,7 +98,7 @@ def _fault_of_datasets(file):
     lost = [name for name in named if not isinstance(file.get(name), h5py.Dataset)]
     if lost:
         return f"damaged: {lost[0]} is missing, or cannot be read"
-    room = BEYOND * os.fstat(file.id.get_vfd_handle()).st_size
+    room = MAX_PACKING * os.fstat(file.id.get_vfd_handle()).st_size
     for name in ("x", "contact_count", *(f"surface/{s}/{v}" for s in ("1", "2") for v in "sz")):
         if name in file and not (isinstance(file[name], h5py.Dataset) and (file[name].nbytes or 0) <= room):
             return f"damaged: {name} is no dataset, or has more numbers than the file can hold"

@@ -12,10 +12,10 @@ from ehlpetsc.physics.film_formulas import (
 
 LEFT = 0.95  # of the flooded film: below it the inlet is told to be too near
 ENOUGH = 0.99  # of it: what the inlet that is proposed leaves
-COARSE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
+MAX_FILM_SLOPE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
 BRINK = 1.1  # no warning of a mesh that lacks a few percent of its points
 CLOSED = 5.0  # the same: a smooth film has none left
-FURTHEST = 100.0  # half widths that mesh.inlet may be
+MAX_INLET = 100.0  # half widths that mesh.inlet may be
 
 
 def domain_warnings(case, scales):
@@ -34,7 +34,7 @@ def domain_warnings(case, scales):
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
-    if BRINK * COARSE < opening:
+    if BRINK * MAX_FILM_SLOPE < opening:
         notes.append(f"{_coarse(opening)}: the film comes out too thin; {_cure(case, scales)}")
     return notes
 
@@ -79,7 +79,7 @@ def _near_inlet(case, scales):
     if left >= LEFT:
         return []
     further = inlet
-    while further < FURTHEST and film_left_by_inlet(film, further) < ENOUGH:
+    while further < MAX_INLET and film_left_by_inlet(film, further) < ENOUGH:
         further += 0.1
     return [
         f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * left:.0f} % of "
@@ -96,6 +96,6 @@ def _coarse(opening):
 
 
 def _cure(case, scales):
-    points = math.ceil(points_for_opening(_thinnest(case, scales), COARSE))
+    points = math.ceil(points_for_opening(_thinnest(case, scales), MAX_FILM_SLOPE))
     other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
     return f"try mesh.points_per_half_width = {points}{other}"

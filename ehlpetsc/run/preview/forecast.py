@@ -9,7 +9,7 @@ import numpy as np
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.hdf5.datasets import CHUNK_BYTES, CHUNK_STEPS
-from ehlpetsc.surfaces.arrival import arrival
+from ehlpetsc.surfaces.entry_times import entry_times
 
 # of one Newton iteration on one rank, in times of `probe`: as such and for each node, measured side by side
 # with it on 141 to 2661 nodes; a step takes that of its iterations and one more
@@ -56,7 +56,7 @@ def _share_under_roughness(case, s, rough):
     """Share of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
-    arrivals = [arrival(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
+    arrivals = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
     reaches = min(found[0] if found else 0.0 for found in arrivals)
     return min(max(1.0 - reaches / case.time.travel, 0.0), 1.0)
 

@@ -3,7 +3,7 @@
 import math
 
 from ehlpetsc.run.preview.forecast import FULL_FILM, lambda_ratio
-from ehlpetsc.surfaces.arrival import arrival
+from ehlpetsc.surfaces.entry_times import entry_times
 
 
 def surface_lines(case, s, rough):
@@ -58,9 +58,9 @@ def _profile(case, s, profile):
         lines.insert(1, size)
         if profile.travelled > given.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
-        if case.time is not None and profile.enters:
+        if case.time is not None and profile.is_moving:
             lines += _part_in_contact(case, s, profile)
-    arrives = arrival(profile, s)
+    arrives = entry_times(profile, s)
     if arrives:
         reaches, fills = arrives
         then = "and fills it" if profile.repeats else "and stands with its middle at x = 0"
@@ -70,7 +70,7 @@ def _profile(case, s, profile):
 
 def _part_in_contact(case, s, profile):
     """Part of a measured profile that passes the whole contact, and the travel needed for all of it."""
-    arrives, length = arrival(profile, s)[0], profile.given.length
+    arrives, length = entry_times(profile, s)[0], profile.given.length
     slower = s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - arrives - 2.0 * slower) / slower
     if through >= length:

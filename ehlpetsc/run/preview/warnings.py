@@ -5,8 +5,8 @@ import numpy as np
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, expected_friction, flash_temperature
 from ehlpetsc.run.preview.domain import domain_warnings
-from ehlpetsc.surfaces.arrival import arrival_warnings
-from ehlpetsc.surfaces.mesh_fit import mesh_warnings
+from ehlpetsc.surfaces.entry_times import entry_warnings
+from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz' pressure of EHL contacts, with room
@@ -37,7 +37,7 @@ def warnings(case, scales):
         )
     profiles = Roughness.of(case, scales)
     notes += magnitude_warnings(case, scales) + oil_warnings(case.fluid) + domain_warnings(case, scales)
-    notes += tilt_warnings(case, profiles) + arrival_warnings(case, scales, profiles)
+    notes += tilt_warnings(case, profiles) + entry_warnings(case, scales, profiles)
     return notes + mesh_warnings(profiles, scales) + heat_warnings(case, scales)
 
 

@@ -16,7 +16,7 @@ from ehlpetsc.stepping.state import State
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
-MESH = 1e-9  # of the domain: how far nodes may have moved in x/a
+NODE_TOLERANCE = 1e-9  # of the domain: how far nodes may have moved in x/a
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,7 @@ def _misfit(arrays, attributes, earlier, case, scales):
     x, now = arrays["x"] / attributes["a"], scales.x
     if len(x) != len(now):
         return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"
-    if np.abs(x - now).max() > MESH * np.ptp(now):
+    if np.abs(x - now).max() > NODE_TOLERANCE * np.ptp(now):
         was, is_now = (f"{ends[0]:.6g} to {ends[-1]:.6g} half widths" for ends in (x, now))
         return f"its nodes lie from {was}, those of the case from {is_now}; [mesh] must be as it was"
     if ("fluid" in earlier) != (case.fluid is not None):

@@ -9,7 +9,7 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 TOTAL = "total "  # before the names of totals among the attributes
 RECORD = "record "  # before the names of effects whose records the file holds
-LARGEST = 1e300  # of any number
+MAX_NUMBER = 1e300  # of any number
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Item:
 
     meaning: str
     dims: tuple = ()
-    least: float = -LARGEST
-    most: float = LARGEST
+    least: float = -MAX_NUMBER
+    most: float = MAX_NUMBER
     whole: bool = False
     needed: bool = True
 

@@ -16,9 +16,9 @@ import numpy as np
 
 from ehlpetsc.physics.exact_solutions import hertz_gap
 
-SAME = 1e-12  # relative
-CORE = 0.5  # half widths on either side of the centre: where the approach takes up the film's change
-PARTS = ("", "smooth_")
+SCALE_TOLERANCE = 1e-12  # relative
+CORE_HALF_WIDTH = 0.5  # in a: the approach takes up the film's change between -0.5 and 0.5
+PREFIXES = ("", "smooth_")
 PAST = ("m", "m_older", "earlier_travelled", "earlier_q", "earlier_h", "earlier_contact_pressure")
 
 
@@ -39,14 +39,14 @@ def rescale(arrays, attributes, scales):
     """
     then = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
     now = np.array([scales.a, scales.p0, scales.h])
-    if (np.abs(then - now) <= SAME * now).all():
+    if (np.abs(then - now) <= SCALE_TOLERANCE * now).all():
         return False
     ratio, x = attributes["h_scale"] / scales.h, scales.x
     gap = hertz_gap(x, 1.0, 1.0)
-    core = np.abs(x) <= CORE
+    core = np.abs(x) <= CORE_HALF_WIDTH
     if core.any():
         attributes["h00"] += (ratio - 1.0) * (arrays["h"] - gap)[core].mean()
-    for part in PARTS:
+    for part in PREFIXES:
         arrays[part + "q"], arrays[part + "h"] = _fields(arrays[part + "q"], arrays[part + "h"], gap, ratio)
     for name in PAST:
         arrays.pop(name, None)

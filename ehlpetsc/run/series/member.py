@@ -10,7 +10,7 @@ from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.preview.forecast import steps
 
-LONGEST = 60  # characters of a name
+MAX_NAME_LENGTH = 60  # characters of a name
 
 
 def named(settings):
@@ -37,7 +37,7 @@ def named(settings):
     for number, one in enumerate(flat, 1):
         told = {key[-1]: one[key] for key in differing if key in one}
         text = ",".join(f"{word}={value}" for word, value in told.items())
-        usable = told and len(text) <= LONGEST and not any(isinstance(v, list) for v in told.values())
+        usable = told and len(text) <= MAX_NAME_LENGTH and not any(isinstance(v, list) for v in told.values())
         names.append(text if usable else f"{last}={number}")
     if len(set(names)) < len(names):
         names = [f"{last}={number}" for number in range(1, len(names) + 1)]

@@ -8,7 +8,7 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.study.runs import greatest_damage
 
 MEASURES = ("h_min", "h_c", "p_max", "film", "contact", "damage")
-NOTHING = dict.fromkeys(MEASURES, np.nan)
+NO_MEASURES = dict.fromkeys(MEASURES, np.nan)
 
 
 @dataclass

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus, NotConverged
-from ehlpetsc.study.accuracy.errors import MEASURES, NOTHING, errors, figures, uncertainty
+from ehlpetsc.study.accuracy.errors import MEASURES, NO_MEASURES, errors, figures, uncertainty
 from ehlpetsc.study.accuracy.plan import ATOL, MESH, NEAR, RTOL, STEP
 from ehlpetsc.study.runs import run
 
@@ -22,7 +22,7 @@ NAMES = {
     RTOL: "Krylov tolerance",
     "ranks": "ranks",
 }
-HEAD = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
+COLUMNS = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
 
 
 class Study:
@@ -81,20 +81,20 @@ class Study:
         return max(round(self.case.time.travel * setting.values[MESH] / setting.values[STEP]), 1)
 
     def table(self, references, runs, csv_path, say=print):
-        """Run all; rows by the names of `HEAD`, the reference with its estimated error first."""
+        """Run all; rows by the names of `COLUMNS`, the reference with its estimated error first."""
         finest = [self.run(setting, -number) for number, setting in enumerate(references, 1)]
         if finest[0][1] is None:
             raise NotConverged(f"the reference did not converge: {finest[0][0].words}")
         true = finest[0][1]
         rows = [row(references[0], finest[0][0], uncertainty(*(f for _, f in finest)))]
-        say(text(dict(zip(HEAD, HEAD, strict=True))))
+        say(text(dict(zip(COLUMNS, COLUMNS, strict=True))))
         say(text(rows[0]))
         for number, setting in enumerate(runs):
             outcome, found = self.run(setting, number)
-            rows.append(row(setting, outcome, errors(found, true) if found else NOTHING))
+            rows.append(row(setting, outcome, errors(found, true) if found else NO_MEASURES))
             say(text(rows[-1]))
         with open(csv_path, "w", newline="") as file:
-            writer = csv.DictWriter(file, HEAD)
+            writer = csv.DictWriter(file, COLUMNS)
             writer.writeheader()
             writer.writerows(rows)
         return rows
@@ -120,4 +120,4 @@ def text(row):
         return f"{value:.2e}" if isinstance(value, float) else str(value)
 
     widths = (17, 9, 9, 9, 7, 6, *[9] * len(MEASURES))
-    return " ".join(f"{shown(row[name]):>{width}}" for name, width in zip(HEAD, widths, strict=True))
+    return " ".join(f"{shown(row[name]):>{width}}" for name, width in zip(COLUMNS, widths, strict=True))

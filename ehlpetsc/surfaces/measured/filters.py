@@ -6,7 +6,7 @@ from ehlpetsc.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # rounding in a file's abscissae, against a spacing that really varies
 MANY, FAR = 100_000, 10_000  # points
-SHORTEST = 2  # spacings: a profile holds no shorter wave
+MIN_SPACINGS = 2  # spacings: a profile holds no shorter wave
 
 
 def levelled(x, z):
@@ -55,10 +55,10 @@ def mean_line(x, z, cutoff, key):
         raise ProfileError(f"{key}: the filter needs equally spaced x")
     if cutoff > length:
         raise ProfileError(f"{key} = {cutoff:g} m; allowed: at most the length of the profile, {length:g} m")
-    if cutoff < SHORTEST * step:
-        least = SHORTEST * step
+    if cutoff < MIN_SPACINGS * step:
+        least = MIN_SPACINGS * step
         raise ProfileError(
-            f"{key} = {cutoff:g} m; allowed: at least {SHORTEST} spacings of its points, {least:g} m; "
+            f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {least:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
     size, beyond = x.size, int(2.0 * cutoff / step) + FAR  # where the filter's weights are gone

@@ -4,7 +4,7 @@ import numpy as np
 
 from ehlpetsc.surfaces.measured.profile_files import UNITS
 
-COARSE = 0.25  # half widths between two points: no asperity of such a profile lies in the contact
+MAX_SPACING = 0.25  # half widths between two points: no asperity of such a profile lies in the contact
 HIGH = 0.1  # half widths: greatest Rq
 DEEP = 30.0  # times the elastic approach a^2/R, or the film: greatest Rq
 STEEP = 1.0  # greatest root mean square slope
@@ -27,7 +27,7 @@ def absurd(given, a, dx, approach, film):
     rq = float(given.z.std())
     slope = float(np.sqrt(np.mean((np.diff(given.z) / np.diff(given.X)) ** 2)))
     highest = min(HIGH * a, DEEP * max(approach, film))
-    if given.spacing > COARSE * a:
+    if given.spacing > MAX_SPACING * a:
         fault = f"points {_um(given.spacing)} apart beside a half width of {_um(a)}"
     elif rq > highest:
         fault = (

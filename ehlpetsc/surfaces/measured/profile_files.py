@@ -10,10 +10,10 @@ from ehlpetsc.errors import ProfileError
 from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
-OTHER = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}
+OTHER_FORMATS = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}
 MANY = 50  # points: fewer are a shape made by hand, between whose points there is nothing to miss
 EQUAL, MOST = 0.02, 0.9  # how far equal spacings differ, and how many must be equal where lines are missing
-FARTHEST = 1e6  # m: beyond it squares and cubes of a spline overflow
+MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
 
@@ -131,7 +131,7 @@ def _chosen(columns, layout):
 
 
 def _from_surface_topography(path, layout):
-    if path.suffix.lower() in OTHER:
+    if path.suffix.lower() in OTHER_FORMATS:
         raise ProfileError(f"{path.suffix!r} is no profile file; allowed: two columns of text, x and z")
     given = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
     if given:
@@ -163,10 +163,10 @@ def checked(x, z, layout):
     """A profile from 0 on with x increasing and gaps filled, or a ProfileError that says what is wrong."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
-    bad = ~(np.abs(x) < FARTHEST) | (np.abs(z) >= FARTHEST)
+    bad = ~(np.abs(x) < MAX_ABSCISSA) | (np.abs(z) >= MAX_ABSCISSA)
     if bad.any():
         raise ProfileError(
-            f"point {bad.argmax() + 1} is not a number below {FARTHEST:g} m; allowed: finite x and z"
+            f"point {bad.argmax() + 1} is not a number below {MAX_ABSCISSA:g} m; allowed: finite x and z"
         )
     if x.size < 4:
         raise ProfileError(f"{x.size} points; allowed: at least 4")

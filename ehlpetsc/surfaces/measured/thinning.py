@@ -3,11 +3,11 @@
 import numpy as np
 
 MANY = 200_000  # points; a spline through fewer takes no time worth saving
-FINEST = 16  # points to a cell of the mesh, or to the shortest cut-off
+MAX_POINTS_PER_CELL = 16  # points to a cell of the mesh, or to the shortest cut-off
 
 
 def thinned(X, z, shortest):
-    """A profile with `FINEST` points to the shortest wave, where it has more than twice as many.
+    """A profile with `MAX_POINTS_PER_CELL` points to the shortest wave, where it has more than twice as many.
 
     Every new point stands for the mean height of the old ones around it, by the trapezoidal rule, corrected
     for curvature to the height at the point, :math:`z_j=m_j-(m_{j+1}-2m_j+m_{j-1})/24`, mirrored at the ends.
@@ -26,7 +26,7 @@ def thinned(X, z, shortest):
     X, z : ndarray
         The same arrays where there is nothing to be saved.
     """
-    count = max(int(FINEST * (X[-1] - X[0]) / shortest), FINEST) + 1
+    count = max(int(MAX_POINTS_PER_CELL * (X[-1] - X[0]) / shortest), MAX_POINTS_PER_CELL) + 1
     if X.size < max(MANY, 2 * count):
         return X, z
     nearest = np.rint(np.linspace(0, X.size - 1, count)).astype(int)

@@ -1,7 +1,7 @@
 """When the roughness reaches the contact and fills it."""
 
 
-def arrival(profile, scales):
+def entry_times(profile, scales):
     """Travel of the faster surface [half widths] until a profile is in the contact.
 
     Parameters
@@ -16,7 +16,7 @@ def arrival(profile, scales):
         one. Of a lone ridge or dent `fills` is where its middle stands at x = 0. None where the profile lies
         under the domain from the start.
     """
-    if not profile.enters:
+    if not profile.is_moving:
         return None
     edge = -1.0 - scales.x[0] if profile.speed > 0 else scales.x[-1] - 1.0
     first, last = profile.X[0] / scales.a, profile.X[-1] / scales.a
@@ -26,7 +26,7 @@ def arrival(profile, scales):
     return edge * slower, (edge + 2.0 + profile.ramp / scales.a) * slower
 
 
-def arrival_warnings(case, scales, rough):
+def entry_warnings(case, scales, rough):
     """One line for each profile that a run ends before it has come to.
 
     Parameters
@@ -38,7 +38,7 @@ def arrival_warnings(case, scales, rough):
     notes = []
     for side in ("1", "2"):
         profile = rough and rough.side(side)
-        arrives = profile and arrival(profile, scales)
+        arrives = profile and entry_times(profile, scales)
         if not arrives or case.time.travel >= arrives[1]:
             continue
         reaches, fills = arrives

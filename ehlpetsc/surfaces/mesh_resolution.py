@@ -2,17 +2,17 @@
 
 import numpy as np
 
-from ehlpetsc.surfaces.profile import SHORT
+from ehlpetsc.surfaces.profile import WAVE_NODES
 
-SPIKE = 4.0  # Rq beside its surroundings that make a point one of a spike
-WIDEST = (
+SPIKE_RQ_RATIO = 4.0  # Rq beside its surroundings that make a point one of a spike
+MAX_WINDOW = (
     129  # points of a window whose median is sought in all of them: the work grows as points times window
 )
-SHARE = 0.01  # of the height variance in such wavelengths that calls for a warning
+MAX_UNRESOLVED = 0.01  # of the height variance in such wavelengths that calls for a warning
 
 
 def mesh_warnings(rough, scales):
-    """What of both profiles the mesh does not carry, a line each with the figure.
+    """Warnings of height variance and spikes that the mesh does not resolve, with figures.
 
     Parameters
     ----------
@@ -22,12 +22,14 @@ def mesh_warnings(rough, scales):
     notes = []
     for side in ("1", "2"):
         profile = rough and rough.side(side)
-        share = profile.short_share(scales.dx) if profile else 0.0
-        if share > SHARE:
+        share = profile.unresolved_variance(scales.dx) if profile else 0.0
+        if share > MAX_UNRESOLVED:
+            shortest = 1e6 * WAVE_NODES * scales.dx
             notes.append(
                 f"surface.{side}: the mesh is too coarse for the profile: {100 * share:.1f} % of its height "
-                f"variance lies in wavelengths under {SHORT} nodes ({SHORT * scales.dx * 1e6:.2f} um); "
-                f"points_per_half_width = {_needed(profile, scales)} brings that under {100 * SHARE:.0f} %"
+                f"variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
+                f"points_per_half_width = {_needed(profile, scales)} brings that under "
+                f"{100 * MAX_UNRESOLVED:.0f} %"
             )
         if profile and profile.given.measured:
             notes += _spike_warning(side, profile.given, scales.dx)
@@ -67,7 +69,7 @@ def spikes(given, dx):
     rq, given = given.z.std(), given.source or given
     window = 2 * round(dx / given.spacing) + 1
     beside = np.abs(given.z - _running_median(given.z, min(window, given.z.size)))
-    found = beside > SPIKE * rq
+    found = beside > SPIKE_RQ_RATIO * rq
     if not found.any():
         return 0, 0.0, 0.0
     return int(found.sum()), float(beside.max()), float(given.X[found.argmax()])
@@ -84,7 +86,7 @@ def _running_median(z, window):
     """
     from scipy.ndimage import median_filter
 
-    size = window // WIDEST + 1
+    size = window // MAX_WINDOW + 1
     if size == 1:
         return median_filter(z, window, mode="mirror")
     whole = z.size // size
@@ -96,6 +98,6 @@ def _running_median(z, window):
 
 def _needed(profile, scales):
     points = scales.a / scales.dx
-    while profile.short_share(scales.a / points) > SHARE:
+    while profile.unresolved_variance(scales.a / points) > MAX_UNRESOLVED:
         points *= 1.1
     return int(np.ceil(points))
