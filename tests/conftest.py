@@ -1,4 +1,4 @@
-"""What all tests share: the marker of tests under mpirun, their order, and signals as a terminal has them."""
+"""PETSc on the path, the marker of tests under mpirun, their order, and signals as a terminal has them."""
 
 import gc
 import signal
@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from ehlpetsc import environment
+
+environment.prepare()
 MPI_TESTS = Path(__file__).parent / "mpi"
 DEAREST = (  # files of about five seconds and more by the time they take, those with mpirun beside others
     "test_post_run",

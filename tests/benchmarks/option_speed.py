@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1] / "regression")]
-from running import ROOT, run, settings
+sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1])]
+from support import ROOT
+from support.running import run, settings
 
 from ehlpetsc.results.reader import read_result
 

@@ -20,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from post_result_file import Scene, write
+from support.made_loads import Scene, write
 
 from ehlpetsc.post import Material
 from ehlpetsc.post.fatigue.accumulate import Counter, Counting

@@ -14,8 +14,8 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1] / "regression")]
-import running
+sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1])]
+from support import running
 
 RANK = "--rank"  # first argument of this file where it stands for one rank of the program
 

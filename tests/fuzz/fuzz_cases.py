@@ -4,7 +4,8 @@ import random
 import signal
 
 import pytest
-from fuzzing import CASES, faults_of
+from support import CASES
+from support.fuzzing import faults_of
 from test_case_fuzz import corrupted
 
 from ehlpetsc.case.loading import load

@@ -4,8 +4,8 @@ import os
 from pathlib import Path
 
 from hdf5_damage import Flips, Structures
-from made_results import make_result, with_solids
 from sandbox import process, word_of
+from support.made_results import make_result, with_solids
 
 from ehlpetsc.analysis import collisions, compare, contact_statistics, ensemble
 from ehlpetsc.plot import __main__ as plot

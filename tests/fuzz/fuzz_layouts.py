@@ -1,12 +1,12 @@
 """Shipped cases laid out otherwise in TOML, keys changed as by -ehl_set, loaded, stored, loaded again."""
 
 import tomllib
-from pathlib import Path
+
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 SETS = (
     "contact.load=4e5",
     "contact.boundary_friction=0.1",

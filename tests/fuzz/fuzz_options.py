@@ -2,17 +2,16 @@
 
 import hashlib
 import os
-from pathlib import Path
 
 import numpy as np
 from sandbox import process, word_of
+from support import CASES
 
 import ehlpetsc.discretisation.ehl_problem
 import ehlpetsc.physics.rheology  # noqa: F401
 from ehlpetsc.__main__ import run_guarded
 from ehlpetsc.results.reader import read_result
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 MESH = ["mesh.inlet=-1.3", "mesh.outlet=1.3", "mesh.points_per_half_width=15", "output.checkpoint=1e-4"]
 SCENES = (
     ["table1_smooth.toml"],

@@ -12,15 +12,14 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 from sandbox import word_of
+from support import ROOT
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import read_result
 
-ROOT = Path(__file__).resolve().parents[2]
 COARSE = ("mesh.points_per_half_width=20", "output.every=1")
 SCENES = {
     "running_in.toml": (*COARSE, "time.travel=0.8", "time.passes=3", "contact.yield_pressure=0.95e9"),

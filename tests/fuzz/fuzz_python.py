@@ -1,15 +1,14 @@
 """Calls from Python with arguments drawn from lists of good and bad ones, one to three of them in a row."""
 
 import os
-from pathlib import Path
 
 import numpy as np
 from sandbox import process
+from support import CASES
 
 import ehlpetsc
 from ehlpetsc.run.simulation import Simulation
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 RIDGE = {"mesh.points_per_half_width": 15, "time.travel": 0.3}
 PASS = {
     "mesh.points_per_half_width": 15,

@@ -4,8 +4,8 @@ import hashlib
 
 import numpy as np
 from hdf5_damage import Flips, Structures
-from made_results import make_result
 from sandbox import process, word_of
+from support.made_results import make_result
 
 from ehlpetsc.analysis import compare
 from ehlpetsc.errors import OutputError

@@ -29,8 +29,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from hdf5_damage import Flips, Structures
-from post_result_file import CASE, LOAD, P0, A, Scene
 from sandbox import process
+from support.made_loads import CASE, LOAD, P0, A, Scene
 
 from ehlpetsc.post import command, subprocess_guard
 from ehlpetsc.results.hdf5.datasets import Layout

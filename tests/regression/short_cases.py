@@ -13,13 +13,15 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from running import ROOT, run, settings
 
-sys.path.insert(0, str(ROOT))  # also when called as a command, outside pytest
+HERE = Path(__file__).resolve()
+sys.path[:0] = [str(HERE.parents[2]), str(HERE.parents[1])]  # also when called as a command, outside pytest
+from support import ROOT
+from support.running import run, settings
 
 from ehlpetsc.results.reader import read_result
 
-EXPECTED = Path(__file__).with_name("expected.json")
+EXPECTED = HERE.with_name("expected.json")
 
 # the inlet near the contact, so that a few steps carry the roughness into it
 QUICK = ("mesh.inlet=-1.4", "mesh.outlet=1.3", "mesh.points_per_half_width=50", "time.travel=0.6")

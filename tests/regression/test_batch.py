@@ -4,7 +4,8 @@ import signal
 import subprocess
 
 import pytest
-from running import BARE, ROOT, SHORT, settings, wait_for
+from support import ROOT
+from support.running import BARE, SHORT, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
 

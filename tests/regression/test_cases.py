@@ -3,8 +3,8 @@
 import json
 
 import pytest
-from running import ROOT
 from short_cases import EXPECTED, NEWTON_SLACK, RTOL, SHORT, results
+from support import ROOT
 
 STORED = json.loads(EXPECTED.read_text())
 LOAD_ERROR = 1e-8

@@ -4,7 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from running import ROOT, run, settings
+from support import ROOT
+from support.running import run, settings
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.results.contacts import in_contact

@@ -4,7 +4,7 @@ import math
 import os
 
 import pytest
-from running import MAIN, PREPARED
+from support.running import MAIN, PREPARED
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus

@@ -9,7 +9,8 @@ from contextlib import ExitStack
 
 import numpy as np
 import pytest
-from running import ROOT, run, settings
+from support import ROOT
+from support.running import run, settings
 
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.analysis import contact_statistics as counts

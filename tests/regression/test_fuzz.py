@@ -3,7 +3,8 @@
 import subprocess
 
 import pytest
-from running import BARE, PYTHON, ROOT, SCRIPT
+from support import ROOT
+from support.running import BARE, PYTHON, SCRIPT
 
 pytestmark = pytest.mark.slow
 

@@ -7,7 +7,8 @@ import subprocess
 import time
 
 import pytest
-from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, wait_for
+from support import ROOT
+from support.running import BARE, SCRIPT, SHORT, command, run, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
 

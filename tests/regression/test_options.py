@@ -5,7 +5,8 @@ import re
 import subprocess
 
 import pytest
-from running import BARE, MPIRUNS_COMMENT, PYTHON, ROOT, SCRIPT, run, settings, summary
+from support import ROOT
+from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings, summary
 
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.options import OWN, faults

@@ -4,7 +4,8 @@ import os
 import subprocess
 
 import pytest
-from running import BARE, ROOT, SCRIPT, command, run, settings, wait_for
+from support import ROOT
+from support.running import BARE, SCRIPT, command, run, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
 

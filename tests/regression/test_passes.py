@@ -8,7 +8,8 @@ import subprocess
 import numpy as np
 import pytest
 from mpi4py import MPI
-from running import BARE, ROOT, SCRIPT, command, run, settings
+from support import CASES
+from support.running import BARE, SCRIPT, command, run, settings
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError
@@ -19,7 +20,6 @@ from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.series.passes import Passes
 from ehlpetsc.run.simulation import Simulation
 
-CASES = ROOT / "cases"
 CASE = CASES / "running_in.toml"
 SHORT = (
     "mesh.points_per_half_width=40",

@@ -5,7 +5,8 @@ import shutil
 
 import h5py
 import pytest
-from running import ROOT, SHORT, run, settings, summary
+from support import ROOT
+from support.running import SHORT, run, settings, summary
 
 from ehlpetsc.analysis import contact_statistics, ensemble
 from ehlpetsc.plot.__main__ import main as plot

@@ -7,7 +7,8 @@ import subprocess
 
 import numpy as np
 import pytest
-from running import BARE, ROOT, SCRIPT, SHORT, command, run, settings, summary, wait_for
+from support import ROOT
+from support.running import BARE, SCRIPT, SHORT, command, run, settings, summary, wait_for
 
 from ehlpetsc.analysis.compare import compare
 from ehlpetsc.results.reader import read_result

@@ -8,12 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from support import CASES, ROOT
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError
 
-ROOT = Path(__file__).parents[2]
-CASES = ROOT / "cases"
 SMOOTH = (CASES / "table1_smooth.toml").read_text()
 SURFACE = "\n[surface.1]\nfile = 'p.csv'\n"
 LEVEL = "".join(f"{k}e-6,0\n" for k in range(8))

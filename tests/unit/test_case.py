@@ -1,15 +1,14 @@
 """The case file: what is read, and what a user is told about faults in it."""
 
 import tomllib
-from pathlib import Path
 
 import pytest
+from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError
 from ehlpetsc.quantities import STORED
 
-CASES = Path(__file__).parents[2] / "cases"
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
 
 

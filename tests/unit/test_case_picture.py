@@ -1,10 +1,9 @@
 """Pictures of cases before they run, and the roughness parameters in them."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from PIL import Image as image
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError
@@ -13,8 +12,6 @@ from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot.case_picture import draw_case, passing
 from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameters
 from ehlpetsc.surfaces.roughness import Roughness
-
-CASES = Path(__file__).parents[2] / "cases"
 
 
 def test_parameters_of_a_cosine():

@@ -1,15 +1,13 @@
 """A step counts by the program's own certificate, whatever SNES says of it; both contact models."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 import ehlpetsc
 from ehlpetsc.errors import NotConverged
 from ehlpetsc.stepping.certificate import find_fault
 
-CASES = Path(__file__).parents[2] / "cases"
 MESH = {"mesh.points_per_half_width": 30, "mesh.inlet": -1.5, "mesh.outlet": 1.3}
 CLOSED = 20  # a node that is put into contact
 TIGHT = {"snes_atol": "1e-7"}

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from made_results import A
 from matplotlib.figure import Figure
+from support.made_results import A
 
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from made_results import P0, A, make_result
+from support.made_results import P0, A, make_result
 
 from ehlpetsc.analysis.compare import Line, compare, main
 from ehlpetsc.results.reader import read_result

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from made_results import A, make_result
+from support.made_results import A, make_result
 
 from ehlpetsc.analysis import contact_statistics as counts
 from ehlpetsc.results.reader import read_result

@@ -2,10 +2,10 @@
 
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError
@@ -17,7 +17,6 @@ from ehlpetsc.surfaces.mesh_resolution import _running_median, spikes
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.samples import Samples
 
-ROOT = Path(__file__).parents[2]
 COARSE = {"mesh.points_per_half_width": 20, "mesh.inlet": -1.5, "mesh.outlet": 1.3, "time.travel": 0.5}
 
 

@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from made_results import make_result
+from support import ROOT
+from support.made_results import make_result
 from test_output import file_size_limit
 
 from ehlpetsc.analysis import ensemble
@@ -17,7 +18,6 @@ from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
 from ehlpetsc.study.__main__ import main as study
 
-ROOT = Path(__file__).parents[2]
 CASE = ROOT / "cases" / "dry_hertz.toml"
 PROFILE = "0.0,1e-7\n1e-6,2e-7\n"
 

@@ -3,13 +3,13 @@
 import os
 import re
 import shutil
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from made_results import make_result
-from post_result_file import Scene, write
+from support import CASES, refused
+from support.made_loads import Scene, write
+from support.made_results import make_result
 from test_derived_files import PROFILE, foreign
 from test_output import file_size_limit
 
@@ -24,8 +24,6 @@ from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.post import run as post_run
 from ehlpetsc.post.command import main as post
 from ehlpetsc.results.restart_file import save_restart
-
-CASES = Path(__file__).parents[2] / "cases"
 
 
 @pytest.fixture
@@ -47,13 +45,11 @@ def lived(tmp_path):
     return tmp_path / "a.life.h5"
 
 
-def refused(capsys, command, *words):
+def sentence(capsys, command, *words):
     """The one sentence that a command ends with, after notes."""
-    capsys.readouterr()
-    assert command([str(word) for word in words]) == 2
-    *notes, told = capsys.readouterr().err.splitlines()
+    *notes, said = refused(capsys, command, *words).splitlines()
     assert all(re.search("note: |warning: |already there", line) for line in notes), notes
-    return told
+    return said
 
 
 @pytest.mark.parametrize(
@@ -62,7 +58,7 @@ def refused(capsys, command, *words):
 def test_gears_replaces_nothing_but_files_of_its_own(pair, tmp_path, capsys, option, ending):
     other = foreign(tmp_path, f"other{ending}")
     before = other.read_bytes()
-    told = refused(capsys, gears, pair, option, other)
+    told = sentence(capsys, gears, pair, option, other)
     assert f"{other}: " in told and option in told
     assert other.read_bytes() == before
 
@@ -72,7 +68,7 @@ def test_gears_replaces_nothing_but_files_of_its_own(pair, tmp_path, capsys, opt
 def test_gears_refuses_nonsense_for_a_file(pair, tmp_path, capsys, option, name):
     (tmp_path / "sub").mkdir()
     before = pair.read_bytes()
-    assert refused(capsys, gears, pair, option, name)
+    assert sentence(capsys, gears, pair, option, name)
     assert pair.read_bytes() == before
     assert sorted(os.listdir(tmp_path)) == ["pair.toml", "sub"]
 
@@ -84,7 +80,7 @@ def test_gears_writes_its_files_again_and_a_full_disk_leaves_them(pair, tmp_path
     before = [path.read_bytes() for path in files]
     for words in ((pair, "--csv", "mesh.csv", "--no-picture"), (pair,)):
         with file_size_limit(1024):
-            assert "not written, File too large" in refused(capsys, gears, *words)
+            assert "not written, File too large" in sentence(capsys, gears, *words)
     assert [path.read_bytes() for path in files] == before
     assert len(os.listdir(tmp_path)) == 3
 
@@ -97,7 +93,7 @@ def test_what_is_no_input_is_told_in_one_sentence(tmp_path, monkeypatch, capsys,
         (tmp_path / folder).mkdir()
     (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0")
     save_restart(tmp_path / "a.restart.h5", {}, {"case": "a"})
-    told = refused(capsys, command, name)
+    told = sentence(capsys, command, name)
     assert not told.startswith(" "), "an empty name is shown as such"
     assert len(os.listdir(tmp_path)) == 4
 
@@ -106,7 +102,7 @@ def test_what_is_no_input_is_told_in_one_sentence(tmp_path, monkeypatch, capsys,
 def test_a_summary_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
-    assert f"{other}: " in refused(capsys, summary, result, "-o", other)
+    assert f"{other}: " in sentence(capsys, summary, result, "-o", other)
     assert other.read_bytes() == before
 
 
@@ -115,11 +111,11 @@ def test_the_picture_of_a_life_replaces_pictures_alone(lived, tmp_path, capsys):
     picture = tmp_path / "a.life.png"
     before = picture.read_bytes()
     with file_size_limit(4096):
-        assert refused(capsys, life, lived) == f"ehlpetsc.life: {picture}: not written, File too large"
+        assert sentence(capsys, life, lived) == f"ehlpetsc.life: {picture}: not written, File too large"
     assert picture.read_bytes() == before
     make_result(picture)
     before = picture.read_bytes()
-    assert "exists and is not of that kind" in refused(capsys, life, lived)
+    assert "exists and is not of that kind" in sentence(capsys, life, lived)
     assert picture.read_bytes() == before
     assert sorted(os.listdir(tmp_path)) == ["a.life.h5", "a.life.png"]
 
@@ -128,7 +124,7 @@ def test_a_damaged_life_is_told_in_one_sentence(lived, capsys):
     with h5py.File(lived, "a") as file:
         del file["figures"]
         file["figures"] = 1.0
-    assert "damaged" in refused(capsys, life, lived)
+    assert "damaged" in sentence(capsys, life, lived)
 
 
 @pytest.mark.parametrize("name", ["", "case.toml", "profile.csv", "a.png", "sub", "sub.h5"])
@@ -139,7 +135,7 @@ def test_a_life_is_written_to_no_other_file(tmp_path, monkeypatch, capsys, name)
     if name in ("case.toml", "profile.csv", "a.png"):
         foreign(tmp_path, name)
     before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
-    assert refused(capsys, life, CASES / "life.toml", "-o", name, "--overwrite")
+    assert sentence(capsys, life, CASES / "life.toml", "-o", name, "--overwrite")
     assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
 
 
@@ -171,7 +167,7 @@ def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, n
     other = tmp_path / "p" / name
     other.parent.mkdir()
     other.write_text(PROFILE)
-    assert f"{other}: exists and is not of that kind" in refused(
+    assert f"{other}: exists and is not of that kind" in sentence(
         capsys, post, crossing, "--pictures", other.parent
     )
     assert other.read_text() == PROFILE
@@ -181,8 +177,8 @@ def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, n
 def test_post_tells_of_a_folder_that_cannot_be_written(crossing, tmp_path, capsys, folder):
     (tmp_path / "file").write_text("")
     folder = tmp_path / folder  # /proc: of its own
-    assert f"{folder}" in refused(capsys, post, crossing, "-o", folder / "x.post.h5")
-    assert f"{folder}" in refused(capsys, post, crossing, "--pictures", folder)
+    assert f"{folder}" in sentence(capsys, post, crossing, "-o", folder / "x.post.h5")
+    assert f"{folder}" in sentence(capsys, post, crossing, "--pictures", folder)
     assert (tmp_path / "file").read_text() == ""
 
 
@@ -199,5 +195,5 @@ def test_post_tells_of_a_folder_that_went_during_the_run(crossing, tmp_path, cap
         return values
 
     monkeypatch.setattr(post_run, "solve", go)
-    assert "not written" in refused(capsys, post, crossing, "-o", out / "x.post.h5")
+    assert "not written" in sentence(capsys, post, crossing, "-o", out / "x.post.h5")
     assert (out.read_text() == left) if left else not out.exists()

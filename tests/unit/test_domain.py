@@ -1,9 +1,8 @@
 """Domain and mesh that do not hold the contact: told or refused before a run, an error after it."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
@@ -17,7 +16,6 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.domain import domain_faults, domain_warnings
 from ehlpetsc.stepping.domain_ends import check_ends
 
-CASES = Path(__file__).parents[2] / "cases"
 SMOOTH = CASES / "table1_smooth.toml"
 SLOW = {"contact.load": 2.1e6, "motion.entrainment_speed": 0.005}
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from made_results import make_result, with_solids
 from matplotlib.image import imread
+from support.made_results import make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.plot.__main__ import main as plot

@@ -1,17 +1,16 @@
 """The reference solutions are solutions, and the formulas give what was computed independently."""
 
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics import exact_solutions, film_formulas, published_values
 from ehlpetsc.physics.scales import Scales, hertz_line, moes_groups, reduced_modulus
 
-CASES = Path(__file__).parents[2] / "cases"
 E = reduced_modulus((207e9, 207e9), (0.3, 0.3))
 R = 0.0191
 LOAD = 527e3

@@ -1,10 +1,10 @@
 """The scene in words: its figures, its size, what is switched off."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -20,7 +20,6 @@ from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
-CASES = Path(__file__).parents[2] / "cases"
 
 
 def lines(name, *overrides):

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from made_results import A, make_result
+from support.made_results import A, make_result
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales

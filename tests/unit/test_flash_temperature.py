@@ -1,15 +1,13 @@
 """Warnings of isothermal cases: before the run by an estimated friction, after it by its own."""
 
-from pathlib import Path
-
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.limits import limits
 from ehlpetsc.run.preview.warnings import heat_warnings
 
-CASES = Path(__file__).parents[2] / "cases"
 TOTALS = {"p_max": 1e9, "oil_pressure": 1e9, "mass_error": 0.0, "molecular_films": 0}
 HEAT = "heat.bulk_temperature=363.0"
 

@@ -5,7 +5,7 @@ import math
 import h5py
 import numpy as np
 import pytest
-from made_results import make_result
+from support.made_results import make_result
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError

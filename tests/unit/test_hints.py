@@ -2,17 +2,16 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case.hints import nearest
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.rheology import viscosity
 
-CASES = Path(__file__).parents[2] / "cases"
 SMOOTH = CASES / "table1_smooth.toml"
 OIL = {"fluid.law": "roelands", "fluid.kappa": None, "fluid.chi": None}
 

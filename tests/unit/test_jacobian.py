@@ -1,11 +1,11 @@
 """The whole Jacobian against differences of the residual, at a state with contact, cavity and film."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import petsc4py
 import pytest
+from support import CASES
 
 petsc4py.init([])
 
@@ -27,7 +27,6 @@ from ehlpetsc.nonlinear.systems.two_fields import TwoFields
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
-CASES = Path(__file__).parents[2] / "cases"
 MESH = ["mesh.points_per_half_width=24", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
 ALONE, BESIDE = [20, 30, 47], 31  # nodes that touch; one beside another of them
 H00 = -0.3

@@ -3,18 +3,16 @@
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import ROOT
 
 from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.equations import EQUATIONS
 from ehlpetsc.errors import CaseError, UsageError
 from ehlpetsc.physics.rheology import density
-
-ROOT = Path(__file__).parents[2]
 
 
 def test_the_page_is_what_the_schema_says():

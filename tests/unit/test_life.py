@@ -1,9 +1,8 @@
 """Laws of a surface over its life: jumps, ageing of cells under a receding surface, micropits, its file."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
@@ -14,7 +13,6 @@ from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.surfaces.body_field import BodyField
 
-CASES = Path(__file__).parents[2] / "cases"
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])
 
 

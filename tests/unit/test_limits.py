@@ -1,16 +1,15 @@
 """What is said at the end of a run that went beyond the physics it computes with."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.limits import limits
 from ehlpetsc.surfaces.roughness import Roughness
 
-CASES = Path(__file__).parents[2] / "cases"
 WITHIN = {
     "p_max": 1.2e9,
     "oil_pressure": 1.2e9,

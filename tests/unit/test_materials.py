@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from post_result_file import Scene, write
+from support.made_loads import Scene, write
 
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.case.tables.post import Post

@@ -1,15 +1,14 @@
 """Newton's method around SNES: interruptions, films that reach their bound, options, failures."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES
 
 import ehlpetsc
 from ehlpetsc.errors import SolveFailed, UsageError
 
-CASES = Path(__file__).parents[2] / "cases"
 # the inlet near the contact, thin oil: the asperities touch within few steps
 TOUCHING = {
     "mesh.inlet": -1.2,

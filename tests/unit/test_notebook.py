@@ -11,7 +11,8 @@ from pathlib import Path
 import matplotlib
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).resolve().parents[2]
+
 NOTEBOOK = ROOT / "cases" / "first_steps.ipynb"
 DPI = 50  # of the pictures stored
 MOST_BYTES = 180_000

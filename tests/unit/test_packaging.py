@@ -11,11 +11,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from support import ROOT
 
 from ehlpetsc import commands
 from ehlpetsc.results.reader import read_result
 
-ROOT = Path(__file__).parents[2]
 COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
 # to compile takes longer than these few steps
 OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/", "NUMBA_DISABLE_JIT": "1"}

@@ -7,9 +7,9 @@ from xml.etree import ElementTree
 import h5py
 import numpy as np
 import pytest
-from made_results import P0, A, make_result, with_solids
 from matplotlib.figure import Figure
 from PIL import Image as image
+from support.made_results import P0, A, make_result, with_solids
 
 from ehlpetsc.case.loading import Case
 from ehlpetsc.errors import OutputError

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from post_result_file import Scene, write
+from support.made_loads import Scene, write
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.post import Material, cycles_to_failure, damage, rainflow, strain_range

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from post_result_file import LOAD, A, Scene, write
+from support.made_loads import LOAD, A, Scene, write
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError, PostError

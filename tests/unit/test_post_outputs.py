@@ -15,7 +15,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from post_result_file import Scene, write
+from support import ROOT, refused
+from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.post import subprocess_guard
@@ -26,7 +27,6 @@ from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import PostResult
 
-ROOT = Path(__file__).resolve().parents[2]
 COMMAND = [sys.executable, "-m", "ehlpetsc.post"]
 
 
@@ -45,24 +45,18 @@ def left_over(folder):
     return [path.name for path in folder.iterdir() if ".parts" in path.name or ".tmp" in path.name]
 
 
-def refused(capsys, *argv):
-    """Exit status 2, and why."""
-    assert main([str(part) for part in argv]) == ExitStatus.BAD_INPUT
-    return capsys.readouterr().err
-
-
 def test_the_input_is_never_the_output(result, tmp_path, capsys):
     before = result.read_bytes()
-    assert "is read by this run" in refused(capsys, result, "-o", result)
+    assert "is read by this run" in refused(capsys, main, result, "-o", result)
     link = tmp_path / "link.h5"
     link.symlink_to(result)
-    assert "is read by this run" in refused(capsys, result, "-o", link)
+    assert "is read by this run" in refused(capsys, main, result, "-o", link)
     assert result.read_bytes() == before and not left_over(tmp_path)
 
 
 def test_the_output_of_one_file_is_never_another_input(result, scene, capsys):
     assert main([str(result)]) == 0
-    said = refused(capsys, result, result.with_name("run.post.h5"))
+    said = refused(capsys, main, result, result.with_name("run.post.h5"))
     assert "run.post.h5: is read by this run" in said and "a result of post-processing; give" in said
 
 
@@ -72,17 +66,17 @@ def test_other_files_are_not_overwritten(result, scene, tmp_path, capsys):
     text.write_text("mine")
     before = other.read_bytes()
     for path in (other, text):
-        assert "exists and is not a result of post-processing" in refused(capsys, result, "-o", path)
-    assert "a folder, not a file" in refused(capsys, result, "-o", tmp_path)
+        assert "exists and is not a result of post-processing" in refused(capsys, main, result, "-o", path)
+    assert "a folder, not a file" in refused(capsys, main, result, "-o", tmp_path)
     assert other.read_bytes() == before and text.read_text() == "mine"
-    assert "does not exist" in refused(capsys, result, "-o", tmp_path / "none" / "a.h5")
+    assert "does not exist" in refused(capsys, main, result, "-o", tmp_path / "none" / "a.h5")
 
 
 def test_a_folder_of_another_kind_is_not_emptied(result, tmp_path, capsys):
     mine = tmp_path / "run.post.h5.parts" / "thesis.tex"
     mine.parent.mkdir()
     mine.write_text("mine")
-    assert "is in the way" in refused(capsys, result)
+    assert "is in the way" in refused(capsys, main, result)
     assert mine.read_text() == "mine"
 
 
@@ -108,7 +102,7 @@ def test_an_edit_of_the_same_size_and_time_is_seen(result, tmp_path, capsys):
 
 def test_two_runs_with_one_output(result, tmp_path, capsys):
     with Lock(tmp_path / "run.post.h5"):
-        assert "is being written by" in refused(capsys, result)
+        assert "is being written by" in refused(capsys, main, result)
     assert main([str(result)]) == 0 and not left_over(tmp_path)
 
 
@@ -189,8 +183,8 @@ def test_a_name_that_is_none(name, capsys):
 def test_a_restart_file_and_a_folder_are_no_results(tmp_path, capsys):
     packed = ROOT / "tests" / "data" / "older" / "direct.restart.h5.gz"
     (tmp_path / "r.restart.h5").write_bytes(gzip.decompress(packed.read_bytes()))
-    assert "not a result of ehlpetsc" in refused(capsys, tmp_path / "r.restart.h5")
-    assert "no such file" in refused(capsys, tmp_path)
+    assert "not a result of ehlpetsc" in refused(capsys, main, tmp_path / "r.restart.h5")
+    assert "no such file" in refused(capsys, main, tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["r.restart.h5"]
 
 

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from post_result_file import Scene, write
+from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus, PostError
 from ehlpetsc.post import fold, largest_near, pass_statistics

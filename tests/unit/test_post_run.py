@@ -10,7 +10,8 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from post_result_file import Scene, write
+from support import ROOT, refused
+from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.post import dang_van
@@ -23,7 +24,6 @@ from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.results.post_result import PostResult
 
-ROOT = Path(__file__).resolve().parents[2]
 FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.run", "ehlpetsc.plot")
 
 
@@ -60,14 +60,6 @@ def legends(monkeypatch):
 @pytest.fixture
 def result(scene, tmp_path):
     return write(tmp_path / "run.h5", scene)
-
-
-def fault(capsys, *argv):
-    """Exit status 2 and what was said."""
-    assert main([str(part) for part in argv]) == 2
-    said = capsys.readouterr().err
-    assert "Traceback" not in said
-    return said
 
 
 def test_result_has_the_fixed_names(result, scene, capsys):
@@ -195,14 +187,14 @@ with h5py.File({str(path)!r}) as old, h5py.File({str(path) + ".new"!r}, "w", lib
 )
 def test_missing_dataset(name, words, scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__(name))
-    assert words in fault(capsys, path)
+    assert words in refused(capsys, main, path)
 
 
 def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
     def spoil(file):
         file["pressure"][300, 70] = np.nan
 
-    said = fault(capsys, write(tmp_path / "a.h5", scene, edit=spoil))
+    said = refused(capsys, main, write(tmp_path / "a.h5", scene, edit=spoil))
     assert "dataset pressure is nan at frame 300" in said and "x/a = -0.75" in said
     assert not list(tmp_path.glob("a.post.h5*"))
 
@@ -210,26 +202,26 @@ def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
 @pytest.mark.parametrize("name, value", [("a", np.nan), ("p0", 0.0), ("u1", np.inf), ("u2", "1")])
 def test_attributes_that_are_no_numbers(name, value, scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.attrs.__setitem__(name, value))
-    assert f"attribute {name}" in fault(capsys, path)
+    assert f"attribute {name}" in refused(capsys, main, path)
 
 
 def test_nan_in_x(scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file["x"].__setitem__(3, np.nan))
-    assert "x are not increasing numbers" in fault(capsys, path)
+    assert "x are not increasing numbers" in refused(capsys, main, path)
 
 
 def test_truncated_file(result, capsys):
     os.truncate(result, result.stat().st_size // 2)
-    assert "truncated" in fault(capsys, result)
+    assert "truncated" in refused(capsys, main, result)
 
 
 def test_not_a_result(tmp_path, capsys):
     (tmp_path / "a.h5").write_text("no HDF5")
-    assert "not an HDF5 file" in fault(capsys, tmp_path / "a.h5")
-    assert "no such file" in fault(capsys, tmp_path / "b.h5")
+    assert "not an HDF5 file" in refused(capsys, main, tmp_path / "a.h5")
+    assert "no such file" in refused(capsys, main, tmp_path / "b.h5")
     with h5py.File(tmp_path / "c.h5", "w") as file:
         file["x"] = [1.0]
-    assert "not a result of ehlpetsc" in fault(capsys, tmp_path / "c.h5")
+    assert "not a result of ehlpetsc" in refused(capsys, main, tmp_path / "c.h5")
 
 
 def test_a_file_in_a_folder_of_others_is_not_read(tmp_path, capsys, monkeypatch):
@@ -244,9 +236,9 @@ def test_a_file_in_a_folder_of_others_is_not_read(tmp_path, capsys, monkeypatch)
 
 
 def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
-    assert "steady run" in fault(capsys, write(tmp_path / "a.h5", scene, steady=True, frames=1))
-    assert "one stored frame" in fault(capsys, write(tmp_path / "b.h5", scene, frames=1))
-    assert "raise time.travel" in fault(capsys, write(tmp_path / "c.h5", scene, frames=40))
+    assert "steady run" in refused(capsys, main, write(tmp_path / "a.h5", scene, steady=True, frames=1))
+    assert "one stored frame" in refused(capsys, main, write(tmp_path / "b.h5", scene, frames=1))
+    assert "raise time.travel" in refused(capsys, main, write(tmp_path / "c.h5", scene, frames=40))
 
 
 @pytest.mark.parametrize(
@@ -259,12 +251,12 @@ def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
     ],
 )
 def test_faults_in_the_post_section(post, text, scene, tmp_path, capsys):
-    assert text in fault(capsys, write(tmp_path / "a.h5", scene, post=post))
+    assert text in refused(capsys, main, write(tmp_path / "a.h5", scene, post=post))
 
 
 def test_bad_depths(result, capsys):
-    assert "post.depths = " in fault(capsys, result, "--depths", "-0.1")
-    assert "post.depths = " in fault(capsys, result, "--depths", "nan")
+    assert "post.depths = " in refused(capsys, main, result, "--depths", "-0.1")
+    assert "post.depths = " in refused(capsys, main, result, "--depths", "nan")
 
 
 def test_every_is_warned_of(scene, tmp_path, capsys):
@@ -318,8 +310,8 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
     assert len(legends) == 8  # distributions of one result and of both at two depths, a history; PNG and SVG
     for drawn_already in ("damage_picture", "depth_picture", "_save"):
         monkeypatch.setattr(gallery, drawn_already, lambda *_: [])
-    assert "frames 0 to" in fault(capsys, paths[0], "--pictures", "--frame", "99999")
-    said = fault(capsys, paths[0], "--pictures", "--point", "400", "0.1")
+    assert "frames 0 to" in refused(capsys, main, paths[0], "--pictures", "--frame", "99999")
+    said = refused(capsys, main, paths[0], "--pictures", "--point", "400", "0.1")
     assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
 
 
@@ -345,7 +337,7 @@ def test_passes_of_one_surface(tmp_path, legends, capsys, monkeypatch):
         assert (file["damage/2_count"][:] == 2).all() and file.attrs["passes"] == 2
         assert file["damage/s"][:] == pytest.approx(s)
     assert f"first failure after {1 / damages.mean(axis=0)[1].max():.4g} passes" in capsys.readouterr().out
-    assert "profiles of surface 1 differ" in fault(capsys, *paths, "--passes", "1", "--pictures")
+    assert "profiles of surface 1 differ" in refused(capsys, main, *paths, "--passes", "1", "--pictures")
     with pytest.raises(SystemExit):
         main([paths[0], "--passes", "2"])
 
@@ -437,7 +429,7 @@ def test_residual_stress_without_a_mean_stress_term_is_told(scene, tmp_path, cap
     ],
 )
 def test_faults_in_residual_stress_and_criteria(post, text, scene, tmp_path, capsys):
-    assert text in fault(capsys, write(tmp_path / "a.h5", scene, post=post))
+    assert text in refused(capsys, main, write(tmp_path / "a.h5", scene, post=post))
 
 
 def test_pictures_are_drawn_over_the_surfaces_own_abscissa(result, capsys):

@@ -2,17 +2,16 @@
 
 import random
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.surfaces.measured import text_columns
 from ehlpetsc.surfaces.measured.profile_files import Layout, read_profile
 
-CASES = Path(__file__).parents[2] / "cases"
 X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])
 
 

@@ -7,7 +7,8 @@ import random
 from functools import partial
 
 import pytest
-from fuzzing import CASES, SEED, draws, faults_of
+from support import CASES
+from support.fuzzing import SEED, draws, faults_of
 
 from ehlpetsc.case.loading import load
 

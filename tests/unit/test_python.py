@@ -6,15 +6,13 @@ import re
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES, ROOT
 
 import ehlpetsc
 
-ROOT = Path(__file__).parents[2]
-CASES = ROOT / "cases"
 QUICK = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40, "time.travel": 0.05}
 
 

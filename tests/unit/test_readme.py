@@ -4,13 +4,13 @@ import re
 from pathlib import Path
 
 import pytest
+from support import ROOT
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.banner import banner
 from ehlpetsc.surfaces.roughness import Roughness
 
-ROOT = Path(__file__).parents[2]
 PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))
 MAIN = (ROOT / "README.md").read_text(encoding="utf-8")
 

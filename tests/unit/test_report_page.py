@@ -8,7 +8,7 @@ import re
 import h5py
 import numpy as np
 import pytest
-from made_results import make_result, with_solids
+from support.made_results import make_result, with_solids
 
 from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot.page import report_data

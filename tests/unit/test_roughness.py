@@ -1,9 +1,8 @@
 """Profiles: reading, filters, synthetic heights, motion through the contact, coarse meshes."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.tables.surface import SurfaceProfile
@@ -17,7 +16,6 @@ from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
 
-CASES = Path(__file__).parents[2] / "cases"
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
 A = 1e-3  # half width of the domains made here, m
 

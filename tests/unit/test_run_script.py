@@ -9,8 +9,8 @@ import time
 from pathlib import Path
 
 import pytest
+from support import ROOT
 
-ROOT = Path(__file__).parents[2]
 ECHO = """\
 import os, sys
 if "--ranks" in sys.argv:

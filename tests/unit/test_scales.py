@@ -1,15 +1,13 @@
 """Hertz scales, speeds and mesh against published and closed-form figures."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales, moes_groups, reduced_modulus
-
-CASES = Path(__file__).parents[2] / "cases"
 
 
 def scales(name, *overrides):

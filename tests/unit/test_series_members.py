@@ -4,7 +4,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from made_results import make_result, with_solids
+from support.made_results import make_result, with_solids
 
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members

@@ -1,17 +1,16 @@
 """How much contact there is: which runs a study makes of it, observed orders and limits."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.study import contact
 from ehlpetsc.study.contact import Measured, Setting, for_direct_contact, order, orders, settings, table
 from ehlpetsc.study.runs import Outcome
 
-CASES = Path(__file__).parents[2] / "cases"
 FOUND = Measured(0.05, 0.07, 0.09, 0.1, 0.2, 0.3, 8.0, 6.0, 5.5, 0, 1e-8, 3.0)
 
 

@@ -5,18 +5,16 @@ import io
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from made_results import make_result, with_solids
+from support import ROOT
+from support.made_results import make_result, with_solids
 
 from ehlpetsc import commands, environment
 from ehlpetsc.analysis import summary
 from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.reader import read_result
-
-ROOT = Path(__file__).parents[2]
 
 
 def call(*words, cwd):

@@ -3,15 +3,14 @@
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import pytest
+from support import CASES
 
 from ehlpetsc.case import units
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
 
-CASES = Path(__file__).parents[2] / "cases"
 SMOOTH = CASES / "table1_smooth.toml"
 
 

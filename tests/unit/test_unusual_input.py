@@ -2,7 +2,7 @@
 
 import pytest
 import tomlkit
-from made_results import make_result
+from support.made_results import make_result
 
 from ehlpetsc.__main__ import main
 from ehlpetsc.analysis import contact_statistics, ensemble

@@ -1,10 +1,9 @@
 """Mixed contact through a compliant layer: law, balance, convergence, limits, range of speeds, restart."""
 
-from pathlib import Path
-
 import numpy as np
 import petsc4py
 import pytest
+from support import CASES
 
 petsc4py.init([])
 
@@ -14,7 +13,6 @@ from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.asperities import GAMMA
 from ehlpetsc.surfaces.samples import samples
 
-CASES = Path(__file__).parents[2] / "cases"
 SIGMA = 20e-9
 RESOLVED = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "time.travel": 5.0}
 SMOOTH = {"surface": None, "time": None}

@@ -9,7 +9,7 @@ that, such that the ratio wanted comes out. What is left of the cylinder is thus
 
 import numpy as np
 import pytest
-from driving import Scene, observed_order
+from support.driving import Scene, observed_order
 
 from ehlpetsc.physics import exact_solutions
 from ehlpetsc.physics.scales import Scales

@@ -1,16 +1,14 @@
 """Film and surface temperatures: values of an independent solver, energy balance, limits, dry friction."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import CaseError, load
 from ehlpetsc.physics.heat.body_heat import Solid
 from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature, moving_band
 from ehlpetsc.run.simulation import Simulation
 
-CASES = Path(__file__).parents[2] / "cases"
 BULK = 363.0
 HEAT = f"heat.bulk_temperature={BULK}"
 THICK = ["fluid.viscosity=0.02", "motion.entrainment_speed=10.0", "motion.slide_roll_ratio=0.5"]

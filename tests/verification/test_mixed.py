@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from driving import CASES, Scene
+from support import CASES
+from support.driving import Scene
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.rheology import density, viscosity

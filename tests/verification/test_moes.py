@@ -16,7 +16,7 @@ With the inlet at -8 instead of -4 half widths the lighter load gives 0.26 % mor
 
 import numpy as np
 import pytest
-from driving import Scene, observed_order
+from support.driving import Scene, observed_order
 
 from ehlpetsc.physics.published_values import MOES_POINTS
 

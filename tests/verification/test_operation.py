@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from driving import CASES, observed_order
 from scipy.integrate import solve_ivp
+from support import CASES
+from support.driving import observed_order
 
 import ehlpetsc
 from ehlpetsc.case.loading import load

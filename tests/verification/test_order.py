@@ -19,7 +19,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from driving import Scene, observed_order
+from support.driving import Scene, observed_order
 
 COARSEST = 8  # points per half width
 WINDOW = (-1.0, 0.5)

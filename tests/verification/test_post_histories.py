@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from post_result_file import P0, A, Scene, write
+from support.made_loads import P0, A, Scene, write
 
 from ehlpetsc.post import Material, damage, stress
 from ehlpetsc.post.fatigue.accumulate import Counting

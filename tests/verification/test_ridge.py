@@ -16,8 +16,9 @@ a/dx  courant  h(0)     h_min    p_max
 
 import numpy as np
 import pytest
-from driving import CASES, Scene
 from scipy.special import erf
+from support import CASES
+from support.driving import Scene
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.published_values import RIDGE

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from driving import Scene
+from support.driving import Scene
 
 pytestmark = pytest.mark.slow
 # the inlet near the contact, thin oil: the asperities touch within few steps

@@ -1,18 +1,15 @@
 """Smooth steady films against published and independently computed values, and Hertz, through the solver."""
 
-from pathlib import Path
-
 import numpy as np
 import petsc4py
 import pytest
+from support import CASES
 
 petsc4py.init([])
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.published_values import SMOOTH_FILMS_BY_MESH
 from ehlpetsc.run.simulation import Simulation
-
-CASES = Path(__file__).parents[2] / "cases"
 
 
 def steady(name, *overrides):

@@ -3,11 +3,11 @@
 import resource
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import petsc4py
 import pytest
+from support import CASES
 
 petsc4py.init([])
 
@@ -17,7 +17,6 @@ from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import steady_start, time_stepping
 from ehlpetsc.stepping.first_guess import DIRECT, smoothed
 
-CASES = Path(__file__).parents[2] / "cases"
 GROUND = {"kind": "ground", "ra": 0.1e-6, "correlation": 25e-6, "skewness": -1.0, "seed": 1}
 MESH = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
 

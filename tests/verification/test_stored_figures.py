@@ -4,15 +4,14 @@ The equations are written here once more, over whole arrays and in SI units: the
 docstrings state it, the half-plane's deflection by the logarithm's integral over each linear piece.
 """
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support import CASES
 
 import ehlpetsc
 
-CASES = Path(__file__).parents[2] / "cases"
 SHORT = {"mesh.inlet": -1.4, "mesh.outlet": 1.3, "mesh.points_per_half_width": 60, "time.travel": 1.0}
 SCENES = {
     "direct": ("table1_rough.toml", SHORT | {"fluid.viscosity": 0.001}),

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import petsc4py
 import pytest
+from support import CASES
 
 petsc4py.init([])
 
@@ -21,7 +22,6 @@ from ehlpetsc.nonlinear import gauss_seidel as sweep
 from ehlpetsc.nonlinear.options import UsageError
 from ehlpetsc.run.simulation import Simulation
 
-CASES = Path(__file__).parents[2] / "cases"
 STORED = Path(__file__).with_name("rough_contacts.npz")
 CONTACTS = {974: [303, 304], 1113: [], 1252: [303]}
 

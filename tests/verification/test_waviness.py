@@ -13,7 +13,7 @@ wavelength  Fourier at 0   half peak to peak  published
 
 import numpy as np
 import pytest
-from driving import Scene
+from support.driving import Scene
 
 from ehlpetsc.physics.published_values import WAVINESS
 

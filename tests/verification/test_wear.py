@@ -1,15 +1,13 @@
 """Archard's wear: the worn volume is k times the integral of p_c |u1 - u2|, whatever the roughness."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import CaseError, load
 from ehlpetsc.effects.wear import wear_depth
 from ehlpetsc.run.simulation import Simulation
 
-CASES = Path(__file__).parents[2] / "cases"
 SHORT = ["mesh.points_per_half_width=40", "mesh.inlet=-1.5", "mesh.outlet=1.3", "time.travel=2.0"]
 K = 1e-15  # m^2/N
 

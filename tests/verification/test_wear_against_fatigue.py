@@ -1,9 +1,8 @@
 """Surfaces over their life: Miner's sum, Archard's volume, wear against fatigue, jumps, restart."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
@@ -13,7 +12,6 @@ from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.run.simulation import Simulation
 
-CASES = Path(__file__).parents[2] / "cases"
 SHORT = {"mesh.points_per_half_width": 10, "surface.1.scale": 1.0, "surface.2.scale": 1.0}
 
 

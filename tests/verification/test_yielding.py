@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from driving import CASES
+from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.elasticity import deflection_kernel

@@ -8,11 +8,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from prepared import Prepared
-
 from ehlpetsc import environment
+from support import ROOT
+from support.prepared import Prepared
 
-ROOT = Path(__file__).parents[2]
 PYTHON = sys.executable
 MAIN = str(ROOT / "ehlpetsc" / "__main__.py")
 TAMPERED = str(Path(__file__).with_name("tampered.py"))

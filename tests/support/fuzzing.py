@@ -2,7 +2,6 @@
 
 import os
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.explain import explain
 from ehlpetsc.surfaces.roughness import Roughness
 
-CASES = Path(__file__).parents[2] / "cases"
 SEED = int(os.environ.get("EHL_FUZZ_SEED", "1"))
 LARGE = 5000  # nodes of a mesh beyond which nothing is worked out on it
 

@@ -1,16 +1,14 @@
 """Driving a scene of the project from a test, without files, and fitting observed orders."""
 
-from pathlib import Path
-
 import numpy as np
 import petsc4py
+
+from support import CASES
 
 petsc4py.init([])
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
-
-CASES = Path(__file__).parents[2] / "cases"
 
 
 class Scene:
