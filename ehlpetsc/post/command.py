@@ -6,6 +6,8 @@ import time
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from ehlpetsc.compiled import COMPILED
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, PostError, not_written
 from ehlpetsc.post.arguments import arguments
@@ -90,10 +92,22 @@ def _summary(output, wall):
             + "".join(f" {surface}: D_max={result.largest(surface, k):.3e}" for surface in result.surfaces)
             + _weibull(result.fits[k])
         )
+    for surface, found in result.temperatures.items():
+        if result.complete[surface].any():
+            print(_temperatures(surface, found))
     points = " ".join(f"{name}={result.complete[name].sum()}" for name in result.surfaces)
     print(
         f"ehlpetsc.post: done {output} points {points} depths={len(result.z)} "
         f"asperities={len(result.height)} wall={wall:.2f}"
+    )
+
+
+def _temperatures(surface, found):
+    """Surface temperatures of the body points of a surface."""
+    flash, mean = found.flash[~np.isnan(found.flash)], found.mean[~np.isnan(found.mean)]
+    return (
+        f"surface {surface} temperature: highest={np.nanmax(found.highest):.5g} K "
+        f"mean={mean.mean():.5g} K flash_max={flash.max():.4g} K flash_median={np.median(flash):.4g} K"
     )
 
 

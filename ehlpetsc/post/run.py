@@ -92,6 +92,7 @@ def run(job, report=None, progress=None):
             report(f"{job.output}: already there, of the same file and options")
             return
         _note_material(loads.case, job.criteria, report)
+        _note_heat(loads, job.surfaces, report)
         if prepared.settings.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
             report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
         if job.counting.ranges == "window":
@@ -116,6 +117,16 @@ def _note_material(case, criteria, report):
             "note: dang-van holds where the steel has shaken down to elastic cycles; torsion_limit and "
             "bending_limit left out are those of bearing steel (ISO 281)"
         )
+
+
+def _note_heat(loads, surfaces, report):
+    """What heat adds to the result, and what it does not."""
+    if loads.case.heat is None:
+        return
+    if cold := [surface for surface in surfaces if surface not in loads.heated([surface])]:
+        names = ", ".join(f'"temperature_{surface}"' for surface in cold)
+        report(f"note: no surface temperatures in it: list {names} in output.fields of the case for them")
+    report("note: thermal stresses are not computed: damage is that of pressure and shear stress alone")
 
 
 def _compute(job, prepared, cache, progress):
@@ -180,6 +191,7 @@ def _store(job, prepared, cache, identity, report):
     contents = Contents(prepared, job.regression, columns(job.criteria), job.within)
     for surface in prepared.motions:
         contents.add(surface, np.stack([cache.load(surface, d) for d in prepared.settings.depths]))
+        contents.add_temperatures(surface)
     for note in contents.notes:
         report(note)
     attributes = contents.attributes(identity, job.counting, job.settings)

@@ -24,6 +24,23 @@ class WeibullFit(NamedTuple):
     r_squared: float
 
 
+class PointTemperatures(NamedTuple):
+    """Surface temperatures of body points in one pass, (ns,) [K]; nan where a point did not pass.
+
+    Attributes
+    ----------
+    highest : ndarray
+    mean : ndarray
+        Over the time inside the Hertz contact.
+    flash : ndarray
+        Highest temperature over that of the body.
+    """
+
+    highest: np.ndarray
+    mean: np.ndarray
+    flash: np.ndarray
+
+
 def post_path(path):
     """``RESULT.post.h5`` beside ``RESULT.h5``."""
     path = Path(path)
@@ -52,6 +69,8 @@ class PostResult:
         alpha and beta of the largest likelihood and their bounds, one a depth.
     criteria : dict
         By criterion, then surface: damage or utilisation (nz, ns).
+    temperatures : dict
+        PointTemperatures by surface; empty of a run without [heat].
     path, a, ratio, title, attrs
 
     Raises
@@ -95,6 +114,12 @@ class PostResult:
             columns = [group[name][:] for name in WeibullFit._fields]
             self.fits = [WeibullFit(*row) for row in zip(*columns, strict=True)]
             self.bounds = [{n: group[n][k] for n in BOUNDS if n in group} for k in range(len(self.z))]
+        heat = file.get("temperature", {})
+        self.temperatures = {
+            side: PointTemperatures(*(heat[f"{side}_{name}"][:] for name in PointTemperatures._fields))
+            for side in self.surfaces
+            if f"{side}_flash" in heat
+        }
         self.criteria = {}
         for name, group in file.get("criteria", {}).items():
             kind = "utilisation" if name == "dang_van" else "damage"
@@ -119,13 +144,18 @@ class PostResult:
         return self.passed(surface)[depth].max(initial=-np.inf) if self.complete[surface].any() else np.nan
 
     def summary(self):
-        """Depths, and by surface that passed the largest and the median damage at each of them."""
+        """Depths, and by surface that passed the largest and the median damage at each of them.
+
+        With [heat] also the largest flash temperature [K].
+        """
         found = {"z_over_a": self.z.tolist()}
         for side in self.surfaces:
             values = self.passed(side)
             if values.size:
                 largest, median = values.max(axis=1), np.median(values, axis=1)
                 found[side] = {"largest": largest.tolist(), "median": median.tolist()}
+                if side in self.temperatures:
+                    found[side]["flash_temperature"] = float(np.nanmax(self.temperatures[side].flash))
         return found
 
     def worst_point(self, surface):

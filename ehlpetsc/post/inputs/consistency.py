@@ -3,6 +3,7 @@
 import numpy as np
 
 from ehlpetsc.errors import PostError
+from ehlpetsc.post.inputs.loads import UNITS
 
 AGREE = 1e-4  # relative: attributes and case are the same numbers but for rounding
 LOAD_AGREES = 0.01  # the solver balances the load to rounding; other programs' quadrature may differ
@@ -10,6 +11,7 @@ FRAME_AGREES = 1e-4  # a stored frame, in single precision too, and the scalars 
 MIN_STEP = 2.0**-13  # of the nominal one: the solver gives up at twice that
 MAX_STEP = 1.5  # the solver's steps are at most the nominal one
 NEGATIVE = 1e-3  # of p0: rounding of a pressure at 0
+COLDEST = 100.0  # K: less is in degrees Celsius, or a rise
 
 
 def check_scales(loads):
@@ -58,7 +60,8 @@ class Balance:
     def __init__(self, loads):
         self.loads = loads
         self.load = loads.load
-        self.of_step = {name: loads.step_scalar(name) for name in ("load", "p_max", "friction")}
+        names = "load", "p_max", "friction", "temperature_1_max", "temperature_2_max"
+        self.of_step = {name: loads.step_scalar(name) for name in names}
 
     def check_pressure(self, first, total, low, high):
         """Sums, minima and maxima of the pressures of frames from `first` on."""
@@ -80,6 +83,11 @@ class Balance:
         limit = 10 * self.loads.p0
         self._refuse(size > limit, first, size, name, "its greatest value", limit, "or less")
 
+    def check_temperature(self, name, first, low, high):
+        """Least and greatest temperatures of frames from `first` on."""
+        self._refuse(low < COLDEST, first, low, name, "its least value", COLDEST, "K or more")
+        self._of_step(first, high, f"{name}_max", name, "its greatest value", COLDEST)
+
     def _of_step(self, first, found, name, dataset, what, size):
         known = self.of_step[name]
         if known is not None:
@@ -94,5 +102,5 @@ class Balance:
         should = np.broadcast_to(wanted, wrong.shape)[row]
         raise PostError(
             f"dataset {dataset}: {what} at frame {first + row} (t = {self.loads.time[first + row]:.6g} s) is "
-            f"{found[row]:.6g}, it must be {should:.6g} {why}: is it in Pa, and of this case?"
+            f"{found[row]:.6g}, it must be {should:.6g} {why}: is it in {UNITS[dataset]}, and of this case?"
         )

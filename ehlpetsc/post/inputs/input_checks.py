@@ -30,7 +30,7 @@ def input_digest(loads, surfaces):
     weights = np.stack([np.ones(nodes), np.arange(1, nodes + 1) * 0.6180339887498949 % 1], axis=1)
     for first in range(0, loads.time.size, FRAMES):
         last = min(first + FRAMES, loads.time.size)
-        for name in ("pressure", *(f"shear_stress_{surface}" for surface in surfaces)):
+        for name in loads.needed(surfaces):
             rows = loads.rows(name, first, last)
             with np.errstate(all="ignore"):  # of damaged numbers; they are looked for next
                 sums = rows @ weights
@@ -44,6 +44,9 @@ def _check_rows(balance, name, first, rows, total):
     low, high = rows.min(axis=1), rows.max(axis=1)
     if name == "pressure":
         balance.check_pressure(first, total, low, high)
+        return
+    if name.startswith("temperature"):
+        balance.check_temperature(name, first, low, high)
         return
     balance.check_shear_size(name, first, np.maximum(-low, high))
     if name == "shear_stress_2":

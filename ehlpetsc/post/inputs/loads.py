@@ -15,7 +15,9 @@ from ehlpetsc.results.reader import read_result
 CACHE = 32 << 20  # bytes of chunks kept a dataset
 VARIABLE = ("displacement_1", "displacement_2", "load_given")  # of changing operating conditions
 MIN_NODES = 8  # the slopes between nodes take seven
-UNITS = {"x": "m", "time": "s", "pressure": "Pa"} | {f"shear_stress_{surface}": "Pa" for surface in SURFACES}
+UNITS = {"x": "m", "time": "s", "pressure": "Pa"}
+UNITS |= {f"shear_stress_{surface}": "Pa" for surface in SURFACES}
+UNITS |= {f"temperature_{surface}": "K" for surface in SURFACES}
 
 
 class Loads:
@@ -132,9 +134,24 @@ class Loads:
         """Case text as stored."""
         return self._result.attrs["case"]
 
+    def heated(self, surfaces):
+        """Those of `surfaces` whose temperature is stored; none of a run without [heat]."""
+        stored = () if self.case.heat is None else self._result.fields
+        return tuple(surface for surface in surfaces if f"temperature_{surface}" in stored)
+
+    def bulk_temperature(self, surface):
+        """Temperature of the body of `surface` far from the contact [K]."""
+        return self.case.heat.bulk_temperature[SURFACES[::-1].index(surface)]
+
+    def needed(self, surfaces):
+        """Names of the fields that post-processing of `surfaces` reads."""
+        shear = (f"shear_stress_{surface}" for surface in surfaces)
+        heat = (f"temperature_{surface}" for surface in self.heated(surfaces))
+        return ("pressure", *shear, *heat)
+
     def check(self, surfaces):
-        """Raise PostError if a load that `surfaces` need is not there, or in another unit."""
-        for name in ("x", "time", "pressure", *(f"shear_stress_{surface}" for surface in surfaces)):
+        """Raise PostError if a field that `surfaces` need is not there, or in another unit."""
+        for name in ("x", "time", *self.needed(surfaces)):
             if name not in ("x", "time", *self._result.fields):
                 raise PostError(
                     f'no dataset {name} of frames: list "{name}" in output.fields of the case and run it '

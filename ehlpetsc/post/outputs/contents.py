@@ -6,6 +6,7 @@ from ehlpetsc.materials import DEFAULT
 from ehlpetsc.post.fatigue.passes import largest_near
 from ehlpetsc.post.fatigue.statistics import asperities, log_life, rank_correlation, weibull_fit
 from ehlpetsc.post.fatigue.weibull import LEVEL, weibull_bounds, weibull_likelihood
+from ehlpetsc.post.temperatures import point_temperatures
 
 
 class Contents:
@@ -56,6 +57,17 @@ class Contents:
                 ranks = np.array([rank_correlation(paper, other) for paper, other in pairs])
                 self.datasets[f"{group}/{surface}_rank_correlation"] = ranks
         self._add_asperities(surface, values[..., 0])
+
+    def add_temperatures(self, surface):
+        """Surface temperatures of the points of a surface; nothing where they are not stored."""
+        prepared = self.prepared
+        if surface not in prepared.loads.heated([surface]):
+            return
+        motion = prepared.motions[surface]
+        found = point_temperatures(prepared.loads, surface, motion, prepared.s.size)
+        self.datasets |= {f"temperature/{surface}_{name}": values for name, values in found._asdict().items()}
+        bulk = {f"bulk_temperature_{surface}": prepared.loads.bulk_temperature(surface)}
+        self.groups["temperature"] = self.groups.get("temperature", {}) | bulk
 
     def _add_asperities(self, surface, damage):
         prepared, inner = self.prepared, "" if surface == self.first else f"{surface}/"

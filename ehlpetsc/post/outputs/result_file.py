@@ -56,6 +56,9 @@ DESCRIPTIONS = {
     "weibull/r_squared": ("1", "squared correlation of the median rank regression"),
     "weibull/at_least_one": ("1", "asperities with damage of 1 or more"),
     "weibull/undamaged": ("1", "asperities without damage, censored in the fit"),
+    "temperature/highest": ("K", "highest surface temperature of a point in one pass"),
+    "temperature/mean": ("K", "surface temperature of a point, mean over its time in the Hertz contact"),
+    "temperature/flash": ("K", "flash temperature of a point: its highest over that of the body"),
     "profile/s": ("m", "body coordinate"),
     "profile/z": ("m", "profile height, positive out of the metal"),
 }
@@ -133,6 +136,8 @@ def _scales(file):
             dataset.dims[0].attach_scale(z)
             if dataset.ndim == 2:
                 dataset.dims[1].attach_scale(s)
+    for dataset in file.get("temperature", {}).values():
+        dataset.dims[0].attach_scale(s)
     for dataset in file["damage"].values():
         if isinstance(dataset, h5py.Dataset) and dataset.ndim == 2:
             dataset.dims[0].attach_scale(z)

@@ -16,6 +16,7 @@ from ehlpetsc.post.pictures.distributions import depth_picture, ratio_picture
 from ehlpetsc.post.pictures.passes import passes_picture
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
+from ehlpetsc.post.temperatures import temperature_history
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.post_result import PostResult
@@ -110,20 +111,22 @@ def _bar(figure, contours, axes):
 
 def damage_picture(result, surface):
     """Damage under the profile (figure 8 of Holmes et al. 2005)."""
-    rough = surface in result.profiles
-    figure = Figure(figsize=(8, 4.2 if rough else 3.2), layout="constrained")
-    axes = list(figure.subplots(2, 1, sharex=True, height_ratios=(1, 2.4))) if rough else [figure.subplots()]
+    above = [1.0] * ((surface in result.profiles) + (surface in result.temperatures))
+    figure = Figure(figsize=(8, 3.2 + len(above)), layout="constrained")
+    axes = figure.subplots(len(above) + 1, 1, sharex=True, height_ratios=(*above, 2.4), squeeze=False)[:, 0]
     ends = plots.stretch(result, surface)
     largest = max(result.largest(surface, k) for k in range(len(result.z)))
-    if rough:
+    if surface in result.profiles:
         plots.profile(axes[0], result, surface, ends)
+    if surface in result.temperatures:
+        plots.temperatures(axes[-2], result, surface)
     s, z = result.worst_point(surface)
     axes[0].set_title(
         f"surface {surface}, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g} at "
         f"{plots.along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})",
         fontsize=9,
     )
-    _bar(figure, plots.damage_contours(axes[-1], result, surface, ends, plots.decades(largest)), axes)
+    _bar(figure, plots.damage_contours(axes[-1], result, surface, ends, plots.decades(largest)), list(axes))
     axes[-1].set_xlabel(plots.body_label(surface))
     figure.align_ylabels(axes)
     return figure
@@ -208,17 +211,22 @@ def history_picture(path, result, point):
     with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
         material = read_settings(loads.case).material(surface)
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
+        heat = temperature_history(loads, surface, s) if loads.heated([surface]) else None
     step = time[1] - time[0]
     time = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])
     channel = plots.counted_channel(result.attrs["count"], values, material)
-    figure = Figure(figsize=(8, 5.2), layout="constrained")
-    top, bottom = figure.subplots(2, 1, height_ratios=(1.6, 1))
+    heights = (1.6, 1) if heat is None else (1.6, 0.7, 1)
+    figure = Figure(figsize=(8, 2 * sum(heights)), layout="constrained")
+    top, *between, bottom = figure.subplots(len(heights), 1, height_ratios=heights)
     cycles = plots.history(top, time, values, channel)
     i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)
     dx, dz, dt = (part[j] - part[i] for part in values)
     ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
     damages = 1 / cycles_to_failure(ranges, material, strain=result.attrs.get("strain", "direct"))
-    top.set_xlabel("time [µs]")
+    for axes in between:
+        plots.surface_temperature(axes, time[1:-1], heat)
+        axes.set_xlim(top.get_xlim())
+    (between or [top])[0].set_xlabel("time [µs]")
     marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
     top.set_title(
         f"surface {surface}, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "

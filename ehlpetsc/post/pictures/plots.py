@@ -12,6 +12,7 @@ COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
 VON_MISES = r"$\sigma_{vM}$"
 MARKED = 12  # cycles in the picture of a history
 DARK = "#222222"
+HOT = "#cc3311"
 
 
 def decades(largest):
@@ -51,6 +52,18 @@ def profile(axes, result, surface, ends):
         x = along_body(result, surface, s)
         shown = (x >= ends[0]) & (x <= ends[1])
         axes.plot(x[shown], z[shown] * 1e6, color=DARK, lw=0.8)
+
+
+def temperatures(axes, result, surface):
+    """Highest and mean temperature of the points of a surface over that of the body, over mm."""
+    found, passed = result.temperatures[surface], result.complete[surface]
+    x, bulk = along_body(result, surface, result.s[passed]), found.highest - found.flash
+    axes.plot(x, found.flash[passed], color=HOT, lw=0.8, label="flash")
+    axes.plot(x, (found.mean - bulk)[passed], color=DARK, lw=0.8, ls="--", label="mean in\nthe contact")
+    axes.set_ylabel("temperature\nover bulk [K]")
+    axes.set_ylim(bottom=0.0)
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    legend_beside(axes)
 
 
 def _under_surface(axes, result, surface, ends, depths, gap):
@@ -171,6 +184,12 @@ def history(axes, time, values, channel):
     axes.set_ylabel("stress [GPa]")
     legend_beside(axes)
     return cycles
+
+
+def surface_temperature(axes, time, temperature):
+    """Temperature of the surface over a body point, over time."""
+    axes.plot(time, temperature, color=HOT, lw=0.9)
+    axes.set_ylabel("temperature\nof the surface [K]")
 
 
 def cycle_histogram(axes, cycles, damages):

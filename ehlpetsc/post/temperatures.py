@@ -1,0 +1,77 @@
+"""Surface temperatures of body points: each is followed through the contact as its stresses are."""
+
+import numpy as np
+
+from ehlpetsc.post.stresses.body_points import passage
+from ehlpetsc.post.stresses.load_interpolation import limited_slopes
+from ehlpetsc.results.post_result import PointTemperatures
+
+READ = 256  # frames at a time
+
+
+def point_temperatures(loads, surface, motion, points):
+    r"""Highest and mean surface temperature of body points and their flash temperature.
+
+    The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
+    over the stored frames; the flash temperature is the highest temperature over that of the body.
+
+    Parameters
+    ----------
+    loads : ehlpetsc.post.inputs.loads.Loads
+    surface : {"1", "2"}
+        One whose temperature is stored.
+    motion : ehlpetsc.post.stresses.body_points.Passage
+    points : int
+        Number of body points.
+
+    Returns
+    -------
+    PointTemperatures
+        Arrays of shape (points,) [K]; nan where a point did not pass the whole contact.
+    """
+    highest, sums, times = np.full(points, -np.inf), np.zeros(points), np.zeros(points)
+    lasts = _weights(loads.time)
+    for begin in range(0, loads.time.size, READ):
+        frames = np.arange(begin, min(begin + READ, loads.time.size))
+        rows = _between(loads, surface, frames, motion.offset[frames])
+        for frame, values in zip(frames, rows, strict=True):
+            x = loads.x[: values.size] + motion.offset[frame] * loads.dx
+            first = motion.shift[frame]  # node of point 0
+            node = slice(max(first, 0), min(values.size, points + first))
+            point = slice(node.start - first, node.stop - first)
+            share = lasts[frame] * (np.abs(x[node]) <= loads.a)
+            np.maximum(highest[point], values[node], out=highest[point])
+            sums[point] += share * values[node]
+            times[point] += share
+    highest[~motion.complete] = np.nan
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(motion.complete, sums / times, np.nan)
+    return PointTemperatures(highest, mean, highest - loads.bulk_temperature(surface))
+
+
+def temperature_history(loads, surface, s):
+    """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
+    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
+    frames = np.arange(int(motion.enter[0]), int(motion.leave[0]) + 1)
+    rows = _between(loads, surface, frames, motion.offset[frames])
+    return rows[np.arange(frames.size), motion.shift[frames]]
+
+
+def _weights(time):
+    """Time that each frame stands for [s]."""
+    step = np.diff(time)
+    return 0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))
+
+
+def _between(loads, surface, frames, offset):
+    """Temperatures (frames, nodes), `offset` (frames,) elements right of the nodes, by limited cubics.
+
+    The last node has no element behind it: its own temperature is given.
+    """
+    rows = loads.rows(f"temperature_{surface}", frames[0], frames[-1] + 1)
+    slopes = np.empty_like(rows)
+    limited_slopes(rows, slopes)
+    t = offset[:, None]
+    left = (1.0 - t) ** 2 * ((1.0 + 2.0 * t) * rows[:, :-1] + t * slopes[:, :-1])
+    right = t**2 * ((3.0 - 2.0 * t) * rows[:, 1:] - (1.0 - t) * slopes[:, 1:])
+    return np.concatenate([left + right, rows[:, -1:]], axis=1)

@@ -1,0 +1,133 @@
+"""Surface temperatures of body points from stored temperatures of known form."""
+
+import h5py
+import numpy as np
+import pytest
+from support.made_loads import A, Scene, write
+
+from ehlpetsc.post.command import main
+from ehlpetsc.post.pictures.gallery import damage_picture, history_picture
+from ehlpetsc.results.post_result import PostResult
+
+BULK = 350.0, 360.0
+FLUID = """[fluid]
+viscosity = 0.005
+law = "barus"
+pressure_viscosity = 11.1e-9
+density = "incompressible"
+"""
+HEAT = f"[heat]\nbulk_temperature = [{BULK[0]}, {BULK[1]}]\n{FLUID}"
+WAVE = 10  # nodes
+SHARE = 0.4  # of a rise that the body carries along
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return Scene(per_width=40, ratio=0.5, travel=8.5)
+
+
+def rise(scene, x, time, speed):
+    """Warmer towards x = a/2, times a ripple of ten nodes that the body carries."""
+    phase = 2 * np.pi * (x - speed * time) / (WAVE * scene.dx)
+    return 80.0 * np.exp(-((x / A - 0.5) ** 2)) * (1.0 + SHARE * np.cos(phase))
+
+
+def temperatures(scene, side):
+    speed, bulk = (scene.u1, BULK[0]) if side == "1" else (scene.u2, BULK[1])
+    return bulk + rise(scene, scene.x, scene.time[:, None], speed)
+
+
+def heated(scene, sides="12", **changes):
+    """For `write`: add temperatures; `changes` are factors on them."""
+
+    def edit(file):
+        for side in sides:
+            values = temperatures(scene, side) * changes.get("factor", 1.0) - changes.get("less", 0.0)
+            file.create_dataset(f"temperature_{side}", data=values, chunks=(8, scene.x.size))
+            if "units" in changes:
+                file[f"temperature_{side}"].attrs["units"] = changes["units"]
+
+    return edit
+
+
+@pytest.fixture
+def result(scene, tmp_path):
+    def made(**changes):
+        return write(tmp_path / "run.h5", scene, depths=(0.0,), post=HEAT, edit=heated(scene, **changes))
+
+    return made
+
+
+def test_highest_mean_and_flash_temperature(scene, result, tmp_path, capsys):
+    assert main([str(result())]) == 0
+    told = capsys.readouterr()
+    found = PostResult(tmp_path / "run.post.h5")
+    for side, bulk in zip("12", BULK, strict=True):
+        s, known = found.s[found.complete[side]], found.temperatures[side]
+        carried = 1.0 + SHARE * np.cos(2 * np.pi * s / (WAVE * scene.dx))
+        flash = 80.0 * carried  # reached at x = a/2
+        np.testing.assert_allclose(known.flash[found.complete[side]], flash, rtol=2e-3)
+        np.testing.assert_allclose(known.highest - bulk, known.flash)
+        x = np.linspace(-A, A, 4001)
+        mean = bulk + 80.0 * carried * np.exp(-((x / A - 0.5) ** 2)).mean()
+        np.testing.assert_allclose(known.mean[found.complete[side]], mean, rtol=2e-3)
+        assert np.isnan(known.highest[~found.complete[side]]).all()
+        assert f"surface {side} temperature: highest={bulk + 112:.4g}"[:-1] in told.out
+        assert found.summary()[side]["flash_temperature"] == pytest.approx(112.0, rel=2e-3)
+    assert told.err.count("thermal stresses are not computed") == 1
+
+
+def test_units_and_names_are_stored(result, tmp_path):
+    main([str(result())])
+    with h5py.File(tmp_path / "run.post.h5") as file:
+        assert file["temperature"].attrs["bulk_temperature_2"] == BULK[1]
+        for dataset in file["temperature"].values():
+            assert dataset.attrs["units"] == "K" and "temperature" in dataset.attrs["long_name"]
+            assert dataset.dims[0]["s"] == file["damage/s"]
+
+
+def test_without_heat_there_are_none(scene, tmp_path, capsys):
+    """Nor where a file holds temperatures of a case that has none."""
+    path = write(tmp_path / "run.h5", scene, depths=(0.0,), edit=heated(scene))
+    assert main([str(path)]) == 0
+    told = capsys.readouterr()
+    assert "emperature" not in told.out and "hermal" not in told.err
+    assert PostResult(tmp_path / "run.post.h5").temperatures == {}
+
+
+def test_a_temperature_that_is_not_stored_is_named(result, tmp_path, capsys):
+    assert main([str(result(sides="2"))]) == 0
+    assert 'list "temperature_1" in output.fields' in capsys.readouterr().err
+    assert set(PostResult(tmp_path / "run.post.h5").temperatures) == {"2"}
+
+
+@pytest.mark.parametrize(
+    "changes, told",
+    [
+        (dict(less=273.15), "dataset temperature_2: its least value at frame 0"),
+        (dict(factor=np.nan), "dataset temperature_2 is nan"),
+        (dict(units="degC"), 'its unit is "degC", it must be "K"'),
+    ],
+)
+def test_temperatures_of_another_kind_are_refused(changes, told, result, capsys):
+    assert main([str(result(**changes))]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_other_temperatures_are_another_input(scene, result, tmp_path, capsys):
+    path = result()
+    main([str(path)])
+    with h5py.File(path, "r+") as file:
+        file["temperature_2"][3, 40] += 0.5
+    capsys.readouterr()
+    assert main([str(path)]) == 0
+    assert "already there" not in capsys.readouterr().err
+
+
+def test_pictures_show_them(result, tmp_path):
+    path = result()
+    main([str(path)])
+    found = PostResult(tmp_path / "run.post.h5")
+    for figure in (damage_picture(found, "2"), history_picture(path, found, None)):
+        labels = [axes.get_ylabel() for axes in figure.axes]
+        assert sum(label.startswith("temperature") for label in labels) == 1
