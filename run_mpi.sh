@@ -27,7 +27,7 @@ declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3
 run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
 drawing="matplotlib xarray h5netcdf pint" # pictures, reading of results, values with units
 site="sphinx myst_parser furo" # the pages as one site
-testing="$drawing pytest xdist hypothesis pip hatchling"
+testing="$drawing plotly pytest xdist hypothesis pip hatchling"
 
 commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"
 called=$(basename "$0")

@@ -151,7 +151,10 @@ def pressure_and_film(axes, results, indices, colours, window):
                 solids = 1e-9 * result.frame("contact_pressure", index)
                 upper.fill_between(x, 0.0, solids, color=SOLIDS_COLOUR, lw=0, zorder=1.5)
             touching = shown & in_contact(result, index)
-            lower.plot(x[touching], film[touching], "v", color=CONTACT_COLOUR, ms=4, clip_on=False, zorder=3)
+            if touching.any():  # none would be laid out far away
+                lower.plot(
+                    x[touching], film[touching], "v", color=CONTACT_COLOUR, ms=4, clip_on=False, zorder=3
+                )
     upper.set_ylabel(PRESSURE)
     upper.set_ylim(0.0, 1.05 * highest)
     lower.set_ylabel(FILM)
@@ -187,31 +190,33 @@ def deformed_surfaces(axes, result, index, window):
     """Both deformed surfaces at an instant, the lower one below, solids in grey."""
     x = result.x / result.attrs["a"]
     shown = (x >= window[0]) & (x <= window[1])
-    lower, upper = (1e6 * height[shown] for height in entrapment.surfaces(result, index))
-    inside = np.abs(x[shown]) <= 1.0
-    part = inside if inside.any() else np.ones(shown.sum(), bool)
+    lower, upper = (1e6 * height for height in entrapment.surfaces(result, index))
+    inside = shown & (np.abs(x) <= 1.0)
+    part = inside if inside.any() else shown
     bottom, top = lower[part].min(), upper[part].max()
     room = 0.15 * (top - bottom)
     for height, end, colour, name in (
         (upper, top + room, LOWER_COLOUR, 0),
         (lower, bottom - room, SINGLE_COLOUR, 1),
     ):
-        axes.fill_between(x[shown], height, end, color="0.85", lw=0)
-        axes.plot(x[shown], height, color=colour, lw=0.9, label=SIDES[name])
+        axes.fill_between(x, height, end, color="0.85", lw=0)
+        axes.plot(x, height, color=colour, lw=0.9, label=SIDES[name])
     axes.set_ylim(bottom - room, top + room)
     axes.set_ylabel("surfaces [µm]")
     legend_beside(axes)
 
 
 def frame_legend(axes, result, index, colour):
-    """Legends beside the panels of `pressure_and_film`."""
-    solids = "contact_pressure" in result and result.frame("contact_pressure", index).any()
+    """Legends beside the panels of `pressure_and_film`: of what is in view."""
+    x, (low, high) = result.x / result.attrs["a"], axes[1].get_xlim()
+    shown = (x >= low) & (x <= high)
+    solids = "contact_pressure" in result and result.frame("contact_pressure", index)[shown].any()
     handles = [Line2D([], [], color=colour, lw=1.1, label="total pressure" if solids else "pressure")]
     if solids:
         handles.append(Patch(color=SOLIDS_COLOUR, label="of the solids"))
     handles.append(Line2D([], [], color=HERTZ_GREY, label="Hertz", **HERTZ_STYLE))
     legend_beside(axes[0], handles)
     films = [Line2D([], [], color=colour, lw=1.1, label="film")]
-    if in_contact(result, index).any():
+    if in_contact(result, index)[shown].any():
         films.append(Line2D([], [], color=CONTACT_COLOUR, marker="v", ls="", ms=4, label="in contact"))
     legend_beside(axes[1], films)

@@ -86,7 +86,7 @@ def test_what_a_picture_of_one_result_shows(
     (figure,) = drawn
     upper = figure.axes[0]
     conditions = "u = 5 m/s, slide/roll ratio 0, a = 0.336 mm, p0 = 1 GPa, oil 5 mPa s"
-    assert upper.get_title() == (f"{title}\n{conditions}" if panels == FRAME else title)
+    assert upper.get_title() == (title if panels == MAP else f"{title}\n{conditions}")
     if panels == FRAME:
         (mm,) = upper.child_axes
         assert mm.get_xlabel() == "x [mm]" and "flow" in [text.get_text() for text in upper.texts]
@@ -283,7 +283,18 @@ def test_a_rough_result_is_drawn_with_both_deformed_surfaces(tmp_path, drawn):
     upper, lower = (line.get_ydata() for line in figure.axes[2].lines)
     with read_result(path) as r:
         film = 1e6 * r.frame("film_thickness", 30)
-    np.testing.assert_allclose(upper - lower, film[(r.x / A >= -1.6) & (r.x / A <= 1.4)], atol=1e-9)
+    np.testing.assert_allclose(upper - lower, film, atol=1e-9)
+
+
+def test_a_view_without_contacts_has_panels_of_equal_height(tmp_path, drawn):
+    path = with_solids(make_result(tmp_path / "r.h5", speed=50.0, rough=True))
+    assert draw(path, "--step", 30, "--around", -1.2, "--width", 0.2) == 0
+    (figure,) = drawn
+    figure.draw_without_rendering()
+    heights = [axes.get_position().height for axes in figure.axes[:3]]
+    assert min(heights) > 0.2 and max(heights) < 1.01 * min(heights)
+    legend = [text.get_text() for text in figure.axes[1].get_legend().texts]
+    assert legend == ["film"]
 
 
 def test_no_solids_no_entry_of_theirs(tmp_path):

@@ -2,12 +2,22 @@
 
 import html
 import json
+from importlib import import_module
 from importlib.resources import files
 
+from ehlpetsc.environment import has
+from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.page.report_data import report_data
 from ehlpetsc.results.atomic_write import atomic_write
 
 PARTS = {"style": "report.css", "script": "report.js"}
+
+
+def _plotly():
+    """Plotly's script, of the Python package of that name."""
+    if not has("plotly"):
+        raise OutputError("the report is drawn by plotly; type: sudo apt-get install python3-plotly")
+    return import_module("plotly.offline").get_plotlyjs()
 
 
 def save_report(result, path):
@@ -18,6 +28,7 @@ def save_report(result, path):
     result : ehlpetsc.results.reader.Result
     path : pathlib.Path
     """
+    plotly = _plotly()
     data = report_data(result)
     page = files("ehlpetsc.plot.page")
     text = page.joinpath("report.html").read_text(encoding="utf-8")
@@ -29,4 +40,5 @@ def save_report(result, path):
     text = text.replace("{{facts}}", rows)
     # within a script element only "<" can end it
     text = text.replace("{{data}}", json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
+    text = text.replace("{{plotly}}", plotly)
     atomic_write(path, text.encode())

@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 
-from ehlpetsc.plot.frames import default_window, frame_to_show
+from ehlpetsc.plot.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.post_result import damage_beside
@@ -66,8 +66,22 @@ def report_data(result):
 
 
 def _oil(fluid):
-    words = [f"{1e3 * fluid['viscosity']:g} mPa s", str(fluid.get("law", ""))]
+    grade = fluid.get("grade")
+    words = [
+        f"{1e3 * fluid['viscosity']:g} mPa s" if "viscosity" in fluid else None,
+        f"{1e6 * grade['v40']:g} and {1e6 * grade['v100']:g} mm²/s at 40 and 100 °C" if grade else None,
+        str(fluid.get("law", "")),
+    ]
     return "oil", ", ".join(filter(None, words))
+
+
+def _temperatures(result):
+    """Highest temperatures of film and surfaces; None of an isothermal run."""
+    names = ("film_temperature_max", "temperature_1_max", "temperature_2_max")
+    if names[0] not in result.scalars:
+        return None
+    values = ", ".join(f"{np.nanmax(result.steps(name)) - 273.15:.1f}" for name in names)
+    return "highest temperature of film, surface 1, surface 2", f"{values} °C"
 
 
 def facts(result):
@@ -78,7 +92,7 @@ def facts(result):
     about = [
         f"radius {1e3 * solids['radius']:g} mm" if "radius" in solids else None,
         f"load {1e-3 * solids['load']:g} N/mm" if "load" in solids else None,
-        f"model {solids.get('model', 'direct')}",
+        f"{solids.get('model', 'direct')} contact",
     ]
     rows = [
         ("ended as", str(attrs.get("status", "unknown"))),
@@ -90,6 +104,7 @@ def facts(result):
         ("minimum film", f"{1e6 * np.nanmin(result.steps('h_min')):.4g} µm"),
         ("maximum pressure", f"{1e-9 * np.nanmax(result.steps('p_max')):.4g} GPa"),
         *((MEAN_WORDS[name], MEAN_FORMS[name](value)) for name, value in means(result).items()),
+        _temperatures(result),
     ]
     for name, words in (
         ("load_error", "largest error of the load"),
@@ -122,6 +137,7 @@ def frames(result):
         "x": _packed(binned(x[columns], width, np.mean)),
         "time": _packed(1e6 * result.time[chosen]),
         "step": [int(step) for step in result.step[chosen]],
+        "travel": travel_of(result)[chosen].tolist(),
         "first": int(np.searchsorted(chosen, fullest)),
         "p0": 1e-9 * float(result.attrs["p0"]),
         "width": width,

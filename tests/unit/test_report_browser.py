@@ -1,0 +1,60 @@
+"""The report in a browser without a network: slider, map, zoom, charts that share time."""
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from support.made_results import make_result, with_solids
+
+from ehlpetsc.environment import has
+from ehlpetsc.plot import __main__ as plot
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(BROWSER is None, reason="no chromium to open the report in"),
+    pytest.mark.skipif(not has("plotly"), reason="no plotly to draw the report with"),
+]
+FLAGS = """headless no-sandbox disable-gpu disable-quic no-first-run disable-background-networking
+disable-component-update disable-sync window-size=1200,2400 virtual-time-budget=9000 dump-dom""".split()
+VISITOR = (Path(__file__).parents[1] / "data" / "report_visitor.js").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """What a visitor sees who slides, clicks into the map and zooms, without a network."""
+    folder = tmp_path_factory.mktemp("report")
+    path = with_solids(make_result(folder / "r.h5"))
+    assert plot.main([str(path), "--report"]) == 0
+    page = path.with_suffix(".html")
+    text = page.read_text(encoding="utf-8").replace("<head>", f"<head><script>{VISITOR}</script>")
+    page.write_text(text, encoding="utf-8")
+    options = [*FLAGS, f"user-data-dir={folder / 'profile'}", "host-resolver-rules=MAP * ~NOTFOUND"]
+    command = [BROWSER, *(f"--{option}" for option in options), page.as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    (answer,) = re.findall("<output>(.*?)</output>", done.stdout)
+    return json.loads(answer)
+
+
+def test_it_opens_at_the_highest_pressure_without_an_error(found):
+    assert found["errors"] == []
+    assert found["first"]["pressure"] == pytest.approx(1.4)
+    assert found["first"]["when"] == "step 0, 0.000 µs, travel 0.00 a"
+
+
+def test_the_slider_shows_its_instant_and_marks_it_in_the_map(found):
+    assert found["second"]["when"].startswith("step 1, ") and found["second"]["line"] == 1.0
+    assert found["second"]["pressure"] < found["first"]["pressure"]
+
+
+def test_a_click_into_the_map_shows_that_instant(found):
+    assert found["clicked"]["when"].startswith("step 20, ") and found["clicked"]["line"] == 20.0
+
+
+def test_dragging_zooms_and_charts_over_time_share_it(found):
+    (low, high), (first, second) = found["zoomed"], found["linked"]
+    assert -1.0 < low < -0.5 < 0.5 < high < 1.0  # the middle half of -1.6 to 1.4
+    assert first == second and first == pytest.approx([10.0, 30.0], abs=1.0)
