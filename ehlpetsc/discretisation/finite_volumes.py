@@ -14,7 +14,8 @@ Newton's method cycles, and which asperities two nodes wide reach.
 import numpy as np
 
 from ehlpetsc.compiled import compiled, unsigned
-from ehlpetsc.physics.rheology import mobilities
+from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
+from ehlpetsc.physics.rheology import compression, mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
 ONE = unsigned(1)
@@ -27,6 +28,8 @@ RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 LN_ETA_H = 10  # d ln(eta)/dh in R/a^2, through the film's temperature; 0 in isothermal films
 PROPERTIES = 11
+
+_compression = compiled(compression)
 
 
 @compiled
@@ -54,6 +57,18 @@ def extrapolated(m, behind, k):
     for i in range(len(m)):
         out[i] = positive_extrapolation(m[i], behind[i], k)[0]
     return out
+
+
+@compiled
+def fill_content(i, q, h, density, p0, film, unit, at):
+    """Fill in all of node i but its viscosity, as in :func:`.reynolds.nodal`; return its pressure [Pa]."""
+    p, left, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
+    rho, rho_p = _compression(p0 * p, *density)
+    at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * h
+    at[M, i], at[M_H, i] = rho * left * h, rho * left
+    at[M_Q, i] = (rho_p * p0 if full else 1.0) * h
+    at[RHO, i], at[RHO_P, i] = unit * rho, unit * p0 * rho_p
+    return p0 * p
 
 
 @compiled

@@ -15,24 +15,18 @@ Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, full_of_oil
+from ehlpetsc.discretisation.contact.node_state import full_of_oil
 from ehlpetsc.discretisation.finite_volumes import (
-    DP,
     FLUIDITY,
     LN_ETA_H,
     LN_ETA_P,
-    M_H,
-    M_Q,
     OWN,
     PROPERTIES,
-    RHO,
-    RHO_P,
     STENCIL,
-    H,
     M,
-    P,
     balance,
     extrapolated,
+    fill_content,
 )
 from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
 from ehlpetsc.physics import rheology
@@ -122,13 +116,14 @@ class Reynolds:
     def properties(self, q, h, inputs):
         """Properties of the nodes that the local rows need, rows as in :mod:`.finite_volumes`."""
         q, h, fluid = q[self.given], h[self.given], inputs.fluid
-        s, laws = self.scales, (rheology.viscosity_constants(fluid), rheology.density_constants(fluid))
-        at = np.empty((PROPERTIES, len(q) + self.has_outlet))
-        nodal(q, h, *laws, s.p0, s.h, 1.0 / (s.u * s.h), 1.0 / fluid.viscosity, at)
+        s, density = self.scales, rheology.density_constants(fluid)
+        at, units = np.empty((PROPERTIES, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
-            from ehlpetsc.discretisation.heat.film import heat_nodes
+            from ehlpetsc.discretisation.heat.film import heated_nodal
 
-            heat_nodes(q, at, inputs.heat.part(self.nodes), s.p0, s.h)
+            heated_nodal(q, h, density, *units, inputs.heat.part(self.nodes), at)
+            return at
+        nodal(q, h, rheology.viscosity_constants(fluid), density, *units, 1.0 / fluid.viscosity, at)
         return at
 
     def face_law(self, inputs):
@@ -178,7 +173,7 @@ def _inlet(q, h, oil_film):
     return q + 1.0 - oil_film / h, (1.0, oil_film / h**2)
 
 
-_power_law, _compression = compiled(rheology.power_law), compiled(rheology.compression)
+_power_law = compiled(rheology.power_law)
 
 
 @compiled
@@ -202,12 +197,7 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     nodes = len(q)
     for i in range(at.shape[1]):
         here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
-        p, left, full = max(here, 0.0), 1.0 + min(here, 0.0), here > -AMBIENT_TOLERANCE
-        rho, rho_p = _compression(p0 * p, *density)
-        ln_eta, ln_eta_p = _power_law(p0 * p, *viscosity)
-        at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * gap
-        at[M, i], at[M_H, i] = rho * left * gap, rho * left
-        at[M_Q, i] = (rho_p * p0 if full else 1.0) * gap
-        at[RHO, i], at[RHO_P, i] = unit * rho, unit * p0 * rho_p
+        p = fill_content(i, here, gap, density, p0, film, unit, at)
+        ln_eta, ln_eta_p = _power_law(p, *viscosity)
         at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
         at[LN_ETA_H, i] = 0.0

@@ -25,7 +25,7 @@ def test_sum_of_exponentials():
 @pytest.mark.parametrize("steps", [1, 2, 30, 1000])
 def test_uniform_flux(steps):
     time, dt = 1e-5, 1e-5 / steps
-    rates, weights = map(np.array, exponentials(dt, 1e-3))
+    rates, weights = exponentials(dt, 1e-3)
     step = StepWeights.of(rates, weights, dt, STEEL.effusivity)
     terms = np.zeros(len(rates))
     for _ in range(steps):
@@ -90,7 +90,7 @@ def test_a_sinusoid_along_the_surface(ratio):
     dx, steps = 1e-6, 40
     dt = ratio * dx**2 / STEEL.diffusivity
     flux = FLUX * (1.0 + np.cos(wave * np.arange(nodes)))
-    rates, weights = map(np.array, exponentials(dt, 100 * dt))
+    rates, weights = exponentials(dt, 100 * dt)
     step = StepWeights.of(rates, weights, dt, STEEL.effusivity)
     terms = np.zeros((nodes, len(rates)))
     for _ in range(steps):

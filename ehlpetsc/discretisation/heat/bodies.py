@@ -5,7 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.physics.heat.body_heat import BodyHeat
-from ehlpetsc.physics.heat.half_space_conduction import StepWeights, diffuse, exponentials, moving_terms
+from ehlpetsc.physics.heat.half_space_conduction import (
+    StepWeights,
+    add_flux,
+    advance_terms,
+    exponentials,
+    moving_terms,
+)
 
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
@@ -71,7 +77,7 @@ class Body:
 
     @property
     def _tail(self):
-        step = StepWeights.of(self.rates, self.weights, self.dt, self.solid.effusivity)
+        step = StepWeights.of(tuple(self.rates), tuple(self.weights), self.dt, self.solid.effusivity)
         return step.response - self.weights @ step.end / self.solid.effusivity
 
     def record(self, flux, terms):
@@ -111,34 +117,22 @@ class Body:
         moved = -speed * dt / self.dx
         if abs(shift - moved) > RENUMBERED:  # the distance is counted from another place now
             shift = int(np.floor(moved))
-        terms, flux = shifted(body.terms, shift), shifted(body.flux, shift)
-        step = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
-        given = step.decay * terms + flux[:, None] * step.begin
-        new = np.empty_like(given)
-        diffuse(given, self.solid.diffusivity * dt / self.dx**2, new)
-        body = body._replace(first=base - padding, terms=new, flux=flux)
-        fraction = position - base
-        rise = new @ body.weights / self.solid.effusivity
-        at = slice(padding, padding + self.n)
-        history = (1.0 - fraction) * rise[at] + fraction * rise[at.start + 1 : at.stop + 1]
+        step = self._step_weights(body, dt)
+        ratio = self.solid.diffusivity * dt / self.dx**2
+        terms, flux, rise = advance_terms(
+            body.terms, body.flux, shift, step.decay, step.begin, ratio, body.weights / self.solid.effusivity
+        )
+        body, fraction = body._replace(first=base - padding, terms=terms, flux=flux), position - base
+        here, next_one = rise[padding : padding + self.n], rise[padding + 1 : padding + self.n + 1]
+        history = (1.0 - fraction) * here + fraction * next_one
         return BodyStep(body, history, step.response, step.end, fraction)
+
+    def _step_weights(self, body, dt):
+        return StepWeights.of(tuple(body.rates), tuple(body.weights), dt, self.solid.effusivity)
 
     def accept(self, step, flux):
         """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""
-        body, cells = step.body, np.zeros_like(step.body.flux)
-        padding = (len(cells) - self.n - 1) // 2
-        cells[padding : padding + self.n] = (1.0 - step.fraction) * flux
-        cells[padding + 1 : padding + self.n + 1] += step.fraction * flux
-        return body._replace(terms=body.terms + cells[:, None] * step.end, flux=cells)
-
-
-def shifted(values, cells):
-    """Values of cells counted from `cells` on, zero beyond the ends."""
-    if cells == 0:
-        return values
-    out, n = np.zeros_like(values), len(values)
-    if 0 < cells < n:
-        out[: n - cells] = values[cells:]
-    elif -n < cells < 0:
-        out[-cells:] = values[:cells]
-    return out
+        body = step.body
+        padding = (len(body.flux) - self.n - 1) // 2
+        terms, shared = add_flux(body.terms, np.ascontiguousarray(flux), padding, step.fraction, step.end)
+        return body._replace(terms=terms, flux=shared)

@@ -23,6 +23,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     H,
     M,
     P,
+    fill_content,
     positive_extrapolation,
 )
 from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
@@ -33,33 +34,34 @@ STILL = 1e-11  # of the temperatures: change in a sweep that ends it
 
 
 @compiled
-def heat_nodes(q, at, heat, p0, film):
-    """Replace viscosities by those at the film's temperature, and their derivatives.
+def heated_nodal(q, h, density, p0, film, unit, heat, at):
+    """Fill in what faces need of nodes, the viscosity at the film's temperature with its derivatives.
 
     Parameters
     ----------
-    q : ndarray, shape (nodes,)
-    at : ndarray, shape (11, nodes)
-        As of :func:`.reynolds.nodal`, changed in place; one node more may be beyond the outlet.
+    q, h, density, p0, film, unit, at
+        As of :func:`.reynolds.nodal`; at the node beyond the outlet the temperature is that of the last one.
     heat : FilmHeat
         Of these nodes; `guess` becomes their temperature.
-    p0, film : float
-        Scales of pressure [Pa] and film [m].
     """
     nodes, law = len(q), heat.law
     for i in range(nodes):
-        p, left = p0 * at[P, i], 1.0 + min(q[i], 0.0)
+        p = fill_content(i, q[i], h[i], density, p0, film, unit, at)
         walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
+        of_node = heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
+        left = 1.0 + min(q[i], 0.0)
         t, t_p, t_h, _, _, _, (ln_eta, by_p, by_t) = film_temperature(
-            heat.guess[i], p, at[H, i], left, heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
+            heat.guess[i], p, at[H, i], left, *of_node
         )
         heat.guess[i] = t
         at[FLUIDITY, i] = np.exp(-ln_eta) / law.eta0
         at[LN_ETA_P, i] = p0 * (by_p + by_t * t_p)
         at[LN_ETA_H, i] = film * by_t * t_h
-        if i == nodes - 1 and at.shape[1] > nodes:
-            ln_eta, by_p, _ = _log_viscosity(0.0, t, law.pressure_law, law.thermal_law)
-            at[FLUIDITY, nodes], at[LN_ETA_P, nodes] = np.exp(-ln_eta) / law.eta0, p0 * by_p
+    if at.shape[1] > nodes:
+        p = fill_content(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
+        ln_eta, by_p, _ = _log_viscosity(p, heat.guess[nodes - 1], law.pressure_law, law.thermal_law)
+        at[FLUIDITY, nodes], at[LN_ETA_P, nodes] = np.exp(-ln_eta) / law.eta0, p0 * by_p
+        at[LN_ETA_H, nodes] = 0.0
 
 
 @compiled

@@ -187,7 +187,7 @@ class HeatStep:
         return out
 
     def _moving(self, heat, film):
-        t, *fluxes, shear = self._nodes(heat, film, film.old)
+        t, *fluxes, shear = self._nodes(heat, film, heat.guess)
         responses = [heat.r1, heat.r2]
         walls = [w + r * q for w, r, q in zip((heat.w1, heat.w2), responses, fluxes, strict=True)]
         kept = zip(self.bodies, self._moved, fluxes, strict=True)

@@ -22,14 +22,16 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.heat import thermal_viscosity
+from ehlpetsc.physics.heat.shear import shear_stress
 
 LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 200
 ACCURACY = 1e-10  # K: change in an iteration that ends it
 QUADRATIC = 1e-4  # K: the same of an iteration of Newton's method, after which it is accurate to 1e-9 K
+ERROR = 1e-8  # K: estimated error of an iteration of Halley's method that ends it,
+SMALL = 0.3  # change of ln(eta) up to which that estimate holds
 
 _log_viscosity = compiled(thermal_viscosity.log_viscosity)
-_limited = compiled(thermal_viscosity.limited_shear)
 
 
 class FilmLaw(NamedTuple):
@@ -61,42 +63,6 @@ class FilmLaw(NamedTuple):
     conductivity: float
     conductivity_pressure: float
     sliding: float
-
-
-@compiled
-def shear_stress(ln_rate, ln_eta, p, eyring, limit):
-    r"""Mean shear stress of the film :math:`\tau_m` [Pa].
-
-    :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
-    Wang & Cusano 1987), limited by :func:`.thermal_viscosity.limited_shear`.
-
-    Parameters
-    ----------
-    ln_rate : float
-        :math:`\ln(\eta_0|u_1-u_2|/(\tau_0h))-s`; Newtonian: :math:`\ln(\eta_0|u_1-u_2|/h)`.
-    ln_eta, p : float
-        ln(eta/eta0), pressure [Pa].
-    eyring, limit : float
-        Eyring stress [Pa], limiting shear stress over pressure; infinite: none.
-
-    Returns
-    -------
-    tau, by_ln_eta, by_p : float
-        `by_p` at constant viscosity.
-    """
-    argument = ln_rate + ln_eta
-    if eyring == np.inf:
-        tau = by_ln_eta = np.exp(min(argument, 600.0))
-    elif argument > 20.0:
-        tau, by_ln_eta = eyring * (argument + 0.6931471805599453), eyring
-    else:
-        x = np.exp(argument)
-        root = np.sqrt(1.0 + x * x)
-        tau, by_ln_eta = eyring * np.log(x + root) if x > 1e-4 else eyring * x, eyring * x / root
-    if limit == np.inf:
-        return tau, by_ln_eta, 0.0
-    tau, by_tau, by_limit = _limited(tau, limit * p)
-    return tau, by_ln_eta * by_tau, by_limit * limit
 
 
 @compiled
@@ -134,14 +100,16 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     """
     pressure_law, thermal_law, eta0, eyring, limit = law[0], law[1], law[2], law[3], law[4]
     more = 1.0 + law[6] * p
-    conductivity = law[5] * more * max(left, LEAST_OIL)
+    over_conductivity = 1.0 / (law[5] * more * max(left, LEAST_OIL))
     w1, w2, r1, r2 = walls
-    r = h / conductivity
-    total, difference = r + r1 + r2, r1 - r2
-    kappa = r / 12.0 + 0.25 * (r1 + r2 - difference * difference / total)
-    alpha = 0.5 * (w1 + w2) - 0.5 * difference * (w1 - w2) / total
-    slope, known = a + 1.0 / kappa, b + g + alpha / kappa
+    r, difference = h * over_conductivity, r1 - r2
+    over_total = 1.0 / (r + r1 + r2)
+    share = difference * over_total
+    exchange = 1.0 / (r * (1.0 / 12.0) + 0.25 * (r1 + r2 - difference * share))
+    alpha = 0.5 * (w1 + w2) - 0.5 * share * (w1 - w2)
+    slope, known = a + exchange, b + g + alpha * exchange
     heat = left * law[7] if h > 0.0 else 0.0
+    over_h = 1.0 / h if h > 0.0 else 0.0
     low, high = known / slope, np.inf
     t = low if heat == 0.0 else max(guess, low)
     ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
@@ -149,40 +117,47 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     if heat > 0.0:
         linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
         unit = eta0 if eyring == np.inf else eta0 / eyring
-        ln_rate = np.log(law[7] * unit / h) - (0.0 if eyring == np.inf else spread)
-        tau, by_ln_eta, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
+        ln_rate = np.log(law[7] * unit * over_h) - (0.0 if eyring == np.inf else spread)
+        tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
         for _ in range(ITERATIONS):
-            f = slope * t - known - heat * tau
+            f, f_t = slope * t - known - heat * tau, slope - heat * by_ln_eta * eta_t
             if f > 0.0:
                 high = min(high, t)
             else:
                 low = max(low, t)
-            new = t - f / (slope - heat * by_ln_eta * eta_t)
-            newton = low < new < high
+            change = -f / f_t
+            bend = -0.5 * heat * twice * eta_t * eta_t / f_t * change  # of f over a step of Newton's
+            if linear:
+                change /= 1.0 + max(bend, -0.5)
+            new = t + change
+            newton = low <= new <= high
             if not newton:
                 new = 0.5 * (low + high) if high < np.inf else max(new, low)
             change, t = new - t, new
-            if newton and abs(change) < QUADRATIC:
-                ln_eta += eta_t * change
-                tau += by_ln_eta * eta_t * change
+            step = eta_t * change
+            error = abs(bend * step * change) if linear and abs(step) < SMALL else np.inf
+            if newton and (error < ERROR or abs(change) < QUADRATIC):
+                ln_eta += step
+                tau += (by_ln_eta + 0.5 * twice * step) * step
+                by_ln_eta += twice * step
                 break
             if linear:
                 ln_eta += eta_t * change
             else:
                 ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
-            tau, by_ln_eta, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
+            tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
             if abs(change) < ACCURACY:
                 break
-    f_t = slope - heat * by_ln_eta * eta_t
-    kappa_r = 1.0 / 12.0 + 0.25 * difference * difference / (total * total)
-    alpha_r = 0.5 * difference * (w1 - w2) / (total * total)
-    flow = (t - alpha) / kappa
-    f_r = -(alpha_r + flow * kappa_r) / kappa
-    f_h = f_r / conductivity + (heat * by_ln_eta / h if h > 0.0 else 0.0)
+    over_f_t = 1.0 / (slope - heat * by_ln_eta * eta_t)
+    kappa_r = 1.0 / 12.0 + 0.25 * share * share
+    alpha_r = 0.5 * share * (w1 - w2) * over_total
+    flow = (t - alpha) * exchange
+    f_r = -(alpha_r + flow * kappa_r) * exchange
+    f_h = f_r * over_conductivity + heat * by_ln_eta * over_h
     f_p = -f_r * r * law[6] / more - heat * (by_ln_eta * eta_p + by_p)
-    exchange = -(2.0 * (w1 - w2) + difference * flow) / total
-    q1, q2 = 0.5 * (flow + exchange), 0.5 * (flow - exchange)
-    return t, -f_p / f_t, -f_h / f_t, q1, q2, heat * tau, (ln_eta, eta_p, eta_t)
+    between = -2.0 * (w1 - w2) * over_total - share * flow
+    q1, q2 = 0.5 * (flow + between), 0.5 * (flow - between)
+    return t, -f_p * over_f_t, -f_h * over_f_t, q1, q2, heat * tau, (ln_eta, eta_p, eta_t)
 
 
 class FilmHeat(NamedTuple):

@@ -70,9 +70,10 @@ class StepWeights:
     response: float
 
     @classmethod
+    @lru_cache(maxsize=8)
     def of(cls, rates, weights, dt, effusivity):
-        """Coefficients of a step of `dt` [s]."""
-        rates, weights = np.asarray(rates), np.asarray(weights)
+        """Coefficients of a step of `dt` [s]; `rates` and `weights` as of :func:`exponentials`."""
+        rates, weights = np.array(rates), np.array(weights)
         z = rates * dt
         decay = np.exp(-z)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -116,6 +117,76 @@ def diffuse(a, ratio, out):
     for i in range(cells - 2, -1, -1):
         for m in range(terms):
             out[i, m] += upper[i] * out[i + 1, m]
+
+
+@compiled
+def advance_terms(terms, flux, shift, decay, begin, ratio, weights):
+    """Terms at the end of a step but for the flux there.
+
+    Parameters
+    ----------
+    terms : ndarray, shape (cells, terms)
+        At its begin.
+    flux : ndarray, shape (cells,)
+        The same [W/m^2].
+    shift : int
+        Cells by which the first cell has moved in the body; what it leaves behind is lost, and the body
+        brings in no heat.
+    decay, begin : ndarray, shape (terms,)
+        Of :class:`StepWeights`.
+    ratio : float
+        Of :func:`diffuse`.
+    weights : ndarray, shape (terms,)
+        Of the terms in the temperature.
+
+    Returns
+    -------
+    new : ndarray, shape (cells, terms)
+    flux : ndarray, shape (cells,)
+        That of the begin on the cells of the end.
+    rise : ndarray, shape (cells,)
+        Weighted sum of the terms.
+    """
+    cells, count = terms.shape
+    given, moved = np.zeros((cells, count)), np.zeros(cells)
+    for i in range(max(-shift, 0), min(cells, cells - shift)):
+        moved[i] = flux[i + shift]
+        for m in range(count):
+            given[i, m] = decay[m] * terms[i + shift, m] + moved[i] * begin[m]
+    new, rise = np.empty((cells, count)), np.zeros(cells)
+    diffuse(given, ratio, new)
+    for i in range(cells):
+        for m in range(count):
+            rise[i] += new[i, m] * weights[m]
+    return new, moved, rise
+
+
+@compiled
+def add_flux(terms, flux, first, fraction, end):
+    """Terms with the flux at the end of a step, and that flux shared out to the cells by overlap.
+
+    Parameters
+    ----------
+    terms : ndarray, shape (cells, terms)
+        Of :func:`advance_terms`.
+    flux : ndarray, shape (nodes,)
+        [W/m^2]
+    first : int
+        Cell of the first node.
+    fraction : float
+        Fraction of a cell by which the nodes are ahead of the cells.
+    end : ndarray, shape (terms,)
+        Of :class:`StepWeights`.
+    """
+    cells, count = terms.shape
+    new, shared = np.empty((cells, count)), np.zeros(cells)
+    for i in range(len(flux)):
+        shared[first + i] += (1.0 - fraction) * flux[i]
+        shared[first + i + 1] += fraction * flux[i]
+    for i in range(cells):
+        for m in range(count):
+            new[i, m] = terms[i, m] + shared[i] * end[m]
+    return new, shared
 
 
 @compiled

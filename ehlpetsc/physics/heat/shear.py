@@ -1,0 +1,50 @@
+"""Mean shear stress of the film at a node, with the derivatives that its temperature needs."""
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled
+from ehlpetsc.physics.heat import thermal_viscosity
+
+LARGE = 20.0  # ln of the sinh of the stress: above it the stress is linear in ln(eta) to 1e-17
+
+_limited = compiled(thermal_viscosity.limited_shear)
+
+
+@compiled
+def shear_stress(ln_rate, ln_eta, p, eyring, limit):
+    r"""Mean shear stress of the film :math:`\tau_m` [Pa].
+
+    :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
+    Wang & Cusano 1987), limited by :func:`.thermal_viscosity.limited_shear`.
+
+    Parameters
+    ----------
+    ln_rate : float
+        :math:`\ln(\eta_0|u_1-u_2|/(\tau_0h))-s`; Newtonian: :math:`\ln(\eta_0|u_1-u_2|/h)`.
+    ln_eta, p : float
+        ln(eta/eta0), pressure [Pa].
+    eyring, limit : float
+        Eyring stress [Pa], limiting shear stress over pressure; infinite: none.
+
+    Returns
+    -------
+    tau, by_ln_eta, by_ln_eta_twice, by_p : float
+        `by_p` at constant viscosity.
+    """
+    argument = ln_rate + ln_eta
+    if eyring == np.inf:
+        tau = by_ln_eta = twice = np.exp(min(argument, 600.0))
+    elif argument > LARGE:
+        tau, by_ln_eta, twice = eyring * (argument + 0.6931471805599453), eyring, 0.0
+    else:
+        x = np.exp(argument)
+        square = 1.0 + x * x
+        root = np.sqrt(square)
+        by_ln_eta = eyring * x / root
+        tau, twice = eyring * np.log(x + root) if x > 1e-4 else eyring * x, by_ln_eta / square
+    if limit == np.inf:
+        return tau, by_ln_eta, twice, 0.0
+    value, by_tau, by_limit = _limited(tau, limit * p)
+    if tau > 0.0:
+        twice = by_tau * twice - 5.0 * by_tau * by_ln_eta * by_ln_eta / tau * (1.0 - (value / tau) ** 4)
+    return value, by_ln_eta * by_tau, twice, by_limit * limit
