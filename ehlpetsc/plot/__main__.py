@@ -4,9 +4,10 @@ OUTPUT.series.json, OUTPUT.passes.json.
 Pressure and film of one frame, by default that with the largest share of the load on the solids or, without
 such a share, of the highest pressure; of several files, a series, at the same travel in one picture. Or a map
 of pressure over place and time, contacts per millisecond, a movie; of a series its collisions, film and
-pressure at contact points against the swept value, its Stribeck curve; of one result oil trapped between two
-contacts, or all of it as one HTML page. The ending of the file given by -o chooses the format (png, svg, pdf;
-of a movie gif, mp4, webm; of a page html). Input files are never overwritten.
+pressure at contact points against the swept value, its Stribeck curve, traction curves; of one result its
+temperatures, oil trapped between two contacts, or all of it as one HTML page. The ending of the file given by
+-o chooses the format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). Input files are never
+overwritten.
 
 Exit status: 0 drawn, 2 bad input.
 """
@@ -29,7 +30,12 @@ from ehlpetsc.results.series_index import in_order, open_all
 DPI = 160
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
 KINDS = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
-WITHOUT_FRAMES = ("contacts", "stribeck", "ensemble")  # kinds that need the figures of the steps alone
+WITHOUT_FRAMES = (
+    "contacts",
+    "stribeck",
+    "traction",
+    "ensemble",
+)  # kinds that need the figures of the steps alone
 
 
 def _check(results, kind, options):
@@ -69,6 +75,8 @@ def _parser():
     kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")
     kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")
     kind.add_argument("--stribeck", action="store_true", help="friction against speed, of a series over it")
+    kind.add_argument("--traction", action="store_true", help="friction against slide/roll, of a series")
+    kind.add_argument("--temperatures", action="store_true", help="of film and surfaces, of one with [heat]")
     kind.add_argument("--ensemble", action="store_true", help="figures of runs that differ in their seeds")
     kind.add_argument("--running-in", action="store_true", help="surfaces and pressure pass by pass")
     kind.add_argument("--report", action="store_true", help="all of one result as one HTML page")

@@ -9,6 +9,8 @@ from ehlpetsc.plot import collision_pictures, frames, labels, over_time
 from ehlpetsc.plot.ensemble import draw_ensemble
 from ehlpetsc.plot.running_in import draw_running_in
 from ehlpetsc.plot.stribeck import draw_stribeck
+from ehlpetsc.plot.temperatures import temperatures
+from ehlpetsc.plot.traction import draw_traction
 from ehlpetsc.results.series_index import from_thick_to_thin
 
 SIZE = (8.4, 5.6)  # inches
@@ -145,6 +147,11 @@ def draw_entrapment(results, options):
     return figure
 
 
+def draw_temperatures(results, options):
+    """Figure of the temperatures of one result."""
+    return temperatures(results, window(results, options), options)
+
+
 FIGURES = {
     "map": draw_map,
     "contacts": draw_contacts,
@@ -152,6 +159,8 @@ FIGURES = {
     "points": draw_points,
     "entrapment": draw_entrapment,
     "stribeck": draw_stribeck,
+    "traction": draw_traction,
+    "temperatures": draw_temperatures,
     "ensemble": draw_ensemble,
     "running_in": draw_running_in,
 }

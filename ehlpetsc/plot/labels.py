@@ -30,7 +30,7 @@ def new_figure(rows, columns, size, **shared):
     size : (float, float)
         Inches.
     **shared
-        `sharex`, `sharey` and `squeeze` of :meth:`matplotlib.figure.Figure.subplots`.
+        `sharex`, `sharey`, `squeeze` and `height_ratios` of :meth:`matplotlib.figure.Figure.subplots`.
     """
     figure = Figure(figsize=size, layout="constrained")
     return figure, figure.subplots(rows, columns, **shared)

@@ -136,23 +136,28 @@ def stribeck_points(results):
 
 
 def curves(results):
-    """Results that share contact law and mesh, by a label of these; the longest curve first."""
+    """Results that share contact law, mesh and [heat], by a label of these; the longest curve first."""
     groups = {}
     for result in results:
         case = tomllib.loads(result.attrs["case"])
         contact, mesh = case.get("contact", {}), case.get("mesh", {})
-        key = contact.get("asperity_height"), contact.get("boundary_film"), mesh.get("points_per_half_width")
+        law, points = (
+            (contact.get("asperity_height"), contact.get("boundary_film")),
+            mesh.get("points_per_half_width"),
+        )
+        key = *law, points, "heat" in case
         groups.setdefault(key, []).append(result)
-    several = len({key[2] for key in groups}) > 1
+    several, heated = (len({key[part] for key in groups}) > 1 for part in (2, 3))
     found = sorted(groups.items(), key=lambda item: -len(item[1]))
-    return {_label(*key, several): members for key, members in found}
+    return {_label(*key, several, heated): members for key, members in found}
 
 
-def _label(height, film, mesh, with_mesh):
+def _label(height, film, mesh, heat, with_mesh, with_heat):
     law = f"layer of {1e9 * height:g} nm" if height else "direct contact"
     if film and not height:
         law = f"rigid, boundary film {1e9 * film:g} nm"
-    return f"{law}, a/{mesh}" if with_mesh else law
+    how = ("with heat" if heat else "isothermal") if with_heat else ""
+    return ", ".join(filter(None, [law, with_mesh and f"a/{mesh}", how]))
 
 
 def draw_stribeck(results, _options):

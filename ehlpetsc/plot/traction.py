@@ -1,0 +1,85 @@
+"""Traction curves: friction against the slide/roll ratio, the largest marked."""
+
+import tomllib
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot.labels import UNITS, conditions, legend_beside, new_figure
+from ehlpetsc.plot.stribeck import stribeck_point
+from ehlpetsc.results.series_index import told_apart
+
+RATIO = "motion.slide_roll_ratio"
+SIZE = (8.5, 4.6)  # inches
+
+
+def draw_traction(results, _options):
+    """Figure of the friction coefficient against the slide/roll ratio.
+
+    Results that differ in more than the ratio are curves of their own; isothermal ones are dashed where there
+    are others with a table [heat].
+
+    Raises
+    ------
+    OutputError
+        No curve has two ratios.
+    """
+    found = {heat: _curves([r for r in results if _is_heated(r) == heat]) for heat in (False, True)}
+    if not any(len(curve[0]) > 1 for curves in found.values() for curve in curves.values()):
+        raise OutputError(f"a traction curve needs a series over {RATIO}")
+    figure, axes = new_figure(1, 1, SIZE)
+    names = list(dict.fromkeys([*found[False], *found[True]]))
+    compared = all(found.values())
+    for heat, curves in found.items():
+        for name, (ratios, friction) in curves.items():
+            style = "--" if compared and not heat else "-"
+            colour = f"C{names.index(name)}"
+            how = ("with heat" if heat else "isothermal") if compared else ""
+            label = ", ".join(filter(None, [name.replace("_", " "), how])) or "friction"
+            axes.plot(ratios, friction, style, color=colour, marker="o", ms=3, lw=1.2, label=label)
+            _mark_largest(axes, ratios, friction, colour)
+    axes.set_xlabel(UNITS[RATIO])
+    axes.set_ylabel("friction coefficient")
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.grid(lw=0.3)
+    about = filter(None, [results[0].attrs["title"], conditions(results)])
+    axes.set_title("\n".join(about), fontsize="medium")
+    legend_beside(axes)
+    return figure
+
+
+def _is_heated(result):
+    return "heat" in tomllib.loads(result.attrs["case"])
+
+
+def _ratio(result):
+    return float(tomllib.loads(result.attrs["case"]).get("motion", {}).get("slide_roll_ratio", 0.0))
+
+
+def _curves(results):
+    """Ratios and friction coefficients by the other conditions in which results differ."""
+    ratios = sorted({_ratio(result) for result in results})
+    groups = {}
+    for ratio in ratios:
+        same = [result for result in results if _ratio(result) == ratio]
+        names = told_apart(same) if len(same) > 1 else [""]
+        for name, result in zip(names or [""], same, strict=False):
+            groups.setdefault(name, []).append((ratio, result))
+    found = {}
+    for name, members in groups.items():
+        points = [(ratio, stribeck_point(result, ratio)) for ratio, result in members]
+        rows = [(ratio, point.scalars["friction_coefficient"].mean) for ratio, point in points if point]
+        found[name] = np.array(rows).reshape(-1, 2).T
+    return found
+
+
+def _mark_largest(axes, ratios, friction, colour):
+    """A ring and figures at a largest value that is not at the end of a curve."""
+    if friction.size < 3 or friction.argmax() in (0, friction.size - 1):
+        return
+    at = friction.argmax()
+    axes.plot(ratios[at], friction[at], "o", ms=9, mfc="none", color=colour)
+    text = f"{friction[at]:.4f} at {ratios[at]:g}"
+    below = dict(xytext=(0, -8), textcoords="offset points", ha="center", va="top", fontsize="small")
+    axes.annotate(text, (ratios[at], friction[at]), color=colour, **below)

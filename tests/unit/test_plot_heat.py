@@ -1,0 +1,107 @@
+"""Pictures of heat: traction curves, temperatures, Stribeck curves with and without it."""
+
+import contextlib
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pytest
+from support.made_results import make_result
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.plot.figures import FIGURES
+from ehlpetsc.plot.stribeck import curves
+from ehlpetsc.results.series_index import open_all
+
+HEAT = "[heat]\nbulk_temperature = 350.0\n"
+RATIOS = (0.1, 0.5, 1.0, 2.0)
+OPTIONS = SimpleNamespace(step=None, time=None, around=None, width=None)
+RISES = {"film_temperature": 40.0, "temperature_1": 10.0, "temperature_2": 20.0}
+
+
+def drawn(kind, paths):
+    with contextlib.ExitStack() as stack:
+        return FIGURES[kind](open_all(paths, stack), OPTIONS)
+
+
+def add_to_case(file, text):
+    file.attrs["case"] = file.attrs["case"].decode() + text
+
+
+def member(path, ratio, friction, heat="", speed=5.0):
+    make_result(path, steps=1, speed=speed)
+    with h5py.File(path, "r+", libver="latest") as file:
+        add_to_case(file, f"slide_roll_ratio = {ratio}\n{heat}")
+        file["steps/friction_coefficient"][:] = friction
+    return path
+
+
+@pytest.fixture
+def series(tmp_path):
+    """Friction that rises without heat and has its largest value at 1.0 with it, at two speeds."""
+    paths = []
+    for speed in (5.0, 25.0):
+        for k, ratio in enumerate(RATIOS):
+            names = (tmp_path / f"{kind}_{speed:g}_{ratio}.h5" for kind in ("cold", "warm"))
+            paths += [member(next(names), ratio, 0.01 * ratio, speed=speed)]
+            paths += [member(next(names), ratio, (0.004, 0.008, 0.009, 0.006)[k], HEAT, speed)]
+    return paths
+
+
+def test_traction_curves(series):
+    [axes] = drawn("traction", series).axes
+    lines = {line.get_label(): line for line in axes.get_lines() if not line.get_label().startswith("_")}
+    kinds = "isothermal", "with heat"
+    assert set(lines) == {f"entrainment speed = {u}, {how}" for u in (5, 25) for how in kinds}
+    cold, warm = (lines[f"entrainment speed = 5, {how}"] for how in kinds)
+    np.testing.assert_allclose(warm.get_xdata(), RATIOS)
+    np.testing.assert_allclose(cold.get_ydata(), 0.01 * np.array(RATIOS))
+    assert [text.get_text() for text in axes.texts] == 2 * ["0.0090 at 1"]  # none at the end of a curve
+    assert cold.get_linestyle() == "--"
+
+
+def test_one_series_alone(series):
+    [axes] = drawn("traction", [path for path in series if "warm_5_" in path.name]).axes
+    assert axes.get_legend_handles_labels()[1] == ["friction"]
+
+
+def test_no_series_over_the_ratio_is_refused(tmp_path):
+    with pytest.raises(OutputError, match="slide_roll_ratio"):
+        drawn("traction", [member(tmp_path / "a.h5", 0.5, 0.01)])
+
+
+def heated(path, steps):
+    make_result(path, steps=steps)
+    with h5py.File(path, "r+", libver="latest") as file:
+        add_to_case(file, HEAT)
+        shape, dome = file["pressure"].shape, np.maximum(1.0 - (file["x"][:] / file.attrs["a"]) ** 2, 0.0)
+        for name, rise in RISES.items():
+            values = np.broadcast_to(350.0 + rise * dome, shape)
+            file.create_dataset(name, data=values, maxshape=(None, shape[1]), chunks=(1, shape[1]))
+            file["steps"].create_dataset(f"{name}_mean", data=np.full(steps, rise), maxshape=(None,))
+    return path
+
+
+@pytest.mark.parametrize("steps, panels", [(1, 3), (21, 5)])
+def test_temperatures(steps, panels, tmp_path):
+    figure = drawn("temperatures", [heated(tmp_path / "a.h5", steps)])
+    assert len(figure.axes) == panels  # the map and its colours only over time
+    highest = [line.get_ydata().max() for line in figure.axes[0].get_lines()]
+    np.testing.assert_allclose(highest, 350.0 + np.array(list(RISES.values())), rtol=1e-3)
+    if steps > 1:
+        assert figure.axes[-1].get_ylabel() == "temperature of\nsurface 2 [K]"
+
+
+def test_temperatures_of_others_are_refused(tmp_path):
+    cold, warm = make_result(tmp_path / "cold.h5"), heated(tmp_path / "warm.h5", 1)
+    with pytest.raises(OutputError, match="table \\[heat\\]"):
+        drawn("temperatures", [cold])
+    with pytest.raises(OutputError, match="2 results"):
+        drawn("temperatures", [cold, warm])
+
+
+def test_stribeck_curves_with_and_without_heat(tmp_path):
+    paths = [member(tmp_path / f"{k}.h5", 0.25, 0.01, HEAT if k % 2 else "") for k in range(4)]
+    with contextlib.ExitStack() as stack:
+        found = {label: len(members) for label, members in curves(open_all(paths, stack)).items()}
+    assert found == {"direct contact, isothermal": 2, "direct contact, with heat": 2}
