@@ -66,6 +66,8 @@ class Deflection:
         Coefficient of the separation in the row of an end node; that of h00 is its negative.
     ends : list of int
         Local ones of the two end nodes.
+    form : tuple
+        Constants of :func:`deflection_rows`.
     load_weights : ndarray, shape (3, last - first)
         Coefficients of the local pressures in `PressureSums.load`.
     """
@@ -77,6 +79,7 @@ class Deflection:
         self.curvature = elasticity.curvature_kernel(n)
         self.curvature_coefficient, self.end_row_coefficient = np.pi / dx, 1.0 / dx
         self.ends = [end for end in (0, n - 1) if first <= end < last]
+        self.form = self.own.start, self.curvature_coefficient, self.end_row_coefficient, last == n
         logarithm = self._logarithm()
         mine = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
         self.load_weights = np.stack([*mine, np.full(last - first, dx)])
@@ -112,10 +115,7 @@ class Deflection:
         ndarray, shape (last - first,)
         """
         rows = np.empty(self.last - self.first)
-        second_differences(separation, self.own.start, self.curvature_coefficient, sums.curvature, rows)
-        for end in self.ends:
-            k = 0 if end == 0 else -1
-            rows[k] = self.end_row_coefficient * (separation[k] - approach) + sums.load[k and 1]
+        deflection_rows(separation, approach, *sums, *self.form, rows)
         return rows
 
     def integral(self, pressure):
@@ -124,19 +124,29 @@ class Deflection:
 
 
 @compiled
-def second_differences(g, start, coefficient, curvature, rows):
-    """Fill in the deflection rows, but for those where g ends.
+def deflection_rows(g, approach, curvature, load, start, coefficient, end_coefficient, has_last, rows):
+    """Fill in the deflection rows.
 
     Parameters
     ----------
     g : ndarray
         Separation.
+    approach : float
+    curvature, load
+        As of `PressureSums`.
     start : int
-        Index in g of the first row's node.
-    coefficient : float
-    curvature, rows : ndarray, shape (rows,)
+        Index in g of the first row's node; 0: that of the mesh.
+    coefficient, end_coefficient : float
+        Of `Deflection`.
+    has_last : bool
+        Whether the last row is that of the last node.
+    rows : ndarray, shape (rows,)
     """
-    for row in range(len(rows)):
+    inner = len(rows) - has_last
+    if start == 0:
+        rows[0] = end_coefficient * (g[0] - approach) + load[0]
+    for row in range(1 if start == 0 else 0, inner):
         i = start + row
-        if 0 < i < len(g) - 1:
-            rows[row] = coefficient * (g[i - 1] - 2.0 * g[i] + g[i + 1]) - curvature[row]
+        rows[row] = coefficient * (g[i - 1] - 2.0 * g[i] + g[i + 1]) - curvature[row]
+    if has_last:
+        rows[inner] = end_coefficient * (g[start + inner] - approach) + load[1]

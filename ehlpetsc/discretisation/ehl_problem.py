@@ -17,10 +17,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact import contact_model, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.contact.node_state import NodeState
-from ehlpetsc.discretisation.deflection import Deflection
+from ehlpetsc.discretisation.contact.node_state import NodeState, changes
+from ehlpetsc.discretisation.deflection import Deflection, deflection_rows
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
 from ehlpetsc.discretisation.interleaving import n_dofs, q_of, w_of
 from ehlpetsc.discretisation.no_oil import NoOil
@@ -127,6 +128,7 @@ class EHLProblem:
         self.model = contact_model(case, scales, film_scale, bound_tolerance)
         self.deflection = Deflection(self.n, self.dx, first, last)
         self.window, self.own = self.deflection.window, self.deflection.own
+        self._changes = np.empty((3, self.window.stop - self.window.start))
         self._parabola = 0.5 * self.x[self.window] ** 2
         self.inlet_film = None
         if self.fluid is None:
@@ -189,28 +191,60 @@ class EHLProblem:
             )
         return Evaluation(model, state, residual, derivatives)
 
-    def jacobian_vector_product(self, state, derivatives, nodes, v_h00, sums):
+    def jacobian_vector_product(self, by, derivatives, nodes, v_h00, sums, rows):
         """The whole Jacobian times a vector, in the local rows.
 
         Parameters
         ----------
-        state, derivatives
+        by : ndarray, shape (4, 2, window)
+            :meth:`.contact.node_state.NodeState.derivatives`.
+        derivatives
             As in :class:`Evaluation`.
         nodes : ndarray, shape (window, 2)
             q and w of the vector at the nodes of the window.
         v_h00 : float
         sums : deflection.PressureSums
             Of the change of pressure.
-
-        Returns
-        -------
-        ndarray
-            Interleaved, shape of the local part of the vector.
+        rows : ndarray
+            To be filled in; interleaved, shape of the local part of the vector.
         """
-        unknown, film, separation = state.directional_derivative(nodes)
-        rows = np.empty(n_dofs(self.local) + self.load_is_local)
-        q_of(rows, self.local)[:] = self.deflection.residual(separation, v_h00, sums)
-        reynolds_product(derivatives, unknown, film, self.own.start, w_of(rows, self.local))
-        if self.load_is_local:
-            rows[-1] = sums.load[2]
-        return rows
+        jacobian_rows(by, derivatives, nodes, v_h00, *sums, *self.deflection.form, self._changes, rows)
+
+
+@compiled
+def jacobian_rows(
+    by,
+    derivatives,
+    nodes,
+    v_h00,
+    curvature,
+    load,
+    start,
+    coefficient,
+    end_coefficient,
+    has_last,
+    change,
+    rows,
+):
+    """Fill in rows of the Jacobian times a vector.
+
+    Parameters as of :meth:`EHLProblem.jacobian_vector_product` and :func:`.deflection.deflection_rows`;
+    `change` (3, window) is room for the changes of Reynolds unknown, film and separation.
+    """
+    for k in range(3):
+        changes(by[k + 1], nodes, 0, change[k])
+    local = 2 * len(derivatives)
+    deflection_rows(
+        change[2],
+        v_h00,
+        curvature,
+        load,
+        start,
+        coefficient,
+        end_coefficient,
+        has_last,
+        rows[0:local:2],
+    )
+    reynolds_product(derivatives, change[0], change[1], start, rows[1:local:2])
+    if len(rows) > local:
+        rows[local] = load[2]

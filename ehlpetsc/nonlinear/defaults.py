@@ -27,6 +27,9 @@ DEFAULTS = {
 # A compliant layer makes the load nonlinear in the film: 1e-8 balances it to 1e-10.
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
+KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
+# what this method of Krylov's knows; with any other option of KSP it is PETSc's own
+OF_KRYLOV = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
 # PETSc's LU and ILU do not exchange rows, and pivots of the deflection's rows come out as zero by chance
 OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
 
@@ -107,16 +110,15 @@ class RunOptions:
 
     def unused_so_far(self):
         """Names of the user's options that have not been read by now."""
-        of_program = {*DEFAULTS, *PRECONDITIONER, *OTHERS, "snes_atol", *self.deferred_views}
+        of_program = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *OTHERS, "snes_atol", *self.deferred_views}
         mine = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*mine, *unused()} - of_program
 
     def _enter(self, table):
         there = table.getAll()
         self.given = wanted = self._of_case | there | self._of_call
-        check_options(wanted, len(self._defaults) + len(PRECONDITIONER))
-        own = wanted.get("pc_type", PRECONDITIONER["pc_type"]) == PRECONDITIONER["pc_type"]
-        wanted = self._defaults | (PRECONDITIONER if own else OTHERS) | wanted
+        check_options(wanted, len(self._defaults | PRECONDITIONER | KRYLOV))
+        wanted = self._defaults | _linear_solver(wanted) | wanted
         self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
         changed = [name for name in [*self._entered, *self.deferred_views] if name in there]
@@ -138,6 +140,15 @@ class RunOptions:
         for name, value in self._saved.items():
             table[name] = value
             table.hasName(name)  # it has been read, for -options_left
+
+
+def _linear_solver(wanted):
+    """Defaults of KSP and PC beside options of the user: this program's own as far as these let it."""
+    if any(wanted.get(name, value) != value for name, value in PRECONDITIONER.items()):
+        return OTHERS
+    if any(name.startswith("ksp_") and name not in OF_KRYLOV for name in wanted):
+        return PRECONDITIONER
+    return PRECONDITIONER | KRYLOV
 
 
 def unused():

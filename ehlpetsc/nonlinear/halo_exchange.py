@@ -28,6 +28,12 @@ def all_ranks(ranks, condition):
     return global_max(ranks, not condition) == 0.0
 
 
+def exchange(ranks, everyone):
+    """Fill in what all other ranks have in their rows, the first axis; collective."""
+    if ranks.size > 1:
+        ranks.Allgather(MPI.IN_PLACE, everyone)
+
+
 class HaloExchange:
     """Exchange of one scene on one communicator; on one rank nothing is sent.
 
@@ -40,25 +46,34 @@ class HaloExchange:
     ranks : mpi4py communicator
     tolerance : float
         Of the far kernel in the pressure sums.
+
+    Attributes
+    ----------
+    flagged : bool
+        Whether a rank has set the flag of the last exchange.
     """
 
     def __init__(self, problem, cuts, ranks, tolerance=TOLERANCE):
         self.problem, self.ranks = problem, ranks
         self._product = CurvatureProduct(problem.deflection.curvature, cuts, ranks.rank, tolerance)
         self._edge = n_dofs(HALO)
-        self._load = 2 * self._edge + 1  # behind the outer unknowns and h00: three sums, then the product's
-        size = self._load + 3 + self._product.message_size
-        self._mine, self._all = np.zeros(size), np.zeros((ranks.size, size))
+        self._load = 2 * self._edge + 1  # behind the outer unknowns and h00: three sums and the flag
+        size = self._load + 4 + self._product.message_size
+        self.flagged = False
+        self._all = np.zeros((ranks.size, size))
+        self._mine = self._all[ranks.rank]
 
-    def __call__(self, vector, pressure):
+    def __call__(self, vector, pressure, flag=False):
         """Unknowns at the nodes of the window, and sums over all pressures.
 
         Parameters
         ----------
         vector : ndarray
             Local unknowns, interleaved; h00 last on the last rank.
-        pressure : callable
-            Pressures of the local nodes from their unknowns, given as shape (local, 2).
+        pressure : ndarray
+            Of the local nodes.
+        flag : bool
+            Whatever `flagged` is to be for all ranks, where it is true on any.
 
         Returns
         -------
@@ -67,23 +82,24 @@ class HaloExchange:
         sums : deflection.PressureSums
         """
         problem, rank, edge, mine = self.problem, self.ranks.rank, self._edge, self._mine
-        nodes = pairs(vector, problem.local)
-        p = pressure(nodes)
-        self._product.pack(p, mine[self._load + 3 :])
-        load = problem.deflection.load_weights @ p
+        nodes, behind_load = pairs(vector, problem.local), self._load + 4
+        self._product.pack(pressure, mine[behind_load:])
+        load = problem.deflection.load_weights @ pressure
+        self.flagged = flag
         if self.ranks.size == 1:
-            return nodes, vector[-1], PressureSums(self._product.sums(mine[None, self._load + 3 :]), load)
+            return nodes, vector[-1], PressureSums(self._product.sums(self._all[:, behind_load:]), load)
         mine[:edge], mine[edge : 2 * edge] = nodes[:HALO].ravel(), nodes[-HALO:].ravel()
         mine[2 * edge] = vector[-1]  # h00 on the last rank
-        mine[self._load : self._load + 3] = load
-        self.ranks.Allgather(mine, self._all)
+        mine[self._load : behind_load - 1], mine[behind_load - 1] = load, flag
+        exchange(self.ranks, self._all)
         window = [nodes]
         if rank > 0:
             window.insert(0, pairs(self._all[rank - 1, edge:], HALO))
         if rank < self.ranks.size - 1:
             window.append(pairs(self._all[rank + 1], HALO))
-        loads, messages = np.split(self._all[:, self._load :], [3], axis=1)
-        sums = PressureSums(self._product.sums(messages), loads.sum(axis=0))
+        loads = self._all[:, self._load : behind_load].sum(axis=0)
+        self.flagged = loads[3] > 0.0
+        sums = PressureSums(self._product.sums(self._all[:, behind_load:]), loads)
         return np.concatenate(window), self._all[-1, 2 * edge], sums
 
     def gather(self, record):

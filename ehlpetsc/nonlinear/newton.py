@@ -55,7 +55,9 @@ class NewtonSolver:
         self._options = options or RunOptions()
         self._made = owned(self)
         self._watch, self._needs_renewal = None, False
-        self._unconstrained = self._reaches_bound = self._is_first = False
+        self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
+        # other line searches may end at another point than the last one that they try
+        self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
         self.snes = self._unconstrained_snes = self.tolerance = None
         self._create()
         self.bounded = self.snes.getType() == "vinewtonrsls"
@@ -90,13 +92,15 @@ class NewtonSolver:
 
     def _function(self, snes, x, f):
         # the first one is that of the guess, evaluated already unless SNESVI projects it onto the bounds
-        evaluate = self.system.evaluation if self._is_first else self.system.evaluate
-        f.array[:], self._is_first = evaluate(x).residual, False
-        if self._reaches_bound:
+        if self._is_first:
+            f.array[:], self._is_first = self.system.evaluation(x).residual, False
+            return
+        f.array[:] = self.system.evaluate(x, self._reaches_bound).residual
+        if self.system.bound_reached:
             snes_objects.set_function_domain_error(snes)  # rejects the step
 
     def _jacobian(self, snes, x, operator, preconditioner):
-        self.system.linearise(x)
+        self.system.linearise(x, self._accepts_last and self._is_solving)
         left = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
         snes.ksp.setTolerances(max_it=min(self._linear_max_it, max(left, 1)))
         operator.assemble()
@@ -172,10 +176,11 @@ class NewtonSolver:
             snes = self._renew(snes)
         self.system.set_initial_guess(*guess)
         self._unconstrained, self._reaches_bound = snes is self._unconstrained_snes, False
-        self._is_first = self._needs_renewal = True
+        self._is_first = self._needs_renewal = self._is_solving = True
         try:
-            self._set_tolerances(snes, max_it or self._max_it)
-            snes.solve(None, self.system.x)
+            with np.errstate(over="ignore", invalid="ignore"):
+                self._set_tolerances(snes, max_it or self._max_it)
+                snes.solve(None, self.system.x)
             snes.setTolerances(max_it=self._max_it, atol=self._atol)  # for -snes_view
         except PETSc.Error as error:
             raised = error.__cause__  # by a callback: newer releases wrap it
@@ -183,6 +188,8 @@ class NewtonSolver:
                 raise raised from None
             snes.destroy()
             snes_objects.raise_refusal(error, self._options.given)
+        finally:
+            self._is_solving = False
         return self._solution(snes)
 
     def _set_tolerances(self, snes, max_it):

@@ -97,7 +97,7 @@ def inside(points, count):
 
 
 def counted(solver):
-    """Counts the program's own collectives; PETSc's reductions, of some numbers each, come on top."""
+    """Counts the program's own collectives, those of GMRES too; PETSc's norms in SNES come on top."""
     traffic, ranks = [0, 0], solver.system.exchange.ranks
 
     class Counting:
@@ -107,7 +107,7 @@ def counted(solver):
             return getattr(ranks, name)
 
         def Allgather(self, mine, everyone):
-            traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + mine.nbytes
+            traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + everyone[ranks.rank].nbytes
             ranks.Allgather(mine, everyone)
 
         def Allreduce(self, mine, numbers, operation):

@@ -65,6 +65,7 @@ class Prepared:
 def load_compiled():
     """Have the compiled loops ready: to load them takes as long as all else that a short run does."""
     from ehlpetsc.case.loading import load
+    from ehlpetsc.discretisation.contact.node_state import changes
     from ehlpetsc.discretisation.ehl_problem import EHLProblem
     from ehlpetsc.discretisation.finite_volumes import extrapolated, reynolds_rounding
     from ehlpetsc.physics.scales import Scales
@@ -76,8 +77,10 @@ def load_compiled():
     found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
     step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
     now.flags.writeable = False  # as PETSc gives it
-    sums = problem.deflection.sums(found.state.pressure_derivative(now, problem.own))
-    problem.jacobian_vector_product(found.state, found.reynolds_derivatives, now, 0.0, sums)
+    by, rows = found.state.derivatives(), np.empty(2 * scales.nx + 1)
+    changes(by[0], step, problem.own.start, one)
+    sums = problem.deflection.sums(one)
+    problem.jacobian_vector_product(by, found.reynolds_derivatives, step, 0.0, sums, rows)
     reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
     extrapolated(one, one, 1.0)
     advected(one, 1.0)

@@ -27,7 +27,7 @@ def solved(lu, b, first=0):
     """Solution for `b` (groups, SIZE); what stands in the room behind them must not matter."""
     room = np.full((len(b), LINE), 7.0)
     room[:first], room[:, :SIZE] = 0.0, b
-    lu.solve(room, first)
+    lu.solve(room.ravel(), first)
     return room[:, :SIZE]
 
 
@@ -66,6 +66,12 @@ def test_it_solves(groups, sparse):
         b[:first] = 0.0
         expected = np.linalg.solve(matrix, b.ravel())
         found = solved(lu, b, first)
+        solution, coefficients = np.zeros((2, groups, LINE))
+        solution[:, :SIZE], coefficients[:, :SIZE] = b, rng.standard_normal(b.shape)
+        lu.forward(solution.ravel(), first)
+        product = (coefficients[:, :SIZE] * found).sum()
+        lu.backward_transposed(coefficients.ravel())  # the same sum over what is not substituted yet
+        assert (coefficients * solution).sum() == pytest.approx(product, rel=1e-6, abs=1e-6)
         np.testing.assert_allclose(found.ravel(), expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 
 

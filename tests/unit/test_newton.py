@@ -54,6 +54,23 @@ def test_a_film_that_reaches_its_bound_is_outside_the_domain_of_the_function(cap
     assert re.search("DIVERGED_(LINE_SEARCH|FUNCTION_DOMAIN)", lines) and "FNORM_NAN" not in lines
 
 
+def test_the_krylov_method_takes_the_iterations_of_petscs_own(capfd):
+    """In contact and out of it; PETSc's monitor and tolerances hold for both."""
+    case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING)
+    found = []
+    for options in ({}, {"ksp_type": "fgmres"}, {"ksp_rtol": 1e-10}):
+        states = list(ehlpetsc.Simulation(case, options=options | {"ksp_monitor": None}))
+        residuals = re.findall(r"(\d+) KSP Residual norm (\S+)", capfd.readouterr().out)
+        found.append((states, [int(k) for k, _ in residuals], np.array([float(r) for _, r in residuals])))
+    (mine, numbers, residuals), (petscs, their_numbers, their_residuals), (_, more, _) = found
+    assert any(state.in_contact.any() for state in mine)
+    assert numbers == their_numbers and sum(more) > 1.5 * sum(numbers)
+    np.testing.assert_allclose(residuals, their_residuals, rtol=1e-6, atol=1e-9 * residuals.max())
+    for one, other in zip(mine, petscs, strict=True):
+        assert one.newton == other.newton
+        np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-9 * one.pressure.max())
+
+
 def test_options_are_those_of_the_call_and_of_no_other():
     case = ehlpetsc.load(CASES / "table1_smooth.toml", {"mesh.points_per_half_width": 20})
     given = {"snes_vi_zero_tolerance": 1e-7, "snes_max_it": 12}

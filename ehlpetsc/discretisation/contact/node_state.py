@@ -81,37 +81,34 @@ class NodeState(NamedTuple):
         """Derivative of the separation with respect to w."""
         return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
 
-    def directional_derivative(self, nodes):
-        """Changes of Reynolds unknown, film and separation.
+    def derivatives(self):
+        """Derivatives with respect to q and w, shape (4, 2, nodes).
 
-        Parameters
-        ----------
-        nodes : ndarray, shape (nodes, 2)
-            Changes of q and w.
-
-        Returns
-        -------
-        reynolds_unknown, film, separation : ndarray
+        Of pressure, Reynolds unknown, film and separation.
         """
-        v_q, v_w = nodes.T
-        film = self.h_w * v_w
-        if self.plastic is None:
-            return v_q, film, film
-        y = self.plastic
-        return y.reynolds_q * v_q + y.reynolds_w * v_w, film, film - (y.depth_q * v_q + y.depth_w * v_w)
-
-    def pressure_derivative(self, nodes, own):
-        """Changes of pressure at some nodes with changes (nodes, 2) of their q and w."""
-        return pressure_derivative(self.p_q[own], self.p_w[own], nodes)
+        by = np.zeros((4, 2, len(self.film)))
+        by[0, 0], by[0, 1], by[1, 0], by[2, 1], by[3, 1] = self.p_q, self.p_w, 1.0, self.h_w, self.h_w
+        if self.plastic is not None:
+            by[1, 0], by[1, 1] = self.plastic.reynolds_q, self.plastic.reynolds_w
+            by[3, 0], by[3, 1] = self.separation_q, self.separation_w
+        return by
 
 
 @compiled
-def pressure_derivative(p_q, p_w, nodes):
-    """Changes of pressure, see :meth:`NodeState.pressure_derivative`."""
-    pressure = np.empty(len(nodes))
-    for i in range(len(nodes)):
-        pressure[i] = p_q[i] * nodes[i, 0] + p_w[i] * nodes[i, 1]
-    return pressure
+def changes(by, nodes, first, change):
+    """Fill in changes of one property with changes (nodes, 2) of q and w.
+
+    Parameters
+    ----------
+    by : ndarray, shape (2, all)
+        One of :meth:`NodeState.derivatives`.
+    nodes : ndarray, shape (nodes, 2)
+    first : int
+        Index in `by` of the first node.
+    change : ndarray, shape (nodes,)
+    """
+    for i in range(len(change)):
+        change[i] = by[0, first + i] * nodes[i, 0] + by[1, first + i] * nodes[i, 1]
 
 
 @compiled

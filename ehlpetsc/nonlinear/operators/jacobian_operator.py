@@ -7,11 +7,13 @@ the default preconditioner takes its coefficients (``pc.getOperators()``). Other
 
 import numpy as np
 
+from ehlpetsc.discretisation.contact.node_state import changes
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.interleaving import (
     n_dofs,
     nodes_of_w,
+    pairs,
     q_columns,
     q_index,
     q_of,
@@ -51,35 +53,45 @@ class JacobianOperator:
     ----------
     model, state, reynolds_derivatives
         Of the linearisation, as in `ehl_problem.Evaluation`.
-    active_dofs : ndarray of int
-        Local indices of the unknowns in the system, without h00.
+    size : int
+        Local unknowns of the whole system.
+    active : slice or ndarray of int
+        Local indices of the unknowns in the system.
     inactive_nodes : ndarray of int
         Local nodes whose second unknown is not in the system.
     """
 
     def __init__(self, problem, exchange, factors):
         self.problem, self.exchange, self.factors = problem, exchange, factors
-        self.active_dofs, self.inactive_nodes = np.arange(n_dofs(problem.local)), np.arange(0)
-        self.model = self.state = self.reynolds_derivatives = None
+        self.active, self.inactive_nodes = slice(None), np.arange(0)
+        self.model = self.state = self.reynolds_derivatives = self._by = None
+        self.size, self._pressure = n_dofs(problem.local) + problem.load_is_local, np.empty(problem.local)
 
     def linearise(self, evaluation):
         """Set the state whose derivatives the products have."""
         self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
         self.state = self.model.linearised(evaluation.state, self.problem.own, self._ranks_sum)
+        self._by = self.state.derivatives()
 
     def _ranks_sum(self, numbers):
         return np.sum(self.exchange.ranks.allgather(numbers), axis=0)
 
-    def times(self, v):
-        """Product with the local part of a vector, of all ranks together."""
-        problem, state = self.problem, self.state
-        nodes, h00, sums = self.exchange(v, lambda nodes: state.pressure_derivative(nodes, problem.own))
-        return problem.jacobian_vector_product(state, self.reynolds_derivatives, nodes, h00, sums)
+    def times(self, v, out):
+        """Fill in the product with the local part of a vector; collective."""
+        problem = self.problem
+        with events.PRODUCT:
+            changes(self._by[0], pairs(v, problem.local), problem.own.start, self._pressure)
+            at_nodes = self.exchange(v, self._pressure)
+            problem.jacobian_vector_product(self._by, self.reynolds_derivatives, *at_nodes, out)
+
+    def precondition(self, v, out):
+        """Fill in the solution of the preconditioner for the local part of a vector; collective."""
+        with events.BACK_SOLVE:
+            self.factors.lu.solve(v, self.factors.unknowns, out)
 
     def mult(self, mat, v, out):
         """PETSc's product."""
-        with events.PRODUCT:
-            out.array[:] = self.times(v.array_r)
+        self.times(v.array_r, out.array)
 
     def createSubMatrix(self, mat, rows, columns, out=None):
         """Matrix of the unknowns that SNESVI keeps; rows and columns are the same."""
@@ -90,16 +102,14 @@ class RestrictedOperator:
     """Jacobian of the unknowns that SNESVI keeps, context of a Python matrix."""
 
     def __init__(self, whole, rows, mat):
-        self.whole, self.problem, self.factors = whole, whole.problem, whole.factors
-        local, load = self.problem.local, self.problem.load_is_local
-        self.dof_indices = rows.indices - mat.getOwnershipRange()[0]
-        self.active_dofs = self.dof_indices[: len(self.dof_indices) - load]
-        self.size = n_dofs(local) + load
-        self.inactive_nodes = whole.inactive_nodes
-        if len(self.dof_indices) < self.size:
-            is_active = np.zeros(local, dtype=bool)
-            is_active[nodes_of_w(self.active_dofs)] = True
-            self.inactive_nodes = np.flatnonzero(~is_active)
+        self.whole, self.size = whole, whole.size
+        self.active, self.inactive_nodes = slice(None), whole.inactive_nodes
+        indices = rows.indices
+        if len(indices) < self.size:
+            self.active = indices - mat.getOwnershipRange()[0]
+            is_inactive = np.ones(self.size, dtype=bool)
+            is_inactive[self.active] = False
+            self.inactive_nodes = nodes_of_w(np.flatnonzero(is_inactive))
 
     @property
     def model(self):
@@ -113,15 +123,25 @@ class RestrictedOperator:
     def reynolds_derivatives(self):
         return self.whole.reynolds_derivatives
 
+    @property
+    def factors(self):
+        return self.whole.factors
+
+    def times(self, v, out):
+        """Fill in the product with a vector of the whole system, zero outside of this one; collective."""
+        self.whole.times(v, out)
+        w_of(out, self.size // 2)[self.inactive_nodes] = 0.0
+
+    def precondition(self, v, out):
+        """As of :class:`JacobianOperator`."""
+        self.whole.precondition(v, out)
+
     def mult(self, mat, v, out):
         """PETSc's product."""
-        with events.PRODUCT:
-            if len(self.dof_indices) == self.size:
-                out.array[:] = self.whole.times(v.array_r)
-                return
-            full = np.zeros(self.size)
-            full[self.dof_indices] = v.array_r
-            out.array[:] = self.whole.times(full)[self.dof_indices]
+        full, rows = np.zeros(self.size), np.empty(self.size)
+        full[self.active] = v.array_r
+        self.whole.times(full, rows)
+        out.array[:] = rows[self.active]
 
 
 class NearFieldMatrix:

@@ -39,9 +39,8 @@ class BandedJacobian:
         Numbers of the unknowns of the first and of the last group, and of the room behind them.
     entries : contact.band.BandEntries or None
         Of the state last filled in.
-    dense : ndarray, shape (3, nodes)
-        Of the same state: deflection at both end nodes that the band lacks, and the load, in the
-        columns of the local first unknowns.
+    dense : ndarray, shape (3, size)
+        Of the same state: deflection at both end nodes that the band lacks, and the load.
     """
 
     def __init__(self, problem):
@@ -218,7 +217,8 @@ class BandedJacobian:
             own = self.problem.own
             local = np.flatnonzero(changed[own])
             self.values[self.diagonal[local]] += pivot_regularisation(pressure[own][local], depth[own][local])
-            self.dense = self.under_pressure * pressure[own]
+            self.dense = np.zeros((len(self.under_pressure), self.size))
+            self.dense[:, self.dofs[::2]] = self.under_pressure * pressure[own]
         if film_changed.any():
             some = np.flatnonzero(film_changed[self.film_nodes])
             node = self.film_nodes[some]

@@ -62,17 +62,21 @@ class BlockLU:
         factor(self._columns, self.inverses.ravel(), self.upper.ravel(), *room)
 
     def solve(self, b, first=0):
-        """Solve in place for `b` (groups, LINE), whose groups before `first` are zero."""
+        """Solve in place for `b` (groups * LINE,), whose groups before `first` are zero."""
         self.forward(b, first)
         self.backward(b)
 
     def forward(self, b, first=0):
-        """Replace `b` by y, in place; see :meth:`solve`."""
-        forward(self._columns, self.inverses.ravel(), b.ravel(), first, self._column)
+        """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
+        forward(self._columns, self.inverses.ravel(), b, first, self._column)
 
     def backward(self, b):
         """Replace y by x, in place: the last group is left as it is."""
-        backward(self.upper.ravel(), b.ravel())
+        backward(self.upper.ravel(), b)
+
+    def backward_transposed(self, b):
+        """Coefficients of y that give what the coefficients `b` of x do, in place."""
+        backward_transposed(self.upper.ravel(), b)
 
 
 @compiled(fastmath=FAST)
@@ -172,3 +176,15 @@ def backward(upper, b):
         for c in range(unsigned(RIGHT)):
             entry = b[(i + ONE) * line + unsigned(FROM_RIGHT) + c]
             axpy(b, i * line, entry, upper, (i * unsigned(RIGHT) + c) * line)
+
+
+@compiled(fastmath=FAST)
+def backward_transposed(upper, b):
+    """Substitute in place; see :class:`BlockLU`."""
+    line = unsigned(LINE)
+    for i in range(unsigned(len(b) // LINE) - ONE):
+        for c in range(unsigned(RIGHT)):
+            total, column = 0.0, (i * unsigned(RIGHT) + c) * line
+            for k in range(line):
+                total += upper[column + k] * b[i * line + k]
+            b[(i + ONE) * line + unsigned(FROM_RIGHT) + c] -= total

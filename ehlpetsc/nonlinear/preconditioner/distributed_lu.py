@@ -8,21 +8,34 @@ right end (twisted factorisation, :mod:`.block_lu`): what is left at the cut cou
 Ranks between have two cuts; they solve for the columns :math:`G=A^{-1}C` of what their outer groups take of
 others (Polizzi & Sameh 2006: SPIKE), :math:`x=y-Gw`. The unknowns w at the cuts obey :mod:`.reduced_system`.
 
-Three dense rows border the band: the whole deflection of both end nodes, and the load. They enter by two
+Three dense rows d border the band: the whole deflection of both end nodes, and the load. They enter by two
 columns :math:`z=A^{-1}e`, e the rows of the end nodes, and a system of three unknowns: what the band lacks of
-both rows, and h00.
+both rows, and h00. The products :math:`d\cdot x=U^{-T}d\cdot y` need no substitution before, so that ranks
+exchange them with the values at the cuts: once a solve.
 """
 
 import numpy as np
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from ehlpetsc.compiled import compiled
-from ehlpetsc.nonlinear.halo_exchange import all_ranks
-from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, RIGHT, SIZE, BlockLU
-from ehlpetsc.nonlinear.preconditioner.reduced_system import ReducedSystem, regularise_pivots
+from ehlpetsc.compiled import compiled, unsigned
+from ehlpetsc.discretisation.finite_volumes import STENCIL
+from ehlpetsc.nonlinear.halo_exchange import all_ranks, exchange
+from ehlpetsc.nonlinear.preconditioner.block_lu import (
+    FAST,
+    FROM_LEFT,
+    FROM_RIGHT,
+    LEFT,
+    LINE,
+    RIGHT,
+    SIZE,
+    BlockLU,
+)
+from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem, regularise_pivots
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
-BORDER = 3
+CUT = LEFT + RIGHT
+IDENTITY = np.eye(BORDER)
+ENTRIES = 2 * STENCIL  # of a Reynolds row
 
 
 class DistributedLU:
@@ -41,16 +54,18 @@ class DistributedLU:
         self.band, self.ranks = band, ranks
         self._approach_coefficient = approach_coefficient
         self._lu = BlockLU(band.groups)
-        self._is_inner = 0 < ranks.rank < ranks.size - 1
-        self._y = np.zeros((1, band.size))
-        self._ends = np.zeros((2, band.size))
+        is_inner = 0 < ranks.rank < ranks.size - 1
+        self._is_outer = ranks.size > 1 and not is_inner
+        self._y, self._ends = np.zeros(band.size), np.zeros((2, band.size))
+        first, last = band.end_groups
+        self._interface = last[FROM_LEFT:SIZE]
+        if is_inner:
+            self._interface = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], self._interface])
+        self._interface = self._in_mesh_order(self._interface)[: ranks.size * CUT - CUT]
+        self._reduced = ReducedSystem(LEFT, RIGHT, ranks.rank, ranks.size)
+        self._everyone, self._g = np.zeros((ranks.size, CUT + BORDER)), np.zeros((0, LINE))
+        self._rows = self._reduced.rows_of_inverse([])  # of one rank
         self._factored = None
-        if ranks.size > 1:
-            first, last = band.end_groups
-            self._interface = last[FROM_LEFT:SIZE]
-            if self._is_inner:
-                self._interface = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], self._interface])
-            self._reduced = ReducedSystem(LEFT, RIGHT, ranks.rank, ranks.size)
 
     def factor(self, entries, inactive_nodes, anew=True):
         """Factor for one state; unless `anew`, not where the last factors are nearly its own; collective.
@@ -62,79 +77,69 @@ class DistributedLU:
         self._factored = inactive_nodes, entries.reynolds_derivatives
         columns = self.band.fill(entries, inactive_nodes)
         self._lu.factor(columns)
+        self._dense = self.band.dense
+        if self._is_outer:
+            self._dense = self._dense.copy()
+            for row in self._dense:
+                self._lu.backward_transposed(row)
         if self.ranks.size > 1:
             self._factor_interface(columns[0, :LEFT], columns[-1, LEFT + SIZE :])
         self._factor_border()
 
     def _factor_interface(self, left, right):
         """G of an inner rank, or W of the group at the cut of an outer one; and the reduced system."""
-        if self._is_inner:
-            g = np.zeros((LEFT + RIGHT, self.band.groups, LINE))
-            g[:LEFT, 0], g[LEFT:, -1] = left, right
-            for k, column in enumerate(g):
-                self._lu.solve(column, 0 if k < LEFT else self.band.groups - 1)
-            self._g = g.reshape(len(g), -1)
-            at_cuts = self._g[:, self._interface]
+        if self._is_outer:
+            self._g = np.ascontiguousarray(self._in_mesh_order(self._lu.upper[-1]))
         else:
-            self._g = self._lu.upper[-1]
-            at_cuts = self._in_mesh_order(self._g[:, FROM_LEFT:SIZE])
-        values = np.zeros((LEFT + RIGHT, LEFT + RIGHT))
-        values[: len(at_cuts), : len(at_cuts)] = at_cuts
-        self._reduced_inverse = self._reduced.rows_of_inverse(self._gather(values))
+            g = np.zeros((CUT, self.band.groups, LINE))
+            g[:LEFT, 0], g[LEFT:, -1] = left, right
+            self._g = g.reshape(CUT, -1)
+            for k, column in enumerate(self._g):
+                self._lu.solve(column, 0 if k < LEFT else self.band.groups - 1)
+        taken, width = self._g.shape
+        values = np.zeros((self.ranks.size, CUT + BORDER, CUT))
+        mine = values[self.ranks.rank]
+        mine[:taken, :taken] = self._g[:, self._interface - self.band.size + width]
+        mine[CUT:, :taken] = self._dense[:, -width:] @ self._g.T
+        exchange(self.ranks, values)
+        self._rows = self._reduced.rows_of_inverse(values)
 
     def _in_mesh_order(self, values):
         """Values at a cut of this rank, from left to right or back; the last rank counts from the right."""
-        return np.flip(values) if self.band.is_mirrored else values
-
-    def _gather(self, mine):
-        gathered = np.empty((self.ranks.size, *mine.shape))
-        self.ranks.Allgather(np.ascontiguousarray(mine), gathered)
-        return gathered
-
-    def _solve_band(self, y, *firsts):
-        """Solve in place for right-hand sides (k, size), each zero before its first group; collective."""
-        sides = y.reshape(len(y), self.band.groups, LINE)
-        for side, first in zip(sides, firsts, strict=True):
-            self._lu.forward(side, first)
-            if self._is_inner:
-                self._lu.backward(side)
-        if self.ranks.size > 1:
-            values = np.zeros((len(y), LEFT + RIGHT))
-            for row, side in zip(values, y, strict=True):
-                row[: len(self._interface)] = self._in_mesh_order(side[self._interface])
-            w = self._reduced_inverse @ self._gather(values).transpose(0, 2, 1).reshape(-1, len(y))
-            for side, of_side in zip(y, w.T, strict=True):
-                if self._is_inner:
-                    side -= of_side @ self._g
-                else:
-                    side[-LINE:] -= self._in_mesh_order(of_side) @ self._g
-        if not self._is_inner:
-            for side in sides:
-                self._lu.backward(side)
+        return values[::-1] if self.band.is_mirrored else values
 
     def _factor_border(self):
-        band, z, c = self.band, self._ends, self._approach_coefficient
-        z[:] = 0.0
-        firsts = [band.groups, band.groups]
-        for column, is_here, dof in (
-            (0, self.ranks.rank == 0, band.dofs[0]),
-            (1, self.ranks.rank == self.ranks.size - 1, band.dofs[-2]),
-        ):
-            if is_here:
-                z[column, dof], firsts[column] = 1.0, dof // LINE
-        self._solve_band(z, *firsts)
+        band, c = self.band, self._approach_coefficient
         matrix = np.array([[1.0, 0.0, -c], [0.0, 1.0, -c], [0.0, 0.0, 0.0]])
-        matrix[:, :2] += self._border_sums(z).T
+        self._ends[:] = 0.0
+        for k, (rank, dof) in enumerate(((0, band.dofs[0]), (self.ranks.size - 1, band.dofs[-2]))):
+            first = band.groups
+            if self.ranks.rank == rank:
+                self._ends[k, dof], first = 1.0, dof // LINE
+            matrix[:, k] += self._solve_band(self._ends[k], first)
         lu, pivots, singular = dgetrf(matrix)
         if singular:
             regularise_pivots(np.einsum("ii->i", lu))
-        self._border_inverse = dgetrs(lu, pivots, np.eye(BORDER))[0]
+        self._border_inverse = np.ascontiguousarray(dgetrs(lu, pivots, IDENTITY)[0])
 
-    def _border_sums(self, y, load=0.0):
-        """Products of the dense rows with solutions (k, size) less the load, over all ranks, shape (k, 3)."""
-        sums = np.empty((len(y), BORDER))
-        border_sums(y, self.band.dofs, self.band.dense, load, sums)
-        return sums if self.ranks.size == 1 else self._gather(sums).sum(axis=0)
+    def _solve_band(self, y, first=0, load=0.0):
+        """Solve in place for y, zero before group `first`; collective.
+
+        Returns
+        -------
+        ndarray, shape (BORDER,)
+            Products of the dense rows with the solution, of the last one less `load`.
+        """
+        self._lu.forward(y, first)
+        if not self._is_outer:
+            self._lu.backward(y)
+        send(y, self._interface, self._dense, load, self._everyone[self.ranks.rank])
+        exchange(self.ranks, self._everyone)
+        sums = np.empty(BORDER)
+        receive(self._everyone, self._rows, self._g, y, sums)
+        if self._is_outer:
+            self._lu.backward(y)
+        return sums
 
     def _is_still_good(self, entries, inactive_nodes):
         """Whether the factors of this rank are nearly those of the given state."""
@@ -145,72 +150,82 @@ class DistributedLU:
             and is_close(entries.reynolds_derivatives, rows, CLOSE)
         )
 
-    def solve(self, b, active_dofs, load):
-        """Solution of the local (q, h, q, h, ...), shape (2 nodes,), and h00; collective.
+    def solve(self, b, unknowns, solution):
+        """Fill in the solution of the local (q, h, q, h, ...), and h00 on the last rank; collective.
 
         Parameters
         ----------
         b : ndarray
-            Right-hand side of the rows `active_dofs` (of 2 nodes); that of all others is zero.
-        active_dofs : ndarray of int
-        load : float
-            Right-hand side of the load's row on the rank that has it, else 0.
+            Right-hand side, zero in the rows that are not in the system.
+        unknowns : ndarray, shape (nodes, 2, 2)
+            By both unknowns of the band at each node, those of the solution.
+        solution : ndarray
         """
         y, dofs = self._y, self.band.dofs
-        scatter(dofs, active_dofs, b, y)
-        self._solve_band(y, 0)
-        first, last, approach = self._border_inverse @ self._border_sums(y, load)[0]
-        solution = np.empty(len(dofs))
-        combine(y, self._ends, first, last, dofs, solution)
-        return solution, approach
+        scatter(dofs, b, y)
+        sums = self._solve_band(y, 0, b[-1] if len(b) > len(dofs) else 0.0)
+        combine(y, self._ends, self._border_inverse, sums, dofs, unknowns, solution)
 
 
 @compiled
-def scatter(dofs, active_dofs, b, y):
-    """Fill in y (1, size): zero, but ``b[i]`` at ``dofs[active_dofs[i]]``."""
+def scatter(dofs, b, y):
+    """Fill in y: zero, but `b` at `dofs`."""
     y[:] = 0.0
-    for i in range(len(active_dofs)):
-        y[0, dofs[active_dofs[i]]] = b[i]
-
-
-@compiled
-def combine(y, ends, first, last, dofs, solution):
-    """Fill in the solution with ``y - first * ends[0] - last * ends[1]`` at `dofs`."""
     for i in range(len(dofs)):
-        k = dofs[i]
-        solution[i] = y[0, k] - first * ends[0, k] - last * ends[1, k]
+        y[dofs[i]] = b[i]
 
 
 @compiled
-def border_sums(y, dofs, dense, right, sums):
-    """Products of the dense rows with solutions; of the last one less `right`.
+def send(y, interface, dense, load, mine):
+    """Fill in the values at the cuts and the products of the dense rows, of the last one less `load`."""
+    for i in range(len(interface)):
+        mine[i] = y[interface[i]]
+    np.dot(dense, y, mine[CUT:])
+    mine[CUT + BORDER - 1] -= load
 
-    Parameters
-    ----------
-    y : ndarray, shape (k, size)
-    dofs : ndarray of int, shape (2 nodes,)
-    dense : ndarray, shape (3, nodes)
-        Coefficients of the first unknowns.
-    sums : ndarray, shape (k, 3)
-    """
-    for r in range(len(y)):
-        first = second = load = 0.0
-        for node in range(dense.shape[1]):
-            pressure = y[r, dofs[2 * node]]
-            first += dense[0, node] * pressure
-            second += dense[1, node] * pressure
-            load += dense[2, node] * pressure
-        sums[r, 0], sums[r, 1], sums[r, 2] = first, second, load - right
+
+@compiled(fastmath=FAST)
+def receive(everyone, rows, g, y, sums):
+    """Take what other ranks contribute off y, and fill in the sums over all ranks."""
+    taken, begin = len(g), len(y) - g.shape[1]
+    for k in range(len(rows)):
+        total = 0.0
+        for rank in range(rows.shape[1]):
+            for i in range(rows.shape[2]):
+                total += rows[k, rank, i] * everyone[rank, i]
+        if k >= taken:
+            sums[k - taken] = total
+            continue
+        for i in range(g.shape[1]):
+            y[begin + i] -= total * g[k, i]
+
+
+@compiled(fastmath=FAST)
+def combine(y, ends, border_inverse, sums, dofs, unknowns, solution):
+    """Fill in the solution from those of the band and of the border."""
+    first = last = approach = 0.0
+    for k in range(BORDER):
+        first += border_inverse[0, k] * sums[k]
+        last += border_inverse[1, k] * sums[k]
+        approach += border_inverse[2, k] * sums[k]
+    for i in range(len(unknowns)):
+        k, m = dofs[2 * i], dofs[2 * i + 1]
+        one = y[k] - first * ends[0, k] - last * ends[1, k]
+        two = y[m] - first * ends[0, m] - last * ends[1, m]
+        solution[2 * i] = unknowns[i, 0, 0] * one + unknowns[i, 0, 1] * two
+        solution[2 * i + 1] = unknowns[i, 1, 0] * one + unknowns[i, 1, 1] * two
+    if len(solution) > len(dofs):
+        solution[-1] = approach
 
 
 @compiled
 def is_close(derivatives, before, tolerance):
     """Whether no entry is off by more than a fraction of the largest one of its row."""
-    for i in range(len(before)):
-        largest = 0.0
-        for k in range(before.shape[1]):
+    for i in range(unsigned(len(before))):
+        largest = change = 0.0
+        for k in range(unsigned(ENTRIES)):
             largest = max(largest, abs(before[i, k]))
-        for k in range(before.shape[1]):
-            if not abs(derivatives[i, k] - before[i, k]) <= tolerance * largest:
-                return False
+            change = max(change, abs(derivatives[i, k] - before[i, k]))
+        if not change <= tolerance * largest:
+            return False
     return True

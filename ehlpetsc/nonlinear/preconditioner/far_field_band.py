@@ -6,6 +6,8 @@ The band of :mod:`.banded_jacobian` includes the far deflection; :mod:`.distribu
 The error left to GMRES is that of three exponentials, the same on any number of ranks.
 """
 
+import numpy as np
+
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
@@ -24,7 +26,8 @@ class Factors:
 
     def __init__(self, problem, ranks):
         self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
-        self.fresh = False
+        self.fresh, self._own = False, problem.own
+        self._units = np.empty((2, problem.local, 2))
 
     def invalidate(self):
         """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
@@ -36,6 +39,10 @@ class Factors:
         entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
+        for k in range(2):
+            self._units[k, :, k], self._units[k, :, 1 - k] = 1.0, 0.0
+            operator.model.from_band(state, self._own, self._units[k])
+        self.unknowns = self._units.transpose(1, 2, 0)
 
 
 class FarFieldBand:
@@ -49,10 +56,8 @@ class FarFieldBand:
 
     def apply(self, pc, x, y):
         """Solve for one right-hand side."""
-        o, b, out = self.operator, x.array_r, y.array
-        active = len(o.active_dofs)  # h00 follows on the last rank
-        with events.BACK_SOLVE:
-            solution, approach = o.factors.lu.solve(b[:active], o.active_dofs, b[active:].sum())
-            o.model.from_band(o.state, o.problem.own, solution.reshape(-1, 2))
-            out[:active] = solution if active == len(solution) else solution[o.active_dofs]
-            out[active:] = approach
+        operator = self.operator
+        b, solution = np.zeros(operator.size), np.empty(operator.size)
+        b[operator.active] = x.array_r
+        operator.precondition(b, solution)
+        y.array[:] = solution[operator.active]

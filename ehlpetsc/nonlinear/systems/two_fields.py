@@ -135,21 +135,27 @@ class TwoFields:
             self.evaluate(x)
         return self._evaluation
 
-    def evaluate(self, x):
-        """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`."""
+    def evaluate(self, x, reaches_bound=False):
+        """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`.
+
+        `reaches_bound` of this rank is told all others by :attr:`bound_reached`.
+        """
         self.x_evaluated = x.array_r.copy()
-        with events.RESIDUAL, np.errstate(over="ignore", invalid="ignore"):
-            nodes, h00, sums = self.exchange(self.x_evaluated, self._pressure)
+        with events.RESIDUAL:
+            pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
+            nodes, h00, sums = self.exchange(self.x_evaluated, pressure, reaches_bound)
             q, w = np.ascontiguousarray(nodes.T)
             self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, sums)
         return self._evaluation
 
-    def _pressure(self, nodes):
-        return self.contact.pressure(nodes[:, 0], nodes[:, 1])
+    @property
+    def bound_reached(self):
+        """Whether the last step takes a film to its bound, on any rank."""
+        return self.exchange.flagged
 
-    def linearise(self, x):
-        """Set the matrices for x."""
-        self.jacobian.linearise(self.evaluation(x))
+    def linearise(self, x, is_evaluated=False):
+        """Set the matrices for x, on every rank the point last evaluated where that is said."""
+        self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
                 whole = self.exchange.gather(self.jacobian.state)
@@ -174,10 +180,9 @@ class TwoFields:
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
     def reaches_bound(self, x, y):
-        """Whether the step y takes a film to its bound, on any rank."""
+        """Whether the step y takes a film of this rank to its bound."""
         film = w_of(x.array_r, self.local) - w_of(y.array_r, self.local)
-        is_clear = film.min() > self.model.lower_bound + self.model.bound_tolerance
-        return not all_ranks(self.exchange.ranks, is_clear)
+        return not film.min() > self.model.lower_bound + self.model.bound_tolerance
 
     def rounding(self):
         """What rounding of the unknowns leaves of the residual at x: nothing less can be asked.
