@@ -1,11 +1,11 @@
 """Surfaces over their life: wear against fatigue in many passes, of which a few are solved.
 
->>> from ehlpetsc.life import run_life, read_life
+>>> from ehlpetsc.life import run_life, read_life, run_regimes
 """
 
 from importlib import import_module
 
-_HOMES = {"LifeHistory": "history", "read_life": "history", "run_life": "driver"}
+_HOMES = {"LifeHistory": "history", "read_life": "history", "run_life": "driver", "run_regimes": "regimes"}
 __all__ = list(_HOMES)
 
 

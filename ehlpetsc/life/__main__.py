@@ -2,6 +2,8 @@
 
 Wear and fatigue damage of a pass are multiplied over as many passes as leave the surfaces nearly the same,
 see the table [life] of the case; the next pass meets the changed surfaces. The same command continues a life.
+Of a case with [series] a life for each of its members, their index ``OUT.life.series.json`` and a picture of
+the regimes: where wear wins and where fatigue. Under mpirun a rank takes a position of surface 2, or a life.
 """
 
 import argparse
@@ -29,7 +31,7 @@ def arguments():
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("case", help="case file with a [life] table, or OUT.life.h5 to draw")
+    parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 or its index to draw")
     parser.add_argument("-o", "--output", metavar="FILE.h5", help="default: CASE.life.h5")
     parser.add_argument(
         "--set",
@@ -39,7 +41,9 @@ def arguments():
         help="a key of the case; may be repeated",
     )
     parser.add_argument("--overwrite", action="store_true", help="begin anew")
+    parser.add_argument("--after", type=int, metavar="ROW", help="continue after this row, from 1")
     parser.add_argument("--no-picture", action="store_true", help="the numbers alone")
+    parser.add_argument("--movie", metavar="FILE", help="profile and damage over the life: .gif, .mp4, .webm")
     return parser
 
 
@@ -47,14 +51,7 @@ def main(argv=None):
     """Run the command; returns its exit status."""
     chosen = arguments().parse_args(argv)
     try:
-        path = Path(chosen.case) if chosen.case.endswith(".h5") else _run(chosen)
-        if path and not chosen.no_picture:
-            from ehlpetsc.life.history import read_life
-            from ehlpetsc.life.picture import draw
-
-            life, target = read_life(path), _picture(path, [path])
-            draw(life, target)
-            print(target)
+        _run(chosen)
     except CaseError as error:
         print("\n".join(error.faults), file=sys.stderr)
     except Stopped:
@@ -73,17 +70,52 @@ def main(argv=None):
     return ExitStatus.BAD_INPUT
 
 
-def _picture(path, inputs):
-    """Where the picture of a life goes, checked."""
-    from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
+def _run(chosen):
+    """Run a life or a series of them, where a case is given; draw it on the first rank."""
+    path, is_root = Path(chosen.case), True
+    if path.suffix not in (".h5", ".json"):
+        path, is_root = _lived(chosen)
+    elif not chosen.no_picture:
+        _pictures(chosen, path, [path])
+    if is_root and not chosen.no_picture:
+        (_draw_regimes if path.suffix == ".json" else _draw)(chosen, path)
+
+
+def _draw(chosen, path):
+    from ehlpetsc.life.history import read_life
+    from ehlpetsc.life.picture import draw
+
+    life, target = read_life(path), path.with_suffix(".png")
+    draw(life, target)
+    print(target)
+    if chosen.movie:
+        from ehlpetsc.life.movie import save_movie
+
+        save_movie(life, Path(chosen.movie))
+        print(chosen.movie)
+
+
+def _draw_regimes(chosen, path):
+    from ehlpetsc.life.regimes_picture import draw_regimes, read_index
 
     target = path.with_suffix(".png")
-    check_derived(target, inputs, PICTURE_SIGNATURES)
-    return target
+    draw_regimes(read_index(path), target)
+    print(target)
 
 
-def _run(chosen):
-    """Run a life; its file on the first rank, else None."""
+def _pictures(chosen, path, inputs):
+    """Check the places of the pictures of a life or an index."""
+    from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PICTURE_SIGNATURES, check_derived
+
+    check_derived(path.with_suffix(".png"), inputs, PICTURE_SIGNATURES)
+    if chosen.movie:
+        check_derived(Path(chosen.movie), inputs, MOVIE_SIGNATURES, "--movie")
+        if path.suffix == ".json":
+            raise UsageError(f"--movie {chosen.movie}: of a life; allowed with a series: left out")
+
+
+def _lived(chosen):
+    """Run a life or those of a series; its file or index, and whether this is the first rank."""
     from ehlpetsc.api import need_solver
     from ehlpetsc.case.loading import load
 
@@ -91,23 +123,31 @@ def _run(chosen):
     from mpi4py import MPI
 
     from ehlpetsc.life.driver import run_life
+    from ehlpetsc.life.regimes import index_of, run_regimes
     from ehlpetsc.results.output_guard import inputs_of
     from ehlpetsc.run.on_root import on_root
     from ehlpetsc.run.stop import StopRequest
 
     comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)
     path = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
+    made = index_of(path) if case.series else path
     is_root = comm.rank == 0
-    if path.name and not chosen.no_picture:
-        on_root(comm, _picture, path, inputs_of(case))
+    if made.name and not chosen.no_picture:
+        on_root(comm, _pictures, chosen, made, inputs_of(case))
+    if case.series and chosen.after:
+        raise UsageError(f"--after {chosen.after}: of a life; allowed with a series: left out")
 
     def show(text):
         if is_root:
             print(text, flush=True)
 
-    run_life(case, path, overwrite=chosen.overwrite, comm=comm, show=show, stop=StopRequest())
-    show(str(path))
-    return path if is_root else None
+    shared = {"overwrite": chosen.overwrite, "comm": comm, "show": show, "stop": StopRequest()}
+    if case.series:
+        run_regimes(case, path, **shared)
+    else:
+        run_life(case, path, after=chosen.after, **shared)
+    show(str(made))
+    return made, is_root
 
 
 if __name__ == "__main__":

@@ -89,10 +89,11 @@ class LifeBody(NamedTuple):
         slack = 0.25 * (self.s[1] - self.s[0])
         return (self.s >= stretch[0] - slack) & (self.s <= stretch[1] + slack)
 
-    def gap_field(self, stretch, reach):
+    def gap_field(self, stretch, reach, averaged=np.inf):
         """Depth of the present surface for the solver; beyond the stretch its mean.
 
-        The contact begins and ends on parts of the bodies that are not followed: they wear as the mean.
+        The contact begins and ends on parts of the bodies that are not followed: they wear as the mean of
+        the stretch, or of the part of it that is next to them.
 
         Parameters
         ----------
@@ -100,6 +101,8 @@ class LifeBody(NamedTuple):
             Abscissas that pass the whole contact [m].
         reach : (float, float)
             Abscissas that the mesh meets [m].
+        averaged : float
+            Length at either end of the stretch of which the mean is taken [m]; by default all of it.
 
         Returns
         -------
@@ -110,7 +113,9 @@ class LifeBody(NamedTuple):
         first, last = self.s[met][[0, -1]]
         before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)
         after = max(int(np.ceil((reach[1] - last) / width)) + 1, 0)
-        depth = np.pad(depth, (before, after), constant_values=depth.mean())
+        count = int(min(max(averaged / width, 1.0), len(depth)))
+        means = depth[:count].mean(), depth[-count:].mean()
+        depth = np.pad(depth, (before, after), constant_values=means)
         faces = first + width * (np.arange(len(depth) + 1) - before - 0.5)
         return BodyField.zero(width).add(faces, depth)
 
@@ -124,7 +129,7 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        of_pass : one_pass.OfBody
+        of_pass : pass_result.OfBody
         """
         met = self.met((of_pass.s[0], of_pass.s[-1]))
         worn = np.diff([field.means(self.faces()) for field in of_pass.depth], axis=0)[0]

@@ -1,85 +1,77 @@
-"""A life stored: one HDF5 file, a row for each solved pass, replaced whole after each."""
+"""A life in memory, and read from its file."""
 
-import io
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.atomic_write import atomic_write
+from ehlpetsc.life.life_file import CHANGING, FIXED, FORMAT, KIND, VOUCHING, LifeFile
+from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading
-
-FIXED = {"s": "m", "edges": "m", "height": "m"}  # of a body
-CHANGING = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
-KIND = "surfaces over their life"
 
 
 class LifeHistory:
-    """All solved passes of a life.
+    """All solved rounds of a life.
 
     Attributes
     ----------
     case : str
         Its text.
+    title : str
     rows : list of dict
-        Figures of each solved pass: "passes" done after its jump, "jump", "pits_1", "ra_1", "friction" ...
+        Figures of each round: "passes" done after its jump, "jump", "solved" passes of it, "pits_1", "ra_1",
+        "friction" ...
     bodies : list of pair of LifeBody
         After each jump.
-    plastic : dict
-        Record of the plastic deformation after the last one, flat; empty without.
+    plastic : list of dict
+        Record of the plastic deformation after each, flat; empty without.
     """
 
     def __init__(self, case, title):
         self.case, self.title = case, title
-        self.rows, self.bodies, self.plastic = [], [], {}
+        self.rows, self.bodies, self.plastic = [], [], []
 
     @property
     def done(self):
         """Passes done."""
         return int(self.rows[-1]["passes"]) if self.rows else 0
 
+    @property
+    def solved(self):
+        """Passes solved."""
+        return sum(row["solved"] for row in self.rows)
+
+    @property
+    def first_failure(self):
+        """Passes after which the first cell failed; inf: none did."""
+        return min(float(body.failed.min()) for body in self.bodies[-1])
+
     def __call__(self, name):
-        """A figure of all solved passes, shape (solved,)."""
+        """A figure of all rows, shape (rows,)."""
         return np.array([row[name] for row in self.rows])
 
     def add(self, row, bodies, plastic):
-        """Append a solved pass."""
+        """Append a solved round."""
         self.rows.append(row)
         self.bodies.append(bodies)
-        self.plastic = plastic
+        self.plastic.append(plastic)
+
+    def up_to(self, count):
+        """The same life with its first rows alone."""
+        found = LifeHistory(self.case, self.title)
+        for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
+            found.add(*values)
+        return found
 
     def save(self, path):
-        """Write all of it in the place of `path`.
-
-        Raises
-        ------
-        OutputError
-        """
-        image = io.BytesIO()
-        with h5py.File(image, "w") as file:
-            file.attrs.update({"format_version": 1, "kind": KIND, "case": self.case, "title": self.title})
-            for name in self.rows[0] if self.rows else ():
-                file[f"figures/{name}"] = self(name)
-            for k in range(2) if self.bodies else ():
-                group = file.create_group(f"surface/{k + 1}")
-                for name, unit in FIXED.items():
-                    group[name] = getattr(self.bodies[-1][k], name)
-                    group[name].attrs["units"] = unit
-                for name, unit in CHANGING.items():
-                    group[name] = np.array([getattr(both[k], name) for both in self.bodies])
-                    group[name].attrs["units"] = unit
-            for name, value in self.plastic.items():
-                file[f"records/{name}"] = value
-        try:
-            atomic_write(path, image.getvalue())
-        except OSError as error:
-            raise OutputError(f"{path}: not written, {error.strerror}") from error
+        """Write all of it in the place of `path`; OutputError."""
+        with LifeFile(Path(path)) as file:
+            file.store(self)
 
 
 def read_life(path):
-    """A stored life.
+    """A stored life, also one that is being written.
 
     Parameters
     ----------
@@ -96,8 +88,11 @@ def read_life(path):
     """
     path = Path(path)
     with open_for_reading(path) as file:
-        if file.attrs.get("kind") != KIND:
+        if plain(file.attrs.get("kind")) != KIND:
             raise OutputError(f"{path}: not a file of ehlpetsc.life")
+        version = file.attrs.get("format_version")
+        if version != FORMAT:
+            raise OutputError(f"{path}: format version {version}, this ehlpetsc reads {FORMAT}; --overwrite")
         try:
             return _read(file)
         except (AttributeError, LookupError, ValueError, TypeError, OSError) as error:
@@ -105,19 +100,29 @@ def read_life(path):
 
 
 def _read(file):
-    found = LifeHistory(file.attrs["case"], file.attrs["title"])
-    figures = {name: dataset[:] for name, dataset in file.get("figures", {}).items()}
-    count = len(next(iter(figures.values()), ()))
-    found.rows = [{name: values[row].item() for name, values in figures.items()} for row in range(count)]
-    groups = [file[f"surface/{k}"] for k in (1, 2)] if count else []
+    found = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]))
+    count = len(file[f"figures/{VOUCHING}"])
+    figures = {name: dataset[:count] for name, dataset in file["figures"].items()}
+    groups = [file[f"surface/{k}"] for k in (1, 2)]
     fixed = [[group[name][:] for name in FIXED] for group in groups]
-    changing = [[group[name][:] for name in CHANGING] for group in groups]
+    changing = [[group[name][:count] for name in CHANGING] for group in groups]
+    plastic = {name: _records(file, name, count) for name in file.get("records", {})}
     for row in range(count):
-        found.bodies.append(
-            tuple(
-                LifeBody(*one, *(values[row] for values in other))
-                for one, other in zip(fixed, changing, strict=True)
-            )
+        bodies = tuple(
+            LifeBody(*one, *(values[row] for values in other))
+            for one, other in zip(fixed, changing, strict=True)
         )
-    found.plastic = {name: dataset[()] for name, dataset in file.get("records", {}).items()}
+        found.add(
+            {name: values[row].item() for name, values in figures.items()},
+            bodies,
+            {name: values[row] for name, values in plastic.items()},
+        )
     return found
+
+
+def _records(file, name, count):
+    """Values of a record's field in each row, of different lengths."""
+    dataset, lengths = file[f"records/{name}"], file[f"lengths/{name}"][:count]
+    ends = np.cumsum(lengths)
+    values = np.split(dataset[: ends[-1] if count else 0], ends[:-1])
+    return [value[0] for value in values] if dataset.attrs["is_number"] else values

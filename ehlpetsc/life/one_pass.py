@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import ExitStatus, OutputError, PostError, Stopped
+from ehlpetsc.life.pass_result import OfBody, Pass
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.prepare import prepare
@@ -20,51 +21,6 @@ from ehlpetsc.surfaces.body_field import BodyField
 
 SIDES = ("1", "2")
 NOTHING = BodyField(1e-6, 0, np.zeros(0))
-
-
-class OfBody(NamedTuple):
-    """What a pass does to a body.
-
-    Attributes
-    ----------
-    s : ndarray, shape (points,)
-        Abscissas in the body of the points that passed the whole contact [m].
-    depths : ndarray, shape (n,)
-        Below the present surface [m].
-    damage : ndarray, shape (n, points)
-    depth : pair of surfaces.body_field.BodyField
-        Wear before and after the pass.
-    """
-
-    s: np.ndarray
-    depths: np.ndarray
-    damage: np.ndarray
-    depth: tuple
-
-    @property
-    def volume(self):
-        """Worn off [m^2]."""
-        before, after = self.depth
-        return after.volume - before.volume
-
-
-class Pass(NamedTuple):
-    """A solved pass.
-
-    Attributes
-    ----------
-    bodies : pair of OfBody
-    figures : dict of str to float
-        Means over the time in which both surfaces fill the contact.
-    plastic : effects.plastic_deformation.PlasticRecord or None
-    yielded : float
-        Largest depth by which a point yielded in this pass [m].
-    """
-
-    bodies: tuple
-    figures: dict
-    plastic: object
-    yielded: float
 
 
 @dataclass(frozen=True)
@@ -115,7 +71,7 @@ def run_pass(simulation, before, file, stop=None):
 
     Returns
     -------
-    Pass
+    pass_result.Pass
 
     Raises
     ------

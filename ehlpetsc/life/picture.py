@@ -26,7 +26,7 @@ def draw(life, path):
     for column, row in enumerate(chosen):
         for k in range(2):
             above.append(top.add_subplot(2, len(chosen), k * len(chosen) + column + 1))
-            image = _under_profile(above[-1], life.bodies[row][k])
+            image = under_profile(above[-1], life.bodies[row][k])
             above[-1].set_title(f"surface {k + 1}, {life.rows[row]['passes']:.3g} passes", fontsize="small")
     top.colorbar(image, ax=above, label="log10 D", shrink=0.6)
     passes = life("passes")
@@ -53,7 +53,7 @@ def draw(life, path):
         pyplot.close(figure)
 
 
-def _under_profile(axes, body):
+def under_profile(axes, body):
     """Damage of the cells that are left below the present profile; returns the image."""
     micro = 1e6
     damage = np.where(body.is_there, body.damage, np.nan)

@@ -30,8 +30,7 @@ def save_movie(results, options, path):
     steps = np.unique(np.linspace(0, last, min(last + 1, FRAMES)).round().astype(int))
     figure, axes = two_panels()
     limits = _limits(results, steps)
-    writer = _writer(path)
-    with replacing(path, keep_ending=True) as beside, _encoding(path), writer.saving(figure, beside, DPI):
+    with recording(figure, path) as writer:
         for number, index in enumerate(steps):
             for panel in axes:
                 panel.clear()
@@ -42,6 +41,29 @@ def save_movie(results, options, path):
                 figure.draw_without_rendering()
                 figure.set_layout_engine("none")
             writer.grab_frame()
+
+
+@contextlib.contextmanager
+def recording(figure, path):
+    """A movie of a figure, for a ``with`` statement: frames are added by its `grab_frame()`.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    path : Path
+
+    Yields
+    ------
+    matplotlib.animation.AbstractMovieWriter
+
+    Raises
+    ------
+    OutputError
+        The ending of `path` is none of a movie, or its encoder is not installed.
+    """
+    writer = _writer(path)
+    with replacing(path, keep_ending=True) as beside, _encoding(path), writer.saving(figure, beside, DPI):
+        yield writer
 
 
 @contextlib.contextmanager

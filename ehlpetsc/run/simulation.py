@@ -102,13 +102,9 @@ class Simulation:
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number = check_pass(case, self.scales, after, pass_number)
-        positions = SurfacePositions.at_rest(self.scales)
-        one, other = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
-        shift = (self.pass_number - 1) * case.time.pass_shift if case.time else 0.0
-        positions = replace(positions, profile_offsets=(one, other + shift))
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
-        self.scene = Scene(case, self.scales, self.operation, positions, _heat_transfer)
+        self.scene = scene_of(case, self.scales, self.operation, self.pass_number)
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
         self.state = self.solution = None
@@ -238,6 +234,23 @@ class Simulation:
         """Head PETSc's own lines, where the user asked for some."""
         if self._followed:
             PETSc.Sys.Print(what, comm=self.comm)
+
+
+def scene_of(case, scales, operation, pass_number):
+    """Scene at the begin of a pass, `effects.effect.Scene`.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    operation : physics.operation.ConstantOperation
+    pass_number : int
+        From 1; surface 2 begins each pass by `time.pass_shift` further on.
+    """
+    one, other = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
+    shift = (pass_number - 1) * case.time.pass_shift if case.time else 0.0
+    positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(one, other + shift))
+    return Scene(case, scales, operation, positions, _heat_transfer)
 
 
 def _end_where_asked(asked, comm):

@@ -46,7 +46,7 @@ MAY_IMPORT = {
     "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
     "compare": {"analysis"},
     "docs": set(),  # the pages as one site
-    "life": {"run", "post", "api", "effects", "case", "surfaces", "results", "physics"},
+    "life": {"run", "post", "plot", "api", "effects", "case", "surfaces", "results", "physics"},
     "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
     "__main__": {"run", "case", "commands"},
     "commands": set(),  # starts each command by its name

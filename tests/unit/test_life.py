@@ -8,9 +8,9 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.life import laws, read_life
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.driver import check_case
+from ehlpetsc.life.checks import check_case
 from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.life.one_pass import OfBody
+from ehlpetsc.life.pass_result import OfBody
 from ehlpetsc.surfaces.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])
@@ -114,7 +114,7 @@ def test_a_life_is_read_as_it_was_stored(tmp_path):
     assert found.rows == life.rows and found.done == 30 and found.case == "text"
     for one, other in zip(found.bodies[1], life.bodies[1], strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
-    assert found.plastic["x.depth"].tolist() == [1.0, 1.0]
+    assert [record["x.depth"].tolist() for record in found.plastic] == 2 * [[1.0, 1.0]]
     path.write_bytes(path.read_bytes()[:100])
     with pytest.raises(OutputError):
         read_life(path)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from support import CASES
 
+from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
-from ehlpetsc.life.driver import CELL
+from ehlpetsc.life.positions import CELL
 from ehlpetsc.post.run import Job
 from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult
-from ehlpetsc.run.simulation import Simulation
 
 SHORT = {"mesh.points_per_half_width": 10, "surface.1.scale": 1.0, "surface.2.scale": 1.0}
 

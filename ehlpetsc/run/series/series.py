@@ -24,7 +24,7 @@ from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.progress import summary_line
 from ehlpetsc.run.series.member import Member, named
-from ehlpetsc.run.series.work_queue import WorkQueue
+from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 
@@ -45,21 +45,6 @@ class PrefixedStream:
 
     def isatty(self):
         return False  # no bar: several members would draw over each other
-
-
-class PollingStop:
-    """A request to stop that serves the other groups whenever it is asked; as of run.stop.StopRequest."""
-
-    def __init__(self, queue, stop):
-        self._queue, self._stop = queue, stop
-
-    def __call__(self, group):
-        self._queue.serve()
-        return self._stop(group)
-
-    def overdue(self, group):
-        self._queue.serve()
-        return self._stop.overdue(group)
 
 
 class Series:

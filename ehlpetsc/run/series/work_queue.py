@@ -24,6 +24,8 @@ class WorkQueue:
         In which the pieces are dealt.
     take : callable
         Called on the first rank of the world with each report.
+    group : mpi4py communicator, optional
+        The group of this rank, of a queue before; by default the ranks are split anew.
 
     Attributes
     ----------
@@ -31,9 +33,9 @@ class WorkQueue:
         The group this rank is in.
     """
 
-    def __init__(self, world, ranks, order, on_report):
+    def __init__(self, world, ranks, order, on_report, group=None):
         self.world, self.on_report = world, on_report
-        self.group = world.Split(world.rank // ranks, world.rank)
+        self.group = group or world.Split(world.rank // ranks, world.rank)
         self._waiting = list(order)
         self._others = -(-world.size // ranks) - 1  # groups that are yet to hear that nothing is left
 
@@ -86,6 +88,28 @@ class WorkQueue:
         if ending:
             self._waiting.clear()
         return self._waiting.pop(0) if self._waiting else None
+
+
+class PollingStop:
+    """A request to stop that serves the other groups whenever it is asked; as of run.stop.StopRequest.
+
+    Parameters
+    ----------
+    queue : WorkQueue
+    stop : run.stop.StopRequest or None
+        None: never.
+    """
+
+    def __init__(self, queue, stop):
+        self._queue, self._stop = queue, stop
+
+    def __call__(self, group):
+        self._queue.serve()
+        return self._stop is not None and self._stop(group)
+
+    def overdue(self, group):
+        self._queue.serve()
+        return self._stop is not None and self._stop.overdue(group)
 
 
 def wait(ready):

@@ -1,0 +1,96 @@
+"""Checks of a life's case and files, before anything is computed."""
+
+import tomllib
+
+import h5py
+
+from ehlpetsc.errors import CaseError, OutputError, UsageError
+from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.life.positions import number_of_positions
+from ehlpetsc.results.hdf5.attributes import plain
+from ehlpetsc.results.hdf5.opening import open_for_reading
+
+NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
+
+
+def check_case(case):
+    """Refuse a case that has no life; CaseError."""
+    faults = []
+    if case.life is None:
+        faults.append("no [life] table; allowed: a case with one")
+    if case.series:
+        faults.append("[life] with a [series]: allowed: one of its members, --set KEY=VALUE")
+    if case.time is None:
+        faults.append("[life] needs [time]: passes of surfaces in motion")
+    if not (case.surface.body_1 or case.surface.body_2):
+        faults.append("[life] needs a rough surface: jumps are a share of its Rq")
+    if case.conditions is not None and 0 in case.conditions.directions():
+        faults.append("[life] needs surfaces that move one way: points would pass the contact several times")
+    if case.output.every != 1 or not set(NEEDED) <= set(case.output.fields):
+        faults.append(f"[life] needs output.every = 1 and the fields {', '.join(NEEDED)}")
+    if faults:
+        raise CaseError([f"{case.path}: {fault}" for fault in faults])
+
+
+def pass_file(path, position, positions):
+    """Result of the last solved pass in a position of surface 2, beside the life `path`."""
+    return path.with_suffix(".pass.h5" if positions == 1 else f".pass{position + 1}.h5")
+
+
+def check_files(path, case):
+    """Refuse to write over an input, over what is no life, and over a result that is none of a life's passes.
+
+    Parameters
+    ----------
+    path : Path
+        The life.
+    case : case.loading.Case
+
+    Raises
+    ------
+    OutputError
+    """
+    from ehlpetsc.results.output_guard import check_derived, check_output_path, exists, inputs_of
+
+    check_derived(path, inputs_of(case), {".h5": b"\x89HDF"})
+    positions = number_of_positions(case)
+    for position in range(positions):
+        one_pass = pass_file(path, position, positions)
+        check_output_path(one_pass, inputs_of(case), "-o")
+        if exists(one_pass) and one_pass.stat().st_size and not _is_pass(one_pass):
+            raise OutputError(f"{one_pass}: exists and is no pass of a life; remove it or give another -o")
+
+
+def _is_pass(path):
+    """Whether a file is the result of a life's pass, or one of HDF5 that a killed run has left damaged."""
+    try:
+        with open_for_reading(path) as file:
+            return "life" in tomllib.loads(str(plain(file.attrs.get("case", ""))))
+    except OutputError:
+        return h5py.is_hdf5(path)
+    except ValueError:
+        return False
+
+
+def stored_or_new(case, path, overwrite, after):
+    """The life that lies at `path`, up to the row `after` where one is given, or a new life.
+
+    Raises
+    ------
+    OutputError
+        It is the life of another case.
+    UsageError
+        It has no such row.
+    """
+    if overwrite or not path.exists():
+        if after:
+            raise UsageError(f"--after {after}: {path} has no row; allowed: a life to continue")
+        return LifeHistory(case.text, case.title)
+    history = read_life(path)
+    if history.case != case.text:
+        raise OutputError(f"{path}: the life of another case; give another -o, or --overwrite to lose it")
+    if after is None:
+        return history
+    if not 1 <= after <= len(history.rows):
+        raise UsageError(f"--after {after}: allowed: 1 to {len(history.rows)}, the rows of {path}")
+    return history.up_to(after)

@@ -1,0 +1,123 @@
+"""The file of a life: HDF5, lengthened by a row for each solved round.
+
+As result files it is written in single-writer/multiple-reader mode, room on the disk made sure of before.
+``figures/passes`` is lengthened after everything else, so that it vouches for the rows before it: a killed
+run loses the round in hand alone. A life that is continued is copied once, up to its last whole row.
+"""
+
+import contextlib
+
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+from ehlpetsc.results.atomic_write import os_reason, replacing
+from ehlpetsc.results.hdf5.attributes import put
+from ehlpetsc.results.hdf5.datasets import close, create, extend, room
+
+FIXED = {"s": "m", "edges": "m", "height": "m"}  # of a body
+CHANGING = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
+KIND = "surfaces over their life"
+FORMAT = 2
+VOUCHING = "passes"  # of the figures, written last
+ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
+
+
+class LifeFile:
+    """File of a life that grows; created with its first row.
+
+    Parameters
+    ----------
+    path : Path
+    """
+
+    def __init__(self, path):
+        self.path, self._file = path, None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_):
+        self.close("stopped" if kind else "done")
+
+    def store(self, history):
+        """Append the last row of a life, or write all of its rows where the file is not open yet.
+
+        Parameters
+        ----------
+        history : history.LifeHistory
+
+        Raises
+        ------
+        OutputError
+        """
+        try:
+            if self._file is None:
+                self._create(history)
+            else:
+                self._append(history, [len(history.rows) - 1])
+        except (OSError, RuntimeError) as error:
+            raise OutputError(f"{self.path}: not written, {os_reason(error)}") from error
+
+    def close(self, status):
+        """Note how it ended, and close.
+
+        Parameters
+        ----------
+        status : str
+            "done", "stopped", "not converged".
+        """
+        if self._file:
+            with contextlib.suppress(OSError, RuntimeError):  # its rows are whole
+                close(self._file, status)
+        self._file = None
+
+    def _create(self, history):
+        with replacing(self.path) as beside:
+            file = self._file = create(beside)
+            with room(file, 0):
+                about = {"kind": KIND, "case": history.case, "title": history.title}
+                put(file, about | {"format_version": FORMAT, "status": "running", "limits": " "})
+                _lay_out(file, history)
+            self._append(history, range(len(history.rows)))
+            file.swmr_mode = True
+            file.flush()
+
+    def _append(self, history, numbers):
+        for number in numbers:
+            values = dict(_values_of(history, number))
+            vouching = values.pop(f"figures/{VOUCHING}")
+            with room(self._file, sum(value.nbytes for value in values.values())):
+                for name, value in values.items():
+                    extend(self._file[name], value)
+            with room(self._file, vouching.nbytes):
+                extend(self._file[f"figures/{VOUCHING}"], vouching)
+
+
+def _values_of(history, number):
+    """Names of the datasets, with what a row adds to each."""
+    for name, value in history.rows[number].items():
+        yield f"figures/{name}", np.array([value])
+    for k, body in enumerate(history.bodies[number], 1):
+        for name in CHANGING:
+            yield f"surface/{k}/{name}", np.asarray(getattr(body, name))[None]
+    for name, value in history.plastic[number].items():
+        yield f"records/{name}", np.atleast_1d(value)
+        yield f"lengths/{name}", np.array([np.size(value)])
+
+
+def _lay_out(file, history):
+    for name, value in _values_of(history, 0):
+        shape = value.shape[1:]
+        rows = CHUNK if name.startswith("records/") else ROWS  # of which a row adds many
+        chunk = max(1, min(rows, CHUNK // max(int(np.prod(shape)), 1)))
+        file.create_dataset(
+            name, (0, *shape), value.dtype, maxshape=(None, *shape), chunks=(chunk, *shape), fletcher32=True
+        )
+    for k, body in enumerate(history.bodies[0], 1):
+        for name, unit in FIXED.items():
+            file[f"surface/{k}/{name}"] = getattr(body, name)
+            put(file[f"surface/{k}/{name}"], {"units": unit})
+        for name, unit in CHANGING.items():
+            put(file[f"surface/{k}/{name}"], {"units": unit})
+    for name, value in history.plastic[0].items():
+        put(file[f"records/{name}"], {"is_number": int(not np.ndim(value))})

@@ -1,0 +1,136 @@
+"""Positions that surface 2 takes up over surface 1, and the columns of both bodies in them.
+
+With `time.pass_shift` surface 2 begins each pass further on, as the teeth of a wheel follow each other: the
+columns of body 2 are those of all positions. Without it there is one position.
+
+Of gears a pass is one engagement of a pinion tooth, from the begin of its contact to the end, and a position
+is a tooth of the wheel. Columns then count along the flanks. In the time in which a pinion tooth meets
+N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be alike.
+"""
+
+import numpy as np
+
+from ehlpetsc.life import laws
+from ehlpetsc.life.body import LifeBody
+from ehlpetsc.surfaces.roughness import directed_speeds
+
+CELL = 0.25  # of the combined Rq: thickness of the first cells
+FLANK_ENDS = 1.0  # half widths at either end of a flank whose mean wear is that of the points beyond
+
+
+def number_of_positions(case):
+    """Positions of surface 2 in the life of a case."""
+    if not case.time.pass_shift:
+        return 1
+    return min(case.life.partners, case.gears.pair.partners) if case.gears else case.life.partners
+
+
+class Positions:
+    """Positions of surface 2.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    scene : callable(int)
+        `effects.effect.Scene` of a position, from 0.
+
+    Attributes
+    ----------
+    count : int
+    rq : float
+        Combined root mean square roughness [m].
+    passes_2 : float
+        Passes of body 2 for each one of body 1, over the positions together.
+    """
+
+    def __init__(self, case, scales, scene):
+        self.case, self.scales, self.count = case, scales, number_of_positions(case)
+        self._scenes = [scene(position) for position in range(self.count)]
+        self.rq = self._scenes[0].rq
+        self._shift = case.time.pass_shift if self.count > 1 else 0.0
+        self.passes_2 = 1.0
+        if case.gears:
+            pinion, wheel = case.gears.pair.teeth
+            self.passes_2 = self.count * pinion / wheel
+
+    def new_bodies(self, first):
+        """Columns of both bodies, of body 2 in all of its positions.
+
+        Parameters
+        ----------
+        first : pass_result.Pass
+            Solved in position 0.
+
+        Returns
+        -------
+        pair of body.LifeBody
+        """
+        return tuple(self._new(first.bodies[k], k) for k in range(2))
+
+    def records(self, bodies, position, plastic):
+        """Records of the effects with which a pass begins.
+
+        Parameters
+        ----------
+        bodies : pair of body.LifeBody
+        position : int
+        plastic : effects.plastic_deformation.PlasticRecord or None
+
+        Returns
+        -------
+        dict of str to NamedTuple
+        """
+        from ehlpetsc.effects.wear import WearRecord
+        from ehlpetsc.surfaces.body_field import BodyFields
+
+        scene = self._scenes[position]
+        ends = scene.operation.travelled(0.0), scene.operation.travelled(scene.operation.duration)
+        averaged = FLANK_ENDS * self.scales.a if self._are_flanks else np.inf
+        fields = []
+        for k, body in enumerate(bodies):
+            faces = np.concatenate([scene.mesh_on_bodies.faces(way)[k][[0, -1]] for way in ends])
+            stretch = self._stretch(body, k, position)
+            fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged))
+        records = {"wear": WearRecord(BodyFields(*fields))}
+        return records | ({"plastic_deformation": plastic} if plastic else {})
+
+    @property
+    def _are_flanks(self):
+        return self.case.conditions is not None and self.case.conditions.profile_offsets is not None
+
+    def _offset(self, position, k):
+        return self._scenes[position].mesh_on_bodies.offsets[k]
+
+    def _stretch(self, body, k, position):
+        """Abscissas of the first and last column of body k in a position: those of position 0, shifted."""
+        if self.count == 1 or k == 0:
+            return body.s[0], body.s[-1]
+        length = body.s[-1] - body.s[0] - self._columns_more * self.scales.dx
+        first = body.s[0] if self._sign > 0 else body.s[-1] - length
+        first += self._offset(position, k) - self._offset(0, k)
+        return first, first + length
+
+    @property
+    def _columns_more(self):
+        """Columns of body 2 beyond those of position 0."""
+        return int(np.ceil(abs((self.count - 1) * self._shift) / self.scales.dx))
+
+    @property
+    def _sign(self):
+        """Direction in which the positions of body 2 follow each other on it."""
+        return -1.0 if (directed_speeds(self.case, self.scales)[1] > 0.0) == (self._shift > 0.0) else 1.0
+
+    def _new(self, of_pass, k):
+        s, dx, offset = of_pass.s, self.scales.dx, self._offset(0, k)
+        roughness = self._scenes[0].roughness
+        profile = roughness and roughness.side("12"[k])
+        if profile and profile.is_moving:  # not where its heights come in over the ramp
+            inlet, outlet = self.scales.x[0] * self.scales.a, self.scales.x[-1] * self.scales.a
+            X = inlet - s if profile.speed > 0 else s - outlet
+            s = s[X >= profile.ramp * (1.0 - 1e-9)]
+        if k == 1 and self.count > 1:
+            extra = dx * np.arange(1, self._columns_more + 1)
+            s = np.append(s, s[-1] + extra) if self._sign > 0 else np.append(s[0] - extra[::-1], s)
+        height = profile.height(s - offset) if profile else np.zeros(len(s))
+        return LifeBody.new(s, height, laws.cell_edges(CELL * self.rq, of_pass.depths[-1] + 1e-12))

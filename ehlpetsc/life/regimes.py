@@ -1,0 +1,200 @@
+"""Lives of a case with [series]: one for each setting, dealt to the ranks, and which mechanism wins in each.
+
+The index ``OUT.life.series.json`` names for each life its settings, file and figures. What lies there of the
+same case is continued, as a single life is.
+"""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
+
+WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
+INDEX = ".series.json"
+
+
+def index_of(output):
+    """Index of the lives of a series whose files' names begin as the stem of `output`."""
+    return _stem(output).with_suffix(f".life{INDEX}")
+
+
+def _stem(output):
+    return output.with_name(output.name.removesuffix(".h5").removesuffix(".life") + ".h5")
+
+
+def winner(life):
+    """Mechanism that wins a life: "fatigue", "wear" or "neither".
+
+    Fatigue wins where cells break out, or would, at the surface. Wear wins where none has and the largest
+    damage of the cells that are left no longer grows: those that had more are worn off.
+
+    Parameters
+    ----------
+    life : history.LifeHistory
+    """
+    if any(life(f"pits_{k}")[-1] for k in (1, 2)):
+        return FATIGUE
+    largest = np.maximum(life("damage_1"), life("damage_2"))
+    return WEAR if len(largest) > 1 and largest[-1] < largest.max() else NEITHER
+
+
+def outcome(life):
+    """Figures of a life for the index.
+
+    Parameters
+    ----------
+    life : history.LifeHistory
+
+    Returns
+    -------
+    dict
+        "winner", "passes" and "solved"; of both surfaces the largest pitted share and damage; "worn_depth",
+        the mean of the columns that are worn most [m]; "ra_change" of surface 1; "first_failure" in passes,
+        None where no cell fails.
+    """
+    first, last, bodies = life.first_failure, life.rows[-1], life.bodies[-1]
+    new = float(np.abs(bodies[0].height - bodies[0].height.mean()).mean())
+    return {
+        "winner": winner(life),
+        "passes": last["passes"],
+        "solved": life.solved,
+        "first_failure": first if np.isfinite(first) else None,
+        "pitted_share": max(last["pitted_share_1"], last["pitted_share_2"]),
+        "damage": max(max(life("damage_1")), max(life("damage_2"))),
+        "worn_depth": max(float(body.wear.mean()) for body in bodies),
+        "ra_change": last["ra_1"] / new - 1.0 if new else None,
+        "friction": last["friction"],
+    }
+
+
+def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, stop=None):
+    """Run a life for each member of a case's series.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+        With tables [life] and [series].
+    output : path-like, optional
+        Its stem begins the files' names; by default ``CASE.life.h5``.
+    overwrite : bool
+    comm : mpi4py communicator, optional
+        Each of its ranks takes a life at a time.
+    show : callable(str), optional
+        Gets a line for each life that ends, on the first rank.
+    stop : run.stop.StopRequest, optional
+
+    Returns
+    -------
+    Path
+        The index.
+
+    Raises
+    ------
+    CaseError, OutputError, Stopped
+    """
+    from ehlpetsc.api import need_solver
+
+    need_solver()
+    from mpi4py import MPI
+
+    from ehlpetsc.results.output_guard import Lock, check_index
+    from ehlpetsc.run.on_root import on_root
+
+    comm = comm or MPI.COMM_SELF
+    lives = _Lives(case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite)
+    on_root(comm, check_index, lives.index, "members")
+    lock = Lock(lives.index, "wait for it, or give another -o")
+    on_root(comm, lock.acquire)
+    try:
+        return lives.run(comm, show or (lambda text: None), stop)
+    finally:
+        lock.release()
+
+
+class _Lives:
+    def __init__(self, case, output, overwrite):
+        from ehlpetsc.case.combinations import keys_of, settings_of
+        from ehlpetsc.case.loading import members
+        from ehlpetsc.life.checks import check_case
+        from ehlpetsc.run.series.member import Member, named
+
+        if case.life is None:
+            raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
+        series = tomllib.loads(case.text)["series"]
+        self.case, self.keys, self.overwrite = case, keys_of(series), overwrite
+        stem, self.index = _stem(output), index_of(output)
+        self.members = [
+            Member(name, value, member, stem)
+            for name, (value, member) in zip(named(settings_of(series)), members(case), strict=True)
+        ]
+        for member in self.members:
+            check_case(member.case)
+        self.rows = [
+            {"value": member.value, "file": self.file(member).name, "state": "waiting"}
+            for member in self.members
+        ]
+
+    @staticmethod
+    def file(member):
+        return member.output.with_name(f"{member.output.stem}.life.h5")
+
+    def run(self, comm, show, stop):
+        from ehlpetsc.run.on_root import on_root
+        from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
+
+        def take(report):
+            number, row = report
+            self.rows[number] |= row
+            self._write()
+            count = sum(row["state"] != "waiting" for row in self.rows)
+            show(f"{count} of {len(self.rows)}: {self.members[number].name}: {_words(self.rows[number])}")
+
+        on_root(comm, self._write)
+        queue = WorkQueue(comm, 1, list(range(len(self.members))), take)
+        serving, report = PollingStop(queue, stop), None
+        while (number := queue.next(report, serving(queue.group))) is not None:
+            report = number, self._live(self.members[number], queue.group, serving)
+        states = queue.finish(lambda: [row["state"] for row in self.rows])
+        if {"waiting", "stopped"} & set(states):
+            raise Stopped
+        return self.index
+
+    def _live(self, member, group, stop):
+        from ehlpetsc.life.driver import run_life
+        from ehlpetsc.life.history import read_life
+
+        path, state = self.file(member), "done"
+        try:
+            life = run_life(member.case, path, overwrite=self.overwrite, comm=group, stop=stop)
+            return {"state": state} | outcome(life)
+        except Stopped:
+            return {"state": "stopped"}
+        except NotConverged as error:
+            state = {"state": "not converged", "reason": str(error)}
+            return state | (outcome(read_life(path)) if path.exists() else {})
+        except (OutputError, PostError, UsageError) as error:
+            return {"state": "bad input", "reason": str(error)}
+
+    def _write(self):
+        from ehlpetsc.results.atomic_write import atomic_write
+
+        about = {"title": self.case.title, "keys": self.keys, "members": self.rows, "case": self.case.text}
+        try:
+            atomic_write(self.index, (json.dumps(about, indent=1, default=str) + "\n").encode())
+        except OSError as error:
+            raise OutputError(f"{self.index}: index not written, {error.strerror}") from error
+
+
+def _words(row):
+    if "winner" not in row:
+        return f"{row['state']}: {row.get('reason', '')}".rstrip(": ")
+    won = "neither wins" if row["winner"] == NEITHER else f"{row['winner']} wins"
+    failed = row["first_failure"]
+    return (
+        f"{won}, {row['passes']:.3g} passes ({row['solved']} solved), largest D {row['damage']:.3g}, "
+        + (f"first failure after {failed:.3g}, " if failed else "")
+        + f"pitted {row['pitted_share']:.1%}, worn {1e6 * row['worn_depth']:.3g} um"
+    )

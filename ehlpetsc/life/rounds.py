@@ -1,0 +1,132 @@
+"""A round: passes that begin with the same surfaces, one in each position of surface 2, on all ranks."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
+from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
+from ehlpetsc.surfaces.body_field import BodyField, BodyFields
+
+FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
+
+
+class Ranks:
+    """Ranks of a life, in groups of one each where there are positions enough.
+
+    Parameters
+    ----------
+    comm : mpi4py communicator
+    positions : int
+    """
+
+    def __init__(self, comm, positions):
+        self.comm, self.each = comm, max(1, comm.size // positions)
+        is_shared = positions > 1 and comm.size > 1
+        self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
+
+    def solve(self, positions, solve, stop=None):
+        """Solve the passes of a round; collective.
+
+        Parameters
+        ----------
+        positions : list of int
+        solve : callable(position, comm, stop)
+            Solves one on a group of ranks; returns it.
+        stop : run.stop.StopRequest, optional
+
+        Returns
+        -------
+        list of pass_result.Pass
+            In the order of `positions`, on every rank.
+
+        Raises
+        ------
+        NotConverged, Stopped, OutputError, PostError
+        """
+        if len(positions) == 1 or self._group is self.comm:
+            return [solve(position, self.comm, stop) for position in positions]
+        found, report = {}, None
+        queue = WorkQueue(self.comm, self.each, positions, lambda one: found.update([one]), self._group)
+        while (position := queue.next(report, any(map(_is_fault, found.values())))) is not None:
+            try:
+                report = position, solve(position, self._group, PollingStop(queue, stop))
+            except FAULTS as fault:
+                report = position, (type(fault), str(fault))
+        found = queue.finish(lambda: found)
+        for kind, text in filter(_is_fault, found.values()):
+            raise kind(text)
+        return [found[position] for position in positions]
+
+
+def _is_fault(outcome):
+    return isinstance(outcome[0], type)
+
+
+class Round(NamedTuple):
+    """Passes on the same surfaces.
+
+    Attributes
+    ----------
+    passes : list of pass_result.Pass
+    passes_2 : float
+        As of `positions.Positions`.
+    """
+
+    passes: list
+    passes_2: float
+
+    def rates(self, bodies):
+        """Wear [m], damage and worn volume [m^2] that a pass adds to each body: means over the round.
+
+        Parameters
+        ----------
+        bodies : pair of body.LifeBody
+
+        Returns
+        -------
+        pair of (ndarray, ndarray, float)
+        """
+        found = []
+        for k, (body, factor) in enumerate(zip(bodies, (1.0, self.passes_2), strict=True)):
+            parts = [(*body.rates(one.bodies[k]), one.bodies[k].volume) for one in self.passes]
+            means = [sum(values) / len(parts) for values in zip(*parts, strict=True)]
+            found.append(tuple(factor * mean for mean in means) if factor != 1.0 else tuple(means))
+        return tuple(found)
+
+    @property
+    def yielded(self):
+        """Largest depth by which a point yielded [m]."""
+        return max(one.yielded for one in self.passes)
+
+    @property
+    def plastic(self):
+        """Record of the plastic deformation after the round; None without.
+
+        Points that yielded in several of its passes have the largest depth of them: those that have yielded
+        under one asperity carry less under the next.
+        """
+        records = [one.plastic for one in self.passes]
+        if records[0] is None:
+            return None
+        depth = BodyFields(*(_deepest([record.depth[k] for record in records]) for k in range(2)))
+        return PlasticRecord(depth, records[-1].added)
+
+    def figures(self):
+        """Friction and share of the solids, means over the round; largest pressure [Pa]."""
+        found = {"p_max": max(one.figures["p_max"] for one in self.passes)}
+        for name, source in (("friction", "friction_coefficient"), ("contact_share", "contact_share")):
+            found[name] = float(np.mean([one.figures.get(source, np.nan) for one in self.passes]))
+        return found
+
+
+def _deepest(fields):
+    """Largest depth of several fields of a body at each point."""
+    first = min(field.first for field in fields)
+    last = max(field.first + len(field.depth) for field in fields)
+    depths = np.zeros((len(fields), last - first))
+    for row, field in zip(depths, fields, strict=True):
+        begin = field.first - first
+        row[begin : begin + len(field.depth)] = field.depth
+    return BodyField(fields[0].spacing, first, depths.max(axis=0))

@@ -1,0 +1,94 @@
+"""A life that is killed at any moment and resumed is the one that was not, to 1e-9."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+import pytest
+from support import CASES
+
+from ehlpetsc.life import read_life, run_life
+from ehlpetsc.life.life_file import VOUCHING
+
+KEYS = {
+    "mesh.points_per_half_width": 8,
+    "surface.1.scale": 1.0,
+    "surface.2.scale": 1.0,
+    "wear.coefficient": 1e-17,
+    "contact.yield_pressure": 2e9,
+    "life.max_solved": 4,
+}
+
+
+def command(path):
+    settings = [part for key, value in KEYS.items() for part in ("--set", f"{key}={value}")]
+    return [sys.executable, "-m", "ehlpetsc.life", CASES / "life.toml", "-o", path, "--no-picture", *settings]
+
+
+def equal(life, other):
+    assert life("passes").tolist() == other("passes").tolist()
+    for name in life.rows[0]:
+        assert life(name) == pytest.approx(other(name), rel=1e-9, nan_ok=True), name
+    for both, others in zip(life.bodies, other.bodies, strict=True):
+        for body, twin in zip(both, others, strict=True):
+            assert body.profile == pytest.approx(twin.profile, rel=1e-9)
+            assert body.damage == pytest.approx(twin.damage, rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    path = tmp_path_factory.mktemp("whole") / "a.life.h5"
+    subprocess.run(command(path), check=True, stdout=subprocess.DEVNULL)
+    return path
+
+
+def test_a_life_killed_in_mid_pass_and_resumed_is_the_same(whole, tmp_path):
+    path = tmp_path / "a.life.h5"
+    run = subprocess.Popen(command(path), stdout=subprocess.PIPE, text=True)
+    seen = 0
+    for line in run.stdout:  # the second round is being solved once the first one has its line
+        seen += "solved;" in line
+        if seen == 2:
+            break
+    time.sleep(0.05)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    assert 2 <= len(read_life(path).rows) < 4, "killed on its way, and the file has what was solved"
+    subprocess.run(command(path), check=True, stdout=subprocess.DEVNULL)
+    equal(read_life(path), read_life(whole))
+
+
+@pytest.mark.parametrize("written", [0, 3, 12, 25])
+def test_a_row_that_a_kill_cut_short_is_dropped(written, whole, tmp_path):
+    """Datasets of a row that is not vouched for: as many as were written before the kill."""
+    path, life = tmp_path / "a.life.h5", read_life(whole)
+    life.up_to(2).save(path)
+    with h5py.File(path, "r+") as file:
+        growing = []
+
+        def look(name, item):
+            if isinstance(item, h5py.Dataset) and item.maxshape[0] is None:
+                growing.append(name)
+
+        file.visititems(look)
+        growing.remove(f"figures/{VOUCHING}")
+        for name in growing[:written]:
+            file[name].resize(len(file[name]) + 1, axis=0)
+    equal(read_life(path), life.up_to(2))
+
+
+def test_a_life_restarts_at_any_of_its_rows(whole, tmp_path):
+    from ehlpetsc.case.loading import load
+
+    path = tmp_path / "a.life.h5"
+    path.write_bytes(whole.read_bytes())
+    again = run_life(
+        load(CASES / "life.toml", [f"{key}={value}" for key, value in KEYS.items()]), path, after=2
+    )
+    equal(again, read_life(whole))
+    assert len(again.rows) == 4 and os.path.exists(path)
+    assert np.isfinite(again("friction")).all()
