@@ -250,3 +250,23 @@ class Structures:
                 except Exception as fault:  # what is spoiled already cannot be changed in every way
                     told.append(f"{change.__name__} stopped by {type(fault).__name__}")
         return ", ".join(told)
+
+
+class Strange:
+    """One dataset of the base file, of whatever name, away or with strange values in its place."""
+
+    def __init__(self, base):
+        self.content, self.names = base.read_bytes(), []
+        with h5py.File(base) as file:
+            file.visititems(lambda name, item: self.names.append(name) if hasattr(item, "shape") else None)
+
+    def __call__(self, rng, number, path):
+        """Write spoiled file `number`; returns what was done to it."""
+        path.write_bytes(self.content)
+        name, which = str(rng.choice(self.names)), int(rng.integers(-1, len(STRANGE)))
+        with h5py.File(path, "r+") as file:
+            shape = file[name].shape
+            del file[name]
+            if which >= 0:
+                file[name] = STRANGE[which](shape or (5,))
+        return f"{name}: strange values {which}"

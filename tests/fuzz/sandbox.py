@@ -64,3 +64,36 @@ def word_of(status, said):
     if status == 2 and not any(": " in line for line in said.splitlines()):
         return "traceback"  # no word of why
     return WORDS[status]
+
+
+def beside_others(folder, inputs, work, limit, may_change=()):
+    """One word for how work() ended in a folder of these files alone, and what it said.
+
+    Parameters
+    ----------
+    folder : Path
+    inputs : dict of str to bytes
+        Contents by name; the word is "changed" where one of them is another afterwards.
+    work : callable
+        Returns an exit status.
+    limit : float
+        Seconds.
+    may_change : tuple of str
+        Inputs that work() may replace, unless it refuses.
+    """
+    for path in folder.iterdir():
+        path.unlink()
+    for name, content in inputs.items():
+        (folder / name).write_bytes(content)
+
+    def inside():
+        os.chdir(folder)
+        return int(work())
+
+    status, said = process(inside, folder / "said", limit)
+    word = word_of(status, said)
+    kept = [name for name in inputs if word == "refused" or name not in may_change]
+    changed = any((folder / name).read_bytes() != inputs[name] for name in kept)
+    if word not in BAD and (changed or list(folder.glob(".*.tmp*"))):
+        word = "changed"
+    return word, f"{status} {said[-1500:]}"

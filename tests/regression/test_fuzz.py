@@ -10,13 +10,13 @@ pytestmark = pytest.mark.slow
 
 
 def test_nonsense_ends_in_words(tmp_path):
-    numbers = ["--cases", "40", "--results", "8", "--restarts", "16", "--options", "3", "--layouts", "20"]
-    numbers += ["--ensembles", "20", "--python", "6", "--passes", "1"]
+    numbers = ["--cases", "20", "--results", "5", "--restarts", "8", "--options", "2", "--layouts", "10"]
+    numbers += ["--ensembles", "8", "--python", "3", "--passes", "1", "--gears", "8", "--life", "2"]
     words = [PYTHON, ROOT / "tests" / "fuzz" / "all.py", "--seed", "3", *numbers]
     done = subprocess.run(words, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     counted = {kind: told for kind, _, told in (line.partition(": ") for line in done.stdout.splitlines())}
-    assert list(counted)[:5] == ["cases", "results", "options", "ensembles", "passes"]
-    assert list(counted)[5:] == ["restarts", "layouts", "python"]
+    assert list(counted)[:7] == ["cases", "results", "options", "ensembles", "passes", "gears", "life"]
+    assert list(counted)[7:] == ["restarts", "layouts", "python"]
     assert all("refused " in counted[kind] for kind in ("cases", "results", "restarts"))
     assert list(tmp_path.iterdir()) == []
