@@ -38,7 +38,6 @@ PASSES = (
     "time.passes=2",
     "contact.yield_pressure=0.95e9",
 )
-MEMBERS = ("mesh.points_per_half_width=20", "time.travel=2.0", "series.values=[5.0,1.0]", "output.every=10")
 
 
 @pytest.mark.slow
@@ -47,19 +46,16 @@ MEMBERS = ("mesh.points_per_half_width=20", "time.travel=2.0", "series.values=[5
     [
         ("table1_rough.toml", (*SHORT, "time.travel=6.0"), "table1_rough.h5", ["table1_rough.h5"]),
         ("running_in.toml", PASSES, "running_in.pass2.h5", ["running_in.pass1.h5", "running_in.pass2.h5"]),
-        (
-            "stribeck.toml",
-            MEMBERS,
-            "stribeck_entrainment_speed_1.0.h5",
-            ["stribeck_entrainment_speed_1.0.h5", "stribeck_entrainment_speed_5.0.h5"],
-        ),
     ],
-    ids=["one run", "passes", "series"],
+    ids=["one run", "passes"],
 )
 def test_a_job_stopped_before_its_time_is_over_continues_when_queued_again(
     tmp_path, case, keys, first, results
 ):
-    """The second job is the same command: it ends, and nothing that was done is computed again."""
+    """The second job is the same command: it ends, and nothing that was done is computed again.
+
+    Of a series that is the test of the same command, without the script.
+    """
     stopped = job(tmp_path, case, *keys)
     wait_for(tmp_path / first, stopped)
     stopped.send_signal(signal.SIGUSR1)

@@ -38,13 +38,12 @@ def assert_stopped_whole(folder):
     assert done.returncode == 0 and f"step {last}, " in done.stdout
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
-def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path, name):
+def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path):
     """Open MPI then ends with a status of its own, 1; the fifth hands on nothing that its ranks still say."""
     version = subprocess.run(["mpirun", "--version"], capture_output=True, text=True, env=BARE).stdout
     process = start(*LONG, cwd=tmp_path, ranks=2)
     wait_for(tmp_path / "r.h5", process)
-    process.send_signal(getattr(signal, name))
+    process.send_signal(signal.SIGTERM)
     _, output, errors = ended(process)
     assert process.returncode in (1, 4)
     assert "go on with -ehl_restart r.restart.h5" in output or "(Open MPI) 5." in version
@@ -52,11 +51,10 @@ def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path, name):
     assert_stopped_whole(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["SIGHUP", "SIGINT"])
-def test_signals_to_a_run_of_one_process(tmp_path, name):
+def test_a_signal_to_a_run_of_one_process(tmp_path):
     process = start(*LONG, cwd=tmp_path)
     wait_for(tmp_path / "r.h5", process)
-    process.send_signal(getattr(signal, name))
+    process.send_signal(signal.SIGHUP)
     _, output, errors = ended(process)
     assert process.returncode == 4 and "PETSC ERROR" not in errors
     assert output.splitlines()[-1].startswith("ehlpetsc: stopped steps=")
@@ -82,29 +80,28 @@ def test_a_hangup_that_is_ignored_stays_so(tmp_path):
     process = subprocess.Popen(
         words, cwd=tmp_path, env=BARE | SCRIPT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
-    for _ in range(20):
+    while process.poll() is None:
         time.sleep(0.1)
         process.send_signal(signal.SIGHUP)
     ended(process)
     assert process.returncode == 0
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_signal_during_imports_ends_in_one_sentence(tmp_path, name):
+# on a quick machine it has begun by then, and stops all the same
+@pytest.mark.parametrize("name, delay", [("SIGINT", 0.5), ("SIGTERM", 0.8), ("SIGHUP", 1.1)])
+def test_a_signal_during_imports_ends_in_one_sentence(tmp_path, name, delay):
     endless = [*STEADY, *settings("time.courant=1.0", "time.travel=500"), "-ehl_overwrite"]
-    for delay in (0.5, 0.8, 1.1):  # on a quick machine it has begun by then, and stops all the same
-        process = start(*endless, cwd=tmp_path)
-        time.sleep(delay)
-        process.send_signal(getattr(signal, name))
-        _, output, errors = ended(process)
-        assert process.returncode == 4, errors
-        assert "Traceback" not in errors and "PETSC ERROR" not in errors
-        assert len(errors.splitlines()) <= 1
+    process = start(*endless, cwd=tmp_path)
+    time.sleep(delay)
+    process.send_signal(getattr(signal, name))
+    _, _, errors = ended(process)
+    assert process.returncode == 4, errors
+    assert "Traceback" not in errors and "PETSC ERROR" not in errors
+    assert len(errors.splitlines()) <= 1
 
 
-@pytest.mark.parametrize("words", [[], ["-snes_monitor", "-log_view"]])
-def test_output_that_nobody_reads_does_not_end_a_run(tmp_path, words):
-    process = start(*STEADY, *words, cwd=tmp_path)
+def test_output_that_nobody_reads_does_not_end_a_run(tmp_path):
+    process = start(*STEADY, "-snes_monitor", "-log_view", cwd=tmp_path)
     process.stdout.close()
     errors = process.stderr.read()
     process.wait(60)
@@ -114,7 +111,7 @@ def test_output_that_nobody_reads_does_not_end_a_run(tmp_path, words):
         assert result.attrs["status"] == "done"
 
 
-@pytest.mark.parametrize("redirection", [">/dev/full", ">&-", ">&- 2>&-", ">/dev/full 2>&1", "<&- >&-"])
+@pytest.mark.parametrize("redirection", [">/dev/full 2>&1", ">&- 2>&-", "<&- >&-"])
 def test_output_that_is_full_or_closed_does_not_end_a_run(tmp_path, redirection):
     line = " ".join(map(str, command(*STEADY, "-snes_monitor"))) + f" {redirection}"
     done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)

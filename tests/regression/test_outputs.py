@@ -127,10 +127,10 @@ def test_an_input_is_never_an_output(tmp_path, words):
     assert (tmp_path / "alicona_meander_profile.csv").read_text() == profile
 
 
-def running(folder):
+def running(folder, *more):
     """A long run, once its result is there."""
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    words = command(*LONG, "-ehl_output", "r.h5")
+    words = command(*LONG, "-ehl_output", "r.h5", *more)
     process = subprocess.Popen(words, cwd=folder, env=BARE | SCRIPT, **pipes)
     wait_for(folder / "r.h5", process)
     return process
@@ -154,7 +154,8 @@ def test_a_second_run_is_kept_away_and_a_killed_one_is_not_in_the_way(tmp_path):
 
 @pytest.mark.slow
 def test_a_result_removed_in_mid_run_is_seen(tmp_path):
-    process = running(tmp_path)
+    soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there
+    process = running(tmp_path, *soon)
     try:
         (tmp_path / "r.h5").unlink()
         told, errors = process.communicate(timeout=60)

@@ -23,6 +23,7 @@ from ehlpetsc.life.driver import run_life
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.post import run as post_run
 from ehlpetsc.post.command import main as post
+from ehlpetsc.post.pictures import gallery
 from ehlpetsc.results.restart_file import save_restart
 
 
@@ -163,7 +164,8 @@ def crossing(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["run.stress.png", "run.stress.svg"])
-def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, name):
+def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, monkeypatch, name):
+    monkeypatch.setattr(gallery, "DPI", 20)
     other = tmp_path / "p" / name
     other.parent.mkdir()
     other.write_text(PROFILE)

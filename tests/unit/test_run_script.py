@@ -75,7 +75,7 @@ def test_more_ranks_than_cores_run(script):
     assert f"SIZE {ranks}" in script("-n", str(ranks), "case.toml").stdout
 
 
-@pytest.mark.parametrize("status", [1, 2, 3, 4])
+@pytest.mark.parametrize("status", [1, 4])
 def test_the_exit_status_is_that_of_the_run_without_comment(script, status):
     done = script("case.toml", STATUS=str(status), **AT_ONCE)
     assert done.returncode == status
@@ -107,8 +107,7 @@ sys.exit(4)
 """
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGUSR1"])
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("name, ranks", [("SIGINT", 1), ("SIGUSR1", 1), ("SIGTERM", 2)])
 def test_a_signal_is_handed_on_to_every_rank_and_the_status_is_theirs(script, tmp_path, name, ranks):
     done = signalled(script, tmp_path, ranks, [name], "case.toml")
     assert done.returncode == 4, done.stderr
