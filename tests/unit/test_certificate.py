@@ -60,6 +60,7 @@ def put(which, node, value):
         (lambda q, w, rows: rows[0].fill(np.nan), "not finite"),
         (put(0, 3, -1.1), "of its gap full of oil"),
         (lambda q, w, rows: rows[0].__setitem__(9, 2e-7), "deflection is 2.00e-07, allowed: 1.0e-07"),
+        (lambda q, w, rows: rows[0].__setitem__(9, 1.01e-7), "deflection is 1.01e-07, allowed: 1.0e-07"),
         (lambda q, w, rows: rows[1].__setitem__(9, -2e-7), "oil balance is 2.00e-07"),
         (lambda q, w, rows: rows.__setitem__(2, 2e-7), "load is 2.00e-07"),
     ],

@@ -105,6 +105,15 @@ def test_the_surfaces_beside_the_stretch_are_worn_as_its_mean():
     assert field.means(faces) == pytest.approx([3.5, 2.0, 3.0, 4.0, 5.0, 3.5])
 
 
+def test_a_field_of_a_body_grows_by_the_cells_that_are_added_to_alone():
+    field = BodyField.zero(1.0).add(np.array([0.0, 1.0, 2.0]), np.ones(2))
+    assert (field.spacing, field.first, len(field.depth)) == (0.25, -1, 10)
+    assert len(field.add(np.array([0.0, 2.0]), np.ones(1)).depth) == 10
+    wider = field.add(np.array([3.0, 4.0]), np.ones(1))
+    assert (wider.first, len(wider.depth), wider.volume) == (-1, 18, pytest.approx(3.0))
+    assert wider.means(np.arange(5.0)) == pytest.approx([1.0, 1.0, 0.0, 1.0])
+
+
 def test_a_life_is_read_as_it_was_stored(tmp_path):
     life, path = LifeHistory("text", "title"), tmp_path / "a.life.h5"
     for passes in (10, 30):

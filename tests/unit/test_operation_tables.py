@@ -167,11 +167,13 @@ def test_time_levels_end_with_the_run_and_follow_the_faster_surface():
     assert operation.level(1.1e-3 + left, None) == pytest.approx(np.floor(level) + 1.0, abs=1e-6)
 
 
-def test_the_edges_of_the_contact_move_by_the_courant_number_at_most():
-    operation = make(load=[1e5, 5e5, 5e5, 1e5], u1=1e-4, u2=0.0)
+@pytest.mark.parametrize("column", [{"load": [1e5, 5e5, 5e5, 1e5]}, {"radius": [0.01, 0.05, 0.05, 0.01]}])
+def test_the_edges_of_the_contact_move_by_the_courant_number_at_most(column):
+    operation = make(**column, u1=1e-4, u2=0.0)
     time, widest = 0.0, 0.0
     while operation.remaining(time, (0.0, 0.0)) > 0.0:
         dt = operation.time_left(time, None)
-        a = [np.sqrt(8.0 * operation.at(t).load * 0.01 / (np.pi * 227e9)) for t in (time, time + dt)]
+        now, then = operation.at(time), operation.at(time + dt)
+        a = [np.sqrt(8.0 * at.load * at.radius / (np.pi * 227e9)) for at in (now, then)]
         widest, time = max(widest, abs(a[1] - a[0])), time + dt
     assert 0.45e-6 < widest <= 0.5e-6 * 1.01

@@ -9,6 +9,7 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.no_oil import NoOil
 from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
 from ehlpetsc.physics.scales import Scales
 
@@ -77,6 +78,15 @@ def test_a_part_has_the_rows_of_the_whole():
         np.testing.assert_array_equal(some, residual[first:last])
         np.testing.assert_array_equal(entries, values[first:last])
         np.testing.assert_array_equal(part.columns, reynolds.columns[first:last])
+
+
+def test_a_part_without_oil_has_the_rows_of_the_whole():
+    q = np.random.default_rng(7).uniform(-1.0, 1.0, 40)
+    whole, part = NoOil(0, 40), NoOil(12, 30, start=10)
+    (rows, entries), (some, of_part) = whole.evaluate(q, q, None), part.evaluate(q[10:], q[10:], None)
+    np.testing.assert_array_equal(some, rows[12:30])
+    np.testing.assert_array_equal(of_part, entries[12:30])
+    np.testing.assert_array_equal(part.columns, whole.columns[12:30])
 
 
 def test_the_sign_of_rounding_does_not_matter():
