@@ -292,7 +292,8 @@ run_tests() {
             say "PyPI cannot be reached: the comparison with its rainflow is left out"
     fi
     export PYTHONPATH="$PYTHONPATH:$test_only"
-    "$python" -m pytest -p no:cacheprovider -q -n 2 --dist loadfile -m "not mpi" "${@:-tests}"
+    # more processes than two cores: many tests wait for a signal, or for mpirun to end
+    "$python" -m pytest -p no:cacheprovider -q -n 3 --dist loadfile -m "not mpi" "${@:-tests}"
     for ranks in 1 2 3; do run_mpi_tests $ranks; done
 }
 

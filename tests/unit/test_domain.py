@@ -109,5 +109,8 @@ def test_a_contact_wider_than_the_domain_is_an_error():
 def test_pressure_at_the_outlet_is_cut_off():
     x, dry = np.linspace(-2.0, 1.2, 5), np.zeros(5, bool)
     check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
+    check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0099]), dry)
+    with pytest.raises(ehlpetsc.NotConverged, match="0.01 p0 at the outlet"):
+        check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0102]), dry)
     with pytest.raises(ehlpetsc.NotConverged, match="0.3 p0 at the outlet, x = 1.2 a"):
         check_ends(x, np.array([0.0, 0.5, 1.0, 1.0, 0.3]), dry)

@@ -23,6 +23,11 @@ def curve_strain(stress):
     )
 
 
+def test_a_loop_extends_over_samples_that_equal_its_ends():
+    series = np.array([0.0, 1.0, 0.0, 3.0, 3.0, -1.0])
+    assert loop_of(series, series.size, 2, 3, False) == (0, 5)
+
+
 def test_neuber_keeps_the_product():
     local = local_range(RANGES, STEEL, "neuber")
     assert local * curve_strain(local) == pytest.approx(RANGES**2 / STEEL.youngs_modulus, rel=1e-12)

@@ -10,7 +10,9 @@ from support import CASES
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.surfaces.measured import text_columns
+from ehlpetsc.surfaces.measured.plausibility import absurd
 from ehlpetsc.surfaces.measured.profile_files import Layout, read_profile
+from ehlpetsc.surfaces.samples import Samples
 
 X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])
 
@@ -183,6 +185,16 @@ def test_a_profile_absurd_beside_the_contact_names_the_likely_unit(tmp_path, x, 
         case.load(path, [f"surface.2.{key}" for key in keys])
     (fault,) = caught.value.faults
     assert "surface.2.file" in fault
+
+
+@pytest.mark.parametrize(
+    "rq, told", [(0.0, None), (0.9e-11, "less than an atom"), (1.1e-11, None), (2.2e-7, "Rq 0.22 um")]
+)
+def test_a_flat_profile_is_plausible_and_one_of_less_than_an_atom_is_not(rq, told):
+    """Beside a film of 7 nm, of which 30 are allowed."""
+    z = rq * np.where(np.arange(200) % 2, 1.0, -1.0)
+    fault = absurd(Samples(1e-6 * np.arange(200), z, repeats=False), 100e-6, 1e-6, 0.001e-6, 0.007e-6)
+    assert fault is None if told is None else told in fault
 
 
 def test_the_unit_named_is_the_one_to_write(tmp_path):

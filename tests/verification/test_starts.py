@@ -3,6 +3,7 @@
 import resource
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import petsc4py
@@ -12,7 +13,7 @@ from support import CASES
 petsc4py.init([])
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import NoSteadyStart, NotConverged
+from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import steady_start, time_stepping
 from ehlpetsc.stepping.first_guess import DIRECT, smoothed
@@ -25,6 +26,16 @@ def rough(side, xi, travel, **more):
     """Table 1 with one rough surface."""
     changed = {f"surface.{side}": {"synthetic": GROUND}, "motion.slide_roll_ratio": xi, "time.travel": travel}
     return load(CASES / "table1_smooth.toml", MESH | {"time": {"travel": travel}} | changed | more)
+
+
+def test_iterations_of_attempts_that_failed_count(monkeypatch):
+    def solve(solver, *_):
+        raise SolveFailed("SNES", "diverged", 7)
+
+    monkeypatch.setattr(steady_start, "solve_checked", solve)
+    attempt = steady_start.SolveAttempts(SimpleNamespace(start_iterations=lambda max_it: 30))
+    assert attempt((0.0, 0.0, 0.0), None) is attempt((0.0, 0.0, 0.0), None) is None
+    assert (attempt.made, attempt.spent, str(attempt.failure)) == (2, 14, "SNES diverged after 7 iterations")
 
 
 @pytest.mark.parametrize("xi", [2.0, -2.0, 8.0, -8.0])
@@ -88,7 +99,7 @@ def test_next_to_no_load_takes_no_more_memory_than_any_other():
 
 
 def test_a_start_that_finds_nothing_gives_up_after_so_many_attempts(monkeypatch):
-    monkeypatch.setattr(steady_start, "MOST_ATTEMPTS", 3)
+    monkeypatch.setattr(steady_start, "MAX_ATTEMPTS", 3)
     simulation = Simulation(load(CASES / "table1_smooth.toml", MESH), options={"snes_max_it": 1})
     with pytest.raises(NotConverged, match="given up after 3 attempts and 3 Newton iterations"):
         simulation.advance()
