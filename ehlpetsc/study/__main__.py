@@ -118,7 +118,7 @@ def extremes(chosen):
 
 def random_cases(chosen):
     """Random cases: 1 where one ended in another status than 0 and 3, or left a broken file."""
-    from ehlpetsc.study.draws import COLUMNS, run_all
+    from ehlpetsc.study.random_cases import COLUMNS, run_all
 
     table = f"{chosen.output or 'random'}.csv"
     check_outputs(COLUMNS, table)
@@ -148,9 +148,10 @@ def contact(chosen):
 def accuracy(chosen):
     """Error against run time."""
     from ehlpetsc.study.accuracy.picture import draw
-    from ehlpetsc.study.accuracy.plan import MESH, plan
+    from ehlpetsc.study.accuracy.plan import plan
     from ehlpetsc.study.accuracy.table import COLUMNS, Study
     from ehlpetsc.study.runs import check_damage
+    from ehlpetsc.study.setting import MESH
 
     stem = chosen.output or Path(chosen.case).stem
     with tempfile.TemporaryDirectory() as folder:

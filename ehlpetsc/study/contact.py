@@ -6,9 +6,7 @@ spacing, the observed order and the extrapolated value of each figure follow. ``
 and has `ehlpetsc.post` count the damage of surface 1 at z = 0 and 0.01 a.
 """
 
-import csv
 import itertools
-import json
 import tomllib
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -19,11 +17,13 @@ from ehlpetsc.case.toml_text import toml_text
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.study.runs import greatest_damage, run
+from ehlpetsc.study.convergence import observed_order, richardson_error
+from ehlpetsc.study.runs import csv_table, greatest_damage, run
+from ehlpetsc.study.setting import FILM, MESH, MODEL, STEP, Setting, stored
 
 DEPTHS = (0.0, 0.01)  # half widths, of the damage
 THIN = (2.0, 5.0, 10.0)  # boundary films below which a film counts as thin
-FIGURES = (
+REPORTED = (
     "length",
     "share",
     "thin_length",
@@ -35,30 +35,8 @@ FIGURES = (
 )
 FIELDS = ("pressure", "film_thickness", "contact_pressure", "in_contact")
 SHEAR = ("shear_stress_1", "shear_stress_2")
+KEYS = {MODEL: "model", MESH: "mesh", STEP: "courant", FILM: "boundary_film"}
 OF_MIXED_CONTACT = ("boundary_film", "yield_pressure")  # keys of [contact] that direct contact refuses
-
-
-@dataclass(frozen=True)
-class Setting:
-    """One run: contact model, points per half width, courant number, boundary film [m]."""
-
-    model: str
-    mesh: int
-    courant: float
-    boundary_film: float
-
-    def overrides(self, damage=False):
-        """``table.key=value`` of the case; for damage every step is stored, else like times."""
-        apart = round(2.0 * self.mesh / 100 * 0.5 / self.courant)
-        fields = (*FIELDS, *SHEAR) if damage else FIELDS
-        chosen = [
-            f"contact.model={self.model}",
-            f"mesh.points_per_half_width={self.mesh}",
-            f"time.courant={self.courant}",
-            f"output.every={1 if damage else max(1, apart)}",
-            f"output.fields={json.dumps(fields)}",
-        ]
-        return chosen + ([f"contact.boundary_film={self.boundary_film}"] if self.model == "mixed" else [])
 
 
 @dataclass(frozen=True)
@@ -93,6 +71,9 @@ class Measured:
     seconds: float
     damage_at_surface: float = np.nan
     damage_below: float = np.nan
+
+
+COLUMNS = [*KEYS.values(), *Measured.__dataclass_fields__]
 
 
 def measured(path, boundary_film, seconds):
@@ -150,18 +131,21 @@ def order(coarse, middle, fine):
     one, other = coarse - middle, middle - fine
     if one * other <= 0.0 or abs(other) >= abs(one):
         return np.nan, np.nan
-    ratio = one / other
-    return float(np.log2(ratio)), float(fine - other / (ratio - 1.0))
-
-
-COLUMNS = [*Setting.__dataclass_fields__, *Measured.__dataclass_fields__]
+    exponent = observed_order((abs(one), abs(other)))
+    return exponent, float(fine - richardson_error(other, exponent))
 
 
 def settings(models, meshes, courants, boundary_films):
-    """Every combination; direct contact knows no boundary film."""
+    """Settings of every combination; of direct contact with the first boundary film, for :func:`measured`."""
     for model, film, courant, mesh in itertools.product(models, boundary_films, courants, meshes):
         if model == "mixed" or film == boundary_films[0]:
-            yield Setting(model, mesh, courant, film)
+            yield Setting({MODEL: model, MESH: mesh, STEP: courant, FILM: film})
+
+
+def output_of(setting, damage=False):
+    """Overrides of the stored fields; for damage every step, else frames at equal times on all meshes."""
+    apart = round(2.0 * setting.values[MESH] / 100 * 0.5 / setting.values[STEP])
+    return stored((*FIELDS, *SHEAR) if damage else FIELDS, 1 if damage else max(1, apart))
 
 
 def for_direct_contact(case, overrides, folder):
@@ -207,22 +191,19 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
         None: the run did not come to its end.
     """
     rows = []
-    with open(path, "w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        say(" ".join(f"{name:>13}" for name in COLUMNS))
+    say(" ".join(f"{name:>13}" for name in COLUMNS))
+    with csv_table(path, COLUMNS) as append:
         for setting in chosen:
             outcome = _run(case, overrides, setting, damage, folder, limit)
             found = None
             if outcome.status == ExitStatus.DONE:
-                found = measured(outcome.result, setting.boundary_film, outcome.processor)
+                found = measured(outcome.result, setting.values[FILM], outcome.processor)
                 found = replace(found, **_damages(outcome.result)) if damage else found
             rows.append((setting, found))
-            values = [*asdict(setting).values(), *(asdict(found).values() if found else ())]
-            writer.writerow(values)
-            file.flush()
-            shown = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in values]
-            say(" ".join(f"{v:>13}" for v in shown) + ("" if found else f" {outcome.words}"))
+            row = _described(setting) | (asdict(found) if found else {})
+            append(row)
+            shown = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()]
+            say(" ".join(f"{v:>13}" for v in shown) + ("" if found else f" {outcome.message}"))
             if outcome.result:
                 Path(outcome.result).unlink()
     for line in orders(rows):
@@ -230,22 +211,27 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
     return rows
 
 
+def _described(setting):
+    """Values of a setting by column."""
+    return {column: setting.values[key] for key, column in KEYS.items()}
+
+
 def _run(case, overrides, setting, damage, folder, limit):
-    if setting.model == "direct":
+    overrides = [*overrides, *setting.overrides(), *output_of(setting, damage)]
+    if setting.values[MODEL] == "direct":
         case, overrides = for_direct_contact(case, overrides, folder)
-    return run(case, [*overrides, *setting.overrides(damage)], folder=folder, limit=limit)
+    return run(case, overrides, folder=folder, limit=limit)
 
 
 def orders(rows):
     """Lines of observed orders and limits, for each three meshes of which one is twice the other."""
-    found = {setting: value for setting, value in rows if value}
-    for setting, fine in found.items():
-        finer = [
-            found.get(Setting(setting.model, setting.mesh // k, setting.courant, setting.boundary_film))
-            for k in (4, 2)
-        ]
-        if setting.mesh % 4 or None in finer:
+    found = {tuple(setting.values.values()): value for setting, value in rows if value}
+    for setting, fine in rows:
+        mesh = setting.values[MESH]
+        coarser = [tuple((setting.values | {MESH: mesh // k}).values()) for k in (4, 2)]
+        if not fine or mesh % 4 or not found.keys() >= set(coarser):
             continue
-        for name in FIGURES:
-            exponent, limit = order(*(getattr(value, name) for value in (*finer, fine)))
-            yield f"{setting}: {name} order {exponent:.2f}, limit {limit:.4g}"
+        described = ", ".join(f"{column}={value}" for column, value in _described(setting).items())
+        for name in REPORTED:
+            exponent, limit = order(*(getattr(found[key], name) for key in coarser), getattr(fine, name))
+            yield f"{described}: {name} order {exponent:.2f}, limit {limit:.4g}"

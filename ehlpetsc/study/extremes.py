@@ -1,14 +1,13 @@
-"""The table of extremes: each line run by itself, told in a line, and in a CSV file."""
+"""The table of extremes: a run and a row for each of its cases, printed and in a CSV file."""
 
-import csv
 import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus
-from ehlpetsc.study.lines import cases
-from ehlpetsc.study.reasons import why
-from ehlpetsc.study.runs import run
+from ehlpetsc.study.cases import read_cases
+from ehlpetsc.study.diagnosis import diagnosis
+from ehlpetsc.study.runs import csv_table, run
 
 COLUMNS = (
     "axis",
@@ -28,41 +27,41 @@ COLUMNS = (
 LAWS, LAYER = {"compliant": "mixed"}, "contact.asperity_height=10e-9"
 COARSE = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
-SWIFT = ("time.courant=1.0",)  # of lines without a time step of their own, and of runs before: fewer steps
+SWIFT = ("time.courant=1.0",)  # of cases without a time step of their own, and of runs before: fewer steps
 
 
-def lines(short=False, far=False, model=None):
-    """Lines of the table; the short form coarser and with fewer steps.
+def cases(short=False, far=False, model=None):
+    """Cases of the table; the short form coarser and with fewer steps.
 
     Parameters
     ----------
     short : bool
     far : bool
-        Instead of those at the edge of the ranges forty far beyond it.
+        Instead of the cases at the edge of the ranges, forty far beyond it.
     model : str, optional
-        Contact model of all lines that do not choose their own: "direct", "mixed" or "compliant".
+        Contact model of all cases that do not choose their own: "direct", "mixed" or "compliant".
     """
-    whole = cases("far") if far else cases("steady", "time")
+    found = read_cases("far") if far else read_cases("steady", "time")
     if short:
-        whole = [_shortened(line) for line in whole if line.short]
-    return [_of_model(line, model) for line in whole] if model else whole
+        found = [_shortened(one) for one in found if one.short]
+    return [_of_model(one, model) for one in found] if model else found
 
 
-def _of_model(line, model):
+def _of_model(case, model):
     chosen = (f"contact.model={LAWS.get(model, model)}",)
     chosen += (LAYER,) if model == "compliant" else ()
-    own = any(override.startswith("contact.model") for override in line.overrides)
-    before = line.before and (*chosen, *line.before)
-    return line if own else replace(line, overrides=(*chosen, *line.overrides), before=before)
+    own = any(override.startswith("contact.model") for override in case.overrides)
+    before = case.before and (*chosen, *case.before)
+    return case if own else replace(case, overrides=(*chosen, *case.overrides), before=before)
 
 
-def _shortened(line):
-    keys = {override.partition("=")[0] for override in line.overrides}
+def _shortened(case):
+    keys = {override.partition("=")[0] for override in case.overrides}
     brief = BRIEF if "time.travel" in keys else ()
     brief += SWIFT if brief and "time.courant" not in keys else ()
     coarse = () if "mesh.points_per_half_width" in keys else COARSE
-    before = line.before and (*line.before, *coarse, *SWIFT)  # the mesh of both runs is one
-    return replace(line, overrides=(*line.overrides, *coarse, *brief), before=before)
+    before = case.before and (*case.before, *coarse, *SWIFT)  # the mesh of both runs is one
+    return replace(case, overrides=(*case.overrides, *coarse, *brief), before=before)
 
 
 def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):
@@ -73,52 +72,48 @@ def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):
     path : path-like
         The CSV file.
     short, far, model
-        As of `lines`.
+        As of `cases`.
     limit : float
-        Wall clock time of a line [s].
+        Wall clock time of a run [s].
     say : callable
-        Takes each line as text as it is done.
+        Prints each row as its run ends.
 
     Returns
     -------
     list of dict
-        A row a line, by the names of `COLUMNS`.
+        Rows by the names of `COLUMNS`.
     """
     rows = []
     say(_text(dict(zip(COLUMNS, COLUMNS, strict=True))))
-    with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        for line in lines(short, far, model):
-            rows.append(row(line, Path(folder), limit))
-            writer.writerow(rows[-1])
-            file.flush()
+    with tempfile.TemporaryDirectory() as folder, csv_table(path, COLUMNS) as append:
+        for case in cases(short, far, model):
+            rows.append(row(case, Path(folder), limit))
+            append(rows[-1])
             say(_text(rows[-1]))
     done = sum(r["converged"] == "yes" for r in rows)
-    say(f"{done} of {len(rows)} lines converged ({100 * done / len(rows):.0f} %)")
+    say(f"{done} of {len(rows)} cases converged ({100 * done / len(rows):.0f} %)")
     return rows
 
 
-def row(line, folder, limit):
-    """Figures of one line."""
-    case = folder / "case.toml"
-    case.write_text(line.text)
+def row(case, folder, limit):
+    """Row of one case."""
+    path = folder / "case.toml"
+    path.write_text(case.text)
     options = ()
-    if line.before:
-        first = run(case, line.before, folder=folder, name="before", limit=limit)
+    if case.before:
+        first = run(path, case.before, folder=folder, name="before", limit=limit)
         if first.status != ExitStatus.DONE:
-            return _row(line, first, f"the run before: {first.words}")
+            return _row(case, first, f"the run before: {first.message}")
         options = ("-ehl_restart", str(folder / "before.restart.h5"))
-    outcome = run(case, line.overrides, options=options, folder=folder, limit=limit)
-    return _row(
-        line, outcome, "" if outcome.status == ExitStatus.DONE else why(outcome, case, line.overrides)
-    )
+    outcome = run(path, case.overrides, options=options, folder=folder, limit=limit)
+    reason = "" if outcome.status == ExitStatus.DONE else diagnosis(outcome, path, case.overrides)
+    return _row(case, outcome, reason)
 
 
-def _row(line, o, reason):
+def _row(case, o, reason):
     return {
-        "axis": line.axis,
-        "value": line.value,
+        "axis": case.axis,
+        "value": case.value,
         "converged": "yes" if o.status == ExitStatus.DONE else f"no, exit {o.status}",
         "steps": o.steps,
         "retries": o.retries,

@@ -1,5 +1,7 @@
-"""One run of a case as its own process, with a time limit: figures, exit status, last words."""
+"""One run of a case as its own process, with a time limit: scalars, exit status, last message."""
 
+import contextlib
+import csv
 import math
 import os
 import resource
@@ -25,14 +27,14 @@ TIMED_OUT = -1  # beside the exit statuses of the program
 
 @dataclass
 class Outcome:
-    """What a run came to.
+    """Outcome of a run.
 
     Attributes
     ----------
     status : int
         Exit status of ``python3 -m ehlpetsc``; `TIMED_OUT` where the time limit ended it.
-    words : str
-        Its last line on the error output: why it ended before its time.
+    message : str
+        Last line of its output; the reason where it ended before its time.
     steps, retries, newton : int
         Of the whole run, the steady start's iterations included.
     h_min, p_max, viscosity : float
@@ -48,7 +50,7 @@ class Outcome:
     """
 
     status: int
-    words: str = ""
+    message: str = ""
     steps: int = 0
     retries: int = 0
     newton: int = 0
@@ -64,7 +66,7 @@ class Outcome:
 
 
 def command(case, overrides, options, ranks, output):
-    """The words of the command that runs a case."""
+    """Command line that runs a case."""
     words = [sys.executable, "-m", "ehlpetsc", str(case)]
     if ranks > 1:
         words = ["mpirun", "-n", str(ranks), *words]
@@ -85,7 +87,7 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
         Further words of the command line.
     ranks : int
     folder : path-like
-        Where result, restart file and the program's words go.
+        Where result, restart file and the program's output go.
     name : str
         Stem of those files.
     limit : float
@@ -99,15 +101,15 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
     for left in (output, output.with_suffix(".restart.h5")):  # of an earlier run of that name
         left.unlink(missing_ok=True)
     begun, used = clock.monotonic(), _processor_time()
-    with open(output.with_suffix(".txt"), "w+") as words:
-        status = _wait(command(case, overrides, options, ranks, output), words, limit)
+    with open(output.with_suffix(".txt"), "w+") as printed:
+        status = _wait(command(case, overrides, options, ranks, output), printed, limit)
         seconds = clock.monotonic() - begun
-        words.seek(0)
+        printed.seek(0)
         outcome = Outcome(
-            status, last_words(words.read()), seconds=seconds, processor=_processor_time() - used
+            status, last_message(printed.read()), seconds=seconds, processor=_processor_time() - used
         )
     if output.exists():
-        outcome = replace(outcome, **_read_figures(output, load(case, overrides), outcome.words))
+        outcome = replace(outcome, **_read_scalars(output, load(case, overrides), outcome.message))
     return outcome
 
 
@@ -159,14 +161,34 @@ def greatest_damage(path, surface, depths=()):
     words += ["--depths", *map(str, depths)] if depths else []
     done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if done.returncode:
-        raise PostError(f"no damage: {last_words(done.stderr)}")
+        raise PostError(f"no damage: {last_message(done.stderr)}")
     greatest = PostResult(output).passed(surface).max(axis=1)
     output.unlink()
     return greatest
 
 
+@contextlib.contextmanager
+def csv_table(path, columns):
+    """Function that appends a row, a dict by column, to a new CSV file; rows are on disk at once.
+
+    Parameters
+    ----------
+    path : path-like
+    columns : sequence of str
+    """
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+
+        def append(row):
+            writer.writerow(row)
+            file.flush()
+
+        yield append
+
+
 def _processor_time():
-    """Of all processes that were waited for [s]."""
+    """Processor time of all processes that have ended [s]."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -183,20 +205,20 @@ def _wait(words, stream, limit):
         return TIMED_OUT
 
 
-def last_words(text):
-    """The line that says why a run ended: the solver's own, else the last one."""
+def last_message(text):
+    """Line with the reason of an early end: that of the solver, else the last one."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    told = [line for line in lines if line.startswith("ehlpetsc: not converged:")]
-    return (told or lines or [""])[-1].removeprefix("ehlpetsc: not converged: ")
+    failures = [line for line in lines if line.startswith("ehlpetsc: not converged:")]
+    return (failures or lines or [""])[-1].removeprefix("ehlpetsc: not converged: ")
 
 
-def _read_figures(path, case, words):
-    """Fields of an `Outcome` from a result file; a file that cannot be read is named in its words."""
+def _read_scalars(path, case, message):
+    """Fields of an `Outcome` from a result file; its message names a file that cannot be read."""
     try:
         with read_result(path) as result:
             totals = Totals.of_result(result).values
     except OutputError as error:
-        return {"words": f"{words} {error}".strip()}
+        return {"message": f"{message} {error}".strip()}
     if not totals:
         return {}
     names = ("newton", "retries", "h_min", "p_max", "wall", "load_error", "mass_error")

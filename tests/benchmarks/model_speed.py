@@ -25,7 +25,7 @@ def pair(folder):
         overrides = (f"contact.model={model}", "output.every=100")
         done = run(ROOT / "cases" / "table1_rough.toml", overrides, folder=folder)
         if done.status:
-            raise SystemExit(f"{model}: exit {done.status}: {done.words}")
+            raise SystemExit(f"{model}: exit {done.status}: {done.message}")
         times.append(done.processor)
         print(
             f"{model:>6}: {done.processor:6.1f} s, {done.newton / done.steps:.2f} iterations a step",

@@ -9,8 +9,8 @@ from support.running import MAIN, PREPARED
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.study import runs
-from ehlpetsc.study.draws import run_all
-from ehlpetsc.study.extremes import lines, table
+from ehlpetsc.study.extremes import cases, table
+from ehlpetsc.study.random_cases import run_all
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +28,7 @@ def quick_start(monkeypatch):
 @pytest.mark.slow
 def test_short_table_of_extremes(tmp_path):
     rows = table(tmp_path / "extremes.csv", short=True, limit=120, say=lambda text: None)
-    assert len(rows) == len(lines(short=True)) > 25
+    assert len(rows) == len(cases(short=True)) > 25
     failed = [row for row in rows if row["converged"] != "yes"]
     assert len(failed) <= 0.05 * len(rows), failed
     for row in failed:
@@ -49,7 +49,7 @@ def test_random_cases_end_in_0_or_3_and_leave_whole_files(tmp_path):
 
 
 def test_every_line_of_the_whole_table_is_a_case_that_loads(tmp_path):
-    whole = lines()
+    whole = cases()
     assert len({(line.axis, line.value) for line in whole}) == len(whole) > 100
     for line in whole:
         path = tmp_path / "case.toml"

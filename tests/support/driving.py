@@ -1,4 +1,4 @@
-"""Driving a scene of the project from a test, without files, and fitting observed orders."""
+"""Driving a scene of the project from a test, without files."""
 
 import numpy as np
 import petsc4py
@@ -52,8 +52,3 @@ class Scene:
     def pressure(self):
         """Pressure [Pa]."""
         return self.state.p * self.scales.p0
-
-
-def observed_order(errors):
-    """Slope of log2(error) over refinements, each of which halves the spacing."""
-    return -np.polyfit(np.arange(len(errors)), np.log2(errors), 1)[0]

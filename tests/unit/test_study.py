@@ -13,19 +13,20 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.stresses.body_points import body_points, passage
 from ehlpetsc.study.__main__ import main as study
 from ehlpetsc.study.accuracy import picture
-from ehlpetsc.study.accuracy.errors import MEASURES, Figures, errors, uncertainty
-from ehlpetsc.study.accuracy.plan import MESH, STEP, plan
+from ehlpetsc.study.accuracy.errors import MEASURES, Measures, errors, uncertainty
+from ehlpetsc.study.accuracy.plan import plan
 from ehlpetsc.study.accuracy.table import NAMES
-from ehlpetsc.study.draws import draw
-from ehlpetsc.study.extremes import lines
-from ehlpetsc.study.lines import TABLE_1, inlet_of, load_of
-from ehlpetsc.study.reasons import why as reason_of
-from ehlpetsc.study.runs import TIMED_OUT, Outcome, check_damage, greatest_damage, last_words
+from ehlpetsc.study.cases import TABLE_1, inlet_of, load_of
+from ehlpetsc.study.diagnosis import diagnosis
+from ehlpetsc.study.extremes import cases
+from ehlpetsc.study.random_cases import draw
+from ehlpetsc.study.runs import TIMED_OUT, Outcome, check_damage, greatest_damage, last_message
+from ehlpetsc.study.setting import MESH, RANKS, STEP
 
 
 def figures(error, contact=0.0):
     x, more = np.linspace(-1.5, 1.5, 31), 1 + error
-    return Figures(x, 0.2 * more * np.ones(31), 0.1 * more, 0.2 * more, 1e9 * (1 - error), contact)
+    return Measures(x, 0.2 * more * np.ones(31), 0.1 * more, 0.2 * more, 1e9 * (1 - error), contact)
 
 
 @pytest.fixture
@@ -91,7 +92,7 @@ def test_plan_varies_one_setting_at_a_time_and_ends_in_a_finer_reference(table_1
     for setting in runs[1:]:
         changed = {key for key in {*base, *setting.values} if base.get(key) != setting.values.get(key)}
         assert changed <= {setting.varied}
-    assert {r.value for r in runs if r.varied == "ranks"} == {1, 2}
+    assert {r.label for r in runs if r.varied == RANKS} == {1, 2}
 
 
 def test_a_steady_case_has_no_time_steps_to_vary(table_1):
@@ -109,11 +110,11 @@ def test_load_of_table_1_from_its_pressure():
     assert load_of(0.999455e9) == pytest.approx(527e3, rel=1e-4)
 
 
-def test_last_words_are_the_solvers():
+def test_the_last_message_is_the_solvers():
     words = "step 3: no. Last good state: x"
     printed = f"a\nehlpetsc: not converged: {words}\nresult: f.h5\nehlpetsc: not converged steps=2\n"
-    assert last_words(printed) == words
-    assert last_words("") == ""
+    assert last_message(printed) == words
+    assert last_message("") == ""
 
 
 @pytest.mark.parametrize("words", [[], ["--contact"]])
@@ -164,7 +165,7 @@ def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, 
         file["x"] = [0.0]
     monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: Outcome(0, "", result=result))
     monkeypatch.setattr(
-        "ehlpetsc.study.accuracy.table.figures", lambda path, damage: greatest_damage(path, "2")
+        "ehlpetsc.study.accuracy.table.measures", lambda path, damage: greatest_damage(path, "2")
     )
     command = [str(table_1), "--set", "time.travel=9.0", "--damage", "-o", str(tmp_path / "table")]
     assert study(command) == ExitStatus.BAD_INPUT
@@ -179,20 +180,20 @@ def test_a_reference_that_does_not_converge_ends_in_words(table_1, tmp_path, cap
     assert capsys.readouterr().err == "ehlpetsc.study: the reference did not converge: step 3: no\n"
 
 
-def test_reasons_are_told_in_words(table_1):
+def test_a_diagnosis_names_the_properties_of_the_contact(table_1):
     outcome = Outcome(ExitStatus.NOT_CONVERGED, "SNES stopped", steps=4, h_min=5e-10, p_max=9e9)
-    reason = reason_of(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
+    found = diagnosis(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
     for part in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
-        assert part in reason
-    assert "mesh is too coarse" not in reason
-    slow = reason_of(outcome, table_1, ["motion.entrainment_speed=0.01"])
+        assert part in found
+    assert "mesh is too coarse" not in found
+    slow = diagnosis(outcome, table_1, ["motion.entrainment_speed=0.01"])
     assert "mesh is too coarse" in slow and "points_per_half_width=" in slow
-    assert "time limit" in reason_of(Outcome(TIMED_OUT, steps=4), table_1, [])
+    assert "time limit" in diagnosis(Outcome(TIMED_OUT, steps=4), table_1, [])
 
 
 @pytest.mark.parametrize("model", [None, "direct", "mixed", "compliant"])
 def test_forty_lines_lie_far_beyond_the_ranges(tmp_path, model):
-    path, found = tmp_path / "case.toml", lines(far=True, model=model)
+    path, found = tmp_path / "case.toml", cases(far=True, model=model)
     assert len(found) == len({(line.axis, line.value) for line in found}) == 40
     for line in found:
         path.write_text(line.text)

@@ -8,9 +8,11 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.study import contact
-from ehlpetsc.study.contact import Measured, Setting, for_direct_contact, order, orders, settings, table
+from ehlpetsc.study.contact import Measured, for_direct_contact, order, orders, output_of, settings, table
 from ehlpetsc.study.runs import Outcome
+from ehlpetsc.study.setting import FILM, MESH, MODEL, STEP, Setting
 
+CHOSEN = Setting({MODEL: "mixed", MESH: 100, STEP: 0.5, FILM: 10e-9})
 FOUND = Measured(0.05, 0.07, 0.09, 0.1, 0.2, 0.3, 8.0, 6.0, 5.5, 0, 1e-8, 3.0)
 
 
@@ -27,15 +29,16 @@ def test_what_does_not_settle_has_no_limit(values):
 
 def test_direct_contact_runs_once_whatever_the_boundary_films():
     chosen = list(settings(["direct", "mixed"], [100, 200], [0.5], [2e-9, 5e-9, 10e-9]))
-    assert sum(s.model == "direct" for s in chosen) == 2
-    assert sum(s.model == "mixed" for s in chosen) == 6
+    assert sum(s.values[MODEL] == "direct" for s in chosen) == 2
+    assert sum(s.values[MODEL] == "mixed" for s in chosen) == 6
 
 
 @pytest.mark.parametrize("name", ["table1_mixed", "resolved_mixed", "table1_rough"])
 def test_direct_contact_takes_a_case_of_mixed_contact_without_what_is_mixed_alone(tmp_path, name):
-    overrides = ["contact.yield_pressure=5e9", "mesh.inlet=-1.5"]
+    direct = Setting(CHOSEN.values | {MODEL: "direct"})
+    overrides = ["contact.yield_pressure=5e9", "mesh.inlet=-1.5", *direct.overrides(), *output_of(direct)]
     path, kept = for_direct_contact(CASES / f"{name}.toml", overrides, tmp_path)
-    case = load(path, [*kept, *Setting("direct", 100, 0.5, 10e-9).overrides()])
+    case = load(path, kept)
     of = load(CASES / f"{name}.toml")
     assert case.contact.model == "direct" and case.contact.boundary_film is None
     assert case.mesh.inlet == -1.5 and case.fluid == of.fluid and case.contact.load == of.contact.load
@@ -46,10 +49,10 @@ def test_direct_contact_takes_a_case_of_mixed_contact_without_what_is_mixed_alon
     ("mesh", "courant", "every"), [(100, 0.5, 2), (400, 0.5, 8), (200, 0.125, 16), (25, 4, 1)]
 )
 def test_frames_lie_at_the_same_times_on_every_mesh_and_at_every_step(mesh, courant, every):
-    setting = Setting("mixed", mesh, courant, 10e-9)
-    assert f"output.every={every}" in setting.overrides()
-    assert "output.every=1" in setting.overrides(damage=True)
-    assert any("shear_stress_1" in override for override in setting.overrides(damage=True))
+    setting = Setting(CHOSEN.values | {MESH: mesh, STEP: courant})
+    assert f"output.every={every}" in output_of(setting)
+    assert "output.every=1" in output_of(setting, damage=True)
+    assert any("shear_stress_1" in override for override in output_of(setting, damage=True))
 
 
 def test_a_table_has_a_row_a_run_and_the_words_of_one_that_failed(tmp_path, monkeypatch):
@@ -76,7 +79,7 @@ def _touch(path):
 
 def test_orders_are_told_for_meshes_that_double():
     lengths = {50: 0.07, 100: 0.06, 200: 0.055}
-    rows = [(Setting("mixed", mesh, 0.5, 1e-8), replace(FOUND, length=v)) for mesh, v in lengths.items()]
+    rows = [(Setting(CHOSEN.values | {MESH: mesh}), replace(FOUND, length=v)) for mesh, v in lengths.items()]
     told = list(orders(rows))
-    assert len(told) == len(contact.FIGURES)
+    assert len(told) == len(contact.REPORTED)
     assert "length order 1.00, limit 0.05" in told[0]

@@ -15,6 +15,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.state import State
+from ehlpetsc.study.convergence import observed_order
 
 COARSE = {"mesh.points_per_half_width": 50, "mesh.inlet": -2.5, "mesh.outlet": 1.5}
 

@@ -19,7 +19,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.driving import Scene, observed_order
+from support.driving import Scene
+
+from ehlpetsc.study.convergence import observed_order
 
 COARSEST = 8  # points per half width
 WINDOW = (-1.0, 0.5)

@@ -1,19 +1,33 @@
-"""What is compared of a run, its errors against a reference, and the reference's own."""
+"""Measures of a run, their errors against a reference, and the estimated error of the reference."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.study.convergence import observed_order, richardson_error
 from ehlpetsc.study.runs import greatest_damage
 
 MEASURES = ("h_min", "h_c", "p_max", "film", "contact", "damage")
+ORDERS = (0.5, 2.0)  # bounds of the observed order in an estimate
 NO_MEASURES = dict.fromkeys(MEASURES, np.nan)
 
 
 @dataclass
-class Figures:
-    """What is compared of one run."""
+class Measures:
+    """Measures of one run that the study compares.
+
+    Attributes
+    ----------
+    x, h : ndarray
+        Nodes [half widths] and the film of the last frame [m].
+    h_min, h_c, p_max : float
+        Least film [m] and largest pressure [Pa] of the run, central film of the last frame [m].
+    contact : float
+        Mean length in contact over the run [half widths].
+    damage : float or None
+        log10 of the largest damage on surface 2.
+    """
 
     x: np.ndarray
     h: np.ndarray
@@ -24,8 +38,8 @@ class Figures:
     damage: float | None = None
 
 
-def figures(path, damage=False):
-    """Figures of a result file: films at its last frame, extremes and contact of the whole run.
+def measures(path, damage=False):
+    """Measures of a result file: films at its last frame, extremes and contact of the whole run.
 
     Contact is the length of the contacts times their duration over that of the whole run [m s/s]; damage the
     greatest on surface 2, by ``ehlpetsc.post``.
@@ -35,7 +49,7 @@ def figures(path, damage=False):
         h = np.asarray(result.frame("film_thickness", -1))
         dt = np.asarray(result.steps("dt"))
         contact = (result.steps("contacts") * dt).sum() / dt.sum() if dt.sum() else 0.0
-        return Figures(
+        return Measures(
             x,
             h,
             float(result.steps("h_min").min()),
@@ -65,8 +79,7 @@ def uncertainty(fine, middle, coarse):
     one, two = errors(middle, fine), errors(coarse, fine)
     estimate = {}
     for name in MEASURES:
-        # |f1-f3|/|f1-f2| = 1 + 2^p
-        growth = two[name] / one[name] - 1.0 if one[name] > 0.0 else np.inf
-        order = np.clip(np.log2(growth), 0.5, 2.0) if growth > 0.0 else 0.5
-        estimate[name] = one[name] / (2.0**order - 1.0)
+        change, coarser = one[name], two[name] - one[name]  # |f1 - f2| and |f2 - f3|
+        order = observed_order((coarser, change)) if min(change, coarser) > 0.0 else ORDERS[0]
+        estimate[name] = richardson_error(change, np.clip(order, *ORDERS))
     return estimate

@@ -5,14 +5,13 @@ tried. Its own error is estimated by Richardson extrapolation from two runs with
 time step: :math:`e=|f_1-f_2|/(2^p-1)`, p the order that the three show, held within 0.5 and 2.
 """
 
-import csv
 from pathlib import Path
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus, NotConverged
-from ehlpetsc.study.accuracy.errors import MEASURES, NO_MEASURES, errors, figures, uncertainty
-from ehlpetsc.study.accuracy.plan import ATOL, MESH, NEAR, RTOL, STEP
-from ehlpetsc.study.runs import run
+from ehlpetsc.study.accuracy.errors import MEASURES, NO_MEASURES, errors, measures, uncertainty
+from ehlpetsc.study.runs import csv_table, run
+from ehlpetsc.study.setting import ATOL, MESH, NEAR, RANKS, RTOL, STEP, stored
 
 NAMES = {
     MESH: "mesh",
@@ -20,7 +19,7 @@ NAMES = {
     NEAR: "near field",
     ATOL: "Newton tolerance",
     RTOL: "Krylov tolerance",
-    "ranks": "ranks",
+    RANKS: "ranks",
 }
 COLUMNS = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
 
@@ -48,29 +47,22 @@ class Study:
         self._known = {}
 
     def run(self, setting, number):
-        """Outcome and figures of one run; None where it did not converge. The same run is not run twice."""
+        """Outcome and measures of one run; None where it did not converge. The same run is not run twice."""
         known = tuple(setting.values.items())
         if known in self._known:
             return self._known[known]
-        fields = '["pressure", "film_thickness"]'
-        if self.damage:
-            fields = '["pressure", "film_thickness", "shear_stress_1", "shear_stress_2"]'
-        overrides = [
-            *self.overrides,
-            *setting.overrides(),
-            f"output.fields={fields}",
-            f"output.every={1 if self.damage else self._steps(setting)}",
-        ]
+        shear = ("shear_stress_1", "shear_stress_2") if self.damage else ()
+        output = stored(("pressure", "film_thickness", *shear), 1 if self.damage else self._steps(setting))
         outcome = run(
             self.path,
-            overrides,
+            [*self.overrides, *setting.overrides(), *output],
             options=setting.options(),
             ranks=setting.ranks,
             folder=self.folder,
             name=f"run{number}",
             limit=self.limit,
         )
-        found = figures(outcome.result, self.damage) if outcome.status == ExitStatus.DONE else None
+        found = measures(outcome.result, self.damage) if outcome.status == ExitStatus.DONE else None
         self._known[known] = outcome, found
         return outcome, found
 
@@ -84,7 +76,7 @@ class Study:
         """Run all; rows by the names of `COLUMNS`, the reference with its estimated error first."""
         finest = [self.run(setting, -number) for number, setting in enumerate(references, 1)]
         if finest[0][1] is None:
-            raise NotConverged(f"the reference did not converge: {finest[0][0].words}")
+            raise NotConverged(f"the reference did not converge: {finest[0][0].message}")
         true = finest[0][1]
         rows = [row(references[0], finest[0][0], uncertainty(*(f for _, f in finest)))]
         say(text(dict(zip(COLUMNS, COLUMNS, strict=True))))
@@ -93,10 +85,9 @@ class Study:
             outcome, found = self.run(setting, number)
             rows.append(row(setting, outcome, errors(found, true) if found else NO_MEASURES))
             say(text(rows[-1]))
-        with open(csv_path, "w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            writer.writerows(rows)
+        with csv_table(csv_path, COLUMNS) as append:
+            for one in rows:
+                append(one)
         return rows
 
 
@@ -104,7 +95,7 @@ def row(setting, outcome, measured):
     """One row of the table."""
     return {
         "varied": NAMES.get(setting.varied, setting.varied),
-        "value": setting.value,
+        "value": setting.label,
         "converged": "yes" if outcome.status == ExitStatus.DONE else f"exit {outcome.status}",
         "wall_s": outcome.wall,
         "newton": outcome.newton,

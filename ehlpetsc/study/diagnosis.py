@@ -1,4 +1,4 @@
-"""Why a contact did not converge, in words of the field rather than of the solver."""
+"""Diagnosis of a run that did not converge, in terms of the contact."""
 
 import math
 
@@ -21,8 +21,8 @@ PLASTIC = 6.0  # GPa: asperities of hardened steel yield
 MAX_FILM_SLOPE = 1.0  # films by which the gap may open within one node
 
 
-def why(outcome, path, overrides):
-    """One line: what the scene has that the solver could not follow, then the solver's own words.
+def diagnosis(outcome, path, overrides):
+    """One line: properties of the contact that explain the failure, then the message of the solver.
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ def why(outcome, path, overrides):
     if outcome.status == TIMED_OUT:
         return f"stopped by the time limit after {outcome.steps} steps and {outcome.retries} halved ones"
     if outcome.status in (ExitStatus.BAD_INPUT, ExitStatus.BUG):
-        return outcome.words
+        return outcome.message
     case = load(path, overrides)
     scales = Scales.of(case)
     found = _findings(outcome, case, scales)
-    return "; ".join([*found, f"solver: {outcome.words}"])
+    return "; ".join([*found, f"solver: {outcome.message}"])
 
 
 def _findings(outcome, case, scales):

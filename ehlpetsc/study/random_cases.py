@@ -1,6 +1,5 @@
 """Random cases within the ranges of the table of extremes: each ends in 0 or 3 and leaves a whole file."""
 
-import csv
 import math
 import random
 import tempfile
@@ -10,7 +9,7 @@ from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.physics.film_formulas import moes_central_film, points_for_opening
 from ehlpetsc.physics.scales import moes_groups, reduced_modulus
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.study.lines import (
+from ehlpetsc.study.cases import (
     BARUS,
     MODULUS,
     POISSON,
@@ -23,9 +22,9 @@ from ehlpetsc.study.lines import (
     load_of,
     wave,
 )
-from ehlpetsc.study.runs import run
+from ehlpetsc.study.runs import csv_table, run
 
-COLUMNS = ("number", "status", "steps", "retries", "newton", "file", "words", "overrides")
+COLUMNS = ("number", "status", "steps", "retries", "newton", "file", "message", "overrides")
 STEPS = 50
 OPENING = 3.0  # films that the gap may open from one node to the next beside the contact
 STEEL, SOFT_AND_HARD = [207e9, 207e9], ([3e9, 207e9], [600e9, 600e9])  # Young's moduli [Pa]
@@ -109,20 +108,17 @@ def run_all(count, seed, path, limit, say=print):
         Cases that ended in another status than 0 and 3, or left a file that cannot be read.
     """
     wrong, converged = 0, 0
-    with tempfile.TemporaryDirectory() as folder, open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
+    with tempfile.TemporaryDirectory() as folder, csv_table(path, COLUMNS) as append:
         for number in range(count):
             row = run_one(seed + number, Path(folder), limit)
             converged += row["status"] == ExitStatus.DONE
             if row["status"] not in (ExitStatus.DONE, ExitStatus.NOT_CONVERGED) or row["file"] == "broken":
                 wrong += 1
-            writer.writerow(row)
-            file.flush()
+            append(row)
             if row["status"] != ExitStatus.DONE:
                 say(
                     f"{row['number']}: exit {row['status']}, {row['steps']} steps, file {row['file']}: "
-                    f"{row['words']} | {row['overrides']}"
+                    f"{row['message']} | {row['overrides']}"
                 )
     say(f"{count} cases: {converged} converged, {count - converged - wrong} exit 3, {wrong} wrong")
     return wrong
@@ -141,7 +137,7 @@ def run_one(seed, folder, limit):
         "retries": outcome.retries,
         "newton": outcome.newton,
         "file": _whole(folder / "run.h5"),
-        "words": outcome.words,
+        "message": outcome.message,
         "overrides": "; ".join(overrides),
     }
 

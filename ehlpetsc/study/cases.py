@@ -1,4 +1,4 @@
-"""The cases of the tables of extremes: read from extremes.toml, changes of a base case."""
+"""Cases of the table of extremes: base cases and their changes, read from extremes.toml."""
 
 import math
 import tomllib
@@ -60,8 +60,8 @@ MODULUS = reduced_modulus(_TABLE["contact"]["youngs_modulus"], POISSON)
 
 
 @dataclass(frozen=True)
-class Line:
-    """One line of the table.
+class StudyCase:
+    """One case of the table of extremes.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Line:
     text : str
         The case that they change.
     short : bool
-        Whether the line belongs to the short form.
+        Whether the case belongs to the short form.
     before : tuple of str or None
         Overrides of an earlier run from whose restart file this one goes on.
     """
@@ -108,8 +108,8 @@ def wave(kind, amplitude, wavelength):
     return f'{{ kind = "{kind}", amplitude = {amplitude:g}, wavelength = {wavelength:g} }}'
 
 
-def cases(*groups):
-    """Lines of groups of ``extremes.toml``.
+def read_cases(*groups):
+    """Cases of groups of ``extremes.toml``.
 
     Parameters
     ----------
@@ -117,14 +117,14 @@ def cases(*groups):
 
     Returns
     -------
-    list of Line
+    list of StudyCase
     """
     tables = tomllib.loads(Path(__file__).with_name("extremes.toml").read_text(encoding="utf-8"))
-    return [_line(tables["synthetic"], **entry) for group in groups for entry in tables[group]]
+    return [_case(tables["synthetic"], **entry) for group in groups for entry in tables[group]]
 
 
-def _line(synthetic, axis, value, base="table_1", travel=None, short=False, before=None, **given):
-    """One line; with `travel` on a short domain, so that few time steps fill the contact."""
+def _case(synthetic, axis, value, base="table_1", travel=None, short=False, before=None, **given):
+    """One case; with `travel` on a short domain, so that few time steps fill the contact."""
     settings = () if travel is None else (*SHORT_DOMAIN, f"time.travel={travel}")
     for side in ("1", "2"):
         if f"surface_{side}" in given:
@@ -134,4 +134,4 @@ def _line(synthetic, axis, value, base="table_1", travel=None, short=False, befo
         return (*settings, *(text.replace("{profiles}", str(PROFILES)) for text in overrides))
 
     overrides = with_settings(given.get("set", ()))
-    return Line(axis, value, overrides, BASES[base], short, before and with_settings(before))
+    return StudyCase(axis, value, overrides, BASES[base], short, before and with_settings(before))

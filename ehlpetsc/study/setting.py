@@ -1,0 +1,46 @@
+"""Setting of a run in a study: the values in which it differs from its case."""
+
+import json
+from dataclasses import dataclass
+
+MESH, STEP, NEAR = "mesh.points_per_half_width", "time.courant", "mesh.near_field"
+MODEL, FILM = "contact.model", "contact.boundary_film"
+ATOL, RTOL, RANKS = "-snes_atol", "-ksp_rtol", "ranks"
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Setting of one run.
+
+    Attributes
+    ----------
+    values : dict
+        By key of the case file (``table.key``), by PETSc option (``-name``), and `RANKS`.
+    varied : str
+        Name of the value that a study varies; "" where it varies several.
+    label : object
+        The varied value, as its table prints it.
+    """
+
+    values: dict
+    varied: str = ""
+    label: object = ""
+
+    @property
+    def ranks(self):
+        """Number of ranks."""
+        return self.values.get(RANKS, 1)
+
+    def overrides(self):
+        """``table.key=value`` of the case."""
+        return [f"{key}={value}" for key, value in self.values.items() if "." in key]
+
+    def options(self):
+        """Words of PETSc options."""
+        pairs = [(key, f"{value:g}") for key, value in self.values.items() if key.startswith("-")]
+        return [word for pair in pairs for word in pair]
+
+
+def stored(fields, every):
+    """Overrides for fields stored at every so many time steps."""
+    return [f"output.every={every}", f"output.fields={json.dumps(fields)}"]
