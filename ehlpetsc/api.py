@@ -142,8 +142,8 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     1.00 p0 on 1001 nodes
     """
     need_solver()
-    from ehlpetsc.run.progress import ProgressOutput, in_notebook, on_terminal
-    from ehlpetsc.run.recorder import Recorder
+    from ehlpetsc.run.outputs.progress import ProgressOutput, in_notebook, on_terminal
+    from ehlpetsc.run.outputs.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import solve as hand_to
 

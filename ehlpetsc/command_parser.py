@@ -1,12 +1,91 @@
-"""Command lines of the commands beside the run: post, plot, study, compare and those of analysis."""
+"""Parser, name in help texts and exit status that the commands beside the run share."""
 
 import argparse
+import re
+import sys
+from pathlib import Path
+
+from ehlpetsc.errors import (
+    CaseError,
+    ExitStatus,
+    NotConverged,
+    OutputError,
+    PostError,
+    Stopped,
+    UsageError,
+    not_written,
+)
 
 
 class CommandParser(argparse.ArgumentParser):
-    """argparse's, but for a bad command line: it ends in one sentence, status 2, without the usage."""
+    """Parser whose errors are one sentence, status 2, without the usage.
+
+    Parameters
+    ----------
+    module : str
+        As of :func:`program`.
+    description : str
+        Of the command; one of several lines keeps them.
+    """
+
+    def __init__(self, module, description):
+        keeps = "\n" in description
+        formatter = argparse.RawDescriptionHelpFormatter if keeps else argparse.HelpFormatter
+        super().__init__(prog=program(module), description=description, formatter_class=formatter)
 
     def error(self, message):
-        """Say what is wrong and how to see what there is; ends the command."""
+        """End the command with the fault and the way to the list of options."""
         name = self.prog.removeprefix("python3 -m ")
         self.exit(2, f"{name}: {message}; {self.prog} -h lists the options\n")
+
+
+def program(module):
+    """Name of a command in its help: as it was called, by pip's name for it or as a module.
+
+    Parameters
+    ----------
+    module : str
+        As in ``ehlpetsc.post``.
+
+    Returns
+    -------
+    str
+        ``ehlpetsc post``, ``ehlpetsc-post`` or ``python3 -m ehlpetsc.post``.
+    """
+    name = module.replace(".", "-")
+    if re.fullmatch(r"(python3 -m )?ehlpetsc \w+", sys.argv[0]):  # a subcommand
+        return sys.argv[0]
+    return name if Path(sys.argv[0]).name == name else f"python3 -m {module}"
+
+
+def exit_status(name, action, faults=(), output=None):
+    """Exit status of a command; the message of a failure goes to standard error.
+
+    Parameters
+    ----------
+    name : str
+        As in ``ehlpetsc.post``; begins the message.
+    action : callable
+        The command; its result is the status, None: done.
+    faults : tuple of type
+        Further exceptions that mean bad input.
+    output : path-like, optional
+        File that the command writes, for a failed write that names none.
+    """
+    try:
+        status = action()
+    except Stopped:
+        print(f"{name}: stopped; the same command continues")
+        return ExitStatus.STOPPED
+    except NotConverged as error:
+        print(f"{name}: not converged: {error}", file=sys.stderr)
+        return ExitStatus.NOT_CONVERGED
+    except CaseError as error:
+        print("\n".join(error.faults), file=sys.stderr)
+    except OSError as error:
+        print(f"{name}: {not_written(error, error.filename or output)}", file=sys.stderr)
+    except (OutputError, PostError, UsageError, *faults) as error:
+        print(f"{name}: {error}", file=sys.stderr)
+    else:
+        return ExitStatus.DONE if status is None else status
+    return ExitStatus.BAD_INPUT

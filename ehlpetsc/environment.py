@@ -78,25 +78,6 @@ def _debians():
     return sorted(found, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
 
 
-def program(module):
-    """How a command is called in its help: as it was, by pip's name for it or as a module.
-
-    Parameters
-    ----------
-    module : str
-        As in ``ehlpetsc.post``.
-
-    Returns
-    -------
-    str
-        ``ehlpetsc post``, ``ehlpetsc-post`` or ``python3 -m ehlpetsc.post``.
-    """
-    name = module.replace(".", "-")
-    if re.fullmatch(r"(python3 -m )?ehlpetsc \w+", sys.argv[0]):  # a subcommand
-        return sys.argv[0]
-    return name if Path(sys.argv[0]).name == name else f"python3 -m {module}"
-
-
 def require_numerics():
     """End a command (exit 2) that this Python cannot import, saying which one can."""
     lacks = missing(NUMERICS)

@@ -10,14 +10,12 @@ Exit status: 0 the same, 1 different, 2 the files cannot be compared.
 """
 
 import argparse
-import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.environment import program
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import read_result
 
@@ -226,21 +224,21 @@ def _tolerance(text):
 def main(arguments=None):
     """Run the command; returns its exit status."""
     about = "Compare two result files field by field."
-    parser = CommandParser(prog=program("ehlpetsc.compare"), description=about)
+    parser = CommandParser("ehlpetsc.compare", about)
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")
     parser.add_argument("--atol", type=_tolerance, default=0.0, help="in SI units [%(default)s]")
     options = parser.parse_args(arguments)
-    try:
-        with read_result(options.one) as one, read_result(options.other) as other:
-            differences = list(compare(one, other))
-            faults = list(_only_in_one(one, other))
-            print(_about(one), _about(other), sep="\n")
-            print(table(differences, float(one.attrs["a"]), options.rtol, options.atol))
-    except OutputError as error:
-        print(f"ehlpetsc.compare: {error}", file=sys.stderr)
-        return ExitStatus.BAD_INPUT
+    return exit_status("ehlpetsc.compare", lambda: _compare_files(options))
+
+
+def _compare_files(options):
+    with read_result(options.one) as one, read_result(options.other) as other:
+        differences = list(compare(one, other))
+        faults = list(_only_in_one(one, other))
+        print(_about(one), _about(other), sep="\n")
+        print(table(differences, float(one.attrs["a"]), options.rtol, options.atol))
     faults += [d.name for d in differences if not d.same(options.rtol, options.atol)]
     allowed = f"(rtol {options.rtol:g}, atol {options.atol:g})"
     print(f"different: {'; '.join(faults)} {allowed}" if faults else f"same {allowed}")

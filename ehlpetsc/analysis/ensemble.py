@@ -20,9 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.environment import program
-from ehlpetsc.errors import ExitStatus, OutputError, not_written
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.filling import both_fill
@@ -192,7 +191,7 @@ def text(rows):
 
 def arguments(argv):
     """The command line."""
-    parser = CommandParser(prog=program("ehlpetsc.analysis.ensemble"), description=__doc__)
+    parser = CommandParser("ehlpetsc.analysis.ensemble", __doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
     samples = f"of the bootstrap, 1 to {MAX_RESAMPLES} [{RESAMPLES}]"
@@ -217,18 +216,18 @@ def main(argv=None):
     chosen = arguments(argv)
     stem = chosen.results[0].removesuffix(".series.json").removesuffix(".h5")
     output = chosen.output or Path(f"{stem}.ensemble.csv")
-    try:
-        with contextlib.ExitStack() as stack:
-            results = open_all(chosen.results, stack)
-            check_derived(output, [*map(Path, chosen.results), *(r.path for r in results)], TABLES)
-            rows = table(ensembles(results), chosen.resamples, chosen.seed)
-        write(rows, output)
-    except (OutputError, tomllib.TOMLDecodeError) as error:
-        print(f"ehlpetsc.analysis.ensemble: {error}", file=sys.stderr)
-        return ExitStatus.BAD_INPUT
+    name = "ehlpetsc.analysis.ensemble"
+    return exit_status(name, lambda: _run(chosen, output), (tomllib.TOMLDecodeError,), output)
+
+
+def _run(chosen, output):
+    with contextlib.ExitStack() as stack:
+        results = open_all(chosen.results, stack)
+        check_derived(output, [*map(Path, chosen.results), *(r.path for r in results)], TABLES)
+        rows = table(ensembles(results), chosen.resamples, chosen.seed)
+    write(rows, output)
     print("\n".join(text(rows)))
     print(output)
-    return ExitStatus.DONE
 
 
 if __name__ == "__main__":

@@ -14,9 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.environment import program
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.filling import both_fill
@@ -85,29 +83,25 @@ def table(results):
 def main(arguments=None):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
     about = "Means, percentiles and extremes of every scalar of runs, as CSV."
-    parser = CommandParser(prog=program("ehlpetsc.summary"), description=about)
+    parser = CommandParser("ehlpetsc.summary", about)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
     parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
     chosen = parser.parse_args(arguments)
-    try:
-        with contextlib.ExitStack() as stack:
-            results = in_order(open_all(chosen.results, stack))
-            text = io.StringIO()
-            csv.writer(text, lineterminator="\n").writerows(table(results))
-            if chosen.output:
-                read = [*map(Path, chosen.results), *(result.path for result in results)]
-                check_derived(chosen.output, read, {".csv": ",".join(COLUMNS[:4]).encode()})
-                atomic_write(chosen.output, text.getvalue().encode())
-                print(chosen.output)
-            else:
-                print(text.getvalue(), end="")
-    except OutputError as error:
-        print(f"ehlpetsc.summary: {error}", file=sys.stderr)
-        return ExitStatus.BAD_INPUT
-    except OSError as error:
-        print(f"ehlpetsc.summary: {chosen.output}: not written, {error.strerror}", file=sys.stderr)
-        return ExitStatus.BAD_INPUT
-    return ExitStatus.DONE
+    return exit_status("ehlpetsc.summary", lambda: _run(chosen), output=chosen.output)
+
+
+def _run(chosen):
+    with contextlib.ExitStack() as stack:
+        results = in_order(open_all(chosen.results, stack))
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows(table(results))
+        if not chosen.output:
+            print(text.getvalue(), end="")
+            return
+        read = [*map(Path, chosen.results), *(result.path for result in results)]
+        check_derived(chosen.output, read, {".csv": ",".join(COLUMNS[:4]).encode()})
+        atomic_write(chosen.output, text.getvalue().encode())
+        print(chosen.output)
 
 
 if __name__ == "__main__":

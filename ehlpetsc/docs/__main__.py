@@ -10,11 +10,11 @@ import tempfile
 import webbrowser
 from pathlib import Path
 
-from ehlpetsc.command_parser import CommandParser
+from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.docs.mathjax import mathjax_folder
 from ehlpetsc.docs.pages import FRONT, PAGES, ROOT
-from ehlpetsc.environment import has, program
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.environment import has
+from ehlpetsc.errors import OutputError
 
 PACKAGES = {"sphinx": "python3-sphinx", "myst_parser": "python3-myst-parser", "furo": "furo"}  # Debian's
 MARK = "objects.inv"  # in every site of this generator
@@ -94,21 +94,20 @@ def build(folder):
 def main(arguments=None):
     """Run the command; returns its exit status."""
     about = "Build the pages as one site, with search and typeset equations, and open it in a browser."
-    parser = CommandParser(prog=program("ehlpetsc.docs"), description=about)
+    parser = CommandParser("ehlpetsc.docs", about)
     folder = "build it here, to publish it, and open nothing"
     parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
     chosen = parser.parse_args(arguments)
+    return exit_status("ehlpetsc docs", lambda: _run(chosen))
+
+
+def _run(chosen):
     target = (chosen.folder or cache_folder()).absolute()
-    try:
-        check(target)
-        page = build(target)
-    except OutputError as error:
-        print(f"ehlpetsc docs: {error}", file=sys.stderr)
-        return ExitStatus.BAD_INPUT
+    check(target)
+    page = build(target)
     print(page)
     if chosen.folder is None:
         webbrowser.open(page.as_uri())
-    return ExitStatus.DONE
 
 
 if __name__ == "__main__":

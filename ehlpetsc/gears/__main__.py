@@ -6,14 +6,12 @@ friction and losses of the mesh and draws pressure, films and friction along the
 post-processed, RESULT.post.h5, also the damage along both flanks.
 """
 
-import argparse
 import sys
 import tomllib
 from pathlib import Path
 
-from ehlpetsc import environment
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.errors import CaseError, ExitStatus, OutputError, not_written
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.results.atomic_write import atomic_write, replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 
@@ -22,11 +20,7 @@ MOST_BYTES = 2**26  # of a case file
 
 def arguments():
     """The command line."""
-    parser = CommandParser(
-        prog=environment.program("ehlpetsc.gears"),
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("ehlpetsc.gears", __doc__)
     parser.add_argument("case", help="case file with a [gears] table, or a result of one")
     parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
@@ -37,18 +31,7 @@ def arguments():
 def main(argv=None):
     """Run the command; returns its exit status."""
     chosen = arguments().parse_args(argv)
-    try:
-        run(chosen)
-    except CaseError as error:
-        print("\n".join(error.faults), file=sys.stderr)
-    except OutputError as error:
-        print(f"ehlpetsc.gears: {error}", file=sys.stderr)
-    except (OSError, ValueError) as error:
-        message = not_written(error) if isinstance(error, OSError) else str(error)
-        print(f"ehlpetsc.gears: {message}", file=sys.stderr)
-    else:
-        return ExitStatus.DONE
-    return ExitStatus.BAD_INPUT
+    return exit_status("ehlpetsc.gears", lambda: run(chosen), (ValueError,))
 
 
 def run(chosen):

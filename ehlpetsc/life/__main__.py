@@ -6,31 +6,16 @@ Of a case with [series] a life for each of its members, their index ``OUT.life.s
 the regimes: where wear wins and where fatigue. Under mpirun a rank takes a position of surface 2, or a life.
 """
 
-import argparse
 import sys
 from pathlib import Path
 
-from ehlpetsc import environment
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.errors import (
-    CaseError,
-    ExitStatus,
-    NotConverged,
-    OutputError,
-    PostError,
-    Stopped,
-    UsageError,
-    not_written,
-)
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import UsageError
 
 
 def arguments():
     """The command line."""
-    parser = CommandParser(
-        prog=environment.program("ehlpetsc.life"),
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("ehlpetsc.life", __doc__)
     parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 or its index to draw")
     parser.add_argument("-o", "--output", metavar="FILE.h5", help="default: CASE.life.h5")
     parser.add_argument(
@@ -50,24 +35,7 @@ def arguments():
 def main(argv=None):
     """Run the command; returns its exit status."""
     chosen = arguments().parse_args(argv)
-    try:
-        _run(chosen)
-    except CaseError as error:
-        print("\n".join(error.faults), file=sys.stderr)
-    except Stopped:
-        print("ehlpetsc.life: stopped; the same command continues")
-        return ExitStatus.STOPPED
-    except NotConverged as error:
-        print(f"ehlpetsc.life: not converged: {error}", file=sys.stderr)
-        return ExitStatus.NOT_CONVERGED
-    except (OutputError, PostError, UsageError) as error:
-        print(f"ehlpetsc.life: {error}", file=sys.stderr)
-    except (OSError, ImportError) as error:
-        message = not_written(error) if isinstance(error, OSError) else str(error)
-        print(f"ehlpetsc.life: {message}", file=sys.stderr)
-    else:
-        return ExitStatus.DONE
-    return ExitStatus.BAD_INPUT
+    return exit_status("ehlpetsc.life", lambda: _run(chosen), (ImportError,))
 
 
 def _run(chosen):

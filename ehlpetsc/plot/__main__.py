@@ -19,9 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.environment import program
-from ehlpetsc.errors import OutputError, not_written
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PICTURE_SIGNATURES, check_derived
@@ -55,7 +54,7 @@ def _check(results, kind, options):
 
 def _parser():
     about = "Draw results, a series by its index, or the profiles of a case as they will be used."
-    parser = CommandParser(prog=program("ehlpetsc.plot"), description=about)
+    parser = CommandParser("ehlpetsc.plot", about)
     parser.add_argument("results", nargs="+", metavar="RESULT.h5", help="results, an index; or one CASE.toml")
     settings = "of a case: a key set, as in a run"
     parser.add_argument("-ehl_set", action="append", metavar="TABLE.KEY=VALUE", help=settings)
@@ -104,7 +103,7 @@ def draw(results, kind, options, output):
 
 
 def _draw_case(options, cases):
-    """Picture of the profiles of one case file; returns the exit status."""
+    """Picture of the profiles of one case file."""
     from ehlpetsc.plot.case_picture import draw_case
 
     if len(options.results) > 1:
@@ -115,7 +114,6 @@ def _draw_case(options, cases):
     with replacing(output, keep_ending=True) as beside:
         figure.savefig(beside, dpi=DPI)
     print(output)
-    return 0
 
 
 def _stem(paths):
@@ -132,23 +130,20 @@ def main(arguments=None):
     kind = next((k for k in (*FIGURES, *ENDINGS) if getattr(options, k) not in (None, False)), None)
     ending = ENDINGS.get(kind, f".{kind}.png" if kind else ".png")
     output = options.output or Path(_stem(options.results) + ending)
+    return exit_status("ehlpetsc.plot", lambda: _run(options, kind, output), (ValueError,), output)
+
+
+def _run(options, kind, output):
     cases = [path for path in options.results if path.endswith(".toml")]
-    try:
-        if cases:
-            return _draw_case(options, cases)
-        with contextlib.ExitStack() as stack:
-            results = in_order(open_all(options.results, stack))
-            inputs = [*map(Path, options.results), *(r.path for r in results)]
-            check_derived(output, inputs, KINDS.get(kind, PICTURE_SIGNATURES))
-            draw(results, kind, options, output)
-    except OSError as error:
-        print(f"ehlpetsc.plot: {not_written(error, error.filename or output)}", file=sys.stderr)
-        return 2
-    except (OutputError, ValueError) as error:
-        print(f"ehlpetsc.plot: {error}", file=sys.stderr)
-        return 2
+    if cases:
+        _draw_case(options, cases)
+        return
+    with contextlib.ExitStack() as stack:
+        results = in_order(open_all(options.results, stack))
+        inputs = [*map(Path, options.results), *(r.path for r in results)]
+        check_derived(output, inputs, KINDS.get(kind, PICTURE_SIGNATURES))
+        draw(results, kind, options, output)
     print(output)
-    return 0
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ import math
 from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.environment import program
 from ehlpetsc.errors import OutputError
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, RANGES
@@ -28,8 +27,8 @@ def _jobs(text):
 def arguments(argv=None):
     """Parse the command line."""
     parser = CommandParser(
-        prog=program("ehlpetsc.post"),
-        description="Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
+        "ehlpetsc.post",
+        "Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
         "from result files. Material and depths come from the case text in the file, section [post].",
     )
     add = parser.add_argument

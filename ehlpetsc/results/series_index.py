@@ -2,15 +2,13 @@
 
 import contextlib
 import json
-import sys
 import tomllib
 from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.environment import program
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import read_result
 
 MAX_NAME_LENGTH = 80  # characters of a name
@@ -78,15 +76,15 @@ def command(name, about, report, arguments):
     int
         Exit status: 0 done, 2 bad input.
     """
-    parser = CommandParser(prog=program(name), description=about)
+    parser = CommandParser(name, about)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
-    try:
+    chosen = parser.parse_args(arguments)
+
+    def run():
         with contextlib.ExitStack() as stack:
-            print("\n".join(report(open_all(parser.parse_args(arguments).results, stack))))
-    except OutputError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return ExitStatus.BAD_INPUT
-    return ExitStatus.DONE
+            print("\n".join(report(open_all(chosen.results, stack))))
+
+    return exit_status(name, run)
 
 
 def files_of(path):

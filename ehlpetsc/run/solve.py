@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals, means
-from ehlpetsc.run.progress import ProgressOutput, summary_line
-from ehlpetsc.run.recorder import Recorder
-from ehlpetsc.run.slow_steps import SlowSteps
+from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
+from ehlpetsc.run.outputs.recorder import Recorder
+from ehlpetsc.run.outputs.slow_steps import SlowSteps
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,14 @@ at the edge of the ranges; with ``--far`` of forty far beyond them; with ``--mod
 ``--random N``: N random cases within the ranges, of both contact models, which must end in 0 or 3.
 """
 
-import argparse
 import os
 import sys
 import tempfile
 from pathlib import Path
 
 from ehlpetsc import environment
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.errors import CaseError, ExitStatus, NotConverged, OutputError, PostError, not_written
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import CaseError, OutputError
 
 SWEPT = {  # lists of values: type, default, what they are
     "--meshes": (int, [50, 100, 200, 400], "points per half width"),
@@ -33,11 +32,7 @@ SWITCHES = {
 
 def arguments():
     """The command line."""
-    parser = CommandParser(
-        prog=environment.program("ehlpetsc.study"),
-        description=__doc__.partition(":")[0] + ".\n" + __doc__.partition("\n")[2],
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = CommandParser("ehlpetsc.study", __doc__.partition(":")[0] + ".\n" + __doc__.partition("\n")[2])
     add = parser.add_argument
     add("case", nargs="?", help="case file")
     shared = "change of the case that all runs share; may be repeated"
@@ -67,22 +62,12 @@ def main(argv=None):
         return 2
     if not (chosen.extremes or chosen.random or chosen.case):
         parser.error("which case? CASE.toml, --extremes or --random N")
-    try:
-        if chosen.extremes:
-            return extremes(chosen)
-        if chosen.random:
-            return random_cases(chosen)
-        return (contact if chosen.contact else accuracy)(chosen)
-    except CaseError as error:
-        print("\n".join(error.faults), file=sys.stderr)
-    except (OutputError, PostError) as error:
-        print(f"ehlpetsc.study: {error}", file=sys.stderr)
-    except NotConverged as error:
-        print(f"ehlpetsc.study: {error}", file=sys.stderr)
-        return ExitStatus.NOT_CONVERGED
-    except OSError as error:
-        print(f"ehlpetsc.study: {not_written(error)}", file=sys.stderr)
-    return 2
+    run = accuracy
+    if chosen.extremes or chosen.random:
+        run = extremes if chosen.extremes else random_cases
+    elif chosen.contact:
+        run = contact
+    return exit_status("ehlpetsc.study", lambda: run(chosen))
 
 
 def say(text):
@@ -113,7 +98,6 @@ def extremes(chosen):
     path = f"{chosen.output or 'extremes'}.csv"
     check_outputs(COLUMNS, path)
     table(path, chosen.short, chosen.limit, say, far=chosen.far, model=model)
-    return 0
 
 
 def random_cases(chosen):
@@ -142,7 +126,6 @@ def contact(chosen):
     with tempfile.TemporaryDirectory() as folder:
         table(chosen.case, chosen.set, runs, f"{stem}.csv", folder, chosen.limit, say, chosen.damage)
     say(f"{stem}.csv")
-    return 0
 
 
 def accuracy(chosen):
@@ -163,7 +146,6 @@ def accuracy(chosen):
         rows = study.table(references, runs, f"{stem}.csv", say)
     draw(rows, f"{stem}.png", study.case.title)
     say(f"{stem}.csv, {stem}.png")
-    return 0
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from sandbox import process, word_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import NotConverged, OutputError
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.simulation import Simulation
 

@@ -9,9 +9,9 @@ from support import ROOT
 from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings, summary
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.options import OWN, faults
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.command_line import parse_command_line
+from ehlpetsc.run.cli.command_line import parse_command_line
+from ehlpetsc.run.cli.options import OWN, faults
 
 SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
 MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]

@@ -16,7 +16,7 @@ from ehlpetsc.errors import CaseError, ExitStatus, OutputError
 from ehlpetsc.post.outputs.passes_index import note_damage
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.series.passes import Passes
 from ehlpetsc.run.simulation import Simulation
 

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 
 from ehlpetsc.__main__ import run_guarded
 from ehlpetsc.environment import prepare
-from ehlpetsc.run.command_line import parse_command_line
+from ehlpetsc.run.cli.command_line import parse_command_line
 
 
 def kill_at_index(rank, count):

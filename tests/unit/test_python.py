@@ -179,7 +179,7 @@ def test_a_series_is_solved_member_by_member():
 
 def test_a_run_goes_on_from_a_restart_file(case, result, tmp_path):
     recorded = tmp_path / "run.h5"
-    from ehlpetsc.run.recorder import Recorder
+    from ehlpetsc.run.outputs.recorder import Recorder
 
     simulation = ehlpetsc.Simulation(case)
     with Recorder(simulation, recorded) as recorder:
@@ -192,7 +192,7 @@ def test_a_run_goes_on_from_a_restart_file(case, result, tmp_path):
 
 
 def test_an_error_in_the_middle_leaves_a_whole_file(case, tmp_path):
-    from ehlpetsc.run.recorder import Recorder
+    from ehlpetsc.run.outputs.recorder import Recorder
 
     simulation = ehlpetsc.Simulation(case)
     with pytest.raises(KeyboardInterrupt), Recorder(simulation, tmp_path / "r.h5") as recorder:

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from ehlpetsc.run.slow_steps import MEDIAN_STEPS, SKIPPED_STEPS, SLOWDOWN, SlowSteps
+from ehlpetsc.run.outputs.slow_steps import MEDIAN_STEPS, SKIPPED_STEPS, SLOWDOWN, SlowSteps
 
 
 def warned(times, ranks=2):

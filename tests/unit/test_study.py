@@ -177,7 +177,7 @@ def test_a_reference_that_does_not_converge_ends_in_words(table_1, tmp_path, cap
     failed = Outcome(ExitStatus.NOT_CONVERGED, "step 3: no")
     monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: failed)
     assert study([str(table_1), "-o", str(tmp_path / "table")]) == ExitStatus.NOT_CONVERGED
-    assert capsys.readouterr().err == "ehlpetsc.study: the reference did not converge: step 3: no\n"
+    assert capsys.readouterr().err == "ehlpetsc.study: not converged: the reference: step 3: no\n"
 
 
 def test_a_diagnosis_names_the_properties_of_the_contact(table_1):

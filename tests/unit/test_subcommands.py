@@ -11,7 +11,7 @@ import pytest
 from support import ROOT
 from support.made_results import make_result, with_solids
 
-from ehlpetsc import commands, environment
+from ehlpetsc import command_parser, commands
 from ehlpetsc.analysis import summary
 from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.reader import read_result
@@ -108,6 +108,6 @@ def test_weighted_percentiles_are_those_of_repeated_values():
 
 def test_program_is_named_as_it_was_called(monkeypatch):
     monkeypatch.setattr(sys, "argv", ["ehlpetsc post"])
-    assert environment.program("ehlpetsc.post") == "ehlpetsc post"
+    assert command_parser.program("ehlpetsc.post") == "ehlpetsc post"
     monkeypatch.setattr(sys, "argv", ["/home/my ehlpetsc dir/x"])
-    assert environment.program("ehlpetsc.post") == "python3 -m ehlpetsc.post"
+    assert command_parser.program("ehlpetsc.post") == "python3 -m ehlpetsc.post"

@@ -12,7 +12,7 @@ from ehlpetsc.gears import path_of_contact
 from ehlpetsc.gears.__main__ import main as gears
 from ehlpetsc.gears.along_path import GearRun
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.state import State
 from ehlpetsc.study.convergence import observed_order

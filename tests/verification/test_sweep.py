@@ -19,7 +19,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear import gauss_seidel as sweep
-from ehlpetsc.nonlinear.options import UsageError
+from ehlpetsc.run.cli.options import UsageError
 from ehlpetsc.run.simulation import Simulation
 
 STORED = Path(__file__).with_name("rough_contacts.npz")

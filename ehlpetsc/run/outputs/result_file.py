@@ -10,9 +10,9 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run.limits import limits
 from ehlpetsc.run.on_root import on_root
-from ehlpetsc.run.stored_surfaces import body_depths, profiles
+from ehlpetsc.run.outputs.limits import limits
+from ehlpetsc.run.outputs.stored_surfaces import body_depths, profiles
 from ehlpetsc.stepping.step_control import on_level
 
 MESSAGE_BYTES = 2**30  # MPI counts to twice as many

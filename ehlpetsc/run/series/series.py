@@ -15,14 +15,14 @@ from pathlib import Path
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
-from ehlpetsc.nonlinear.options import text_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.atomic_write import atomic_write, remove_stale
 from ehlpetsc.results.output_guard import Lock, check_index
 from ehlpetsc.results.totals import Totals
+from ehlpetsc.run.cli.options import text_of
 from ehlpetsc.run.on_root import on_root
+from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.preview.warnings import warnings
-from ehlpetsc.run.progress import summary_line
 from ehlpetsc.run.series.member import Member, named
 from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.run.simulation import Simulation

@@ -76,7 +76,7 @@ class Study:
         """Run all; rows by the names of `COLUMNS`, the reference with its estimated error first."""
         finest = [self.run(setting, -number) for number, setting in enumerate(references, 1)]
         if finest[0][1] is None:
-            raise NotConverged(f"the reference did not converge: {finest[0][0].message}")
+            raise NotConverged(f"the reference: {finest[0][0].message}")
         true = finest[0][1]
         rows = [row(references[0], finest[0][0], uncertainty(*(f for _, f in finest)))]
         say(text(dict(zip(COLUMNS, COLUMNS, strict=True))))

@@ -3,7 +3,7 @@
 import difflib
 from dataclasses import dataclass
 
-from ehlpetsc.environment import program
+from ehlpetsc.command_parser import program
 from ehlpetsc.errors import UsageError
 
 

@@ -7,9 +7,9 @@ import shlex
 from dataclasses import dataclass, field
 
 from ehlpetsc.case.tables.table import is_plain
-from ehlpetsc.environment import program
+from ehlpetsc.command_parser import program
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.options import OWN, help_text, usage
+from ehlpetsc.run.cli.options import OWN, usage
 
 PETSC = (
     *("snes", "ksp", "pc", "mat", "vec", "sub", "mg", "sys", "log", "options", "help", "info", "malloc"),
@@ -103,11 +103,6 @@ def parse_command_line(arguments):
 
 def _with_one_dash(word):
     return word[1:] if word.startswith("--") and word[2:3].isalpha() else word
-
-
-def options_list():
-    """Own options with values, units and defaults; needs no PETSc."""
-    return help_text()
 
 
 def _check_name(word):

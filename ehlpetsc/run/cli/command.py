@@ -8,8 +8,8 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
-from ehlpetsc.nonlinear.options import faults, help_text, text_of, time_limit
 from ehlpetsc.nonlinear.scheme import check_scheme
+from ehlpetsc.run.cli.options import faults, help_text, text_of, time_limit
 from ehlpetsc.run.preview.banner import banner
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.series.passes import Passes

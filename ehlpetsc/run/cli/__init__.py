@@ -1,0 +1,1 @@
+"""From the command line to a run: options, the case file, signals, and the streams of the process."""
