@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from support import CASES
-from support.driving import observed_order
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
