@@ -17,39 +17,43 @@ GROUND = {
     "command_parser",
     "materials",
 }  # every room may import these; they import no room, at most errors
-MAY_IMPORT = {
-    "physics": set(),
-    "surfaces": set(),
-    "effects": {"surfaces", "physics"},
-    "quantities": {"effects"},
-    "gears": {"physics", "results"},
-    "case": {"gears", "surfaces", "physics", "quantities"},
-    "results": {"quantities", "physics"},
-    "discretisation": {"physics"},
-    "nonlinear": {"discretisation", "physics"},
-    "stepping": {"nonlinear", "discretisation", "physics", "effects"},
-    "run": {
-        "stepping",
-        "nonlinear",
-        "discretisation",
-        "physics",
-        "effects",
-        "case",
-        "surfaces",
-        "results",
-        "quantities",
-    },
-    "analysis": {"results", "quantities"},
-    "plot": {"analysis", "results", "physics", "quantities", "case", "surfaces"},
-    "post": {"case", "results", "physics", "quantities"},
-    "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
-    "compare": {"analysis"},
-    "docs": set(),  # the pages as one site
-    "life": {"run", "post", "plot", "api", "effects", "case", "surfaces", "results", "physics"},
-    "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
-    "__main__": {"run", "case", "commands"},
-    "commands": set(),  # starts each command by its name
-} | {name: set() for name in GROUND} | {"command_parser": {"errors"}}
+MAY_IMPORT = (
+    {
+        "physics": set(),
+        "surfaces": set(),
+        "effects": {"surfaces", "physics"},
+        "quantities": {"effects"},
+        "gears": {"physics", "results"},
+        "case": {"gears", "surfaces", "physics", "quantities"},
+        "results": {"quantities", "physics"},
+        "discretisation": {"physics"},
+        "nonlinear": {"discretisation", "physics"},
+        "stepping": {"nonlinear", "discretisation", "physics", "effects"},
+        "run": {
+            "stepping",
+            "nonlinear",
+            "discretisation",
+            "physics",
+            "effects",
+            "case",
+            "surfaces",
+            "results",
+            "quantities",
+        },
+        "analysis": {"results", "quantities"},
+        "plot": {"analysis", "results", "physics", "quantities", "case", "surfaces"},
+        "post": {"case", "results", "physics", "quantities"},
+        "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
+        "compare": {"analysis"},
+        "docs": set(),  # the pages as one site
+        "life": {"run", "post", "plot", "api", "effects", "case", "surfaces", "results", "physics"},
+        "api": {"case", "results", "run", "plot"},  # what the package offers: imports when asked
+        "__main__": {"run", "case", "commands"},
+        "commands": set(),  # starts each command by its name
+    }
+    | {name: set() for name in GROUND}
+    | {"command_parser": {"errors"}}
+)
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
