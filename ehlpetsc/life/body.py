@@ -141,6 +141,23 @@ class LifeBody(NamedTuple):
         depths = laws.cell_depths(self.edges, self.recession)
         return wear, laws.damage_at(of_pass.depths, columns, depths)
 
+    def damage_ahead(self, wear, added):
+        """Largest damage that a cell will have when wear has brought the surface down to it.
+
+        Of a cell at the depth z its damage so far and the integral of D over the depths to come, over the
+        wear of a pass; the columns recede by their mean. inf without wear, 0 without damage.
+
+        Parameters
+        ----------
+        wear, added : ndarray
+            As of `rates`.
+        """
+        tops = np.maximum(self.edges[:-1, None], self.recession)
+        thickness = np.maximum(self.edges[1:, None] - tops, 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            to_come = np.nan_to_num(np.cumsum(added * thickness, axis=0) / wear.mean(), posinf=np.inf)
+        return float(np.max(self.damage + to_come, initial=0.0, where=self.is_there))
+
     def after(self, wear, added, passes, done, breaks, volume):
         """The body after a jump.
 

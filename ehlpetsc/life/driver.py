@@ -155,6 +155,7 @@ class _Life:
         row = {"passes": done + jump, "jump": jump, "solved": len(one.passes), "yielded": one.yielded}
         row |= one.figures()
         for k, (body, (wear, added, _)) in enumerate(zip(bodies, rates, strict=True), 1):
+            row[f"damage_ahead_{k}"] = body.damage_ahead(wear, added)
             row |= {f"pits_{k}": body.pits, f"pitted_share_{k}": body.pitted_share, f"ra_{k}": body.ra}
             row |= {f"wear_volume_{k}": body.volume, f"damage_{k}": body.largest_damage}
             row |= {f"wear_rate_{k}": float(wear.max()), f"damage_rate_{k}": float(added.max())}

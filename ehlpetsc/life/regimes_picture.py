@@ -64,7 +64,7 @@ def draw_regimes(index, path):
     handles = [
         pyplot.Line2D([], [], ls="", marker=mark, mfc="none", mec=colour, mew=2.0, ms=9.0, label=label)
         for (mark, colour), label in zip(
-            MARKS.values(), ("fatigue wins: pits", "wear wins: polished", "neither in the time"), strict=True
+            MARKS.values(), ("fatigue wins: pits", "wear wins: D stays below 1", "neither yet"), strict=True
         )
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8)

@@ -18,7 +18,7 @@ SHORT = {
 
 
 @pytest.mark.parametrize(
-    "keys", [{"mesh.points_per_half_width": 24}, {"time.pass_shift": 50e-6, "life.partners": 3}]
+    "keys", [{"mesh.points_per_half_width": 20}, {"time.pass_shift": 50e-6, "life.partners": 3}]
 )
 def test_the_life_is_that_of_one_rank(keys, tmp_path):
     from mpi4py import MPI

@@ -98,6 +98,17 @@ def test_wear_faster_than_damage_leaves_no_cell_to_fail():
     assert counted.is_pitted.all() and not counted.pit.any(), "failed cells are counted alone"
 
 
+def test_damage_ahead_is_that_of_a_cell_worn_down_to():
+    one = body()
+    wear, added = np.full(8, 0.5), np.array([[0.1], [0.05], [0.025]]) * np.ones(8)
+    # over the edges 0, 1, 2, 4: (0.1 + 0.05 + 2 * 0.025)/0.5
+    assert one.damage_ahead(wear, added) == pytest.approx(0.4)
+    worn = one._replace(wear=np.full(8, 1.0), damage=np.array([[9.0], [0.2], [0.1]]) * np.ones(8))
+    assert worn.damage_ahead(wear, added) == pytest.approx(0.1 + 0.1 / 0.5)
+    assert one.damage_ahead(0.0 * wear, added) == np.inf and one.damage_ahead(wear, 0.0 * added) == 0.0
+    assert one.damage_ahead(0.0 * wear, 0.0 * added) == 0.0
+
+
 def test_the_surfaces_beside_the_stretch_are_worn_as_its_mean():
     one = body()._replace(wear=np.arange(8.0))
     field = one.gap_field((2.0, 5.0), (-3.0, 12.0))
