@@ -70,7 +70,9 @@ def under_profile(axes, body):
         vmax=0.0,
         cmap="magma_r",
     )
-    axes.plot(s, micro * np.repeat(body.profile, 2), "k", lw=0.8)
+    present = micro * np.repeat(body.profile, 2)
+    axes.fill_between(s, present, top, color="w", lw=0.0)  # the worn part of a cell that is left
+    axes.plot(s, present, "k", lw=0.8)
     span = max(np.ptp(top), edges[1])
     axes.set(xlabel="s [µm]", ylabel="height [µm]", ylim=(top.min() - 4.0 * span, top.max() + 0.3 * span))
     return image

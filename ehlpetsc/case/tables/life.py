@@ -14,9 +14,10 @@ class Life(Table):
     damage_jump: float = Field(0.1, gt=0, le=1, description="damage of any point between two solved passes")
     pits: bool = Field(True, description="failed cells at the surface break out; false: they are counted")
     partners: int = Field(
-        8,
+        4,
         ge=1,
         le=1000,
-        description="positions of surface 2, time.pass_shift apart, that surface 1 meets in turn",
+        description="positions of surface 2, time.pass_shift apart, that a round solves; "
+        "of gears, teeth of the wheel: as many as a pinion tooth meets at most",
     )
     max_solved: int = Field(500, ge=1, le=100_000, description="solved passes after which a life ends early")
