@@ -19,98 +19,14 @@ from ehlpetsc.case.derived.solids import with_material
 from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put, text_with
-from ehlpetsc.case.tables.contact import Contact
-from ehlpetsc.case.tables.fluid import Fluid
-from ehlpetsc.case.tables.gears import Gears
-from ehlpetsc.case.tables.heat import Heat
-from ehlpetsc.case.tables.life import Life
-from ehlpetsc.case.tables.operation import Operation
-from ehlpetsc.case.tables.post import Post
-from ehlpetsc.case.tables.schema import Mesh, Motion, Output, Series, Time, Wear
-from ehlpetsc.case.tables.surface import Surface
-from ehlpetsc.case.tables.table import Needs, Table, is_plain
-from ehlpetsc.case.tables.validation import Field, PrivateAttr, ValidationError, validator
+from ehlpetsc.case.tables.case import Case
+from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.units import in_si
 from ehlpetsc.errors import CaseError
 
 DICT = "case"  # what faults call a case that is no file
 __all__ = ["Case", "CaseError", "load", "members"]
-
-
-class Case(Table):
-    """A case as the user wrote it; a section left out of the file is None.
-
-    Attributes
-    ----------
-    text : str
-        The TOML text with the overrides in it: saved beside its profiles, it runs the same case again.
-    path : pathlib.Path
-        Where it was read; profile files are sought beside it.
-    """
-
-    title: str = Field(
-        ..., min_length=1, max_length=1000, description="one line for the result file and its pictures"
-    )
-    contact: Contact = Field(..., description="solids and load")
-    fluid: Fluid | None = Field(None, description="left out: dry contact")
-    motion: Motion | None = Field(None, description="speeds; needed with [fluid] and with [time]")
-    mesh: Mesh = Field(..., description="nodes")
-    surface: Surface = Field(Surface(), description="left out: smooth")
-    time: Time | None = Field(None, description="left out: steady")
-    operation: Operation | None = Field(None, description="left out: constant conditions")
-    gears: Gears | None = Field(None, description="left out: constant conditions")
-    wear: Wear | None = Field(None, description="left out: no wear")
-    heat: Heat | None = Field(None, description="left out: isothermal; needs [motion]")
-    output: Output = Field(Output(), description="what the result file holds")
-    post: Post = Field(Post(), description="read by ehlpetsc.post alone")
-    life: Life | None = Field(None, description="read by ehlpetsc.life alone")
-    petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
-    series: Series | None = Field(None, description="one key swept over values")
-    _text: str | partial = PrivateAttr("")
-    _path: Path = PrivateAttr(Path())
-    _conditions: tuple | None = PrivateAttr(None)
-
-    @validator("wear")
-    def _of_mixed_contact_in_time(cls, value, values):
-        contact, time = values.get("contact"), values.get("time")
-        if value is not None and contact is not None and (contact.model != "mixed" or time is None):
-            raise ValueError('needs contact.model = "mixed" and [time]')
-        return value
-
-    @validator("heat")
-    def _of_surfaces_in_motion(cls, value, values):
-        if value is not None and values.get("motion") is None:
-            raise Needs("[motion]")
-        return value
-
-    @validator("petsc")
-    def _options(cls, options):
-        """PETSc takes text; TOML's true, false and numbers are written out for it."""
-        for name, value in options.items():
-            number = isinstance(value, int | float) and abs(value) < 1e300
-            text = isinstance(value, str) and is_plain(value)
-            if not name or name.startswith("-") or not is_plain(name) or not (number or text):
-                raise ValueError(name)
-        return {name: show(v) if not isinstance(v, str) else v for name, v in options.items()}
-
-    @property
-    def text(self):
-        if isinstance(self._text, partial):  # of a member of a series: worked out where it is wanted
-            self._text = self._text()
-        return self._text
-
-    @property
-    def path(self):
-        return self._path
-
-    @property
-    def conditions(self):
-        """Load, radius and speeds over time: a `physics.variable_operation.ConditionsTable`; None: constant.
-
-        The reference state of its scales is then in `contact` and `motion`.
-        """
-        return self._conditions
 
 
 def load(case, overrides=None):
@@ -228,9 +144,7 @@ def members(case):
 def _made(path, data, text, stored=False):
     data = with_grade(with_material(data))
     table, _ = _conditions(path, data, stored)
-    case = Case(**with_reference_state(data, table))
-    case._text, case._path, case._conditions = text, Path(path), table
-    return case
+    return Case.of(with_reference_state(data, table), text, Path(path), table)
 
 
 def _conditions(path, data, stored=False):

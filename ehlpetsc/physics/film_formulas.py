@@ -1,4 +1,4 @@
-r"""Film thickness formulas of smooth line contacts, and what is left of waviness.
+r"""Film thickness formulas of smooth line contacts.
 
 Dimensionless groups of a line contact: :math:`U=\eta_0u/(E'R)`, :math:`G=\alpha E'`, :math:`W=w'/(E'R)`,
 u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=(h/R)(2U)^{-1/2}`.
@@ -10,11 +10,6 @@ import numpy as np
 
 MINIMUM = 0.75  # minimum over central film of an incompressible oil
 FAR, STEPS = 100.0, 1000  # half widths that stand for infinity in Grubin's integral, its nodes
-
-
-def dowson_higginson(U, G, W):
-    r"""Least film over radius, :math:`h_{min}/R=2.65\,U^{0.7}G^{0.54}W^{-0.13}` (Dowson & Higginson 1966)."""
-    return 2.65 * U**0.7 * G**0.54 * W**-0.13
 
 
 def moes_central_film(M, L):
@@ -63,14 +58,6 @@ def smooth_films(fluid, modulus, conditions):
     incompressible = unit * moes_central_film(M, L)
     ratio = 1.0 / float(density(np.array([hertz_line(load, radius, modulus)[1]]), fluid)[0][0])
     return incompressible * ratio, MINIMUM * incompressible * ratio**0.25
-
-
-def waviness_ratio(r):
-    r"""Amplitude left over initial amplitude of waviness in pure rolling, :math:`1/(1+0.17r+0.03r^2)`.
-
-    :math:`r=(\lambda/b)M^{3/4}L^{-1/2}`; Venner, Couhier, Lubrecht & Greenwood 1997, their fit.
-    """
-    return 1.0 / (1.0 + 0.17 * r + 0.03 * r**2)
 
 
 def inlet_opening(film, points):

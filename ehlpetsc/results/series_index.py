@@ -150,7 +150,7 @@ def differences(results):
     dict of str to list
         By dotted key the value of each result, None where it has none.
     """
-    tables = [_flat(tomllib.loads(result.attrs["case"])) for result in results]
+    tables = [flat_keys(tomllib.loads(result.attrs["case"])) for result in results]
     keys = sorted(key for key in set().union(*tables) - {"title"} if not key.startswith("series."))
     values = {key: [table.get(key) for table in tables] for key in keys}
     return {key: found for key, found in values.items() if any(value != found[0] for value in found)}
@@ -183,10 +183,11 @@ def _shown(key, word, value):
     return f"{word} = {value:g}" if isinstance(value, int | float) else f"{word} = {value}"
 
 
-def _flat(table, prefix=""):
+def flat_keys(table, prefix=""):
+    """Values of nested tables by dotted key."""
     found = {}
     for key, value in table.items():
-        found |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+        found |= flat_keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
     return found
 
 

@@ -17,8 +17,8 @@ With the inlet at -8 instead of -4 half widths the lighter load gives 0.26 % mor
 import numpy as np
 import pytest
 from support.driving import Scene
+from support.published_values import MOES_POINTS
 
-from ehlpetsc.physics.published_values import MOES_POINTS
 from ehlpetsc.study.convergence import observed_order
 
 LIGHT, HEAVY = MOES_POINTS

@@ -19,9 +19,9 @@ import pytest
 from scipy.special import erf
 from support import CASES
 from support.driving import Scene
+from support.published_values import RIDGE
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.published_values import RIDGE
 
 
 @pytest.mark.slow

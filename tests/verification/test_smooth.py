@@ -7,8 +7,9 @@ from support import CASES
 
 petsc4py.init([])
 
+from support.published_values import SMOOTH_FILMS_BY_MESH
+
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.published_values import SMOOTH_FILMS_BY_MESH
 from ehlpetsc.run.simulation import Simulation
 
 

@@ -14,8 +14,7 @@ wavelength  Fourier at 0   half peak to peak  published
 import numpy as np
 import pytest
 from support.driving import Scene
-
-from ehlpetsc.physics.published_values import WAVINESS
+from support.published_values import WAVINESS
 
 # wavelength/b: points per half width, nodes a step, half periods followed after the front came to x = 0.
 # Long waves need a fine mesh for the smooth film alone, 4 % too thin at a/100, and few steps; short ones

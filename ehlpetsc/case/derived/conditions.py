@@ -12,8 +12,8 @@ from ehlpetsc.case.tables.operation import COLUMNS
 from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import CaseError
 from ehlpetsc.gears import path_of_contact
+from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
-from ehlpetsc.physics.variable_operation import ConditionsTable
 
 MIN_LOAD = 0.05  # of the load of the mesh, with which the contact of two teeth begins and ends
 PLACEHOLDER = {"radius": 1.0, "load": 1.0}

@@ -9,16 +9,8 @@ def with_grade(tables):
     """Tables of a case with the viscosity of its oil grade, where the case gives none.
 
     Walther's equation (ASTM D341) at `fluid.temperature`, else at the reference temperature of `[heat]`,
-    times the density; `pressure_viscosity` by Gold et al. (2001). Tables without a grade or a temperature,
-    or with faults that the schema names, stay as they are.
-
-    Parameters
-    ----------
-    tables : dict
-
-    Returns
-    -------
-    dict
+    times the density; `pressure_viscosity` by Gold et al. (2001). Argument and result as of
+    :func:`ehlpetsc.case.derived.solids.with_material`; a grade needs a temperature.
     """
     fluid, heat = tables.get("fluid"), tables.get("heat", {})
     grade = fluid.get("grade") if isinstance(fluid, dict) else None

@@ -9,6 +9,7 @@ from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.restart_file import load_restart, save_restart
+from ehlpetsc.results.series_index import flat_keys
 from ehlpetsc.run.restart.contents import RECORD, TOTAL, fault
 from ehlpetsc.run.restart.rescaling import rescale
 from ehlpetsc.stepping.predictor import TimeLevel
@@ -208,14 +209,6 @@ def _misfit(arrays, attributes, earlier, case, scales):
 
 def changes(earlier, now):
     """``fluid.viscosity was 0.002, is 0.004``, a line each for every key of the physics that differs."""
-    one, other = (dict(_flat({k: v for k, v in d.items() if k not in NOT_PHYSICS})) for d in (earlier, now))
+    one, other = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**one, **other} if one.get(key) != other.get(key)]
     return [f"{key} was {one.get(key, 'left out')}, is {other.get(key, 'left out')}" for key in keys]
-
-
-def _flat(table, where=""):
-    for key, value in table.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{where}{key}.")
-        else:
-            yield where + key, value

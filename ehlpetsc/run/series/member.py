@@ -7,6 +7,7 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
+from ehlpetsc.results.series_index import flat_keys
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.preview.forecast import steps
 
@@ -16,8 +17,8 @@ MAX_NAME_LENGTH = 60  # characters of a name
 def named(settings):
     """Names of the members of a series: of its keys, the values in which members differ.
 
-    Values that are tables are told by what differs in them; where that makes no name, or one too long, or one
-    twice, by the member's number.
+    A table among the values is named by the entries that differ; where that makes no name, one too long or
+    one twice, the member has its number.
 
     Parameters
     ----------
@@ -29,28 +30,21 @@ def named(settings):
     list of str
         As ``viscosity=0.002`` or ``viscosity=0.002,entrainment_speed=5.0``.
     """
-    flat = [dict(part for keys, value in one for part in _parts(keys, value)) for one in settings]
+    flat = [flat_keys({".".join(keys): value for keys, value in one}) for one in settings]
     every = dict.fromkeys(key for one in flat for key in one)
     differing = [key for key in every if any(one.get(key) != flat[0].get(key) for one in flat)] or list(every)
     last = settings[0][0][0][-1] if len(settings[0]) == 1 else "member"
     names = []
     for number, one in enumerate(flat, 1):
-        told = {key[-1]: one[key] for key in differing if key in one}
-        text = ",".join(f"{word}={value}" for word, value in told.items())
-        usable = told and len(text) <= MAX_NAME_LENGTH and not any(isinstance(v, list) for v in told.values())
+        shown = {key.rpartition(".")[2]: one[key] for key in differing if key in one}
+        text = ",".join(f"{word}={value}" for word, value in shown.items())
+        usable = (
+            shown and len(text) <= MAX_NAME_LENGTH and not any(isinstance(v, list) for v in shown.values())
+        )
         names.append(text if usable else f"{last}={number}")
     if len(set(names)) < len(names):
         names = [f"{last}={number}" for number in range(1, len(names) + 1)]
     return names
-
-
-def _parts(keys, value):
-    """Entries of a value: one, or those of a table."""
-    if isinstance(value, dict):
-        for name, inner in value.items():
-            yield from _parts([*keys, name], inner)
-    else:
-        yield tuple(keys), value
 
 
 class Member:

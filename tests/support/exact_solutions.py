@@ -1,0 +1,64 @@
+"""Exact solutions and published formulas that tests alone compare with: wavy and quartic profiles, films."""
+
+import numpy as np
+
+
+def westergaard_full_pressure(amplitude, wavelength, modulus):
+    r"""Mean pressure [Pa] that closes the gap :math:`\Delta(1-\cos 2\pi x/l)`, :math:`p^*=\pi E'\Delta/(2l)`.
+
+    Johnson 1985, section 13.2, after Westergaard 1939; E' as in `ehlpetsc.physics.scales.reduced_modulus`.
+    """
+    return np.pi * modulus * amplitude / (2.0 * wavelength)
+
+
+def westergaard_half_width(mean_pressure, amplitude, wavelength, modulus):
+    r"""Half width c [m] of each contact of a wavy surface, :math:`\bar p/p^*=\sin^2(\pi c/l)`."""
+    full = westergaard_full_pressure(amplitude, wavelength, modulus)
+    return wavelength / np.pi * np.arcsin(np.sqrt(np.minimum(mean_pressure / full, 1.0)))
+
+
+def westergaard_pressure(x, mean_pressure, amplitude, wavelength, modulus):
+    r"""Pressure [Pa] of a wavy surface with a crest at x = 0, for :math:`\bar p\le p^*`.
+
+    :math:`p=2\bar p\,\frac{\cos\psi}{\sin^2\psi_c}\sqrt{\sin^2\psi_c-\sin^2\psi}`, :math:`\psi=\pi x/l`,
+    :math:`\psi_c=\pi c/l` (Johnson 1985, section 13.2).
+    """
+    c = westergaard_half_width(mean_pressure, amplitude, wavelength, modulus)
+    edge = np.sin(np.pi * c / wavelength) ** 2
+    psi = np.pi * np.asarray(x) / wavelength
+    root = np.sqrt(np.maximum(edge - np.sin(psi) ** 2, 0.0))
+    return 2.0 * mean_pressure * np.abs(np.cos(psi)) / edge * root
+
+
+def quartic_pressure(x, a, radius, modulus, quartic):
+    r"""Pressure [Pa] of the dry profile :math:`x^2/(2R)+Bx^4` in contact over half width a.
+
+    :math:`p=\left[E'/(4R)+E'B(x^2+a^2/2)\right]\sqrt{a^2-x^2}`: the two powers of the Steuermann profiles
+    (Johnson 1985, section 5.3) added.
+
+    Parameters
+    ----------
+    quartic : float
+        B [1/m^3].
+    """
+    x = np.asarray(x)
+    slope = modulus / (4.0 * radius) + modulus * quartic * (x**2 + a**2 / 2.0)
+    return slope * np.sqrt(np.maximum(a**2 - x**2, 0.0))
+
+
+def quartic_load(a, radius, modulus, quartic):
+    r"""Load of `quartic_pressure` [N/m], :math:`\pi E'a^2/(8R)+3\pi E'Ba^4/8`."""
+    return np.pi * modulus * a**2 / 8.0 * (1.0 / radius + 3.0 * quartic * a**2)
+
+
+def dowson_higginson(U, G, W):
+    r"""Least film over radius, :math:`h_{min}/R=2.65\,U^{0.7}G^{0.54}W^{-0.13}` (Dowson & Higginson 1966)."""
+    return 2.65 * U**0.7 * G**0.54 * W**-0.13
+
+
+def waviness_ratio(r):
+    r"""Amplitude left over initial amplitude of waviness in pure rolling, :math:`1/(1+0.17r+0.03r^2)`.
+
+    :math:`r=(\lambda/b)M^{3/4}L^{-1/2}`; Venner, Couhier, Lubrecht & Greenwood 1997, their fit.
+    """
+    return 1.0 / (1.0 + 0.17 * r + 0.03 * r**2)
