@@ -19,6 +19,7 @@ from ehlpetsc.results.series_index import series_values
 SPEED = "motion.entrainment_speed"
 BAND = (5.0, 95.0)  # percentiles over time
 SIZE = (8.5, 7.5)  # inches
+LEAST_SHARE = 1e-5  # of the load on the solids that is drawn
 QUANTITIES = {
     "friction_coefficient": "friction coefficient",
     "contact_share": "share of the load\non the solids",
@@ -183,9 +184,8 @@ def draw_stribeck(results, _options):
     for number, (label, compared) in enumerate(others):
         _draw_means(axes, compared, label, f"C{number + 1}")
     _references(axes[0], points, speeds)
-    shares = [p.scalars["contact_share"].high for p in points]
-    highest = 0.0 if others else np.nanmax(shares, initial=0.0)
-    axes[1].set_ylim(0.0, min(1.02, 1.15 * highest) if highest > 0.0 else 1.02)
+    _share_axis(axes[1], points)
+    _hersey_axis(axes[0], results)
     if np.isfinite([p.scalars["mean_gap_ratio"].mean for p in points]).any():
         axes[2].set_yscale("log")
     axes[2].set_xlabel(UNITS[SPEED])
@@ -203,6 +203,27 @@ def draw_stribeck(results, _options):
         panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
     axes[2].yaxis.set_minor_formatter(FuncFormatter(_few))
     return figure
+
+
+def _share_axis(axes, points):
+    """Logarithmic where the solids carry anything, as shares range over decades; down to `LEAST_SHARE`."""
+    means = np.array([point.scalars["contact_share"].mean for point in points])
+    if (carried := means[means > 0.0]).size:
+        axes.set_yscale("log")
+        axes.set_ylim(max(LEAST_SHARE, 0.5 * carried.min()), 1.3)
+    else:
+        axes.set_ylim(0.0, 1.02)
+
+
+def _hersey_axis(axes, results):
+    """A second axis above with the Hersey number eta0 u/w, where all results share viscosity and load."""
+    cases = [tomllib.loads(result.attrs["case"]) for result in results]
+    given = {(c.get("fluid", {}).get("viscosity"), c.get("contact", {}).get("load")) for c in cases}
+    if len(given) == 1 and None not in (pair := given.pop()):
+        ratio = pair[0] / pair[1]
+        above = axes.secondary_xaxis("top", functions=(lambda u: u * ratio, lambda hersey: hersey / ratio))
+        above.set_xlabel("Hersey number: viscosity × speed over load per length", fontsize="small")
+        above.tick_params(labelsize="small")
 
 
 def _few(value, _):

@@ -467,6 +467,20 @@ def test_the_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
     assert colours_in(tmp_path / "s.png") > 100
 
 
+@pytest.mark.parametrize("share", [0.0, 1e-3])
+def test_friction_is_over_the_hersey_number_and_the_share_logarithmic(tmp_path, share):
+    paths = [make_result(tmp_path / f"u{u:g}.h5", speed=u, nodes=41, steps=81) for u in (1.0, 10.0)]
+    for path in paths:
+        with h5py.File(with_solids(path, share, 0.05), "r+", libver="latest") as file:
+            file.attrs["case"] = file.attrs["case"].replace(b"[contact]", b"[contact]\nload = 5e5")
+    figure = stribeck.draw_stribeck([read_result(path) for path in paths], None)
+    (above,) = figure.axes[0].child_axes
+    figure.draw_without_rendering()
+    ratio = np.array(above.get_xlim()) / figure.axes[0].get_xlim()
+    assert "Hersey" in above.get_xlabel() and ratio == pytest.approx(0.005 / 5e5)  # viscosity over load
+    assert figure.axes[1].get_yscale() == ("log" if share else "linear")
+
+
 def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, capsys):
     paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in (5.0, 40.0)]
     slow, fast = (read_result(path) for path in paths)
