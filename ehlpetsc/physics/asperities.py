@@ -7,11 +7,20 @@ asperities that a nominally flat rough surface carries
 
 at the mean separation h, :math:`\sigma` the rms height. Akarapu, Sharp and Robbins (2011, Phys. Rev. Lett.
 106, 204301) find the same exponential, and area and stiffness linear in the load, in simulations with many
-Hurst exponents, system sizes and Poisson ratios.
+Hurst exponents, system sizes and Poisson ratios. Of both letters only the abstracts were available, which
+state these laws; no equation number is quoted from them, and the constants are not theirs.
 
-Both constants follow from the relation of separation and pressure of the theory, with Persson's factor 0.45
-of the elastic energy. Evaluated for spectra without roll-off, Hurst exponents 0.5 to 0.9, over one
-to three decades of waves (`tests/verification/test_asperities.py`), it gives :math:`\gamma=0.44\ldots0.54`,
+Both constants are evaluated here from :math:`p=-dU/dh` with the energy of Yang and Persson (2008, J. Phys.:
+Condens. Matter 20, 215214), as Almqvist, Campana, Prodanov and Persson (2011, J. Mech. Phys. Solids 59,
+2355) use it,
+
+.. math:: U=\frac{\pi E^*}2\int q^2C(q)\,P\,[g+(1-g)P^2]\,dq,
+
+P the share of real contact at the wavenumber q, C the spectrum, g = 0.45; g = 1 is the letter of 2007.
+Formula and range of g (0.42 to 0.45) were compared with the open source of a later study of that energy
+(github.com/xylcsi/PerssonModelFudgeFactor). For spectra without roll-off, Hurst exponents 0.5 to 0.9, over
+one to three decades of waves (`tests/verification/test_asperities.py`), it gives
+:math:`\gamma=0.44\ldots0.54`,
 and :math:`\beta=(1.4\ldots2.4)\,q_0\sigma` in the limit of light load or :math:`(1.0\ldots1.7)\,q_0\sigma`
 where :math:`0.5\sigma<h<3\sigma`, with :math:`q_0=2\pi/\lambda` of the longest wave of the roughness. So
 :math:`\beta` is of the order of the slope of that wave: 0.008 to 0.02 for 10 nm below 8 um. A larger

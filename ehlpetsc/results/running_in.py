@@ -62,7 +62,9 @@ def statistics(result, side):
 
 
 def passes_to_run_in(rows):
-    """Number of the first pass that adds less than `RUN_IN` of what the first one added; None: none does.
+    """Number of the pass from which on each adds less than `RUN_IN` of what the first one added; None: none.
+
+    Where the surfaces are shifted from pass to pass, one that adds little may be followed by others.
 
     Parameters
     ----------
@@ -71,4 +73,9 @@ def passes_to_run_in(rows):
     """
     if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
         return None
-    return next((row["pass"] for row in rows if row["added"] < RUN_IN * rows[0]["added"]), None)
+    found = None
+    for row in reversed(rows):
+        if row["added"] >= RUN_IN * rows[0]["added"]:
+            break
+        found = row["pass"]
+    return found

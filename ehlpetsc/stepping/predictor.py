@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL
 
 THIN = 1e-3  # of the expected film, least divisor of films: on a coarse mesh the smooth one may touch too
 AGE = 0.03  # nodes off a whole number that a level one step younger makes up for
@@ -78,8 +79,13 @@ def predict(problem, smooth, levels, nodes):
     q0, film = smooth.q, model.state(level.q, level.w).film
     h0 = np.maximum(model.state(q0, smooth.w).film, THIN * problem.film_scale)
     q = q0 + advected(level.q - q0, way)
-    # where there was oil, the differences carried must not leave a cavity
-    least = np.minimum(q0, np.minimum(*neighbours(level.q, way)))
-    q = np.maximum(q, np.where(least > 0.0, 0.5 * least, -1.0 + 1e-3))
+    # where there was oil, the differences carried must not leave a cavity: it fills by a few nodes an
+    # iteration, one that opens does so at once
+    least = np.minimum(*neighbours(level.q, way))
+    refilled = np.minimum(
+        np.minimum(least, level.q), PRESSURE_AFTER_REFILL
+    )  # where the smooth film cavitates
+    full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, least), refilled)
+    q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
     interpolated = model.w_from_film(h0 * advected(film / h0, way))
     return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, way)))

@@ -44,7 +44,7 @@ SHORT = {
     "moes": (),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
-    "running_in": (*QUICK, "time.passes=2", "contact.yield_pressure=1.1e9"),
+    "running_in": (*QUICK, "time.travel=1.2", "time.passes=2", "contact.yield_pressure=1.1e9"),
     "stribeck": (*QUICK, "series.values=[5.0, 0.05]"),
     "table1_damage": QUICK,
     "table1_heat": QUICK,

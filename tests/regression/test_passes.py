@@ -25,6 +25,7 @@ SHORT = (
     "mesh.points_per_half_width=40",
     "time.travel=1.2",
     "time.passes=2",
+    "time.pass_shift=0.0",
     "contact.yield_pressure=1.1e9",
     "output.every=1",
 )

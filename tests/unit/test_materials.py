@@ -35,6 +35,14 @@ def test_constants_from_hardness():
         steel_of_hardness(720, 200e9, "")
 
 
+def test_constants_from_hardness_are_those_of_a_published_application():
+    """Metals 15 (2025) 780, Roessle-Fatemi method: 866.75 MPa, -0.09, 0.5941, -0.56 at 151 HB and 210 GPa."""
+    steel = steel_of_hardness(151, 210e9, "")
+    assert steel.fatigue_strength == pytest.approx(866.75e6, rel=1e-12)
+    assert round(steel.fatigue_ductility, 4) == 0.5941
+    assert (steel.b, steel.c) == (-0.09, -0.56)
+
+
 @pytest.mark.parametrize("name", STEELS)
 def test_both_curves_of_every_steel_agree_and_fit_the_schema(name):
     """Where plastic strain amplitudes of both curves are equal, so are stress amplitudes; n' = b/c."""
@@ -64,7 +72,7 @@ def test_a_steel_gives_elastic_constants_and_its_limit():
 
 def test_single_keys_replace_those_of_the_steel():
     assert with_material(youngs_modulus=210e9).contact.youngs_modulus == (210e9, 210e9)
-    assert with_material().contact.yield_pressure == (3e9, 3e9)  # of the case
+    assert with_material(yield_pressure=3e9).contact.yield_pressure == (3e9, 3e9)
     keys = {"contact.material": "100Cr6", "contact.yield_pressure": "material", "post.cyclic_strength": 2e9}
     case = load(RUNNING_IN, keys)
     assert case.contact.yield_pressure[0] == pytest.approx(flow_pressure(2e9, 0.09 / 0.56))

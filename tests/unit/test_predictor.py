@@ -52,6 +52,18 @@ def test_the_smooth_solution_is_its_own_guess():
     np.testing.assert_allclose(w, smooth.w, rtol=1e-12)
 
 
+def test_no_cavity_is_carried_where_there_was_oil():
+    """A cavity of the smooth film in which the layer keeps the gap full stays full; one of both stays one."""
+    problem = problem_of("mixed")
+    smooth, _ = smooth_and_rough(problem)
+    x, q0 = problem.x, smooth.q
+    smooth = smooth._replace(q=np.where(x > 0.0, -0.5, q0))
+    level = smooth._replace(travelled=1e-6, q=np.where(x > 0.5, -0.5, 1e-6))
+    q, _ = predict(problem, smooth, [level], [2.4])
+    assert (q[x < 0.5] > 0.0).all()
+    assert (q[x > 0.6] < 0.0).all() and q.min() >= -1.0
+
+
 def test_the_level_nearest_to_a_whole_number_of_nodes_is_taken():
     problem = problem_of()
     smooth, _ = smooth_and_rough(problem)

@@ -90,8 +90,8 @@ def test_nothing_comes_behind_the_end(case):
         ({"mesh__points_per_half_width": 30}, "other nodes"),
         ({"contact__load": 400e3}, "other nodes"),
         (
-            {"contact__model": "direct", "contact__boundary_film": None, "contact__yield_pressure": None},
-            "direct, of the pass before mixed",
+            {"contact__model": "direct", "contact__asperity_height": None, "contact__yield_pressure": None},
+            "direct, of the pass before compliant",
         ),
     ],
 )

@@ -12,7 +12,9 @@ from ehlpetsc.physics.asperities import (
     real_area_fraction,
 )
 
-ENERGY = 0.45  # of the elastic energy of complete contact over the patches in contact, Persson (2007)
+ENERGY = (
+    0.45  # of the elastic energy of complete contact over the patches in contact, Yang and Persson (2008)
+)
 
 
 def separations(pressure, hurst, decades, nodes=1500):

@@ -148,7 +148,9 @@ class Passes:
         self._say(f"passes: {self.index}")
         number = passes_to_run_in(self.rows)
         if number:
-            self._say(f"run in: pass {number} adds less than {RUN_IN:.0%} of what the first one added")
+            self._say(f"run in: from pass {number} on each adds less than {RUN_IN:.0%} of the first one's")
+        if len(self.rows) > 1 and not self.case.time.pass_shift:
+            self._say("the same asperities have met in every pass; time.pass_shift brings others together")
 
     def _say(self, text):
         if self.comm.rank == 0:
