@@ -5,7 +5,7 @@ import re
 import subprocess
 
 import pytest
-from support import ROOT
+from support import ROOT, tells
 from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings, summary
 
 from ehlpetsc.errors import UsageError
@@ -102,10 +102,9 @@ def test_a_result_goes_where_two_dashes_say(case, tmp_path):
 def test_misspelt_own_options_are_refused_all_at_once(case, tmp_path):
     done = run(case, "-ehl_outptu", "f.h5", "-ehl_gibberish", cwd=tmp_path, ranks=2)
     assert done.returncode == 2
-    assert done.stderr.splitlines() == [
-        f"-ehl_gibberish: unknown option; allowed: -{', -'.join(OWN)}",
-        "-ehl_outptu: unknown option; did you mean -ehl_output?",
-    ]
+    unlike, near = done.stderr.splitlines()
+    assert tells(unlike, "-ehl_gibberish: ", f"-{', -'.join(OWN)}")
+    assert tells(near, "-ehl_outptu: ", "-ehl_output?")
     assert done.stdout == ""
     assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
 

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 import pytest
-from support import ROOT
+from support import ROOT, tells
 from support.running import BARE, SCRIPT, command, run, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
@@ -28,9 +28,8 @@ def test_the_same_case_is_made_again_and_another_is_refused(done):
     other = [*CASE, *settings("fluid.viscosity=0.004")]
     refused = run(*other, cwd=done)
     assert refused.returncode == 2 and path.read_bytes() == before
-    assert refused.stderr == (
-        "ehlpetsc: table1_smooth.h5: holds the result of another case, or of other -ehl_set; "
-        "give another -ehl_output, or -ehl_overwrite to lose it\n"
+    assert tells(
+        refused.stderr, "table1_smooth.h5: ", "another case", "-ehl_set", "-ehl_output", "-ehl_overwrite"
     )
     assert run(*other, "-ehl_overwrite", cwd=done).returncode == 0
     with read_result(path) as result:

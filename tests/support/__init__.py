@@ -1,9 +1,14 @@
-"""What tests of several folders share: where the project lies, and how a command refuses."""
+"""What tests of several folders share: paths of the project, what a message holds, how a command refuses."""
 
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
+
+
+def tells(text, *parts):
+    """Whether a text is one line that holds all of these keys, names and figures, in whatever words."""
+    return text.strip().count("\n") == 0 and all(str(part) in text for part in parts)
 
 
 def refused(capsys, command, *words):

@@ -10,7 +10,7 @@ from support import CASES
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.surfaces.measured import text_columns
-from ehlpetsc.surfaces.measured.plausibility import absurd
+from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
 from ehlpetsc.surfaces.measured.profile_files import Layout, read_profile
 from ehlpetsc.surfaces.samples import Samples
 
@@ -195,6 +195,14 @@ def test_a_flat_profile_is_plausible_and_one_of_less_than_an_atom_is_not(rq, tol
     z = rq * np.where(np.arange(200) % 2, 1.0, -1.0)
     fault = absurd(Samples(1e-6 * np.arange(200), z, repeats=False), 100e-6, 1e-6, 0.001e-6, 0.007e-6)
     assert fault is None if told is None else told in fault
+
+
+@pytest.mark.parametrize("rq, unit", [(19.5e-3, "mm"), (20.5e-3, "um")])
+def test_the_likely_unit_makes_a_profile_as_they_are_measured(rq, unit):
+    """Rq of 20 um at most."""
+    z = rq * np.where(np.arange(200) % 2, 1.0, -1.0)
+    given = Samples(0.01 * np.arange(200), z, repeats=False)
+    assert likely_unit(given, Layout(), 1.0) == f'unit = "{unit}"'
 
 
 def test_the_unit_named_is_the_one_to_write(tmp_path):
