@@ -1,6 +1,7 @@
 """Signs of shear: which way each surface is dragged, and what the film's balance of forces demands."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from ehlpetsc.effects.effect import Scene
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.physics.variable_operation import operation_of
-from ehlpetsc.stepping.observables import diagnostics
+from ehlpetsc.stepping.observables import diagnostics, mean_film
 from ehlpetsc.stepping.state import State
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
@@ -130,3 +131,8 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
         found.append((fields["shear_stress_2"], fields["shear_stress_1"]))
     for one in found[1:]:
         np.testing.assert_allclose(one, found[0], rtol=1e-12)
+
+
+def test_the_mean_film_is_that_of_the_middle_half_of_the_contact():
+    scales = SimpleNamespace(x=np.array([-1.0, -0.5, 0.0, 0.5, 1.0]), h=2e-6)
+    assert mean_film(scales, np.array([9.0, 1.0, 2.0, 3.0, 9.0])) == pytest.approx(4e-6, rel=1e-14)
