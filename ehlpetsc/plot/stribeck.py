@@ -20,6 +20,7 @@ SPEED = "motion.entrainment_speed"
 BAND = (5.0, 95.0)  # percentiles over time
 SIZE = (8.5, 7.5)  # inches
 LEAST_SHARE = 1e-5  # of the load on the solids that is drawn
+WIDE = 1e3  # of speeds: beyond it labels between powers of ten touch
 QUANTITIES = {
     "friction_coefficient": "friction coefficient",
     "contact_share": "share of the load\non the solids",
@@ -199,7 +200,7 @@ def draw_stribeck(results, _options):
     axes[0].set_title("\n".join(filter(None, [title, about])) + note, fontsize="medium")
     for panel in axes:
         panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-        panel.xaxis.set_minor_formatter(FuncFormatter(_few))
+        panel.xaxis.set_minor_formatter(FuncFormatter(_few) if speeds.max() < WIDE * speeds.min() else "")
         panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
     axes[2].yaxis.set_minor_formatter(FuncFormatter(_few))
     return figure
