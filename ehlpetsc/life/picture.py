@@ -5,6 +5,7 @@ import numpy as np
 from ehlpetsc.results.atomic_write import replacing
 
 SHOWN = 3  # instants of the life
+LEAST = -3.0  # log10 of the damage at the lower end of the colours
 
 
 def draw(life, path):
@@ -58,7 +59,7 @@ def under_profile(axes, body):
     micro = 1e6
     damage = np.where(body.is_there, body.damage, np.nan)
     with np.errstate(divide="ignore"):
-        values = np.clip(np.log10(damage), -6.0, 0.0)
+        values = np.clip(np.log10(damage), LEAST, 0.0)
     # columns of one height each: cells hang below the profile as made
     s, edges = np.repeat(micro * body.faces(), 2)[1:-1], micro * body.edges
     top = micro * np.repeat(body.height, 2)
@@ -66,13 +67,14 @@ def under_profile(axes, body):
         np.broadcast_to(s, (len(edges), len(s))),
         top - edges[:, None],
         np.repeat(values, 2, axis=1)[:, :-1],
-        vmin=-6.0,
+        vmin=LEAST,
         vmax=0.0,
         cmap="magma_r",
     )
     present = micro * np.repeat(body.profile, 2)
     axes.fill_between(s, present, top, color="w", lw=0.0)  # the worn part of a cell that is left
     axes.plot(s, present, "k", lw=0.8)
+    axes.locator_params(axis="x", nbins=5)
     span = max(np.ptp(top), edges[1])
     axes.set(xlabel="s [µm]", ylabel="height [µm]", ylim=(top.min() - 4.0 * span, top.max() + 0.3 * span))
     return image

@@ -11,6 +11,7 @@ from ehlpetsc.life import run_life
 CASE = CASES / "life.toml"
 SHORT = {
     "mesh.points_per_half_width": 8,
+    "time.travel": 3.6,
     "surface.1.scale": 1.0,
     "surface.2.scale": 1.0,
     "wear.coefficient": 1e-17,

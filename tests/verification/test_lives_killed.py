@@ -15,6 +15,7 @@ from ehlpetsc.life import read_life, run_life
 from ehlpetsc.life.life_file import VOUCHING
 
 KEYS = {
+    "time.travel": 3.6,
     "mesh.points_per_half_width": 8,
     "surface.1.scale": 1.0,
     "surface.2.scale": 1.0,

@@ -20,6 +20,7 @@ OIL = {
     "eyring_stress": 10e6,
 }
 SHORT = {
+    "time.travel": 3.6,
     "fluid": OIL,
     "mesh.points_per_half_width": 8,
     "surface.1.scale": 1.0,
@@ -90,8 +91,8 @@ def test_teeth_wear_along_their_flanks_as_load_and_sliding_say(tmp_path):
     total = float(np.sum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time)))
     k, teeth = case.wear.coefficient[0], case.gears.pair.teeth
     pinion, wheel = life.bodies[-1]
-    assert pinion.volume == pytest.approx(k * total * row["passes"], rel=0.02)
-    assert wheel.volume == pytest.approx(2 * teeth[0] / teeth[1] * k * total * row["passes"], rel=0.02)
+    assert pinion.volume == pytest.approx(k * total * row["passes"], rel=0.005)
+    assert wheel.volume == pytest.approx(2 * teeth[0] / teeth[1] * k * total * row["passes"], rel=0.005)
     # along the flank: arc length from A by the pinion's way
     arc = case.conditions.profile_offsets[0] + np.array([operation.travelled(t)[0] for t in time])
     expected = np.interp(-pinion.s[::-1], arc, k * rate / [one.u1 for one in found])[::-1]
@@ -99,6 +100,6 @@ def test_teeth_wear_along_their_flanks_as_load_and_sliding_say(tmp_path):
     smooth = [np.convolve(z, window, "valid") for z in (pinion.wear / row["passes"], expected)]
     at_ends = 2 * int(scales.a / (pinion.s[1] - pinion.s[0]))
     inside = slice(at_ends, -at_ends)
-    assert np.abs(smooth[0] - smooth[1])[inside].max() < 0.35 * smooth[1].max()
+    assert np.abs(smooth[0] - smooth[1])[inside].max() < 0.15 * smooth[1].max()
     pitch = np.abs(-pinion.s - float(case.gears.pair.flank_arcs(case.gears.pair.points["C"])[0])).argmin()
     assert pinion.wear[pitch] < 0.2 * pinion.wear.max()

@@ -12,7 +12,7 @@ from ehlpetsc.post.run import Job
 from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult
 
-SHORT = {"mesh.points_per_half_width": 10, "surface.1.scale": 1.0, "surface.2.scale": 1.0}
+SHORT = {"mesh.points_per_half_width": 10, "time.travel": 3.6, "surface.1.scale": 1.0, "surface.2.scale": 1.0}
 
 
 def case(keys):
