@@ -1,4 +1,4 @@
-"""What ``import ehlpetsc`` offers; see ``ehlpetsc.load``, ``solve``, ``Simulation``, ``read_result``.
+"""The Python interface: ``ehlpetsc.load``, ``solve``, ``Simulation`` and ``read_result``.
 
 Nothing heavy is imported before it is needed: a result is read and drawn without PETSc and MPI.
 """
@@ -116,7 +116,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     restart : path-like, optional
         Restart file to go on from.
     overwrite : bool
-        Whether to replace whatever stands in the place of `output`; else only the complete result of the
+        Whether to replace any existing file `output`; else only the complete result of the
         very same case is made again, and an unfinished run of it continued from its restart file.
     progress : bool, optional
         Whether to show progress; by default on a terminal and in a notebook.
@@ -128,7 +128,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     Raises
     ------
     CaseError
-        The case is faulty: all faults are told.
+        The case is faulty; the message lists all faults.
     NotConverged
         Its `state` is the last good one; with `output` that is also in the restart file.
     UsageError, OutputError

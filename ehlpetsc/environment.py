@@ -1,4 +1,4 @@
-"""What must be there before anything is imported: PETSc on the path, one thread a rank, packages.
+"""Environment of a run, before anything is imported: PETSc on the path, one thread a rank, packages.
 
 ``run_mpi.sh`` runs this file by itself, in a Python that may have none of them and may be too old::
 
@@ -49,7 +49,7 @@ def has(name):
 
 
 def missing(names):
-    """Those of some packages that this Python does not have.
+    """Packages among the given ones that this Python does not have.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def require_numerics():
 
 
 def advice(lacks, arguments):
-    """What to do about missing packages: one line of why and one to type.
+    """Advice on missing packages: one line with the reason and one to type.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def advice(lacks, arguments):
 
 
 def startup_problem():
-    """What a run lacks to be started in, in words; None: nothing."""
+    """Reason why a run cannot be started here; None: there is none."""
     try:
         os.getcwd()
     except OSError:

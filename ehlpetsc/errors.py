@@ -1,13 +1,13 @@
-"""Every exception of the package, the exit statuses of its commands, and a failed write in words.
+"""Exceptions of the package, exit statuses of its commands, and the message of a failed write.
 
-An error that a user can mend says in its text what is wrong, where, and what is allowed or to be tried.
+The text of an error that a user can correct names the fault, its place, and allowed values or a cure.
 """
 
 from enum import IntEnum
 
 
 class ExitStatus(IntEnum):
-    """How a command ended."""
+    """Exit status of a command."""
 
     DONE = 0
     BUG = 1
@@ -17,12 +17,12 @@ class ExitStatus(IntEnum):
 
     @property
     def words(self):
-        """As in summaries, result files and indices of series: ``not converged``."""
+        """Status as text in summaries, result files and indices of series: ``not converged``."""
         return self.name.lower().replace("_", " ")
 
 
 def not_written(error, path=None):
-    """An OSError of writing in words: which file was not written, and why.
+    """Message of a failed write: the file and the reason.
 
     Parameters
     ----------
@@ -53,19 +53,19 @@ class CaseError(Exception):
 
 
 class ProfileError(Exception):
-    """A profile cannot be used; the message says why and how to mend it."""
+    """A profile cannot be used; the message names the reason and the cure."""
 
 
 class UsageError(Exception):
-    """The command line cannot be understood; the message says what is allowed."""
+    """The command line is not valid; the message names the allowed values."""
 
 
 class OutputError(Exception):
-    """A result or restart file cannot be read or written; the text says why and what is left."""
+    """A result or restart file cannot be read or written; the text names the reason."""
 
 
 class PostError(Exception):
-    """A result cannot be post-processed; the text says why."""
+    """A result cannot be post-processed; the text names the reason."""
 
 
 class SolveFailed(Exception):
@@ -90,7 +90,7 @@ class SolveFailed(Exception):
 
 
 class Stopped(Exception):
-    """The run was to stop while it had nothing yet to go on with."""
+    """The run was stopped before it had a state to continue from."""
 
 
 class NoSteadyStart(Exception):
@@ -99,7 +99,7 @@ class NoSteadyStart(Exception):
     Attributes
     ----------
     share : float or None
-        How much of the pressure-viscosity coefficient was reached, None if not any.
+        Fraction of the pressure-viscosity coefficient that was reached, None: none.
     iterations : int
         Spent on it.
     """
@@ -110,7 +110,7 @@ class NoSteadyStart(Exception):
 
 
 class NotConverged(Exception):
-    """A time step or steady start that cannot be saved; the text names step, time, reason, what to try.
+    """A time step or steady start did not converge; the text names step, time, reason and a cure.
 
     Attributes
     ----------

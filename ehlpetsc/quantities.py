@@ -173,7 +173,7 @@ GROUPS = {
     "surface/1": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
     "surface/2": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
 }
-"""What the groups hold."""
+"""Purpose of each group."""
 
 
 def of_case(table, case):

@@ -1,4 +1,4 @@
-"""What is stored about a quantity beside its values: the entries of :mod:`ehlpetsc.quantities`."""
+"""Metadata of a stored quantity: the entries of :mod:`ehlpetsc.quantities`."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ _STEP = ("time",)
 
 @dataclass(frozen=True)
 class Field:
-    """What is stored about a dataset beside its values.
+    """Metadata of a dataset.
 
     Attributes
     ----------

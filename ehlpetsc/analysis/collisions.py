@@ -1,7 +1,7 @@
 """Collisions of asperities in the members of a series: found and listed.
 
 Members of a series share roughness, kinematics and, but for halved steps, time levels: an asperity pair
-stands in the same relative position in all of them at the same time. Nodes in contact of all members are
+is in the same relative position in all of them at the same time. Nodes in contact of all members are
 put into one map of place and time; what hangs together there is one collision. Times, not step numbers, are
 compared.
 

@@ -3,7 +3,7 @@
 Where meshes or stored times differ, the finer is interpolated linearly at the nodes and times of the
 coarser, on what both cover. A quantity is the same if its greatest difference is within
 ``atol + rtol scale``, its scale the greatest magnitude in either file. Numbers of nodes and steps are taken
-out of the contacts: they are compared as shares of nodes and of steps. What only tells how a solution was
+out of the contacts: they are compared as shares of nodes and of steps. Scalars of how a solution was
 reached (iterations, time steps, wall clock) is not compared.
 
 Exit status: 0 the same, 1 different, 2 the files cannot be compared.

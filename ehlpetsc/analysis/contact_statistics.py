@@ -1,4 +1,4 @@
-"""How much contact there is, of result files or of the index of a series.
+"""Amount of contact in result files or the index of a series.
 
 ``python3 -m ehlpetsc.analysis.contact_statistics RESULT.h5 [...]``
 
@@ -12,7 +12,7 @@ import sys
 import numpy as np
 
 from ehlpetsc.analysis.collisions import points_in_contact
-from ehlpetsc.results.series_index import command, in_order, series_values, told_apart
+from ehlpetsc.results.series_index import command, distinguishing_names, in_order, series_values
 
 
 def mean_rate(result, low=-1.0, high=1.0):
@@ -46,7 +46,7 @@ def report(results):
     """A line for each result, and the proportions of their counts."""
     key, values = series_values(results)
     stems = [result.path.stem for result in results]
-    names = [f"{value:g}" for value in values] if key else told_apart(results) or stems
+    names = [f"{value:g}" for value in values] if key else distinguishing_names(results) or stems
     width = max(len(key or "result"), *map(len, names))
     lines = [
         f"{key or 'result':>{width}}    Q/ms  inlet quarter  exit half  to the first"

@@ -4,8 +4,8 @@
 
 A figure of a run is the mean over the time in which the roughness of both surfaces fills the contact (of a
 run that ends before, over all of it) or, of least films and largest pressures, the extreme. Members whose
-cases are the same but for seeds make one ensemble; several, as of a grid over seeds and speeds, are told one
-by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
+cases are the same but for seeds make one ensemble; several, as of a grid over seeds and speeds, are listed
+one by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
 """
 
 import argparse
@@ -46,7 +46,7 @@ class Ensemble:
     Attributes
     ----------
     name : str
-        What tells it from the other ensembles, "" where there is one only.
+        Keys and values in which it differs from the other ensembles, "" where there is one only.
     values : dict
         The keys in which ensembles differ, with this one's values.
     figures : dict of str to ndarray, shape (runs,)
@@ -151,8 +151,8 @@ def table(found, resamples=RESAMPLES, seed=1):
         for name, values in one.scalars.items():
             units = STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
             low, high = bootstrap(values, resamples, seed)
-            told = (one.name, name, units, values.size, values.mean(), low, high, values.min(), values.max())
-            rows.append(dict(zip(COLUMNS, told, strict=True)))
+            row = (one.name, name, units, values.size, values.mean(), low, high, values.min(), values.max())
+            rows.append(dict(zip(COLUMNS, row, strict=True)))
     return rows
 
 

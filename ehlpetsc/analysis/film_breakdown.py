@@ -13,7 +13,7 @@ def spread(points, count):
 
 
 def ranked(collisions):
-    """Numbers of the collisions, those most worth a picture first.
+    """Numbers of the collisions in the order in which they are drawn.
 
     `contact_points` in their order, then those in which most members touch, of these the highest pressure.
     """
@@ -31,7 +31,7 @@ def slope_jumps(values, film):
     r"""Relative growth of the slope of a film against a value, from interval to interval, on its way to zero.
 
     Slopes :math:`s_k=(h_k-h_{k+1})/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last one, cut
-    off at h = 0, is a lower bound. A last jump of 0 or less says that the straight line through the last two
+    off at h = 0, is a lower bound. A last jump of 0 or less means that the straight line through the last two
     films reaches zero before the first member in contact: contact comes where extrapolation puts it.
 
     Parameters

@@ -19,7 +19,7 @@ from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.output_guard import check_derived
-from ehlpetsc.results.series_index import in_order, open_all, series_values, told_apart
+from ehlpetsc.results.series_index import distinguishing_names, in_order, open_all, series_values
 
 LEFT_OUT = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)
@@ -72,7 +72,7 @@ def statistics(result):
 def table(results):
     """Rows of all results, the head first."""
     key, values = series_values(results)
-    cases = [f"{key} = {v:g}" for v in values] if key else told_apart(results)
+    cases = [f"{key} = {v:g}" for v in values] if key else distinguishing_names(results)
     cases = cases or [str(result.attrs["title"]) for result in results]
     rows = [COLUMNS]
     for result, case in zip(results, cases, strict=True):

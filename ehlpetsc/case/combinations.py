@@ -13,7 +13,7 @@ def keys_of(series):
     Parameters
     ----------
     series : dict
-        The table as it stands in the file.
+        The table as written in the file.
     """
     return [series["key"]] if "key" in series else list(series["keys"])
 

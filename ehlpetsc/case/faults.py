@@ -8,7 +8,7 @@ from ehlpetsc.case.tables.validation import ValidationError
 
 
 def allowed(field):
-    """What a key takes, e.g. ``a number > 0 and <= 100 [m] (radius of relative curvature)``.
+    """Allowed values of a key, e.g. ``a number > 0 and <= 100 [m] (radius of relative curvature)``.
 
     Parameters
     ----------

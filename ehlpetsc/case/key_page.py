@@ -85,7 +85,7 @@ def _equation(model, field):
 
 
 def keys(table=None):
-    """Every key with what it takes and its default, a line each; below it the equation in which it stands.
+    """Every key with its allowed values and default, a line each; below it the equation in which it appears.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _lines(model, fields):
 
 
 def page():
-    """The same as a page of Markdown."""
+    """Page of Markdown with every key."""
     parts = [PAGE, SYMBOLS]
     for name, model in tables().items():
         heading = f"`[{name}]`" if name else "Above all tables"

@@ -1,4 +1,4 @@
-"""The case file: read, overridden, checked, all faults told at once."""
+"""The case file: read, overridden, checked; all faults are reported at once."""
 
 import tomllib
 from functools import partial

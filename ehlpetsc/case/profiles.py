@@ -19,7 +19,7 @@ def profile_faults(folder, surface, case):
     folder : pathlib.Path
         Of the case file.
     surface : object
-        What stands under `surface` in the case file.
+        Table `surface` of the case file.
     case : Case or None
         None where other tables are at fault: the profiles are then not held against the contact.
 
@@ -45,7 +45,7 @@ def profile_faults(folder, surface, case):
 def _try(folder, table, case):
     try:
         spec = SurfaceProfile(**table)
-    except ValidationError:  # its keys are told; without them the file cannot be understood, only sought
+    except ValidationError:  # reported with its keys; without them the file can only be sought
         spec = None
     if spec is None:
         if "file" not in table:

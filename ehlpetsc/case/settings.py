@@ -39,7 +39,7 @@ def put(tables, keys, value):
     Raises
     ------
     ValueError
-        What stands above the key is no table.
+        The parent of the key is no table.
     """
     keys = _as_spelled(tables, keys)
     for key in keys[:-1]:

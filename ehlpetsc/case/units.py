@@ -17,7 +17,7 @@ DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
 
 
 class UnitFault(ValueError):
-    """A value with a unit that cannot be converted; the text says why."""
+    """A value with a unit that cannot be converted; the text names the reason."""
 
 
 def in_si(path, data, model):

@@ -66,7 +66,7 @@ class StepInputs:
     heat: object = None
 
     def mirrored(self):
-        """The same step seen from the other side: x, the speeds and all arrays over nodes turned round."""
+        """Mirrored step: x, the speeds and all arrays over nodes in reverse order."""
         now = self.conditions
         turned = {"conditions": now._replace(u1=-now.u1, u2=-now.u2)}
         for name, value in vars(self).items():

@@ -1,4 +1,4 @@
-"""What an effect is: physics beside the film that changes from time level to time level.
+"""Interface of an effect: physics beside the film that changes from time level to time level.
 
 An effect keeps a record of its own, a NamedTuple of arrays, numbers and other NamedTuples, in the state
 of the run. The record is saved in restart files by its field names; nothing but the effect reads it.
@@ -13,7 +13,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Scene:
-    """What is fixed over a run, for effects.
+    """Quantities that are fixed over a run, for effects.
 
     Attributes
     ----------
@@ -212,7 +212,7 @@ def unflat(kind, values, name):
     Raises
     ------
     ValueError
-        Something is missing or cannot be; the text says what.
+        An entry is missing or impossible; the text names it.
     """
     fields = {}
     for key, inner in kind.__annotations__.items():

@@ -61,7 +61,7 @@ def smooth_films(fluid, modulus, conditions):
 
 
 def inlet_opening(film, points):
-    r"""How many films Hertz' gap opens beside the contact from one node to the next.
+    r"""Opening of Hertz' gap from one node to the next beside the contact, in films.
 
     :math:`\frac{2\sqrt2}{3}(\Delta x/a)^{3/2}` in :math:`a^2/R` over the film there. At 0.25 the film
     of a second-order scheme is some 5 % too thin, at 1 some 40 %; from about 5 on none is left.

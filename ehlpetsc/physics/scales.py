@@ -48,7 +48,7 @@ def moes_groups(viscosity, speed, alpha, load, radius, modulus):
 
 @dataclass(frozen=True)
 class Scales:
-    """What follows from a case by arithmetic alone.
+    """Scales and dimensionless groups of a case.
 
     Attributes
     ----------

@@ -34,7 +34,7 @@ def window(results, options):
 
 
 def panel_title(results, indices=None):
-    """What all results have in common of their titles, and the instant of stored frames."""
+    """Common title of all results, and the instant of stored frames."""
     titles = {result.attrs["title"] for result in results}
     parts = [titles.pop() if len(titles) == 1 else "", indices and frames.instant(results, indices)]
     return ": ".join(part for part in parts if part)

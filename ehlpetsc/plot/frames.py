@@ -23,7 +23,7 @@ SHARE = 0.005  # of the load on the solids, below which the pressure chooses the
 
 
 def choose_frames(results, step=None, time=None):
-    """The same instant of every result: index of the stored frame nearest to it.
+    """Index of the stored frame nearest to an instant, for every result.
 
     Results whose surfaces move at different speeds are compared at equal travel of the faster surface, since
     the same asperities then are at the same place.

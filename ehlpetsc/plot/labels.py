@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ehlpetsc.results.series_index import series_values, told_apart
+from ehlpetsc.results.series_index import distinguishing_names, series_values
 
 SINGLE_COLOUR = "#1f4e79"
 CONTACT_COLOUR = "#d62728"
@@ -55,9 +55,9 @@ def series_colours(results):
 
 
 def names(results):
-    """What tells results apart: their titles, else the keys that differ, else the files."""
+    """Labels of results: their titles, else the keys that differ, else the files."""
     titles = [result.attrs["title"] for result in results]
-    apart = told_apart(results)
+    apart = distinguishing_names(results)
     if len(set(titles)) == 1 and apart:
         return apart
     if len(set(titles)) == len(titles):
@@ -68,7 +68,7 @@ def names(results):
 
 
 def conditions(results):
-    """What all results share of speed, sliding, Hertz' contact and oil, in one line.
+    """Speed, sliding, Hertz' contact and oil that all results share, in one line.
 
     Parameters
     ----------

@@ -243,7 +243,7 @@ def _draw_means(axes, results, label, colour):
 
 
 def _references(axes, points, speeds):
-    """What the coefficient goes to: the solids' at the slow end, the smooth contact's at the fast one."""
+    """Limits of the coefficient: of the solids at the slow end, of the smooth contact at the fast one."""
     solids, smooth = [p.boundary for p in points], [p.smooth for p in points]
     axes.plot(speeds, solids, color="#b35806", lw=0.9, ls="--", label="solids alone\n(boundary_friction)")
     axes.plot(speeds, smooth, color="0.35", lw=0.9, ls=":", label="smooth contact")

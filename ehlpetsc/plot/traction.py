@@ -7,7 +7,7 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import UNITS, conditions, legend_beside, new_figure
 from ehlpetsc.plot.stribeck import stribeck_point
-from ehlpetsc.results.series_index import told_apart
+from ehlpetsc.results.series_index import distinguishing_names
 
 RATIO = "motion.slide_roll_ratio"
 SIZE = (8.5, 4.6)  # inches
@@ -63,7 +63,7 @@ def _curves(results):
     groups = {}
     for ratio in ratios:
         same = [result for result in results if _ratio(result) == ratio]
-        names = told_apart(same) if len(same) > 1 else [""]
+        names = distinguishing_names(same) if len(same) > 1 else [""]
         for name, result in zip(names or [""], same, strict=False):
             groups.setdefault(name, []).append((ratio, result))
     found = {}

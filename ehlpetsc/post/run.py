@@ -51,7 +51,7 @@ class Job(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Some depths of one surface."""
+    """Depths of one surface that one task processes."""
 
     surface: str
     depths: tuple
@@ -120,7 +120,7 @@ def _note_material(case, criteria, report):
 
 
 def _note_heat(loads, surfaces, report):
-    """What heat adds to the result, and what it does not."""
+    """Notes on the part of heat in the result."""
     if loads.case.heat is None:
         return
     if cold := [surface for surface in surfaces if surface not in loads.heated([surface])]:

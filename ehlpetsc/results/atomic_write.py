@@ -1,4 +1,4 @@
-"""Files written whole: a reader finds the old one or the new one, never a part."""
+"""Atomic writes: a reader finds the old file or the new one, never a part."""
 
 import contextlib
 import glob
@@ -9,7 +9,7 @@ from pathlib import Path
 
 @contextlib.contextmanager
 def replacing(path, keep_ending=False):
-    """A file beside `path` to write to, for a ``with`` statement: renamed at its end, gone after an error.
+    """Temporary file beside `path`, for a ``with`` statement: renamed at its end, removed after an error.
 
     An OSError of the file beside names `path` as its file.
 
@@ -40,7 +40,7 @@ def replacing(path, keep_ending=False):
 
 
 def atomic_write(path, content):
-    """Write bytes, forced to the disk, in the place of `path`; OSError leaves nothing behind."""
+    """Replace `path` by a file of these bytes, synchronised to disk; after an OSError nothing is left."""
     with replacing(path) as beside, open(beside, "wb") as file:
         file.write(content)
         file.flush()
@@ -48,14 +48,14 @@ def atomic_write(path, content):
 
 
 def remove_stale(path):
-    """Remove what killed runs have left beside `path`; for who has the lock on it."""
+    """Remove temporary files of killed runs beside `path`; only with the lock on it."""
     for beside in Path(path).parent.glob(f".{glob.escape(Path(path).name)}.*.tmp*"):
         with contextlib.suppress(OSError):
             beside.unlink()
 
 
 def os_reason(error):
-    """What the operating system said, without HDF5's own wording."""
+    """Message of the operating system, without HDF5's own wording."""
     if error.args and "errno = " in str(error):
         code = int(str(error).split("errno = ")[1].split(",")[0])
         return os.strerror(code)

@@ -1,4 +1,4 @@
-"""What stands in an output's place before a run, and the lock that keeps a second run away from it."""
+"""Checks of an output path before a run, and the lock against a second run."""
 
 import contextlib
 import fcntl
@@ -40,7 +40,7 @@ def check_output_path(path, inputs, option="-ehl_output"):
     inputs : iterable of Path
         Files that the run reads.
     option : str
-        That names the output, for what is said.
+        Option that names the output, for messages.
 
     Raises
     ------
@@ -64,8 +64,8 @@ def check_derived(path, inputs, kinds, option="-o"):
     inputs : iterable of Path
         Files that the command reads.
     kinds : dict of str to bytes
-        Endings allowed, each with bytes near the begin of every file of that kind: what lies in the place of
-        the output and does not have them is kept.
+        Endings allowed, each with bytes near the begin of every file of that kind: a file at the path of the
+        output without them is kept.
     option : str
         That names the output.
 
@@ -88,7 +88,7 @@ def check_derived(path, inputs, kinds, option="-o"):
 
 
 def exists(path):
-    """Whether there is something of that name; OutputError where nobody may tell, in a folder of others."""
+    """Whether a path exists; OutputError where that cannot be read, as in a folder of others."""
     try:
         return path.exists() or "\0" in str(path) and path.stat() is None  # stat refuses what exists takes
     except (OSError, ValueError) as error:
@@ -98,16 +98,16 @@ def exists(path):
 
 
 def check_index(path, rows, files=()):
-    """Refuse to replace what is no index, and results' places where there is what the index does not name.
+    """Refuse to replace a file that is no index, and files at the paths of results that are no results.
 
-    A result that the index names is ours, however damaged; so is a file of HDF5 that cannot be opened.
+    A file that the index names may be replaced, however damaged; so may an HDF5 file that cannot be opened.
 
     Parameters
     ----------
     path : Path
         The index.
     rows : str
-        What it calls its list: "members" or "passes".
+        Name of its list: "members" or "passes".
     files : iterable of Path
         Results to be.
 
@@ -127,7 +127,7 @@ def check_index(path, rows, files=()):
 
 
 def _is_ours(path):
-    """Whether a file is a result, or one of HDF5 so damaged that nobody can tell."""
+    """Whether a file is a result, or an HDF5 file too damaged to be recognised."""
     try:
         with open_for_reading(path) as file:
             return "format_version" in file.attrs
@@ -136,7 +136,7 @@ def _is_ours(path):
 
 
 class Lock:
-    """Keeps an output for one run; for a ``with`` statement, or :meth:`acquire` and :meth:`release`.
+    """Lock on an output; for a ``with`` statement, or :meth:`acquire` and :meth:`release`.
 
     The lock is one of the operating system's on ``OUTPUT.lock``: a killed run loses it.
 
@@ -145,7 +145,7 @@ class Lock:
     path : Path
         The output.
     way : str
-        What to do where another process has it.
+        Advice where another process has it.
     """
 
     def __init__(self, path, way=WAIT_ADVICE):
@@ -160,7 +160,7 @@ class Lock:
         self.release()
 
     def acquire(self):
-        """Take it; OutputError names who has it."""
+        """Acquire the lock; OutputError names the process that has it."""
         file = self._locked()
         while not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
             file.close()  # the one before gave it back between our opening and our locking
@@ -187,7 +187,7 @@ class Lock:
         return file
 
     def release(self):
-        """Give it back; once is enough."""
+        """Release the lock; further calls have no effect."""
         if self._file:
             with contextlib.suppress(OSError):
                 self._path.unlink()

@@ -1,4 +1,4 @@
-"""What the passes of both surfaces over each other make of them, pass by pass, from their results."""
+"""Running in: surfaces and contact pass by pass, from the results of the passes."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient"
 
 
 def pass_figures(result, begin):
-    """What a pass has made of the surfaces, and its means over the time that both fill the contact.
+    """Roughness and depths at the end of a pass, and means over the time that both surfaces fill the contact.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which f
 
 
 def open_all(paths, stack):
-    """Results of the files named; a series' index (.series.json) stands for those members that have a file.
+    """Results of the files named; of a series' index (.series.json) the members that have a file.
 
     Files of post-processing and restart files among results are left out.
 
@@ -45,10 +45,10 @@ def open_all(paths, stack):
     kept = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
     if not kept:
         kinds = {".post.h5": "of post-processing", ".restart.h5": "of a restart"}
-        told = ", ".join(
+        refused = ", ".join(
             f"{path}: a file {kinds[OTHER_ENDINGS[str(path).endswith(OTHER_ENDINGS[1])]]}" for path in paths
         )
-        raise OutputError(f"{told}; give the result, {_result_of(paths[0])}")
+        raise OutputError(f"{refused}; give the result, {_result_of(paths[0])}")
     return [stack.enter_context(read_result(file)) for path in kept for file in files_of(path)]
 
 
@@ -88,7 +88,7 @@ def command(name, about, report, arguments):
 
 
 def files_of(path):
-    """Result files that a name stands for: of a series' index those of its members that have one.
+    """Result files of a name; of a series' index those of its members that have one.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def files_of(path):
 
 
 def read_index(path):
-    """What an index file holds.
+    """Content of an index file.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def differences(results):
     return {key: found for key, found in values.items() if any(value != found[0] for value in found)}
 
 
-def told_apart(results):
+def distinguishing_names(results):
     """A name for each result by the values in which their cases differ; None where that tells none apart.
 
     Returns

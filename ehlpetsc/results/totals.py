@@ -25,7 +25,7 @@ class Totals:
 
     @classmethod
     def of_result(cls, result):
-        """Those of a stored run.
+        """Totals of a stored run.
 
         Parameters
         ----------

@@ -44,7 +44,7 @@ class ResultWriter:
     every : int
         Steps between stored frames.
     resume_step : int, optional
-        Go on with the file at `path` after this step: what lies beyond is dropped. The file is copied, which
+        Continue the file at `path` after this step; later steps are dropped. The file is copied, which
         also repairs one left by a killed run, and replaced when the copy is whole. Without a file at `path` a
         new one begins after that step.
     contact_count : ndarray, shape (nx,), optional
@@ -176,7 +176,7 @@ class ResultWriter:
         return f"the file is whole up to step {step} ({1e6 * time:.4f} us)"
 
     def _close_after_a_fault(self):
-        with contextlib.suppress(Exception):  # the fault at hand is the one to tell
+        with contextlib.suppress(Exception):  # the fault at hand is the one to report
             close(self._file, "stopped")
 
     def _root_attributes(self, given):

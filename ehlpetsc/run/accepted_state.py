@@ -1,4 +1,4 @@
-"""What a simulation yields: a time level in SI units."""
+"""Accepted state of a simulation: a time level in SI units."""
 
 from dataclasses import dataclass, field
 
@@ -33,7 +33,7 @@ class AcceptedState:
 
     @classmethod
     def of(cls, simulation, started):
-        """That of a simulation's `solution`.
+        """State of a simulation's `solution`.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""A run from its beginning, or a restart file, to its end: every state goes to the outputs."""
+"""A run from time 0 or a restart file to its end, with its outputs and messages."""
 
 import contextlib
 import sys
@@ -15,7 +15,7 @@ from ehlpetsc.run.outputs.slow_steps import SlowSteps
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended.
+    """Outcome of a run.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Outcome:
 
 
 def solve(simulation, outputs, stop=None):
-    """Hand the states of a simulation to outputs, up to its end, a step that does not converge or a stop.
+    """Write the states of a simulation to outputs, up to its end, a step that does not converge or a stop.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def solve(simulation, outputs, stop=None):
 
 
 class UnusedOptions:
-    """Note on options that nobody has read, most likely misspelt, after the first time step; an output.
+    """Note on unused options, most likely misspelt, after the first time step; an output.
 
     Parameters
     ----------
@@ -73,20 +73,20 @@ class UnusedOptions:
         self._options, self._show, self._noted = options, show, None
 
     def write(self, state):
-        """Note them once PETSc has read the options of its solver."""
+        """Print the note once PETSc has read the options of its solver."""
         if state.step >= 1 and self._noted is None:
             self.note()
 
     def close(self, status):
-        """Nothing: at the end of a run the note belongs to its report."""
+        """Do nothing: at the end of a run the note belongs to its report."""
 
     def note(self):
-        """Print those that have not been printed yet."""
+        """Print the unused options that have not been printed yet."""
         noted = self._noted or set()
         new = self._options.unused_so_far() - noted
         self._noted = noted | new
         if new:
-            self._show(f"note: options that nobody read: -{', -'.join(sorted(new))}")
+            self._show(f"note: unused options: -{', -'.join(sorted(new))}")
 
 
 class Run:

@@ -56,7 +56,7 @@ class StopRequest:
         self.until = min(self.until, clock.monotonic())
 
     def __call__(self, comm):
-        """The same answer on every rank of the communicator."""
+        """Whether to stop; equal on every rank of the communicator."""
         return comm.allreduce(int(clock.monotonic() >= self.until)) > 0
 
     def overdue(self, comm):
@@ -65,7 +65,7 @@ class StopRequest:
 
 
 def _handle(handler):
-    """Install a handler of all signals but those that are ignored; returns the handlers before."""
+    """Install a handler of all signals that are not ignored; returns the previous handlers."""
     before = [signal.getsignal(name) for name in SIGNALS]
     for name, known in zip(SIGNALS, before, strict=True):
         if known is not signal.SIG_IGN:

@@ -19,7 +19,7 @@ def check_ends(x, pressure, touching):
     Raises
     ------
     NotConverged
-        They do not; the text says at which end, and the cure.
+        They do not; the text names the end and the cure.
     """
     for end, key in ((0, "inlet"), (-1, "outlet")):
         at = f"at the {key}, x = {x[end]:g} a"

@@ -52,5 +52,5 @@ class State:
 
     @property
     def level(self):
-        """What predictors of later steps need of this one."""
+        """Time level for the predictors of later steps."""
         return TimeLevel(0.5 * sum(self.travelled), self.q, self.w)

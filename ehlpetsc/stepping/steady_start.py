@@ -122,8 +122,10 @@ class SolveAttempts:
     def __call__(self, begin, inputs):
         """q, w and h00; None: Newton's method does not arrive."""
         if self.made == MAX_ATTEMPTS:
-            told = f"given up after {self.made} attempts and {self.spent} Newton iterations; the last failure"
-            raise NoSteadyStart(f"{told}: {self.failure}", None, self.spent)
+            tried = (
+                f"given up after {self.made} attempts and {self.spent} Newton iterations; the last failure"
+            )
+            raise NoSteadyStart(f"{tried}: {self.failure}", None, self.spent)
         self.made += 1
         try:
             *state, iterations = solve_checked(self.solver, *begin, inputs, self.max_it, self.watch)

@@ -1,4 +1,4 @@
-"""How accurate, how fast, how robust: ``python3 -m ehlpetsc.study``.
+"""Studies of accuracy, speed and robustness: ``python3 -m ehlpetsc.study``.
 
 ``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
 at the edge of the ranges; with ``--far`` of forty far beyond them; with ``--models mixed`` in mixed contact.
@@ -94,7 +94,7 @@ def extremes(chosen):
     """The table of extremes."""
     from ehlpetsc.study.extremes import COLUMNS, table
 
-    model = chosen.models[0] if len(chosen.models) == 1 else None  # both: each line as it stands
+    model = chosen.models[0] if len(chosen.models) == 1 else None  # both: each case with its own
     path = f"{chosen.output or 'extremes'}.csv"
     check_outputs(COLUMNS, path)
     table(path, chosen.short, chosen.limit, say, far=chosen.far, model=model)

@@ -1,4 +1,4 @@
-"""How much contact there is, against mesh, time step, boundary film and contact model.
+"""Amount of contact against mesh, time step, boundary film and contact model.
 
 ``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination asked for, a line each in
 table and CSV; means over the time both rough surfaces fill the contact. Where a sequence of meshes halves its
@@ -46,7 +46,7 @@ class Measured:
     Attributes
     ----------
     length, share
-        Where solids touch, and what they carry; in direct contact what the nodes at the bound carry.
+        Length where solids touch, and their share of the load; in direct contact that of nodes at the bound.
     thin_length, thin_share, share_below_5, length_below_10
         Where the film is below two boundary films, what is carried there and below five; and below ten.
     p_max, p_mean
@@ -127,7 +127,7 @@ def _damages(path):
 
 
 def order(coarse, middle, fine):
-    """Observed order of three values at halved spacing, and the value they go to; nan where they do not."""
+    """Observed order and limit of three values at halved spacings; nan where they do not converge."""
     one, other = coarse - middle, middle - fine
     if one * other <= 0.0 or abs(other) >= abs(one):
         return np.nan, np.nan

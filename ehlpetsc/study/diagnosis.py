@@ -62,7 +62,7 @@ def _findings(outcome, case, scales):
 
 
 def _too_coarse(case, scales):
-    """Whether the inlet sweep is lost between two nodes."""
+    """Finding of a mesh too coarse for the inlet sweep."""
     film = moes_central_film(scales.moes_m, scales.moes_l) * math.pi / (8.0 * scales.moes_m)
     opening = inlet_opening(film, case.mesh.points_per_half_width)
     if opening < MAX_FILM_SLOPE:

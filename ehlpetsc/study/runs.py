@@ -133,7 +133,7 @@ def check_damage(case, surface, mesh):
     scales = Scales.of(case)
     speed = abs(scales.u1 if surface == "1" else scales.u2)
     if not speed:
-        raise PostError(f"--damage: surface {surface} stands still, and none of its points has a passage")
+        raise PostError(f"--damage: surface {surface} is at rest, and none of its points has a passage")
     width = case.mesh.outlet - case.mesh.inlet
     needed = (width + 1.0 / mesh) * scales.u_max / speed
     if case.time.travel < needed:

@@ -1,4 +1,4 @@
-r"""A depth that belongs to a body: kept in cells of the body, which travel with it.
+r"""Depth field of a body, in cells that travel with it.
 
 A step's contribution at the nodes of the mesh is distributed to these cells by overlap, and the mesh gets the
 means over its own cells back: both conserve the volume. Nothing is moved from cell to cell, hence nothing is
@@ -35,7 +35,7 @@ class BodyField(NamedTuple):
         return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros(0))
 
     def fault(self):
-        """Why the values cannot be a depth; None: they can."""
+        """Reason why the values cannot be a depth; None: they can."""
         if not 0.0 < self.spacing < 1.0 or self.depth.ndim != 1:
             return "has no cells of a positive width"
         return None if (self.depth >= 0.0).all() else "has a negative depth"
@@ -75,7 +75,7 @@ class BodyField(NamedTuple):
         return wider._replace(depth=wider.depth + np.maximum(added, 0.0))
 
     def _covering(self, begin, end):
-        """The same field with cells of depth zero added to reach from begin to end [m]."""
+        """Field extended by cells of depth zero to reach from begin to end [m]."""
         first = int(np.floor(begin / self.spacing)) - 1
         last = int(np.ceil(end / self.spacing)) + 1
         if not len(self.depth):

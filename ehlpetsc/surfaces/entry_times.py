@@ -1,4 +1,4 @@
-"""When the roughness reaches the contact and fills it."""
+"""Times at which the roughness reaches the contact and fills it."""
 
 
 def entry_times(profile, scales):
@@ -13,7 +13,7 @@ def entry_times(profile, scales):
     -------
     reaches, fills : float
         Its first point at the near edge of the Hertz contact; its full heights, ramp included, at the far
-        one. Of a lone ridge or dent `fills` is where its middle stands at x = 0. None where the profile lies
+        one. Of a lone ridge or dent `fills` is for its middle at x = 0. None where the profile lies
         under the domain from the start.
     """
     if not profile.is_moving:
@@ -27,7 +27,7 @@ def entry_times(profile, scales):
 
 
 def entry_warnings(case, scales, rough):
-    """One line for each profile that a run ends before it has come to.
+    """Warnings of profiles that do not fill the contact before the end of the run, one line each.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Whether the mesh carries the waves of the profiles."""
+"""Resolution of the waves of the profiles by the mesh."""
 
 import numpy as np
 

@@ -43,7 +43,7 @@ class Profile:
     ramp, travelled : float
         Length of the ramp, and of the profile that is drawn in [m].
     body_offset : float
-        What body points s are further on in the profile's own body by `begin`, signed [m].
+        Signed shift of the body points s by `begin` [m].
     ra, rq, rsk : float
         Of the samples about their mean: m, m, 1.
     """

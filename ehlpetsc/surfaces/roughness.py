@@ -99,7 +99,7 @@ class Roughness:
         return cls(sides["1"], sides["2"]) if any(sides.values()) else None
 
     def phi(self, x, t, cell=None):
-        """What both roughnesses add to the gap [m], minus both heights, at time t [s].
+        """Contribution of both roughnesses to the gap [m], minus both heights, at time t [s].
 
         Parameters
         ----------
@@ -114,7 +114,7 @@ class Roughness:
         return self.phi_after(x, ways, cell)
 
     def phi_after(self, x, travelled, cell=None):
-        """The same where both bodies have travelled so far (surfaces 1, 2) [m]."""
+        """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2)."""
         phi = np.zeros_like(x)
         at = x if cell is None else np.append(x - 0.5 * cell, x[-1] + 0.5 * cell)
         for profile, way in zip((self.surface_1, self.surface_2), travelled, strict=True):

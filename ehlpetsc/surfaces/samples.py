@@ -25,7 +25,7 @@ class Samples:
     measured : bool
         Read from a file.
     notes : tuple of str
-        What was done to the file's numbers, for the user.
+        Notes on the processing of the file's numbers, for the user.
     source : Samples or None
         Of thinned ones those before, without spikes narrower than `short_cutoff`.
     """
@@ -81,8 +81,8 @@ def samples(folder, spec, cell=None):
         z = high_pass(X, z, spec.cutoff)
     if spec.short_cutoff is not None:
         ra, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
-        told = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
-        notes.append(f"short_cutoff: Ra {told[0]} before, {told[1]} after")
+        shown = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
+        notes.append(f"short_cutoff: Ra {shown[0]} before, {shown[1]} after")
         before = X, z
         if cell is not None:
             X, z = thinned(X, z, cell)
@@ -105,7 +105,7 @@ def _turned(X, z, spec):
 
 
 def layout_of(spec):
-    """How the file of a surface is written."""
+    """Layout of the file of a surface."""
     given = {key: getattr(spec, key) for key in KEYS}
     return Layout(**given | {"columns": spec.columns and tuple(spec.columns)})
 

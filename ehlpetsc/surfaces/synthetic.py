@@ -1,4 +1,4 @@
-"""Synthetic profiles: sampled heights that take the same way as measured ones."""
+"""Synthetic profiles: sampled heights, processed as measured ones."""
 
 import numpy as np
 

@@ -107,7 +107,7 @@ def test_a_bad_key(faults, text, words):
         (None, "no such file"),
         (LEVEL + "8e-6,high\n", "line 9: '8e-6,high'; allowed: numbers alone"),
         (LEVEL + "6.5e-6,0\n", "x falls after x = 7e-06; allowed: x increasing, or falling"),
-        (LEVEL + "7e-6,1e-7\n", "x = 7e-06 stands twice; allowed: every x once"),
+        (LEVEL + "7e-6,1e-7\n", "x = 7e-06 appears twice; allowed: every x once"),
     ],
     ids=["missing", "text", "unsorted", "duplicate"],
 )

@@ -233,7 +233,7 @@ def test_files_that_cannot_be_read(tmp_path):
         ("0,0\n1e-6,0\n2e-6,0\n", "3 points; allowed: at least 4"),
         ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", "line 2: '1e-6,zero'; allowed: numbers alone"),
         ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "x falls after x = 2e-06"),
-        ("0,0\n1e-6,0\n1e-6,1e-7\n3e-6,0\n", "x = 1e-06 stands twice"),
+        ("0,0\n1e-6,0\n1e-6,1e-7\n3e-6,0\n", "x = 1e-06 appears twice"),
         ("0,0\n1e-6,inf\n2e-6,0\n3e-6,0\n", "point 2 is not a number below"),
         ("0,0\n1,2\n2,0\n3,1\n", 'write unit = "um"'),
         ("0,0,0\n1,2,3\n", "write columns = [1, 2]"),

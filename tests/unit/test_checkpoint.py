@@ -181,7 +181,7 @@ def at_node(value):
 DAMAGE = [
     (lambda arrays, _: arrays.pop("q"), "q .oil pressure.* is missing"),
     (lambda _, numbers: numbers.pop("h00"), "h00 .approach.* is missing"),
-    (lambda arrays, _: arrays.update(other=np.zeros(3)), "nobody knows its other"),
+    (lambda arrays, _: arrays.update(other=np.zeros(3)), "unknown entry other"),
     (change("q", at_node(NAN)), "q .* is not finite"),
     (change("q", at_node(-1.5)), "q .* lies in -1.5 to"),
     (change("h", at_node(-1e-9)), "h .* lies in -1e-09"),

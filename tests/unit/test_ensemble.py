@@ -14,7 +14,7 @@ from ehlpetsc.analysis import ensemble
 from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.plot.ensemble import draw_ensemble
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.series_index import told_apart
+from ehlpetsc.results.series_index import distinguishing_names
 
 SEEDED = "\n[surface.2]\nsynthetic = {{ kind = 'ground', ra = 1e-7, correlation = 1e-5, seed = {} }}\n"
 SHARES = (0.20, 0.26, 0.31, 0.22, 0.29, 0.24)
@@ -120,11 +120,11 @@ def test_damage_gives_its_quantiles(tmp_path):
 
 def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
     results = opened(made(tmp_path, (5.0, 1.0), [1, 2]))
-    assert told_apart(results)[2] == "entrainment_speed = 1, seed = 1"
-    assert told_apart(results[:1] * 2) is None
+    assert distinguishing_names(results)[2] == "entrainment_speed = 1, seed = 1"
+    assert distinguishing_names(results[:1] * 2) is None
     texts = ("", '[contact]\nmodel = "mixed"')
     cases = [SimpleNamespace(attrs={"case": text}) for text in texts]
-    assert told_apart(cases) == ["model = direct", "model = mixed"]
+    assert distinguishing_names(cases) == ["model = direct", "model = mixed"]
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])

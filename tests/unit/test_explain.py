@@ -249,7 +249,7 @@ def test_each_surface_is_told_with_its_figures():
     assert not [line for line in lines("fig1.toml") if "reflection" in line]
     ridge = starting(lines("ridge.toml"), "Surface")
     assert ridge[0] == "Surface 1: smooth"
-    assert ridge[2].endswith("at travel 1.67 a and stands with its middle at x = 0 at 3.73 a")
+    assert ridge[2].endswith("at travel 1.67 a and has its middle at x = 0 at 3.73 a")
 
 
 @pytest.mark.parametrize(

@@ -145,7 +145,7 @@ REFUSED = {
     "few points": ("0,0\n1,1\n", {}, "2 points; allowed: at least 4"),
     "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, "point 7 is not a number below"),
     "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, "point 7 is not a number below"),
-    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "stands twice; allowed: every x once, or spacing"),
+    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "appears twice; allowed: every x once, or spacing"),
 }
 
 

@@ -134,7 +134,7 @@ def test_a_travel_too_short_for_damage_is_refused_before_anything_is_run(table_1
 def test_damage_takes_time_and_a_surface_that_moves(table_1):
     with pytest.raises(PostError, match="the case is steady"):
         check_damage(load(table_1), "2", 100)
-    with pytest.raises(PostError, match="surface 2 stands still"):
+    with pytest.raises(PostError, match="surface 2 is at rest"):
         check_damage(load(table_1, ["time.travel=9.0", "motion.slide_roll_ratio=2.0"]), "2", 100)
 
 

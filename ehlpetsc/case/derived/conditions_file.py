@@ -8,7 +8,7 @@ MAX_TABLE_BYTES = 2**26  # of a table
 
 
 class TableFault(Exception):
-    """A table of conditions cannot be used; the message says why, and in which line."""
+    """A table of conditions cannot be used; the message names the reason and the line."""
 
 
 def read_table(path):

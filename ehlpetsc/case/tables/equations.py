@@ -1,4 +1,4 @@
-"""The equations in which keys of a case file stand, for the list of keys; by model and key."""
+"""Equations in which keys of a case file appear, for the list of keys; by model and key."""
 
 SYMBOLS = """
 Of the equations: a is the half width and p0 the largest pressure by Hertz's formulas, E' the reduced modulus,

@@ -1,4 +1,4 @@
-"""What the tables of a case file have in common: frozen, no unknown keys, the types of TOML as they are."""
+"""Base class of the tables of a case file: frozen, no unknown keys, the types of TOML as they are."""
 
 import re
 
@@ -6,7 +6,7 @@ from ehlpetsc.case.tables.validation import BaseModel, Extra, validator
 
 
 class Needs(ValueError):
-    """A key is allowed only beside others; the text says beside which."""
+    """A key is allowed only beside others; the text names them."""
 
 
 def is_of(kind, value):

@@ -126,7 +126,7 @@ def limit_cavitation(q, dq):
 
 
 class SurfaceLoads(NamedTuple):
-    """What an accepted solution puts on the surfaces; arrays of shape (nx,), pressures in p0, film in a^2/R.
+    """Surface loads of an accepted solution; arrays of shape (nx,), pressures in p0, film in a^2/R.
 
     Attributes
     ----------

@@ -185,7 +185,7 @@ class TwoFields:
         return not film.min() > self.model.lower_bound + self.model.bound_tolerance
 
     def rounding(self):
-        """What rounding of the unknowns leaves of the residual at x: nothing less can be asked.
+        """Residual at x that rounding of the unknowns leaves: no smaller tolerance can be met.
 
         Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
         """

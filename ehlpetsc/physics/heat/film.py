@@ -161,7 +161,7 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
 
 
 class FilmHeat(NamedTuple):
-    """What the film's temperature depends on besides the unknowns, fixed in a solve; arrays of shape (nx,).
+    """Coefficients of the film's temperature that are fixed in a solve; arrays of shape (nx,).
 
     Attributes
     ----------
@@ -186,9 +186,9 @@ class FilmHeat(NamedTuple):
     guess: np.ndarray
 
     def mirrored(self):
-        """The same with the order of the nodes turned round."""
+        """Coefficients with the nodes in reverse order."""
         return self.part(slice(None, None, -1))
 
     def part(self, nodes):
-        """The same for a slice of the nodes."""
+        """Coefficients at a slice of the nodes."""
         return FilmHeat(self.law, *(np.ascontiguousarray(array[nodes]) for array in self[1:]))

@@ -1,4 +1,4 @@
-"""What the page of one result shows, as numbers: thinned to what a screen can tell apart."""
+"""Data of the page of one result, thinned to the resolution of a screen."""
 
 import base64
 import tomllib

@@ -135,7 +135,7 @@ class Loads:
         return self._result.attrs["case"]
 
     def heated(self, surfaces):
-        """Those of `surfaces` whose temperature is stored; none of a run without [heat]."""
+        """Surfaces among `surfaces` whose temperature is stored; none of a run without [heat]."""
         stored = () if self.case.heat is None else self._result.fields
         return tuple(surface for surface in surfaces if f"temperature_{surface}" in stored)
 

@@ -90,7 +90,7 @@ def hat(u, z):
 
 
 def half_hat(u, z):
-    """The same over its left half alone: what the end node of a load would add outside the load.
+    """Kernel over the left half alone: contribution of the end node of a load outside the load.
 
     At u = z = 0 the traction jump's stress is infinite; the finite part is returned.
     """

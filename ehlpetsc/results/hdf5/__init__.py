@@ -1,1 +1,1 @@
-"""What is HDF5's: attributes, datasets, rows held before they are written, results that are continued."""
+"""HDF5 files: attributes, datasets, rows buffered before they are written, continued results."""

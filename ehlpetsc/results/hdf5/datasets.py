@@ -22,7 +22,7 @@ MEMORY_BLOCK = 2**22  # by which a file in memory grows
 
 @dataclass(frozen=True)
 class Layout:
-    """What a result file stores.
+    """Layout of a result file.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def _surface(file, name, s, z, speed, statistics=None, depths=()):
 
 
 def comment(item, text):
-    """What `h5dump -H` and `h5ls -v` show of a group or dataset: attributes' values they leave out."""
+    """Description for `h5dump -H` and `h5ls -v`, which show no values of attributes."""
     h5py.h5o.set_comment(item.id, text.encode())
 
 

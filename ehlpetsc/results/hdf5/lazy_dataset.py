@@ -1,7 +1,7 @@
-"""Datasets of a result, read on demand; what HDF5 finds damaged is an OutputError that names the file.
+"""Datasets of a result, read on demand; damage that HDF5 finds is an OutputError that names the file.
 
-HDF5 may crash on a damaged file or never return from reading it. A process that watches the reading one
-learns from `announced_to` which dataset was being read.
+HDF5 may crash on a damaged file or never return from reading it. A process that monitors the reading one
+gets the name of the dataset that is being read by `announced_to`.
 """
 
 import contextlib
@@ -31,7 +31,7 @@ def _announce():
 
 @contextlib.contextmanager
 def reading(path, name=""):
-    """Around calls of HDF5: the many kinds of exception that damage raises become an OutputError."""
+    """Context of calls of HDF5 that converts the exceptions of a damaged file to an OutputError."""
     _names.append(name or "the file")
     _announce()
     try:
@@ -45,7 +45,7 @@ def reading(path, name=""):
 
 
 class LazyDataset:
-    """A dataset as in the file; slices of it are arrays.
+    """Dataset in the file; its slices are arrays.
 
     Attributes
     ----------

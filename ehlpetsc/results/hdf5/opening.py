@@ -71,7 +71,7 @@ def open_result(path, **options):
 
 
 def _fault(file):
-    """What keeps an HDF5 file from being a result; None: nothing."""
+    """Reason why an HDF5 file is no result; None: it is one."""
     version = file.attrs.get("format_version")
     if version is not None and "damage/s" in file:
         return "a result of post-processing; give the file it was made from"

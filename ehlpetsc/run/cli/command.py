@@ -20,7 +20,7 @@ from ehlpetsc.run.stop import StopRequest
 
 
 def read_case(comm, path, overrides):
-    """The case on every rank, or None where it is faulty (told on rank 0)."""
+    """The case on every rank, or None where it is faulty (reported on rank 0)."""
     case = None
     if comm.rank == 0:
         try:
@@ -34,7 +34,7 @@ def refuse(comm, lines):
     """Say on rank 0 what is wrong with the input."""
     table = PETSc.Options()
     for name in table.getAll():
-        table.hasName(name)  # PETSc's newer releases would name those on top that nobody has read
+        table.hasName(name)  # newer releases of PETSc would list unused options as well
     if comm.rank == 0:
         print("\n".join(lines), file=sys.stderr, flush=True)
     return ExitStatus.BAD_INPUT
@@ -56,15 +56,15 @@ def run(path, overrides):
         return ExitStatus.BAD_INPUT
     try:
         if case and options.hasName("help"):
-            Simulation(case, comm)  # PETSc's own objects tell theirs as they are made
+            Simulation(case, comm)  # PETSc's objects print their options as they are made
         if options.hasName("help"):
             PETSc.Sys.Print(help_text())
             return ExitStatus.DONE
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
         several = case.time is not None and case.time.passes > 1
         if case.series and several:
-            told = "one of them at a time; a member: -ehl_set KEY=VALUE -ehl_output NAME.h5"
-            return refuse(comm, [f"{case.path}: [series] and time.passes: {told}"])
+            allowed = "one of them at a time; a member: -ehl_set KEY=VALUE -ehl_output NAME.h5"
+            return refuse(comm, [f"{case.path}: [series] and time.passes: {allowed}"])
         if case.series:
             return Series(comm, case, options, stop, output).run()
         overwrite = options.getBool("ehl_overwrite", False)

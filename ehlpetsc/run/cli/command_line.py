@@ -41,9 +41,9 @@ class Command:
     overrides : list of str
         Values of -ehl_set: those of PETSC_OPTIONS, then those of the command line.
     explain : bool
-        Whether the scene is to be told in words and not run.
+        Whether to print the summary of the case instead of running it.
     ranks : bool
-        Whether the ranks that the case is worth are to be told and it is not to be run.
+        Whether to print the default number of ranks instead of running the case.
     petsc : list of str
         All other words, for PETSc.
     """
@@ -60,7 +60,7 @@ def parse_command_line(arguments):
 
     The case file is the one word that ends in .toml, else the first word. -ehl_set is taken out, here and
     from PETSC_OPTIONS, because PETSc's table keeps only the last option of a name. Two dashes before a name
-    are as good as one: PETSc would take it for another option, which nobody reads.
+    count as one: PETSc would treat the name as another option, an unused one.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def _without_sets(words):
         if word in ("-ehl_set", "--ehl_set"):
             value = next(words, "")
             if not value or value.startswith("-"):
-                raise UsageError(f"{word} stands without a value; allowed: {word} {OWN['ehl_set'].value}")
+                raise UsageError(f"{word} has no value; allowed: {word} {OWN['ehl_set'].value}")
             if "=" not in value:
                 raise UsageError(f"{word} {value}: write {word} {value}={next(words, 'VALUE')}")
             sets.append(value)

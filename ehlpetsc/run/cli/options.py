@@ -9,7 +9,7 @@ from ehlpetsc.errors import UsageError
 
 @dataclass(frozen=True)
 class Option:
-    """An own option as ``-help`` lists it: what follows it with its unit, its default, its meaning."""
+    """An option of this program as ``-help`` lists it: value with its unit, default, meaning."""
 
     value: str
     default: str
@@ -23,7 +23,7 @@ class Option:
 
 OWN = {
     "ehl_output": Option("FILE.h5", "CASE.h5 in this folder", "result file, the restart file beside it"),
-    "ehl_overwrite": Option("", "no", "replace what stands in the place of the result, whatever it is"),
+    "ehl_overwrite": Option("", "no", "replace any file at the path of the result"),
     "ehl_ranks_per_member": Option("RANKS", "1", "of a [series], how many ranks compute one member"),
     "ehl_restart": Option("FILE.restart.h5", "begin at time 0", "go on from there and append to the result"),
     "ehl_scheme": Option("newton|sweep", "newton", "iteration; sweep is the paper's own, slower"),
@@ -33,7 +33,7 @@ OWN = {
 
 
 def usage():
-    """What to type, as it was typed."""
+    """Usage of the command, by the name that was typed."""
     return f"{program('ehlpetsc')} CASE.toml [options]"
 
 
@@ -89,11 +89,11 @@ def text_of(options, name):
     Raises
     ------
     UsageError
-        It stands without a value.
+        It has no value.
     """
     value = options.getString(name, "")
     if options.hasName(name) and not value:
-        raise UsageError(f"-{name} stands without a value; allowed: -{name} {OWN[name].value}")
+        raise UsageError(f"-{name} has no value; allowed: -{name} {OWN[name].value}")
     return value
 
 

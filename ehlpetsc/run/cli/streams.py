@@ -1,4 +1,4 @@
-"""Standard output and error that are closed, full or nobody's any more: a run is worth more than they."""
+"""Keep a run alive when standard output or error cannot be written."""
 
 import contextlib
 import os
@@ -6,11 +6,11 @@ import sys
 
 
 def harden_std_streams():
-    """Let a run outlive its standard output and error.
+    """Keep this process alive when its standard output or error cannot be written.
 
-    What cannot be written is dropped from then on, by this process and by the libraries in it; of standard
-    output that is said once on standard error. Descriptors 0 to 2 that are closed become /dev/null: the next
-    file opened would get their number, and what is printed.
+    Later output is dropped, that of libraries in the process as well; the loss of standard output is reported
+    once on standard error. Closed descriptors 0 to 2 are opened on /dev/null: the next file opened would get
+    their number, and the printed text with it.
     """
     for descriptor in range(3):
         try:
@@ -32,7 +32,7 @@ class FaultTolerantStream:
         None: closed from the start.
     descriptor : int
     name : str, optional
-        Of the stream, if its end is to be told.
+        Of the stream, for the report of its loss.
     """
 
     def __init__(self, stream, descriptor, name=""):

@@ -1,6 +1,6 @@
-"""What of a run is beyond the physics it computes with: a sentence each with the figure, told at its end.
+"""Limits of the model that a run exceeded: one sentence each with the figure, printed at its end.
 
-Fed by the figures that are kept of all steps anyway; the sentences go into the result file as well.
+They follow from the totals over all steps; the sentences are stored in the result file as well.
 """
 
 import numpy as np
@@ -34,10 +34,10 @@ def limits(case, scales, rough, totals):
     """
     if "p_max" not in totals:  # no step was taken
         return []
-    told = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
+    sentences = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
     if case.fluid:
-        told += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
-    return [line for line in told if line]
+        sentences += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
+    return [line for line in sentences if line]
 
 
 def _yield(case, totals):

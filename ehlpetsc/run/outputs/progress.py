@@ -9,17 +9,17 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
-MIN_RATE_TIME = 1.0  # s behind the first step, which waits for the compiler, before time to go is told
+MIN_RATE_TIME = 1.0  # s after the first step, which waits for the compiler, before a remaining time is shown
 
 _COLUMNS = {name: figure.progress for name, figure in STEP_SCALARS.items() if figure.progress}
 _REMAINING = "{:>9s}"
 
 
 def on_terminal(stream):
-    """Whether someone watches.
+    """Whether output is shown on a terminal.
 
-    mpirun gives every rank a terminal, also where its own output goes to a file: that of the process which
-    started this one tells, and run_mpi.sh sets TERM.
+    mpirun gives every rank a terminal, even where its own output is a file: the output of the parent process
+    decides, and run_mpi.sh sets TERM.
     """
     if not stream.isatty() or os.environ.get("TERM") == "dumb":
         return False
@@ -38,7 +38,7 @@ def in_notebook():
 
 
 class Progress:
-    """Says how far a run is: fixed-column lines into a file, a bar on a terminal or in a notebook.
+    """Progress of a run: fixed-column lines in a file, a bar on a terminal or in a notebook.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Progress:
         self._shown = now
 
     def _left(self, now, time):
-        """Time to go, by the rate since half of the wall clock time ago; "?" before there is one to tell."""
+        """Remaining time, by the rate over the last half of the wall clock time; "?" before it is known."""
         if not self._marks or now - self._marks[-1][0] > SECONDS_BETWEEN_BARS:
             self._marks.append((now, time))
         begun = self._marks[0][0]

@@ -1,4 +1,4 @@
-"""What is stored of a run: its outputs, the lock on their files, and the message where a write fails."""
+"""Recorder of a run: its outputs, the lock on their files, and the message where a write fails."""
 
 import contextlib
 from pathlib import Path
@@ -141,7 +141,7 @@ class Recorder:
 
     @contextlib.contextmanager
     def _guard_write(self):
-        """Where a write fails, save the last state that is stored, if possible, and tell how to resume."""
+        """After a failed write save the last stored state, if possible; the error gets the way to resume."""
         try:
             yield
         except OutputError as error:

@@ -31,7 +31,7 @@ class RestartFile:
         return self._stored and self._stored.state.step
 
     def write(self, state):
-        """Remember a state that the result file holds; write the file where it is due."""
+        """Keep a state that the result file holds; save the restart file where it is due."""
         self.note_stored()
         due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
         if state.step and self.comm.bcast(due):

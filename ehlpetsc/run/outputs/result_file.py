@@ -61,7 +61,7 @@ class ResultFile:
             on_root(self.comm, self._close, status)
 
     def abandon(self, status):
-        """Close without agreement between ranks, which may not know of the error."""
+        """Close on this rank alone: the other ranks may not have the error."""
         if self._writer:
             self._writer.close(status.words)
 

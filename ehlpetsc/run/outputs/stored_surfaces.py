@@ -57,7 +57,7 @@ def body_depths(simulation):
 
 
 def _offsets(simulation):
-    """What makes s = x - speed time hold for both sides [m]."""
+    """Offsets with which s = x - speed time holds for both surfaces [m]."""
     if simulation.solution is None:
         return 0.0, 0.0
     now = simulation.solution.travelled

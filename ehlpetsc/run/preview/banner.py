@@ -1,4 +1,4 @@
-"""What is about to run, in a few lines, and the ranks that it is worth."""
+"""Heading of a run, and its default number of ranks."""
 
 import os
 
@@ -10,7 +10,7 @@ WORTH_TWO_RANKS = 8000  # nodes: fewer gain little on a quiet machine, and lose 
 
 
 def banner(case, scales, rough, ranks):
-    """What is about to run, in a few lines: title, size, surfaces.
+    """Heading of a run in a few lines: title, size, surfaces.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Whether domain and mesh hold the contact: what can be known before a run."""
+"""Checks of domain and mesh against the contact before a run."""
 
 import math
 
@@ -10,8 +10,8 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 
-LEFT = 0.95  # of the flooded film: below it the inlet is told to be too near
-ENOUGH = 0.99  # of it: what the inlet that is proposed leaves
+LEFT = 0.95  # of the flooded film: below it the inlet is reported as too near
+ENOUGH = 0.99  # of the flooded film, with the inlet that is proposed
 MAX_FILM_SLOPE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
 BRINK = 1.1  # no warning of a mesh that lacks a few percent of its points
 CLOSED = 5.0  # the same: a smooth film has none left
@@ -40,7 +40,7 @@ def domain_warnings(case, scales):
 
 
 def domain_faults(case, scales):
-    """What makes the answer mean nothing, one line each: refused before anything is computed.
+    """Faults of the domain that make the result meaningless, one line each; checked before a run.
 
     Parameters as of `domain_warnings`.
     """

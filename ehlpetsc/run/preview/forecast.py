@@ -1,4 +1,4 @@
-"""What is to be expected of a case before it runs: film, run time, file size."""
+"""Forecast of film, run time and file size of a case."""
 
 import math
 import time as clock

@@ -1,4 +1,4 @@
-"""What is told of both surfaces before a run."""
+"""Summary of both surfaces before a run."""
 
 import math
 
@@ -22,8 +22,8 @@ def surface_lines(case, s, rough):
     lines = []
     for side in ("1", "2"):
         profile = rough and rough.side(side)
-        told = _profile(case, s, profile) if profile else ["smooth"]
-        lines += [f"Surface {side}: {line}" for line in told]
+        described = _profile(case, s, profile) if profile else ["smooth"]
+        lines += [f"Surface {side}: {line}" for line in described]
     return lines
 
 
@@ -63,7 +63,7 @@ def _profile(case, s, profile):
     arrives = entry_times(profile, s)
     if arrives:
         reaches, fills = arrives
-        then = "and fills it" if profile.repeats else "and stands with its middle at x = 0"
+        then = "and fills it" if profile.repeats else "and has its middle at x = 0"
         lines.append(f"reaches the contact at travel {reaches:.2f} a {then} at {fills:.2f} a")
     return lines
 

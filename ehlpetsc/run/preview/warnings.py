@@ -1,4 +1,4 @@
-"""What to know of a case before it runs, gathered: solids, motion, domain, profiles."""
+"""Warnings about a case before it runs: solids, motion, domain, profiles."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ SOFT = 0.25  # of p0: solids softer than that flow as a whole
 
 
 def warnings(case, scales):
-    """What a user should know before the run, one line each.
+    """Warnings before a run, one line each.
 
     Parameters
     ----------

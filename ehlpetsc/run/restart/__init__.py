@@ -1,1 +1,1 @@
-"""A run's state in a restart file: what it holds, checked as a case is, brought to the units of a case."""
+"""State of a run in a restart file: content, check, conversion to the scales of another case."""

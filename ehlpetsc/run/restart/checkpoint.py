@@ -22,7 +22,7 @@ NODE_TOLERANCE = 1e-9  # of the domain: how far nodes may have moved in x/a
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """What a run goes on from.
+    """State from which a run continues.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Checkpoint:
 
     @classmethod
     def of(cls, simulation, contact_count, totals):
-        """That of a `run.simulation.Simulation` at its last state."""
+        """Checkpoint of a `run.simulation.Simulation` at its last state."""
         baseline, positions = simulation.stepper.baseline, simulation.scene.positions
         return cls(simulation.solution, baseline, contact_count, totals, positions, simulation.pass_number)
 
@@ -91,7 +91,7 @@ def save(path, checkpoint, case, scales, model):
 
 
 def load(path, case, scales, model):
-    """What a restart file holds, checked against the case.
+    """Content of a restart file, checked against the case.
 
     Returns
     -------
@@ -147,7 +147,7 @@ def load(path, case, scales, model):
 
 
 def _fields(model, name, q, w):
-    """Arrays that say what q and w stand for, so that a run may go on with another contact model."""
+    """Arrays that define q and w independently of the contact model, with which a run may continue."""
     film = model.state(q, w).film
     return {f"{name}q": q, f"{name}h": film, f"{name}contact_pressure": model.contact_pressure(w)}
 

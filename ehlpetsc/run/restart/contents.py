@@ -1,4 +1,4 @@
-"""What a restart file holds, in one table, and whether a file holds it."""
+"""Table of the entries of a restart file, and the check of a file against it."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class Item:
 
 
 def _state(name, what, *dims):
-    """The entries that tell q and w apart from the contact model, so that a run may go on with another."""
+    """Entries that define q and w independently of the contact model, with which a run may continue."""
     needed = not dims
     return {
         f"{name}q": Item(
@@ -81,7 +81,7 @@ TEXTS = {"case": "the case as it was run"}
 
 
 def fault(arrays, attributes):
-    """What keeps the content of a file from being a restart file's; None: nothing.
+    """Reason why the content of a file is not that of a restart file; None: it is.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def fault(arrays, attributes):
     known = {*ARRAYS, *NUMBERS, *TEXTS}
     unknown = [name for name in [*arrays, *attributes] if name not in known and not _is_of_others(name)]
     if unknown:
-        return f"nobody knows its {min(unknown)}"
+        return f"unknown entry {min(unknown)}"
     lengths = {}
     for name, item in {**ARRAYS, **NUMBERS}.items():
         held = arrays if name in ARRAYS else attributes
@@ -137,15 +137,15 @@ def _fault_of_totals(attributes):
         if not name.startswith(TOTAL):
             continue
         if name.removeprefix(TOTAL) not in STEP_SCALARS:
-            return f"nobody knows its {name}"
+            return f"unknown entry {name}"
         if not isinstance(value, int | float | np.integer | np.floating) or np.isinf(value):
-            plain = value.item() if isinstance(value, np.generic) else value  # numpy 2 would tell its type
+            plain = value.item() if isinstance(value, np.generic) else value  # numpy 2 would print its type
             return f"{name} is {plain!r}"
     return None
 
 
 def _inconsistency(arrays, attributes):
-    """What cannot be at the same time."""
+    """Contradiction between entries; None: there is none."""
     x, step = arrays["x"], attributes["step"]
     if len(x) < 2 or not (np.diff(x) > 0.0).all():
         return "its nodes do not increase"

@@ -1,4 +1,4 @@
-"""What a run whose files could not be written says: from where it can be gone on with."""
+"""Advice after a failed write: the point from which the run can be continued."""
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.restart_file import load_restart

@@ -1,4 +1,4 @@
-"""One member of a series: its name, its files, what they hold already."""
+"""Member of a series: its name, its files and their state."""
 
 import re
 
@@ -64,9 +64,9 @@ class Member:
         self.restart = self.output.with_suffix(".restart.h5")
 
     def state_of_files(self):
-        """What its files hold of the same case: "done", "begun" (a restart file) or "waiting".
+        """State of its files, of the same case: "done", "begun" (a restart file) or "waiting".
 
-        What is damaged is computed again: a result anywhere, a restart file by its checksum.
+        Damaged files are computed again: a result damaged anywhere, a restart file with a wrong checksum.
         """
         try:
             with read_result(self.output) as result:
@@ -82,7 +82,7 @@ class Member:
         return "waiting"
 
     def is_of_another_case(self):
-        """Whether in the place of its result there is that of another case."""
+        """Whether its result file is that of another case."""
         try:
             with read_result(self.output) as result:
                 return result.attrs["case"] != self.case.text

@@ -1,7 +1,7 @@
-"""Running in: the same stretch of both bodies meets again and again, as the pass before has left it.
+"""Running in: repeated passes of the same stretches of both bodies, each on the surfaces of the last one.
 
-Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` holds what
-each has made of the surfaces, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
+Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` contains the
+surfaces after each pass, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
 """
 
 import contextlib
@@ -116,7 +116,7 @@ class Passes:
         return False
 
     def _rows_before(self, first):
-        """Index rows of the passes before one that is gone on with; none where the index is not there."""
+        """Index rows of the passes before one that is continued; none where there is no index."""
         return [row for row in self._read_index()["passes"] if row["pass"] < first]
 
     def _read_index(self):
@@ -158,7 +158,7 @@ class Passes:
 
 
 def line(row):
-    """One line that tells of a pass."""
+    """Line of a pass."""
     parts = [
         f"pass {row['pass']}: set {1e12 * row['set_volume']:.4g} um^2, added {1e12 * row['added']:.4g} um^2"
     ]

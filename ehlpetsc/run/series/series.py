@@ -1,9 +1,9 @@
-"""A case with [series]: its members dealt to groups of ranks, one result file a member, one index file.
+"""Series of a case: its members are distributed to groups of ranks; a result file each and one index file.
 
 The index ``OUTPUT.series.json`` names the swept key, or keys, and for each member its value, result file
 (beside the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". What a member's
-file holds already is not computed again: a whole file of the same case text is kept, a restart file of it
-gone on with.
+file holds already is not computed again: a complete file of the same case text is kept, a restart file of it
+continued.
 """
 
 import json
@@ -134,7 +134,7 @@ class Series:
             return ExitStatus.BAD_INPUT, str(error)
 
     def _note_end(self, report):
-        """Note on the first rank how a member ended."""
+        """Record on the first rank how a member ended."""
         number, status, failure = report
         self.states[number] = status.words
         if failure:
@@ -183,7 +183,7 @@ class Series:
             raise OutputError(f"{self.index}: index file not written, {error.strerror}") from error
 
     def _conclude(self, wall):
-        """Say how it ended, on the first rank. Returns the exit status."""
+        """Print the outcome on the first rank; returns the exit status."""
         for number, failure in sorted(self.failures.items()):
             print(f"ehlpetsc: {self.members[number].name}: {self.states[number]}: {failure}", file=sys.stderr)
         self._keep_index()

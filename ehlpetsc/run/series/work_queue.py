@@ -1,4 +1,4 @@
-"""Dealing pieces of work to groups of ranks: whoever is free gets the next one.
+"""Queue of pieces of work for groups of ranks: a free group gets the next one.
 
 The first rank deals and works at the same time: it looks for requests between its own time steps
 (:meth:`WorkQueue.serve`), so that no rank is spent on waiting and no shared memory is needed.
@@ -113,6 +113,6 @@ class PollingStop:
 
 
 def wait(ready):
-    """Look every now and then until `ready()`."""
+    """Poll until `ready()`."""
     while not ready():
         clock.sleep(PAUSE)

@@ -92,5 +92,5 @@ def ticks(low, high):
 
 
 def _shown(error):
-    """Nothing below rounding on a logarithmic axis."""
+    """Error for a logarithmic axis, at least rounding."""
     return np.nan if not np.isfinite(error) else max(error, 1e-8)

@@ -105,7 +105,7 @@ def row(setting, outcome, measured):
 
 
 def text(row):
-    """A row for the eye."""
+    """Row as printed text."""
 
     def shown(value):
         return f"{value:.2e}" if isinstance(value, float) else str(value)

@@ -14,7 +14,7 @@ TYPICAL_SPACING, TYPICAL_RQ = (5e-9, 3e-5), (3e-10, 2e-5)  # m: of measured prof
 
 
 def absurd(given, a, dx, approach, film):
-    """What is absurd about a measured profile, in a sentence that names the likely unit; None if nothing is.
+    """Implausible property of a measured profile, in a sentence that names the likely unit; None: plausible.
 
     Parameters
     ----------

@@ -160,7 +160,7 @@ def _from_surface_topography(path, layout):
 
 
 def checked(x, z, layout):
-    """A profile from 0 on with x increasing and gaps filled, or a ProfileError that says what is wrong."""
+    """Profile from x = 0 on with increasing x and filled gaps; ProfileError with the fault otherwise."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
     bad = ~(np.abs(x) < MAX_ABSCISSA) | (np.abs(z) >= MAX_ABSCISSA)
@@ -176,7 +176,7 @@ def checked(x, z, layout):
         notes.append("x falls in the file: read from its end")
     if (step == 0).any():
         raise ProfileError(
-            f"x = {x[(step == 0).argmax()]:g} stands twice; allowed: every x once, or spacing and columns "
+            f"x = {x[(step == 0).argmax()]:g} appears twice; allowed: every x once, or spacing and columns "
             "for the heights alone"
         )
     if (step < 0).any():

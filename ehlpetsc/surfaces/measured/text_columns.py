@@ -99,7 +99,7 @@ def _decoded(path):
 
 
 def _with_newlines(text):
-    """The same with one sign for every kind of line end."""
+    """Text with one sign for every kind of line end."""
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     return "\n".join(text.splitlines()) if OTHER_LINE_END.search(text) else text
 
@@ -147,7 +147,7 @@ def _numbers_alone(text, begin):
 
 
 def _between_digits(text, begin):
-    """Whether every comma stands between two digits."""
+    """Whether every comma is between two digits."""
     blocks = (block for block in _numbers_alone(text, begin) if "," in block)
     return all(block.count(",") == len(DECIMAL_COMMA.findall(block)) for block in blocks)
 
@@ -162,7 +162,7 @@ class _Words:
     delimiter : str or None
         The same for numpy; None: blanks.
     removed, comma : str
-        Sign between thousands, and what stands for a comma within a number.
+        Sign between thousands, and the decimal sign.
     """
 
     separator: re.Pattern
@@ -172,7 +172,7 @@ class _Words:
 
     @classmethod
     def of(cls, text, begin, decimal):
-        """That of a file, from its lines that hold nothing but numbers."""
+        """Notation of a file, from its lines that contain numbers alone."""
         seen, blank = set(), False
         for block in _numbers_alone(text, begin):
             seen |= {sign for sign in ",;\t." if sign in block}
@@ -212,7 +212,7 @@ class _Words:
 
 
 def _numbers(words):
-    """Numbers of a line, nan for missing ones; None where anything else stands in it or nothing at all."""
+    """Numbers of a line, nan for missing ones; None for an empty line or one with other text."""
     try:
         row = [np.nan if word.lower() in MISSING else float(word) for word in words]
     except ValueError:

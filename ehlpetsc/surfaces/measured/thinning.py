@@ -1,15 +1,15 @@
-"""Densely sampled profiles brought down to what a mesh can tell apart."""
+"""Thinning of densely sampled profiles to the resolution of a mesh."""
 
 import numpy as np
 
-MANY = 200_000  # points; a spline through fewer takes no time worth saving
+MANY = 200_000  # points; a spline through fewer takes negligible time
 MAX_POINTS_PER_CELL = 16  # points to a cell of the mesh, or to the shortest cut-off
 
 
 def thinned(X, z, shortest):
     """A profile with `MAX_POINTS_PER_CELL` points to the shortest wave, where it has more than twice as many.
 
-    Every new point stands for the mean height of the old ones around it, by the trapezoidal rule, corrected
+    Every new point has the mean height of the old ones around it, by the trapezoidal rule, corrected
     for curvature to the height at the point, :math:`z_j=m_j-(m_{j+1}-2m_j+m_{j-1})/24`, mirrored at the ends.
     Means over cells, which are all that a mesh gets, keep their value: of a wave as short as two cells within
     3e-5 of its amplitude.
