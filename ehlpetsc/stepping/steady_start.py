@@ -125,7 +125,7 @@ class SolveAttempts:
             tried = (
                 f"given up after {self.made} attempts and {self.spent} Newton iterations; the last failure"
             )
-            raise NoSteadyStart(f"{tried}: {self.failure}", None, self.spent)
+            raise NoSteadyStart(f"{head}: {self.failure}", None, self.spent)
         self.made += 1
         try:
             *state, iterations = solve_checked(self.solver, *begin, inputs, self.max_it, self.watch)
