@@ -122,10 +122,9 @@ class SolveAttempts:
     def __call__(self, begin, inputs):
         """q, w and h00; None: Newton's method does not arrive."""
         if self.made == MAX_ATTEMPTS:
-            tried = (
-                f"given up after {self.made} attempts and {self.spent} Newton iterations; the last failure"
-            )
-            raise NoSteadyStart(f"{head}: {self.failure}", None, self.spent)
+            tried = f"{self.made} attempts and {self.spent} Newton iterations"
+            message = f"given up after {tried}; the last failure: {self.failure}"
+            raise NoSteadyStart(message, None, self.spent)
         self.made += 1
         try:
             *state, iterations = solve_checked(self.solver, *begin, inputs, self.max_it, self.watch)
