@@ -18,7 +18,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.nonlinear.halo_exchange import exchange
+from ehlpetsc.nonlinear.collectives import exchange
 
 MOST = 100  # iterations of a solve
 

@@ -5,33 +5,13 @@ pressures what :mod:`ehlpetsc.discretisation.curvature_product` sends and the su
 """
 
 import numpy as np
-from mpi4py import MPI
 
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, CurvatureProduct
 from ehlpetsc.discretisation.deflection import HALO, PressureSums
 from ehlpetsc.discretisation.interleaving import n_dofs, pairs
+from ehlpetsc.nonlinear.collectives import exchange
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
-
-
-def global_max(ranks, number):
-    """Largest of the numbers of all ranks."""
-    if ranks.size == 1:
-        return number
-    received = np.array([number], dtype=float)
-    ranks.Allreduce(MPI.IN_PLACE, received, MPI.MAX)
-    return received[0]
-
-
-def all_ranks(ranks, condition):
-    """Whether a condition holds on every rank."""
-    return global_max(ranks, not condition) == 0.0
-
-
-def exchange(ranks, everyone):
-    """Fill in what all other ranks have in their rows, the first axis; collective."""
-    if ranks.size > 1:
-        ranks.Allgather(MPI.IN_PLACE, everyone)
 
 
 class HaloExchange:
@@ -101,14 +81,3 @@ class HaloExchange:
         self.flagged = loads[3] > 0.0
         sums = PressureSums(self._product.sums(self._all[:, behind_load:]), loads)
         return np.concatenate(window), self._all[-1, 2 * edge], sums
-
-    def gather(self, record):
-        """Named tuple of the arrays of all nodes, from one of arrays at the nodes of the window."""
-        if self.ranks.size == 1:
-            return record
-        return record._make(self._gather(part) for part in record)
-
-    def _gather(self, part):
-        if isinstance(part, np.ndarray):
-            return np.concatenate(self.ranks.allgather(part[self.problem.own]))
-        return self.gather(part) if isinstance(part, tuple) else part

@@ -22,7 +22,8 @@ SIZE = 11  # unknowns of a group
 LINE = 12  # room for them
 LEFT, FROM_LEFT = 9, 2  # unknowns of the group before that the rows contain, and the first of them
 RIGHT, FROM_RIGHT = 9, 0  # those of the group behind: one more than it has, for the mirrored order
-WIDTH = LEFT + SIZE + RIGHT
+WIDTH, CUT = LEFT + SIZE + RIGHT, LEFT + RIGHT
+AT_LEFT, AT_RIGHT = slice(FROM_RIGHT, FROM_RIGHT + RIGHT), slice(FROM_LEFT, SIZE)  # what cuts there take
 FAST = {"contract", "nsz", "reassoc"}
 ONE, TWO, THREE, FOUR, EIGHT = (unsigned(k) for k in (1, 2, 3, 4, 8))
 

@@ -19,21 +19,11 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ehlpetsc.compiled import compiled, unsigned
 from ehlpetsc.discretisation.finite_volumes import STENCIL
-from ehlpetsc.nonlinear.halo_exchange import all_ranks, exchange
-from ehlpetsc.nonlinear.preconditioner.block_lu import (
-    FAST,
-    FROM_LEFT,
-    FROM_RIGHT,
-    LEFT,
-    LINE,
-    RIGHT,
-    SIZE,
-    BlockLU,
-)
+from ehlpetsc.nonlinear.collectives import all_ranks, exchange
+from ehlpetsc.nonlinear.preconditioner.block_lu import AT_LEFT, AT_RIGHT, CUT, FAST, LEFT, LINE, SIZE, BlockLU
 from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem, regularise_pivots
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
-CUT = LEFT + RIGHT
 IDENTITY = np.eye(BORDER)
 ENTRIES = 2 * STENCIL  # of a Reynolds row
 
@@ -58,11 +48,10 @@ class DistributedLU:
         self._is_outer = ranks.size > 1 and not is_inner
         self._y, self._ends = np.zeros(band.size), np.zeros((2, band.size))
         first, last = band.end_groups
-        self._interface = last[FROM_LEFT:SIZE]
-        if is_inner:
-            self._interface = np.concatenate([first[FROM_RIGHT : FROM_RIGHT + RIGHT], self._interface])
-        self._interface = self._in_mesh_order(self._interface)[: ranks.size * CUT - CUT]
-        self._reduced = ReducedSystem(LEFT, RIGHT, ranks.rank, ranks.size)
+        self._interface = np.concatenate([first[AT_LEFT], last[AT_RIGHT]]) if is_inner else last[AT_RIGHT]
+        self._in_mesh_order = slice(None, None, -1 if band.is_mirrored else 1)  # the last rank counts back
+        self._interface = self._interface[self._in_mesh_order]
+        self._reduced = ReducedSystem(LEFT, CUT - LEFT, ranks.rank, ranks.size)
         self._everyone, self._g = np.zeros((ranks.size, CUT + BORDER)), np.zeros((0, LINE))
         self._rows = self._reduced.rows_of_inverse([])  # of one rank
         self._factored = None
@@ -89,7 +78,7 @@ class DistributedLU:
     def _factor_interface(self, left, right):
         """G of an inner rank, or W of the group at the cut of an outer one; and the reduced system."""
         if self._is_outer:
-            self._g = np.ascontiguousarray(self._in_mesh_order(self._lu.upper[-1]))
+            self._g = self._lu.upper[-1][self._in_mesh_order]
         else:
             g = np.zeros((CUT, self.band.groups, LINE))
             g[:LEFT, 0], g[LEFT:, -1] = left, right
@@ -103,10 +92,6 @@ class DistributedLU:
         mine[CUT:, :taken] = self._dense[:, -width:] @ self._g.T
         exchange(self.ranks, values)
         self._rows = self._reduced.rows_of_inverse(values)
-
-    def _in_mesh_order(self, values):
-        """Values at a cut of this rank, from left to right or back; the last rank counts from the right."""
-        return values[::-1] if self.band.is_mirrored else values
 
     def _factor_border(self):
         band, c = self.band, self._approach_coefficient
@@ -133,13 +118,18 @@ class DistributedLU:
         self._lu.forward(y, first)
         if not self._is_outer:
             self._lu.backward(y)
-        send(y, self._interface, self._dense, load, self._everyone[self.ranks.rank])
-        exchange(self.ranks, self._everyone)
-        sums = np.empty(BORDER)
-        receive(self._everyone, self._rows, self._g, y, sums)
+        mine, (taken, width) = self._everyone[self.ranks.rank], self._g.shape
+        np.dot(self._dense, y, out=mine[CUT:])
+        mine[-1] -= load
+        if taken:
+            mine[: len(self._interface)] = y[self._interface]
+            exchange(self.ranks, self._everyone)
+        w = self._rows @ self._everyone.ravel()
+        if taken:
+            y[-width:] -= w[:taken] @ self._g
         if self._is_outer:
             self._lu.backward(y)
-        return sums
+        return w[taken:]
 
     def _is_still_good(self, entries, inactive_nodes):
         """Whether the factors of this rank are nearly those of the given state."""
@@ -173,31 +163,6 @@ def scatter(dofs, b, y):
     y[:] = 0.0
     for i in range(len(dofs)):
         y[dofs[i]] = b[i]
-
-
-@compiled
-def send(y, interface, dense, load, mine):
-    """Fill in the values at the cuts and the products of the dense rows, of the last one less `load`."""
-    for i in range(len(interface)):
-        mine[i] = y[interface[i]]
-    np.dot(dense, y, mine[CUT:])
-    mine[CUT + BORDER - 1] -= load
-
-
-@compiled(fastmath=FAST)
-def receive(everyone, rows, g, y, sums):
-    """Take what other ranks contribute off y, and fill in the sums over all ranks."""
-    taken, begin = len(g), len(y) - g.shape[1]
-    for k in range(len(rows)):
-        total = 0.0
-        for rank in range(rows.shape[1]):
-            for i in range(rows.shape[2]):
-                total += rows[k, rank, i] * everyone[rank, i]
-        if k >= taken:
-            sums[k - taken] = total
-            continue
-        for i in range(g.shape[1]):
-            y[begin + i] -= total * g[k, i]
 
 
 @compiled(fastmath=FAST)

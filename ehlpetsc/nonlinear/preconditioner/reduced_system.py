@@ -50,7 +50,7 @@ class ReducedSystem:
 
         Returns
         -------
-        ndarray, shape (taken + BORDER, ranks, left + right + BORDER)
+        ndarray, shape (taken + BORDER, ranks (left + right + BORDER))
             Of the values at the cuts and the sums that every rank has without the others.
         """
         rows = np.zeros((len(self._taken) + BORDER, len(self._of_rank), self._cut + BORDER))
@@ -60,7 +60,7 @@ class ReducedSystem:
                 rows[:, rank, : len(own)] = inverse[own].T
         for k in range(-BORDER, 0):
             rows[k, :, k] = 1.0
-        return rows
+        return rows.reshape(len(rows), -1)
 
     def _inverse(self, values):
         diagonal = self._below + self._above

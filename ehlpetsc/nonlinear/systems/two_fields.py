@@ -16,7 +16,8 @@ from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, HaloExchange, all_ranks, global_max
+from ehlpetsc.nonlinear.collectives import all_ranks, gathered, global_max
+from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, HaloExchange
 from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
@@ -158,7 +159,7 @@ class TwoFields:
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                whole = self.exchange.gather(self.jacobian.state)
+                whole = gathered(self.exchange.ranks, self.jacobian.state, self.problem.own)
                 self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
 
     @property
