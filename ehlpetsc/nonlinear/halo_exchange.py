@@ -39,7 +39,7 @@ class HaloExchange:
         self._edge = n_dofs(HALO)
         self._load = 2 * self._edge + 1  # behind the outer unknowns and h00: three sums and the flag
         size = self._load + 4 + self._product.message_size
-        self.flagged = False
+        self.flagged, self._window = False, np.empty((problem.window.stop - problem.window.start, 2))
         self._all = np.zeros((ranks.size, size))
         self._mine = self._all[ranks.rank]
 
@@ -58,6 +58,7 @@ class HaloExchange:
         Returns
         -------
         nodes : ndarray, shape (window, 2)
+            Until the next exchange.
         h00 : float
         sums : deflection.PressureSums
         """
@@ -72,12 +73,13 @@ class HaloExchange:
         mine[2 * edge] = vector[-1]  # h00 on the last rank
         mine[self._load : behind_load - 1], mine[behind_load - 1] = load, flag
         exchange(self.ranks, self._all)
-        window = [nodes]
+        window, own = self._window, problem.own
+        window[own] = nodes
         if rank > 0:
-            window.insert(0, pairs(self._all[rank - 1, edge:], HALO))
+            window[: own.start] = pairs(self._all[rank - 1, edge:], HALO)
         if rank < self.ranks.size - 1:
-            window.append(pairs(self._all[rank + 1], HALO))
+            window[own.stop :] = pairs(self._all[rank + 1], HALO)
         loads = self._all[:, self._load : behind_load].sum(axis=0)
         self.flagged = loads[3] > 0.0
         sums = PressureSums(self._product.sums(self._all[:, behind_load:]), loads)
-        return np.concatenate(window), self._all[-1, 2 * edge], sums
+        return window, self._all[-1, 2 * edge], sums
