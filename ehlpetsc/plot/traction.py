@@ -81,8 +81,6 @@ def _mark_largest(axes, ratios, friction, colour):
     at = friction.argmax()
     axes.plot(ratios[at], friction[at], "o", ms=9, mfc="none", color=colour)
     text = f"{friction[at]:.4f} at {ratios[at]:g}"
-    below = dict(
-        xytext=(0, -8), textcoords="offset points", ha="center", va="top", fontsize="small", zorder=4
-    )
+    below = dict(xytext=(4, -7), textcoords="offset points", ha="left", va="top", fontsize="small", zorder=4)
     below["bbox"] = dict(fc="white", ec="none", alpha=0.8, pad=0.5)
     axes.annotate(text, (ratios[at], friction[at]), color=colour, **below)
