@@ -28,7 +28,7 @@ LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 200
 ACCURACY = 1e-10  # K: change in an iteration that ends it
 QUADRATIC = 1e-4  # K: the same of an iteration of Newton's method, after which it is accurate to 1e-9 K
-ERROR = 1e-8  # K: estimated error of an iteration of Halley's method that ends it,
+ERROR = 1e-8  # K: estimated error of an iteration of Chebyshev's method that ends it,
 SMALL = 0.3  # change of ln(eta) up to which that estimate holds
 
 _log_viscosity = compiled(thermal_viscosity.log_viscosity)
@@ -112,42 +112,40 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     over_h = 1.0 / h if h > 0.0 else 0.0
     low, high = known / slope, np.inf
     t = low if heat == 0.0 else max(guess, low)
-    ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
-    tau, by_ln_eta, by_p = 0.0, 0.0, 0.0
-    if heat > 0.0:
-        linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
-        unit = eta0 if eyring == np.inf else eta0 / eyring
-        ln_rate = np.log(law[7] * unit * over_h) - (0.0 if eyring == np.inf else spread)
-        tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
-        for _ in range(ITERATIONS):
-            f, f_t = slope * t - known - heat * tau, slope - heat * by_ln_eta * eta_t
-            if f > 0.0:
-                high = min(high, t)
-            else:
-                low = max(low, t)
-            change = -f / f_t
-            bend = -0.5 * heat * twice * eta_t * eta_t / f_t * change  # of f over a step of Newton's
-            if linear:
-                change /= 1.0 + max(bend, -0.5)
-            new = t + change
-            newton = low <= new <= high
-            if not newton:
-                new = 0.5 * (low + high) if high < np.inf else max(new, low)
-            change, t = new - t, new
-            step = eta_t * change
-            error = abs(bend * step * change) if linear and abs(step) < SMALL else np.inf
-            if newton and (error < ERROR or abs(change) < QUADRATIC):
-                ln_eta += step
-                tau += (by_ln_eta + 0.5 * twice * step) * step
-                by_ln_eta += twice * step
-                break
-            if linear:
-                ln_eta += eta_t * change
-            else:
-                ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+    linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
+    unit = eta0 if eyring == np.inf else eta0 / eyring
+    ln_rate = np.log(law[7] * unit * over_h) - (0.0 if eyring == np.inf else spread) if heat > 0.0 else 0.0
+    ln_eta, eta_p, eta_t = 0.0, 0.0, 0.0
+    tau, by_ln_eta, twice, by_p = 0.0, 0.0, 0.0, 0.0
+    change, last = 0.0, heat == 0.0
+    for k in range(ITERATIONS):
+        if k == 0 or not linear:
+            ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+        else:
+            ln_eta += eta_t * change
+        if heat > 0.0:
             tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
-            if abs(change) < ACCURACY:
-                break
+        if last:
+            break
+        f, over_f_t = slope * t - known - heat * tau, 1.0 / (slope - heat * by_ln_eta * eta_t)
+        low, high = (low, min(high, t)) if f > 0.0 else (max(low, t), high)
+        change = -f * over_f_t
+        bend = -0.5 * heat * twice * eta_t * eta_t * over_f_t * change  # of f over a step of Newton's
+        if linear:
+            change *= 1.0 + min(max(-bend, -0.5), 1.0)
+        new = t + change
+        newton = low <= new <= high
+        if not newton:
+            new = 0.5 * (low + high) if high < np.inf else max(new, low)
+        change, t = new - t, new
+        step = eta_t * change
+        error = abs(bend * step * change) if linear and abs(step) < SMALL else np.inf
+        if newton and (error < ERROR or abs(change) < QUADRATIC):
+            ln_eta += step
+            tau += (by_ln_eta + 0.5 * twice * step) * step
+            by_ln_eta += twice * step
+            break
+        last = abs(change) < ACCURACY
     over_f_t = 1.0 / (slope - heat * by_ln_eta * eta_t)
     kappa_r = 1.0 / 12.0 + 0.25 * share * share
     alpha_r = 0.5 * share * (w1 - w2) * over_total

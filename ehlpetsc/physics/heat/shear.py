@@ -38,10 +38,11 @@ def shear_stress(ln_rate, ln_eta, p, eyring, limit):
         tau, by_ln_eta, twice = eyring * (argument + 0.6931471805599453), eyring, 0.0
     else:
         x = np.exp(argument)
-        square = 1.0 + x * x
-        root = np.sqrt(square)
-        by_ln_eta = eyring * x / root
-        tau, twice = eyring * np.log(x + root) if x > 1e-4 else eyring * x, by_ln_eta / square
+        root = np.sqrt(1.0 + x * x)
+        over_root = 1.0 / root
+        by_ln_eta = eyring * x * over_root
+        tau = eyring * np.log(x + root) if x > 1e-4 else eyring * x
+        twice = by_ln_eta * over_root * over_root
     if limit == np.inf:
         return tau, by_ln_eta, twice, 0.0
     value, by_tau, by_limit = _limited(tau, limit * p)
