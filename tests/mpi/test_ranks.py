@@ -35,6 +35,7 @@ MODELS = {
         "contact.yield_pressure=1.5e9",
     ],
     "yielding": ["contact.model=mixed", "contact.yield_pressure=1.5e9"],
+    "heat": ["contact.model=mixed", "heat.bulk_temperature=363.0"],
     "reversing": [
         "contact.model=mixed",
         "mesh.outlet=1.2",

@@ -1,0 +1,75 @@
+"""Runs with heat through restart, a series and passes; a run without it imports none of it."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from support import ROOT
+from support.running import BARE, SCRIPT, run, settings
+
+from ehlpetsc.results.reader import read_result
+
+CASE = ROOT / "cases" / "table1_heat.toml"
+QUICK = (
+    "mesh.inlet=-1.4",
+    "mesh.outlet=1.3",
+    "mesh.points_per_half_width=50",
+    "time.travel=0.6",
+    "output.every=1",
+)
+FIELDS = ("pressure", "film_thickness", "film_temperature", "temperature_1", "heat_flux_2")
+
+
+def test_restart_gives_the_same_run_to_the_last_bit(tmp_path):
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    for folder in (whole, parts):
+        folder.mkdir()
+    words = [CASE, *settings(*QUICK)]
+    assert run(*words, cwd=whole).returncode == 0
+    stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, 30))
+    assert stopped.returncode == 4, stopped.stderr
+    done = run(*words, "-ehl_restart", "table1_heat.restart.h5", cwd=parts)
+    assert done.returncode == 0, done.stderr
+    with read_result(whole / "table1_heat.h5") as one, read_result(parts / "table1_heat.h5") as other:
+        assert len(one.time) == len(other.time) > 50
+        for name in FIELDS:
+            np.testing.assert_array_equal(one[name][:], other[name][:])
+
+
+def test_a_series_of_speeds_heats_more(tmp_path):
+    series = ('series.key="motion.entrainment_speed"', "series.values=[5.0, 25.0]", "time.travel=0.1")
+    done = run(CASE, *settings(*QUICK, *series), cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rises = []
+    for path in sorted(tmp_path.glob("*.h5"), key=lambda path: path.stat().st_mtime):
+        with read_result(path) as result:
+            rises.append(result.steps("film_temperature_max").max() - 363.0)
+    assert len(rises) == 2
+    assert min(rises) > 1.0 and max(rises) > 2.0 * min(rises)
+
+
+def test_both_bodies_enter_every_pass_at_bulk_temperature(tmp_path):
+    """Without plastic deformation or wear the second pass is the first one again."""
+    done = run(CASE, *settings(*QUICK, "time.passes=2", "time.travel=0.3"), cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with (
+        read_result(tmp_path / "table1_heat.pass1.h5") as one,
+        read_result(tmp_path / "table1_heat.pass2.h5") as other,
+    ):
+        for name in FIELDS:
+            largest = np.abs(one[name][:]).max()
+            np.testing.assert_allclose(other[name][:], one[name][:], rtol=0, atol=1e-9 * largest)
+
+
+@pytest.mark.parametrize("name, heated", [("table1_mixed", False), ("table1_heat", True)])
+def test_an_isothermal_run_imports_nothing_of_heat(name, heated, tmp_path):
+    code = (
+        "import sys; from ehlpetsc.case.loading import load; from ehlpetsc.run.simulation import Simulation;"
+        f"list(Simulation(load({str(ROOT / 'cases' / name)!r} + '.toml',"
+        f" [*{list(QUICK)!r}, 'time.travel=0.05'])));"
+        "print(sorted(m for m in sys.modules if '.heat.' in m and 'discretisation' in m))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True)
+    assert done.returncode == 0, done.stderr.decode()
+    assert ("ehlpetsc.discretisation.heat.step" in done.stdout.decode()) == heated
