@@ -1,5 +1,7 @@
 """Pressure and film of an instant, drawn into given axes; x in half widths, film in um, pressure in GPa."""
 
+import tomllib
+
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -16,6 +18,7 @@ LOWER_COLOUR = "#b35806"
 SIDES = ("surface 1", "surface 2")
 PRESSURE = "pressure [GPa]"
 FILM = "film thickness [µm]"
+GAP = "gap [µm]"  # without oil
 OUTSIDE = (-1.6, 1.4)  # limits of x/a worth seeing
 HERTZ_STYLE = dict(lw=0.9, ls=":", zorder=1)
 HERTZ_GREY = "0.6"
@@ -99,6 +102,11 @@ def frame_to_show(result, reached=np.inf):
     return int(np.argmax(np.where(allowed, np.nan_to_num(values), -1.0)))
 
 
+def lubricated(result):
+    """Whether there is oil in the contact."""
+    return "fluid" in tomllib.loads(str(result.attrs["case"]))
+
+
 def default_window(results):
     """Limits of x/a without a wish: the contact and what is just outside, as far as all results reach."""
     low = max(result.x[0] / result.attrs["a"] for result in results)
@@ -156,8 +164,8 @@ def pressure_and_film(axes, results, indices, colours, window):
                     x[touching], film[touching], "v", color=CONTACT_COLOUR, ms=4, clip_on=False, zorder=3
                 )
     upper.set_ylabel(PRESSURE)
-    upper.set_ylim(0.0, 1.05 * highest)
-    lower.set_ylabel(FILM)
+    upper.set_ylim(0.0, 1.05 * highest or 1.0)
+    lower.set_ylabel(FILM if any(map(lubricated, results)) else GAP)
     lower.set_ylim(0.0, 1.15 * thickest)
     lower.set_xlabel(ACROSS)
     lower.set_xlim(*window)
@@ -174,13 +182,15 @@ def _hertz(axes, results, colours, window):
 
 
 def x_in_mm(axes, results):
-    """A second axis above in mm, with the direction of flow; nothing where results differ in a."""
+    """A second axis above in mm where results agree in a, and the direction of flow where there is oil."""
     a = {float(result.attrs["a"]) for result in results}
     if len(a) == 1:
         scale = 1e3 * a.pop()
         above = axes.secondary_xaxis("top", functions=(lambda x: x * scale, lambda x: x / scale))
         above.tick_params(labelsize="small")
         above.set_xlabel("x [mm]", fontsize="small")
+    if not any(map(lubricated, results)):
+        return
     place = dict(xy=(0.13, 0.9), xytext=(0.02, 0.9), xycoords="axes fraction", textcoords="axes fraction")
     axes.annotate("", **place, arrowprops=dict(arrowstyle="->", color="0.35"))
     axes.text(0.14, 0.9, "flow", transform=axes.transAxes, va="center", fontsize="small", color="0.35")
@@ -216,7 +226,7 @@ def frame_legend(axes, result, index, colour):
         handles.append(Patch(color=SOLIDS_COLOUR, label="of the solids"))
     handles.append(Line2D([], [], color=HERTZ_GREY, label="Hertz", **HERTZ_STYLE))
     legend_beside(axes[0], handles)
-    films = [Line2D([], [], color=colour, lw=1.1, label="film")]
+    films = [Line2D([], [], color=colour, lw=1.1, label="film" if lubricated(result) else "gap")]
     if in_contact(result, index)[shown].any():
         films.append(Line2D([], [], color=CONTACT_COLOUR, marker="v", ls="", ms=4, label="in contact"))
     legend_beside(axes[1], films)

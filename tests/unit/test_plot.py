@@ -297,6 +297,16 @@ def test_a_view_without_contacts_has_panels_of_equal_height(tmp_path, drawn):
     assert legend == ["film"]
 
 
+def test_a_dry_contact_has_a_gap_and_no_flow(tmp_path, drawn):
+    path = make_result(tmp_path / "dry.h5")
+    with h5py.File(path, "r+", libver="latest") as file:
+        file.attrs["case"] = file.attrs["case"].replace(b"[fluid]", b"[post]")
+    assert draw(path, "--step", 30) == 0
+    upper, lower = drawn[0].axes
+    assert lower.get_ylabel() == "gap [µm]" and not list(upper.texts)
+    assert lower.get_legend().texts[0].get_text() == "gap"
+
+
 def test_no_solids_no_entry_of_theirs(tmp_path):
     path = with_solids(make_result(tmp_path / "m.h5"))
     with h5py.File(path, "r+", libver="latest") as file:
