@@ -251,12 +251,12 @@ def test_options_left_speaks_of_the_users_options_alone(case, tmp_path):
     assert "There are no unused options." in text
 
 
-def test_options_that_nobody_read_are_named(case, tmp_path):
+def test_unused_options_are_named(case, tmp_path):
     with_petsc_table(case, "ksp_rtoll = 1e-7\nksp_atol = 1e-12")
     words = ["-snes_monitr", "-snes_rtol", "1e-12", "-log_view", ":log", "-snes_view", "-options_left", "no"]
     done = run(case, *words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    notes = [line for line in done.stdout.splitlines() if line.startswith("note: options")]
+    notes = [line for line in done.stdout.splitlines() if line.startswith("note: unused")]
     assert notes == ["note: unused options: -ksp_rtoll, -snes_monitr"]
     done = run(case, "-snes_monitr", "-ehl_set", "time.travel=0.2", "-ehl_overwrite", cwd=tmp_path)
     assert 0 < done.stdout.find("-snes_monitr") < done.stdout.find("    step ")  # not after hours of steps
