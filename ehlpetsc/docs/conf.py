@@ -19,7 +19,7 @@ myst_update_mathjax = False  # for MathJax 3
 mathjax_path = "mathjax/MathJax.js"
 mathjax2_config = SETTINGS
 smartquotes = False
-pygments_style = "friendly"
+pygments_style, highlight_language = "friendly", "none"  # blocks without a language are terminals
 
 
 def _with_contents(_app, page, source):
