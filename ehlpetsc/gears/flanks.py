@@ -39,11 +39,16 @@ class FlankDamage:
         try:
             with h5py.File(file) as stored:
                 group = stored["damage"]
-                self.depths = group["z_over_a"][:] * float(stored.attrs["a"])
+                self.depths = group["z_over_a"][:].astype(float) * float(stored.attrs["a"])
                 names = [stored_name(group, side) for side in SIDES]
-                self.damage = [group[name][:][:, ::-1] if name in group else None for name in names]
-                self.arcs = [begin - group["s"][:][::-1] for begin in profile_offsets]
-        except (OSError, KeyError, RuntimeError) as error:
+                s = group["s"][:].astype(float)
+                shape = self.depths.size, s.size
+                self.damage = [
+                    group[name][:].astype(float).reshape(shape)[:, ::-1] if name in group else None
+                    for name in names
+                ]
+                self.arcs = [begin - s[::-1] for begin in profile_offsets]
+        except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
             raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
 
     def lines(self):

@@ -12,7 +12,7 @@ from test_case_fuzz import corrupted
 
 from ehlpetsc.gears.__main__ import main
 
-LIMIT = 60  # s
+LIMIT = 120  # s
 FOREIGN = {"foreign.csv": b"0,1\n", "foreign.png": b"mine", "foreign.toml": b"title = 'a'"}
 WORDS = (
     *(
