@@ -4,6 +4,7 @@ The index ``OUT.life.series.json`` names for each life its settings, file and fi
 same case is continued, as a single life is.
 """
 
+import contextlib
 import json
 import tomllib
 from pathlib import Path
@@ -155,7 +156,8 @@ class _Lives:
         def take(report):
             number, row = report
             self.rows[number] |= row
-            self._write()
+            with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
+                self._write()
             count = sum(row["state"] != "waiting" for row in self.rows)
             show(f"{count} of {len(self.rows)}: {self.members[number].name}: {_words(self.rows[number])}")
 
@@ -165,6 +167,7 @@ class _Lives:
         while (number := queue.next(report, serving(queue.group))) is not None:
             report = number, self._live(self.members[number], queue.group, serving)
         states = queue.finish(lambda: [row["state"] for row in self.rows])
+        on_root(comm, self._write)
         if {"waiting", "stopped"} & set(states):
             raise Stopped
         return self.index
