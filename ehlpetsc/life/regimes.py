@@ -7,6 +7,7 @@ same case is continued, as a single life is.
 import contextlib
 import json
 import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -111,6 +112,7 @@ def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, sto
     from ehlpetsc.results.output_guard import Lock, check_index
     from ehlpetsc.run.on_root import on_root
 
+    import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they part
     comm = comm or MPI.COMM_SELF
     lives = _Lives(case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite)
     on_root(comm, check_index, lives.index, "members")
