@@ -124,6 +124,7 @@ END
 }
 
 set_environment() {
+    local yields
     # without these, threads of BLAS fight the ranks for the cores
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
     # mpirun gives every rank a terminal, also where the output goes to a file
@@ -136,8 +137,10 @@ set_environment() {
         export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     fi
     [ "$(nodes)" = 1 ] || return 0
-    # one machine: a rank that waits leaves its core to others, as they may have other work, or to the rank it waits for
-    export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-1}
+    # one machine: a rank that waits yields its core, but not since Linux 6.6, whose scheduler brings it back after a
+    # whole turn of the others: beside one busy process two ranks then take ten times as long as without
+    if printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; else yields=1; fi
+    export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-$yields}
     # shared memory alone, by copies that a container allows, and no wait for a network or munge
     export OMPI_MCA_btl=${OMPI_MCA_btl:-^tcp,ofi,openib,uct}
     export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism:-none}

@@ -40,8 +40,6 @@ def measured(points, ranks, count):
     if count:
         command.append("--count")
     environment = os.environ | ENVIRONMENT
-    if ranks > (os.cpu_count() or 1):
-        environment["OMPI_MCA_mpi_yield_when_idle"] = "1"
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return json.loads(done.stdout.splitlines()[-1])
 

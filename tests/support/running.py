@@ -34,7 +34,6 @@ SCRIPT = {
     "PRTE_MCA_hwloc_default_binding_policy": "none",
     "PMIX_MCA_psec": "native",
     "PMIX_MCA_gds": "hash",
-    "OMPI_MCA_mpi_yield_when_idle": "1",  # the cores may be fewer than the ranks, and not ours alone
 }
 BARE = {"PATH": "/usr/bin:/bin", "HOME": "/", "TERM": "dumb"}
 ALONE = {"OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}  # one rank: Open MPI looks for no way to others
