@@ -42,7 +42,7 @@ class Result(reader.Result):
         >>> import ehlpetsc
         >>> figure = ehlpetsc.solve("cases/dry_hertz.toml").plot(window=(-1.2, 1.2))
         >>> [axes.get_ylabel() for axes in figure.axes]
-        ['pressure [GPa]', 'film thickness [µm]']
+        ['pressure [GPa]', 'gap [µm]']
         """
         from matplotlib import pyplot
 

@@ -8,7 +8,9 @@ Found, fitted over three refinements: film 1.97, film temperature 1.83, surfaces
 
 import numpy as np
 import pytest
-from support.driving import Scene, observed_order
+from support.driving import Scene
+
+from ehlpetsc.study.convergence import observed_order
 
 TRAVEL = 2.5  # half widths, of the mean speed
 STEPS = (40, 80, 160, 320)
