@@ -11,7 +11,10 @@ from ehlpetsc import environment
 environment.prepare()
 MPI_TESTS = Path(__file__).parent / "mpi"
 DEAREST = (  # files of two seconds and more by the time they take
+    "test_compliant",
     "test_post_run",
+    "test_wear_against_fatigue",
+    "test_fuzz",
     "test_options",
     "test_interruptions",
     "test_stops",
@@ -22,10 +25,8 @@ DEAREST = (  # files of two seconds and more by the time they take
     "test_batch",
     "test_cases",
     "test_figures",
-    "test_fuzz",
     "test_post_outputs",
     "test_operation",
-    "test_compliant",
     "test_derived_of_gears_and_life",
     "test_outputs",
     "test_plot",
@@ -51,7 +52,6 @@ DEAREST = (  # files of two seconds and more by the time they take
     "test_ensemble",
     "test_stored_figures",
     "test_case_text",
-    "test_wear_against_fatigue",
 )
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
