@@ -124,7 +124,6 @@ END
 }
 
 set_environment() {
-    local yields
     # without these, threads of BLAS fight the ranks for the cores
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
     # mpirun gives every rank a terminal, also where the output goes to a file
@@ -137,10 +136,6 @@ set_environment() {
         export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     fi
     [ "$(nodes)" = 1 ] || return 0
-    # one machine: a rank that waits yields its core, but not since Linux 6.6, whose scheduler brings it back after a
-    # whole turn of the others: beside one busy process two ranks then take ten times as long as without
-    if printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; else yields=1; fi
-    export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-$yields}
     # shared memory alone, by copies that a container allows, and no wait for a network or munge
     export OMPI_MCA_btl=${OMPI_MCA_btl:-^tcp,ofi,openib,uct}
     export OMPI_MCA_btl_vader_single_copy_mechanism=${OMPI_MCA_btl_vader_single_copy_mechanism:-none}
@@ -160,8 +155,16 @@ nodes() {
     fi
 }
 
-more_ranks_than_cores() {
-    if [ "$1" -gt "$(nproc)" ] && [ "$(nodes)" = 1 ]; then
+# A rank that waits yields its core to the rank it waits for where there are more ranks than cores, and else before
+# Linux 6.6 alone: since then it comes back after a whole turn of the others, so that two ranks beside one busy process
+# take ten times as long as without
+settings_of_ranks() {
+    local yields=1
+    [ "$(nodes)" = 1 ] || return 0
+    if [ "$1" -le "$(nproc)" ] && printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; fi
+    : "${users_yield=${OMPI_MCA_mpi_yield_when_idle-}}" # as it was before the first call
+    export OMPI_MCA_mpi_yield_when_idle=${users_yield:-$yields}
+    if [ "$1" -gt "$(nproc)" ]; then
         export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
     fi
 }
@@ -243,7 +246,7 @@ stopped_early() {
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_case() {
     local status=0 comments copier="" asked="" killed=""
-    more_ranks_than_cores "$ranks"
+    settings_of_ranks "$ranks"
     if [ -p /dev/stdout ]; then
         exec > >(outliving_its_reader)
         copier=$!
@@ -273,7 +276,7 @@ run_mpi_tests() {
     local ranks=$1 status=0 logs
     logs=$(mktemp -d)
     say "tests on $ranks rank(s)"
-    more_ranks_than_cores "$ranks"
+    settings_of_ranks "$ranks"
     # shellcheck disable=SC2016
     timeout 1800 "$mpirun" -n "$ranks" /bin/sh -c '
         rank=${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-$PMIX_RANK}}
