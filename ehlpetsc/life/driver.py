@@ -70,7 +70,7 @@ class _Life:
         from ehlpetsc.life.rounds import Ranks
         from ehlpetsc.physics.scales import Scales
         from ehlpetsc.physics.variable_operation import operation_of
-        from ehlpetsc.run.simulation import scene_of
+        from ehlpetsc.run.scene import scene_of
 
         self.case, self.path, self.comm, self.history, self.show = case, path, comm, history, show
         self.scales = Scales.of(case)

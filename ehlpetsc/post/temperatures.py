@@ -58,7 +58,7 @@ def temperature_history(loads, surface, s):
 
 
 def _weights(time):
-    """Time that each frame stands for [s]."""
+    """Time weight of each frame [s]."""
     step = np.diff(time)
     return 0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))
 

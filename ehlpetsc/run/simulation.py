@@ -9,7 +9,6 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
-from ehlpetsc.effects.effect import Scene
 from ehlpetsc.errors import CaseError, NotConverged, Stopped
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.defaults import RunOptions
@@ -21,9 +20,9 @@ from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_comm, check_pass, check_time_step, option_texts
 from ehlpetsc.run.preview.domain import domain_faults
+from ehlpetsc.run.scene import scene_of
 from ehlpetsc.stepping.domain_ends import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.roughness import SurfacePositions
 
 MONITOR_OPTIONS = (
     "snes_monitor",
@@ -236,30 +235,6 @@ class Simulation:
             PETSc.Sys.Print(what, comm=self.comm)
 
 
-def scene_of(case, scales, operation, pass_number):
-    """Scene at the begin of a pass, `effects.effect.Scene`.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    operation : physics.operation.ConstantOperation
-    pass_number : int
-        From 1; surface 2 begins each pass by `time.pass_shift` further on.
-    """
-    one, other = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
-    shift = (pass_number - 1) * case.time.pass_shift if case.time else 0.0
-    positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(one, other + shift))
-    return Scene(case, scales, operation, positions, _heat_transfer)
-
-
 def _end_where_asked(asked, comm):
     if asked(comm):
         raise Stopped
-
-
-def _heat_transfer(scene):
-    """Steps of the temperatures of a scene."""
-    from ehlpetsc.discretisation.heat.step import HeatStep
-
-    return HeatStep(scene)

@@ -59,18 +59,18 @@ class Draw:
 
     def __call__(self, rng):
         """Outcome and what was done."""
-        inputs, told = FOREIGN | self.content, []
+        inputs, damage = FOREIGN | self.content, []
         inputs["pair.toml"] = self._case(rng).encode("utf-8", "surrogateescape")
         for name, kinds in self.spoil.items():
             if rng.random() < 0.4:
                 spoil = kinds[int(rng.integers(2))]
-                told.append(f"{name}: {spoil(rng, int(rng.integers(10**6)), self.folder / name)}")
+                damage.append(f"{name}: {spoil(rng, int(rng.integers(10**6)), self.folder / name)}")
                 inputs[name] = (self.folder / name).read_bytes()
         words = [("pair.toml", "run.h5")[int(rng.integers(2))]]
         for _ in range(int(rng.integers(3))):
             words += WORDS[int(rng.integers(len(WORDS)))]
         word, ended = beside_others(self.folder, inputs, lambda: main(words), LIMIT)
-        return word, f"{told} gears {words}: {ended}"
+        return word, f"{damage} gears {words}: {ended}"
 
     def _case(self, rng):
         """The case as it is, with another value of a key of its pair, or with mutations."""

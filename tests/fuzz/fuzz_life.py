@@ -58,11 +58,11 @@ class Draw:
 
     def __call__(self, rng):
         """Outcome and what was done."""
-        inputs, told = FOREIGN | self.content | {"case.toml": self.case.encode()}, []
+        inputs, damage = FOREIGN | self.content | {"case.toml": self.case.encode()}, []
         for name, kinds in self.spoil.items():
             if rng.random() < 0.4:
                 spoil = kinds[int(rng.integers(2))]
-                told.append(f"{name}: {spoil(rng, int(rng.integers(10**6)), self.folder / name)}")
+                damage.append(f"{name}: {spoil(rng, int(rng.integers(10**6)), self.folder / name)}")
                 inputs[name] = (self.folder / name).read_bytes()
         words = ["a.life.h5"] if rng.random() < 0.4 else ["case.toml", *ONCE]
         if rng.random() < 0.5:
@@ -72,7 +72,7 @@ class Draw:
         if rng.random() < 0.5:
             words += ["--set", SETS[int(rng.integers(len(SETS)))]]
         word, ended = beside_others(self.folder, inputs, lambda: main(words), LIMIT, may_change=STORED)
-        return word, f"{told} life {words}: {ended}"
+        return word, f"{damage} life {words}: {ended}"
 
     def keep(self, place):
         """Copy the files of the last draw."""

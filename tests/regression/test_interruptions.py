@@ -7,7 +7,7 @@ import subprocess
 import time
 
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.running import BARE, SCRIPT, SHORT, command, run, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
@@ -106,7 +106,7 @@ def test_output_that_nobody_reads_does_not_end_a_run(tmp_path):
     errors = process.stderr.read()
     process.wait(60)
     assert process.returncode == 0
-    assert tells(errors, "standard output", "Broken pipe")
+    assert is_line_with(errors, "standard output", "Broken pipe")
     with read_result(tmp_path / "table1_smooth.h5") as result:
         assert result.attrs["status"] == "done"
 
@@ -134,13 +134,13 @@ def test_a_working_folder_that_is_gone(tmp_path):
         ["sh", "-c", line], cwd=tmp_path / "gone", env=BARE | SCRIPT, capture_output=True, text=True
     )
     assert done.returncode == 2
-    assert tells(done.stderr, "working folder")
+    assert is_line_with(done.stderr, "working folder")
 
 
 def test_a_place_for_temporary_files_that_cannot_be_written(tmp_path):
     done = run(*STEADY, cwd=tmp_path, TMPDIR=str(tmp_path / "nowhere"))
     assert done.returncode == 2
-    assert tells(done.stderr, f"{tmp_path}/nowhere", "TMPDIR")
+    assert is_line_with(done.stderr, f"{tmp_path}/nowhere", "TMPDIR")
 
 
 def test_a_folder_removed_in_mid_run_is_seen(tmp_path):

@@ -5,7 +5,7 @@ import re
 import subprocess
 
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings, summary
 
 from ehlpetsc.errors import UsageError
@@ -103,8 +103,8 @@ def test_misspelt_own_options_are_refused_all_at_once(case, tmp_path):
     done = run(case, "-ehl_outptu", "f.h5", "-ehl_gibberish", cwd=tmp_path, ranks=2)
     assert done.returncode == 2
     unlike, near = done.stderr.splitlines()
-    assert tells(unlike, "-ehl_gibberish: ", f"-{', -'.join(OWN)}")
-    assert tells(near, "-ehl_outptu: ", "-ehl_output?")
+    assert is_line_with(unlike, "-ehl_gibberish: ", f"-{', -'.join(OWN)}")
+    assert is_line_with(near, "-ehl_outptu: ", "-ehl_output?")
     assert done.stdout == ""
     assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
 

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.running import BARE, SCRIPT, command, run, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
@@ -28,7 +28,7 @@ def test_the_same_case_is_made_again_and_another_is_refused(done):
     other = [*CASE, *settings("fluid.viscosity=0.004")]
     refused = run(*other, cwd=done)
     assert refused.returncode == 2 and path.read_bytes() == before
-    assert tells(
+    assert is_line_with(
         refused.stderr, "table1_smooth.h5: ", "another case", "-ehl_set", "-ehl_output", "-ehl_overwrite"
     )
     assert run(*other, "-ehl_overwrite", cwd=done).returncode == 0

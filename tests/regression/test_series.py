@@ -5,7 +5,7 @@ import shutil
 
 import h5py
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.running import SHORT, run, settings, summary
 
 from ehlpetsc.analysis import contact_statistics, ensemble
@@ -111,7 +111,7 @@ def test_a_rerun_does_only_what_is_missing(finished):
 def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
     (tmp_path / name).write_text("mine")
     refused = series(tmp_path, ranks=0)
-    assert refused.returncode == 2 and tells(
+    assert refused.returncode == 2 and is_line_with(
         refused.stderr, f"{name}: ", what, "-ehl_output", "-ehl_overwrite"
     )
     assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"

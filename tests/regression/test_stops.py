@@ -6,7 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.running import BARE, SCRIPT, SHORT, command, run, settings, summary
 
 from ehlpetsc.analysis.compare import compare
@@ -234,7 +234,7 @@ def test_a_full_disk_is_told_and_loses_nothing_that_was_stored(tmp_path):
     full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
     assert full.returncode == 2
     step, time = re.search(r"whole up to step (\d+) \((\S+) us\)", full.stderr).groups()
-    assert tells(
+    assert is_line_with(
         full.stderr,
         "table1_rough.h5: ",
         "File too large",

@@ -6,7 +6,7 @@ ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
 
 
-def tells(text, *parts):
+def is_line_with(text, *parts):
     """Whether a text is one line that holds all of these keys, names and figures, in whatever words."""
     return text.strip().count("\n") == 0 and all(str(part) in text for part in parts)
 

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.made_results import make_result
 from test_output import file_size_limit
 
@@ -108,7 +108,7 @@ def test_a_full_disk_leaves_the_older_picture(tmp_path, capsys, words, name):
     with file_size_limit(4096):
         assert plot([str(result), *words]) == 2
     (told,) = capsys.readouterr().err.splitlines()
-    assert tells(told, f"{tmp_path / name}: ", "File too large")
+    assert is_line_with(told, f"{tmp_path / name}: ", "File too large")
     assert (tmp_path / name).read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["one.h5", name])
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 
 from ehlpetsc import commands
 from ehlpetsc.results.reader import read_result
@@ -145,7 +145,7 @@ def test_help_names_the_command_as_it_was_called(monkeypatch, capsys, name, by_n
         assert not (by_name and f"-m {module} " in told)
     else:  # without a case
         told = capsys.readouterr().err
-        assert tells(told, f"{called} CASE.toml", f"{called} -help")
+        assert is_line_with(told, f"{called} CASE.toml", f"{called} -help")
 
 
 def test_the_names_of_the_commands_are_those_that_pip_makes():

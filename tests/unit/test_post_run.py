@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from support import ROOT, refused, tells
+from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus
@@ -232,7 +232,7 @@ def test_a_file_in_a_folder_of_others_is_not_read(tmp_path, capsys, monkeypatch)
 
     monkeypatch.setattr(Path, "stat", forbidden)
     assert main([str(tmp_path / "a.h5")]) == ExitStatus.BAD_INPUT
-    assert tells(capsys.readouterr().err, f"{tmp_path}/a.h5: ", "Permission denied")
+    assert is_line_with(capsys.readouterr().err, f"{tmp_path}/a.h5: ", "Permission denied")
 
 
 def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):

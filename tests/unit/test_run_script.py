@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 
 ECHO = """\
 import os, sys
@@ -90,7 +90,7 @@ def test_a_reader_that_goes_does_not_end_the_run(script, tmp_path):
     pipes = {"cwd": tmp_path, "env": {"PATH": "/usr/bin:/bin"}, "capture_output": True, "text": True}
     done = subprocess.run(["bash", "-c", line], timeout=60, **pipes)
     assert (done.returncode, done.stdout) == (0, "line 0\n")
-    assert tells(done.stderr, "standard output", "Broken pipe")
+    assert is_line_with(done.stderr, "standard output", "Broken pipe")
     assert (tmp_path / "end").exists()
 
 

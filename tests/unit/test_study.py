@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from support import tells
+from support import is_line_with
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import ExitStatus, PostError
@@ -42,7 +42,7 @@ def test_a_folder_that_cannot_be_written_is_told_before_anything_is_run(table_1,
     monkeypatch.setattr("os.access", lambda path, mode: False)
     assert study([str(table_1), *words, "-o", "somewhere"]) == ExitStatus.BAD_INPUT
     said = capsys.readouterr()
-    assert tells(said.err, "somewhere.csv: ", "another -o")
+    assert is_line_with(said.err, "somewhere.csv: ", "another -o")
     assert said.out == ""
 
 
@@ -50,7 +50,7 @@ def test_a_folder_that_cannot_be_written_is_told_before_anything_is_run(table_1,
 def test_a_table_that_cannot_be_written_ends_in_words(tmp_path, words, capsys):
     stem = tmp_path / "none" / "table"
     assert study([*words, "-o", str(stem)]) == ExitStatus.BAD_INPUT
-    assert tells(capsys.readouterr().err, f"{stem}.csv: ", "No such file or directory")
+    assert is_line_with(capsys.readouterr().err, f"{stem}.csv: ", "No such file or directory")
 
 
 @pytest.mark.parametrize("words", [[], ["--contact"]])
@@ -126,7 +126,7 @@ def test_a_travel_too_short_for_damage_is_refused_before_anything_is_run(table_1
     short += ["--set", "motion.slide_roll_ratio=0.25"]
     assert study([str(table_1), *words, *short]) == ExitStatus.BAD_INPUT
     surface, needed = ("1", "2.52") if words else ("2", "3.24")  # (2.5 + 1/50), over 0.875/1.125
-    assert tells(
+    assert is_line_with(
         capsys.readouterr().err, "--damage", "1 a", f"surface {surface}", "2.5 a", f"time.travel = {needed}"
     )
 
@@ -177,7 +177,7 @@ def test_a_reference_that_does_not_converge_ends_in_words(table_1, tmp_path, cap
     failed = Outcome(ExitStatus.NOT_CONVERGED, "step 3: no")
     monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: failed)
     assert study([str(table_1), "-o", str(tmp_path / "table")]) == ExitStatus.NOT_CONVERGED
-    assert tells(capsys.readouterr().err, "reference", "step 3: no")
+    assert is_line_with(capsys.readouterr().err, "reference", "step 3: no")
 
 
 def test_a_diagnosis_names_the_properties_of_the_contact(table_1):

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from support import ROOT, tells
+from support import ROOT, is_line_with
 from support.made_results import make_result, with_solids
 
 from ehlpetsc import command_parser, commands
@@ -60,7 +60,7 @@ def test_the_package_can_be_imported_by_a_script_of_any_folder(tmp_path):
 def test_a_mistyped_option_of_a_subcommand_ends_in_one_sentence(tmp_path):
     done = call("plot", "a.h5", "--mpa", cwd=tmp_path)
     assert done.returncode == 2
-    assert tells(done.stderr, "--mpa", "ehlpetsc plot -h")
+    assert is_line_with(done.stderr, "--mpa", "ehlpetsc plot -h")
 
 
 def test_completion_names_every_subcommand(monkeypatch, capsys):

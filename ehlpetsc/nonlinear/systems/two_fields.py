@@ -139,7 +139,7 @@ class TwoFields:
     def evaluate(self, x, reaches_bound=False):
         """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`.
 
-        `reaches_bound` of this rank is told all others by :attr:`bound_reached`.
+        :attr:`bound_reached` then holds whether `reaches_bound` is true on any rank.
         """
         self.x_evaluated = x.array_r.copy()
         with events.RESIDUAL:

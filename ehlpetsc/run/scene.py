@@ -1,0 +1,30 @@
+"""Scene of one pass of a case: what its effects are made from."""
+
+from dataclasses import replace
+
+from ehlpetsc.effects.effect import Scene
+from ehlpetsc.surfaces.roughness import SurfacePositions
+
+
+def scene_of(case, scales, operation, pass_number):
+    """Scene at the begin of a pass, `effects.effect.Scene`.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    operation : physics.operation.ConstantOperation
+    pass_number : int
+        From 1; surface 2 begins each pass by `time.pass_shift` further on.
+    """
+    one, other = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
+    shift = (pass_number - 1) * case.time.pass_shift if case.time else 0.0
+    positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(one, other + shift))
+    return Scene(case, scales, operation, positions, _heat_transfer)
+
+
+def _heat_transfer(scene):
+    """Steps of the temperatures of a scene."""
+    from ehlpetsc.discretisation.heat.step import HeatStep
+
+    return HeatStep(scene)
