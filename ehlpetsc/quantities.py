@@ -113,7 +113,7 @@ STEP_SCALARS = {
     "oil_pressure": StepScalar(
         "Pa", "greatest pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
     ),
-    "molecular_films": StepScalar(
+    "nodes_below_1nm": StepScalar(
         "1", "nodes out of contact under less than 1 nm of oil", dtype="i4", over_run="sum", only="fluid"
     ),
     "contact_share": StepScalar(

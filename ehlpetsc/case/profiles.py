@@ -4,9 +4,9 @@ from ehlpetsc.case.faults import show
 from ehlpetsc.case.tables.surface import SurfaceProfile
 from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import ProfileError
+from ehlpetsc.names import FORMER, SIDES
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.sides import FORMER, SIDES
 from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
 from ehlpetsc.surfaces.samples import layout_of, samples
 

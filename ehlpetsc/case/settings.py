@@ -5,7 +5,7 @@ import tomllib
 import tomlkit
 
 from ehlpetsc.case.toml_text import plain, toml_text
-from ehlpetsc.sides import stored_name
+from ehlpetsc.names import stored_name
 
 MAX_PARTS = 50  # of a dotted key: more than any case has
 

@@ -154,10 +154,10 @@ class EHLProblem:
         """Separation by the integral form, in a^2/R."""
         return h00 + 0.5 * self.x**2 + phi + self.deflection.integral(pressure)
 
-    def content(self, q, w):
-        r"""Film content :math:`\rho h(1-\theta)` of every node, None without oil."""
+    def mass_per_area(self, q, w):
+        r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
         state = self.model.state(q, w)
-        return self.reynolds.film_content(state.reynolds_unknown, state.film, self.fluid)
+        return self.reynolds.mass_per_area(state.reynolds_unknown, state.film, self.fluid)
 
     def evaluate(self, q, w, h00, inputs, sums=None):
         """Local rows and their derivatives at one state.

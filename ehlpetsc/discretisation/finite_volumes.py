@@ -23,7 +23,7 @@ OWN = 4  # place of q_i in a row, before h_i
 # What faces need of the nodes on both sides, rows of one array (a tuple of arrays costs ten times the loop):
 P, DP = 0, 1  # pressure in p0, dp/dq
 H = 2  # film [m]
-M, M_Q, M_H = 3, 4, 5  # film content rho h (1 - theta) in a^2/R, and its derivatives by q and h
+M, M_Q, M_H = 3, 4, 5  # mass per area rho h (1 - theta) in a^2/R, and its derivatives by q and h
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 LN_ETA_H = 10  # d ln(eta)/dh in R/a^2, through the film's temperature; 0 in isothermal films
@@ -60,7 +60,7 @@ def extrapolated(m, behind, k):
 
 
 @compiled
-def fill_content(i, q, h, density, p0, film, unit, at):
+def fill_mass(i, q, h, density, p0, film, unit, at):
     """Fill in all of node i but its viscosity, as in :func:`.reynolds.nodal`; return its pressure [Pa]."""
     p, left, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
     rho, rho_p = _compression(p0 * p, *density)
@@ -117,7 +117,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
 
 
 @compiled
-def balance(at, first, law, then, extrapolated, k, rate, imbalance, derivatives):
+def balance(at, first, law, then, extrapolated, k, rate, residual, derivatives):
     """Fill in the cells' mass balance, outflow less inflow and what is stored, and its derivatives.
 
     Parameters
@@ -132,17 +132,17 @@ def balance(at, first, law, then, extrapolated, k, rate, imbalance, derivatives)
         m and what is extrapolated over, of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
     k, rate : float
         Of the same, and the spacing over its step; 0: steady.
-    imbalance : ndarray, shape (cells,)
+    residual : ndarray, shape (cells,)
     derivatives : ndarray, shape (cells, 8)
         With respect to q and h of the nodes i-2 .. i+1.
     """
     first = unsigned(first)  # numba takes longer over indices that may be negative
     inflow = flux_through(at, first - ONE, *law)
-    for i in range(unsigned(len(imbalance))):
+    for i in range(unsigned(len(residual))):
         node, row = first + i, derivatives[i]
         outflow = flux_through(at, node, *law)
         stored, by_m, _ = positive_extrapolation(at[M, node], then[i], k)
-        imbalance[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
+        residual[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]
         row[2], row[3] = outflow[1] - inflow[3], outflow[2] - inflow[4]
         row[4] = outflow[3] - inflow[5] + by_m * at[M_Q, node] * rate

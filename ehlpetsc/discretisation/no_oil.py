@@ -27,7 +27,7 @@ class NoOil:
         self._derivatives = np.zeros((local, n_dofs(STENCIL)))
         self._derivatives[:, OWN] = 1.0
 
-    def film_content(self, q, h, fluid):
+    def mass_per_area(self, q, h, fluid):
         """There is none."""
         return None
 

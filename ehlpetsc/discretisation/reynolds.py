@@ -7,7 +7,7 @@ r"""Discrete Reynolds equation with mass-conserving cavitation.
 (Holmes et al. 2005, eq. (1), its sign turned), p the oil's pressure. One unknown q a node carries pressure
 and cavitation: p = max(q, 0), void fraction = max(-q, 0). Lengths in x are in
 half widths, films in a^2/R, pressures in p0; F is divided by u times a film scale, so that the sum
-over nodes is the relative mass imbalance.
+over nodes is the relative mass defect.
 
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 """
@@ -15,7 +15,6 @@ Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import full_of_oil
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     LN_ETA_H,
@@ -26,7 +25,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     M,
     balance,
     extrapolated,
-    fill_content,
+    fill_mass,
 )
 from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
 from ehlpetsc.physics import rheology
@@ -38,7 +37,7 @@ def mirrored(values):
 
 
 class FilmHistory:
-    r"""Film contents of the previous time levels: what BDF2 needs of the past.
+    r"""Masses per area of the film at the previous time levels, for BDF2.
 
     Parameters
     ----------
@@ -103,15 +102,10 @@ class Reynolds:
         both[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
         return both.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
 
-    def content(self, q, h, fluid):
-        r"""Film content :math:`\rho h(1-\theta)` and its derivatives with respect to q and h."""
-        full, (rho, drho) = full_of_oil(q), rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid)
-        left = 1.0 + np.minimum(q, 0.0)
-        return rho * left * h, np.where(full, drho * self.scales.p0, 1.0) * h, rho * left
-
-    def film_content(self, q, h, fluid):
-        r"""Film content :math:`\rho h(1-\theta)` of the nodes."""
-        return self.content(q, h, fluid)[0]
+    def mass_per_area(self, q, h, fluid):
+        r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
+        rho = rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
+        return rho * (1.0 + np.minimum(q, 0.0)) * h
 
     def properties(self, q, h, inputs):
         """Properties of the nodes that the local rows need, rows as in :mod:`.finite_volumes`."""
@@ -133,7 +127,7 @@ class Reynolds:
         return s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
 
     def evaluate(self, q, h, inputs):
-        """Imbalance F of the local rows and its derivatives.
+        """Residual F of the local rows and its derivatives.
 
         Parameters
         ----------
@@ -143,7 +137,7 @@ class Reynolds:
 
         Returns
         -------
-        imbalance : ndarray, shape (local nodes,)
+        residual : ndarray, shape (local nodes,)
         derivatives : ndarray, shape (local nodes, 8)
             With respect to the unknowns of `columns`, h the second one of a node.
         """
@@ -152,18 +146,18 @@ class Reynolds:
         then = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
             then = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
-        imbalance = np.empty(self.local.stop - self.local.start)
-        derivatives = np.zeros((len(imbalance), n_dofs(STENCIL)))
+        residual = np.empty(self.local.stop - self.local.start)
+        derivatives = np.zeros((len(residual), n_dofs(STENCIL)))
         inner = slice(int(self.has_inlet), None)
-        balance(at, first, law, *then, imbalance[inner], derivatives[inner])
+        balance(at, first, law, *then, residual[inner], derivatives[inner])
         if self.has_outlet:
             derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
             derivatives[-1, OWN + 2 :] = 0.0
-        imbalance /= self.film_scale
+        residual /= self.film_scale
         derivatives *= 1.0 / self.film_scale
         if self.has_inlet:
-            imbalance[0], derivatives[0, OWN : OWN + 2] = _inlet(q[0], h[0], inputs.inlet_film)
-        return imbalance, derivatives
+            residual[0], derivatives[0, OWN : OWN + 2] = _inlet(q[0], h[0], inputs.inlet_film)
+        return residual, derivatives
 
 
 def _inlet(q, h, oil_film):
@@ -197,7 +191,7 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     nodes = len(q)
     for i in range(at.shape[1]):
         here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
-        p = fill_content(i, here, gap, density, p0, film, unit, at)
+        p = fill_mass(i, here, gap, density, p0, film, unit, at)
         ln_eta, ln_eta_p = _power_law(p, *viscosity)
         at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
         at[LN_ETA_H, i] = 0.0

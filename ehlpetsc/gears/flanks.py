@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.sides import SIDES, stored_name
+from ehlpetsc.names import SIDES, stored_name
 
 FLANKS = ("pinion", "wheel")  # surfaces 1 and 2
 SHOWN = 4  # depths in the picture

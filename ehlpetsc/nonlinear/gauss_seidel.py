@@ -82,10 +82,6 @@ class GaussSeidelSolver:
         """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
         return self.rows
 
-    def mass_imbalance(self):
-        """F of the last solution at every node, shape (nx,)."""
-        return self.imbalance
-
     def solve(self, q, h, h00, inputs, max_it=None, watch=None):
         """Solve from a first guess.
 
@@ -138,10 +134,9 @@ class GaussSeidelSolver:
         with np.errstate(over="ignore", invalid="ignore"):
             evaluation = self.problem.evaluate(q, h, h00, inputs)
             rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
-            imbalance = w_of(rows, self.problem.n)
-            self.imbalance = imbalance.copy()
-            self.rows = q_of(rows, self.problem.n).copy(), self.imbalance, rows[-1]
-            imbalance[(h <= self.bound) & (self.imbalance > 0.0)] = 0.0
+            reynolds = w_of(rows, self.problem.n)
+            self.rows = q_of(rows, self.problem.n).copy(), reynolds.copy(), rows[-1]
+            reynolds[(h <= self.bound) & (reynolds > 0.0)] = 0.0
             return np.linalg.norm(rows)
 
     def _sweep(self, q, h, p, gap_is_open, inputs):
@@ -152,9 +147,9 @@ class GaussSeidelSolver:
         bend[1:-1] += stretch * (shape[:-2] - 2.0 * shape[1:-1] + shape[2:])
         relaxation = np.where(gap_is_open, IN_OPEN_GAP, 1.0 if steady else IN_FILM)
         relaxation[q <= 0.0] = 1.0
-        then = Linearised(q.copy(), h.copy(), self.imbalance, self.derivatives)
+        then = Linearised(q.copy(), h.copy(), self.rows[1], self.derivatives)
         deflection = DeflectionForm(-bend, self.kernel, stretch)
-        q[0] -= self.imbalance[0] / self.derivatives[0, 4]
+        q[0] -= self.rows[1][0] / self.derivatives[0, 4]
         p[0] = max(q[0], 0.0)
         for _ in range(sweeps):
             sweep(q, h, p, then, deflection, self.bound, relaxation)

@@ -127,10 +127,6 @@ class NewtonSolver:
         """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
         return self.system.residual()
 
-    def mass_imbalance(self):
-        """F of the last solution at every node, shape (nx,)."""
-        return self.residual()[1]
-
     def solve(self, q, w, h00, inputs, max_it=None, watch=None):
         """Solve from a first guess.
 

@@ -16,13 +16,13 @@ class Linearised(NamedTuple):
     ----------
     q, h : ndarray, shape (n,)
         That state.
-    imbalance, derivatives : ndarray, shape (n,), (n, 8)
+    residual, derivatives : ndarray, shape (n,), (n, 8)
         Rows, and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
     """
 
     q: np.ndarray
     h: np.ndarray
-    imbalance: np.ndarray
+    residual: np.ndarray
     derivatives: np.ndarray
 
 
@@ -58,13 +58,13 @@ def sweep(q, h, p, then, deflection, bound, relaxation):
         Least film.
     relaxation : ndarray, shape (n,)
     """
-    q_then, h_then, imbalance, derivatives = then
+    q_then, h_then, residual, derivatives = then
     bend, kernel, stretch = deflection
     n, near = len(q), len(kernel) // 2
     c, d = kernel[near], 2.0 * stretch
     for i in range(1, n):
         a, b = derivatives[i, 4], derivatives[i, 5]
-        r = a * q_then[i] + b * h_then[i] - imbalance[i]
+        r = a * q_then[i] + b * h_then[i] - residual[i]
         for k in range(4):
             j = i + k - 2
             if k != 2 and 0 <= j < n:

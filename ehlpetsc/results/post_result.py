@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.names import current_name, stored_name
 from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.hdf5.opening import open_for_reading
-from ehlpetsc.sides import current_name, stored_name
 
 SURFACES = ("2", "1")
 BOUNDS = tuple(f"{name}_{what}" for name in ("alpha", "beta") for what in ("likelihood", "low", "high"))

@@ -1,4 +1,4 @@
-"""Results read: fields and figures by name, of whole files and of those a killed run left behind."""
+"""Result files: fields and scalars by name, of complete files and of those that a killed run left."""
 
 from pathlib import Path
 
@@ -6,10 +6,10 @@ import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.names import current_name, stored_name
 from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.lazy_dataset import LazyDataset, reading
 from ehlpetsc.results.hdf5.opening import open_result
-from ehlpetsc.sides import current_name, stored_name
 
 CHECKED = 1024  # frames at a time
 OVER_NODES = ("x", "contact_count")
@@ -33,7 +33,7 @@ def _whole_rows(group, path):
 
 
 class Steps:
-    """Figures of every step by name: ``steps.h_min``, ``steps("h_min")``; arrays of shape (nsteps,).
+    """Scalars of every step by name: ``steps.h_min``, ``steps("h_min")``; arrays of shape (nsteps,).
 
     Attributes
     ----------
@@ -41,18 +41,19 @@ class Steps:
     """
 
     def __init__(self, group, count, path):
-        self._group, self._count, self._path, self.names = group, count, path, list(group)
+        self._group, self._count, self._path = group, count, path
+        self.names = [current_name(name) for name in group]
 
     def __call__(self, name):
-        if name not in self.names:
-            raise OutputError(f"{self._path}: has no figure {name} of its steps")
+        if current_name(name) not in self.names:
+            raise OutputError(f"{self._path}: has no scalar {name} of its steps")
         with reading(self._path, f"steps/{name}"):
-            return self._group[name][: self._count]
+            return self._group[stored_name(self._group, name)][: self._count]
 
     def __getattr__(self, name):
-        if name in self.__dict__.get("names", ()):
+        if current_name(name) in self.__dict__.get("names", ()):
             return self(name)
-        raise AttributeError(f"{name}: no figure of the steps; there are {', '.join(self.names)}")
+        raise AttributeError(f"{name}: no scalar of the steps; there are {', '.join(self.names)}")
 
     def __dir__(self):
         return [*super().__dir__(), *self.names]
@@ -70,10 +71,10 @@ class Result:
         Nodes [m].
     time, step : ndarray, shape (nt,)
         Times [s] and step numbers of the stored frames.
-    fields, figures : list of str
-        Names of the fields stored in every frame, and of the figures of every step.
+    fields, scalars : list of str
+        Names of the fields stored in every frame, and of the scalars of every step.
     steps : Steps
-        Figures of every step, stored or not.
+        Scalars of every step, stored or not.
     contact_count : ndarray, shape (nx,)
         Time steps in contact over the whole run.
     """
@@ -137,7 +138,7 @@ class Result:
         return f"<Result {self.attrs['title']!r}: {size}, {self.attrs['status']}; {', '.join(self.fields)}>"
 
     def to_xarray(self):
-        """Fields over (time, x) and figures over (step), with units, long names and the root attributes.
+        """Fields over (time, x) and scalars over (step), with units, long names and the root attributes.
 
         Returns
         -------

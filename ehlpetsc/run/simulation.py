@@ -174,7 +174,7 @@ class Simulation:
         effects = effects_of(self.scene, solution.records)
         self.stepper = TimeStepping(solver, self.scene, effects, self._film, baseline)
         records = {e.name: solution.records.get(e.name) or e.start() for e in effects}
-        m = solver.problem.content(solution.q, solution.w) if solution.m is None else solution.m
+        m = solver.problem.mass_per_area(solution.q, solution.w) if solution.m is None else solution.m
         self.solution = replace(solution, records=records, m=m)
 
     def advance(self, dt=None, watch=None):
@@ -211,7 +211,7 @@ class Simulation:
         return self.state
 
     def _check_ends(self, solution):
-        touching = self.stepper.problem.model.contact_mask(solution.w, solution.imbalance)
+        touching = self.stepper.problem.model.contact_mask(solution.w, solution.reynolds_residual)
         check_ends(self.scales.x, solution.p, touching)
 
     def _start(self, watch):

@@ -8,8 +8,8 @@ from ehlpetsc.effects.effect import Solution, Step
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.traction import shear_stresses
 
-MOLECULES = 1e-9  # m: films below it are of one or two molecules of oil
-ATOM = 1e-10  # m: least film that oil balances are held against
+MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
+MIN_BALANCE_FILM = 1e-10  # m: an atom; mass defects are relative to this film at least
 
 
 def diagnostics(scene, problem, effects, state, started):
@@ -31,7 +31,7 @@ def diagnostics(scene, problem, effects, state, started):
     in_contact : ndarray of bool, shape (nx,)
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
-    loads = problem.model.surface_loads(state.q, state.w, state.h, state.imbalance)
+    loads = problem.model.surface_loads(state.q, state.w, state.h, state.reynolds_residual)
     found = (
         e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case)
     )
@@ -94,10 +94,10 @@ def _fields(case, s, conditions, problem, state, loads, ln_eta):
 
 
 def _of_oil(loads, s):
-    """Largest pressure of the oil, and number of nodes under films of molecules."""
+    """Largest pressure of the oil, and number of nodes under less than 1 nm of it."""
     oil = np.where(loads.oil_mask, loads.oil_pressure, 0.0) * s.p0
-    molecular = ~loads.contact_mask & (loads.film * s.h < MOLECULES)
-    return {"oil_pressure": oil.max(), "molecular_films": int(molecular.sum())}
+    thin = ~loads.contact_mask & (loads.film * s.h < MIN_CONTINUUM_FILM)
+    return {"oil_pressure": oil.max(), "nodes_below_1nm": int(thin.sum())}
 
 
 def mean_film(scales, h):
@@ -117,6 +117,6 @@ def mass_error(problem, state):
     """
     if problem.fluid is None:
         return 0.0
-    made = problem.film_scale * np.abs(state.imbalance[1:]).sum()
+    made = problem.film_scale * np.abs(state.reynolds_residual[1:]).sum()
     carried = state.m[np.abs(problem.x) <= 1.0].mean()
-    return float(made / max(carried, ATOM / problem.scales.h))
+    return float(made / max(carried, MIN_BALANCE_FILM / problem.scales.h))

@@ -18,7 +18,7 @@ class State:
     p, h
         Pressure and film.
     m, m_older
-        Film contents of this level and the one before (None: none).
+        Masses per area of the film at this level and the one before (None: none).
     time, dt
         [s]; `dt` is the step to this level (None at the start).
     step
@@ -27,8 +27,8 @@ class State:
         Distances travelled by surfaces 1 and 2 since time 0 [m], signed.
     earlier
         The two levels before this one, latest first.
-    imbalance
-        Reynolds' rows F of the solution.
+    reynolds_residual
+        F of the Reynolds equation at the solution.
     records
         Records of the effects by their names, see :mod:`ehlpetsc.effects`.
     """
@@ -47,7 +47,7 @@ class State:
     earlier: tuple = ()
     newton: int = 0
     retries: int = 0
-    imbalance: np.ndarray = field(default=None, repr=False)
+    reynolds_residual: np.ndarray = field(default=None, repr=False)
     records: dict = field(default_factory=dict, repr=False)
 
     @property

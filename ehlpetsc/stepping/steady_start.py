@@ -68,7 +68,7 @@ def steady(solver, film, inputs, watch=None):
     q, w, h00, iterations = Continuation(solver, flooded, watch=watch).solve(
         hertz_start(problem, film, inputs)
     )
-    if problem.content(q, w)[-1] <= oil:
+    if problem.mass_per_area(q, w)[-1] <= oil:
         q[0] = min(oil / problem.model.state(q, w).film[0] - 1.0, 0.0)
         begin = q, w, h00
     else:

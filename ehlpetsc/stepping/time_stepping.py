@@ -70,10 +70,10 @@ class TimeStepping:
         return state
 
     def _steady(self, inputs, records, watch):
-        solution, newton, imbalance = self._inlet_first(
+        solution, newton, residual = self._inlet_first(
             inputs, lambda i: steady(self.solver, self.film, i, watch)
         )
-        state = self._state(solution, imbalance, self._step_end(), records, newton=newton)
+        state = self._state(solution, residual, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
 
     def _settled(self, state, inputs, before, watch):
@@ -85,13 +85,13 @@ class TimeStepping:
             before = state.records
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
-                solution, more, imbalance = self._inlet_first(
+                solution, more, residual = self._inlet_first(
                     again, lambda i, q, w, h00=state.h00: self._solve(i, q, w, h00, watch), state.q, state.w
                 )
             except SolveFailed as error:
                 raise NoSteadyStart(error, None, newton + error.iterations) from error
             newton += more
-            state = self._state(solution, imbalance, end, before, newton=newton)
+            state = self._state(solution, residual, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects", None, newton)
 
     def _inlet_first(self, inputs, solve, *nodal):
@@ -108,14 +108,14 @@ class TimeStepping:
         -------
         solution : (q, w, h00)
         iterations : int
-        imbalance : ndarray, shape (nx,)
-            Reynolds' rows at the solution.
+        residual : ndarray, shape (nx,)
+            Of the Reynolds equation at the solution.
         """
         if inputs.conditions.entrainment >= 0.0:
             *solution, iterations = solve(inputs, *nodal)
-            return solution, iterations, self.solver.mass_imbalance()
+            return solution, iterations, self.solver.residual()[1]
         q, w, h00, iterations = solve(inputs.mirrored(), *map(mirrored, nodal))
-        return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.mass_imbalance())
+        return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.residual()[1])
 
     def _start_by_time_stepping(self, records, watch):
         """State at time 0 of a film into which roughness at rest has grown by time steps before.
@@ -174,10 +174,10 @@ class TimeStepping:
             inputs = replace(inputs, phi=self._roughness_ramp(step.time) * inputs.phi)
         return step, inputs
 
-    def _state(self, solution, imbalance, end, records, **more):
+    def _state(self, solution, residual, end, records, **more):
         (q, w, h00), model = solution, self.problem.model
-        nodes, m = model.state(q, w), self.problem.content(q, w)
-        loads = model.surface_loads(q, w, nodes.film, imbalance)
+        nodes, m = model.state(q, w), self.problem.mass_per_area(q, w)
+        loads = model.surface_loads(q, w, nodes.film, residual)
         nodal = Solution(nodes, model.contact_pressure(w), loads)
         accepted = {e.name: e.accept(records[e.name], nodal, end) for e in self.effects}
         q, w = model.reset_yielding(q, w)
@@ -188,7 +188,7 @@ class TimeStepping:
             p=nodes.pressure,
             h=nodes.film,
             m=m,
-            imbalance=imbalance,
+            reynolds_residual=residual,
             time=end.time,
             dt=end.dt,
             travelled=end.travelled,
@@ -234,7 +234,7 @@ class TimeStepping:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
                 step, inputs = self.inputs(state, dt)
-                solution, iterations, imbalance = self._inlet_first(
+                solution, iterations, residual = self._inlet_first(
                     inputs, lambda i, q, w: self._solve(i, q, w, state.h00, watch), *guess
                 )
                 break
@@ -248,7 +248,7 @@ class TimeStepping:
                     ) from error
         return self._state(
             solution,
-            imbalance,
+            residual,
             step,
             state.records,
             m_older=state.m,

@@ -74,9 +74,9 @@ def test_solids_must_carry_where_they_touch():
     simulation = ehlpetsc.Simulation(case, options=TIGHT)
     simulation.advance()
 
-    def touching(imbalance):
+    def touching(residual):
         def change(q, w, rows):
-            w[CLOSED], rows[1][CLOSED] = 0.0, imbalance
+            w[CLOSED], rows[1][CLOSED] = 0.0, residual
 
         return change
 

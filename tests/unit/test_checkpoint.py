@@ -81,6 +81,15 @@ def test_the_same_case_gets_back_what_was_saved(tmp_path, model):
         np.testing.assert_allclose(one[1:], other[1:], rtol=1e-14, atol=1e-18)
 
 
+def test_totals_are_read_under_their_former_names(tmp_path):
+    scene = Scene()
+    scene.save(tmp_path / "f.restart.h5", *state_of(scene))
+    arrays, attributes = load_restart(tmp_path / "f.restart.h5")
+    save_restart(tmp_path / "g.restart.h5", arrays, attributes | {"total molecular_films": 5})
+    loaded, _ = scene.load(tmp_path / "g.restart.h5")
+    assert loaded.totals == TOTALS | {"nodes_below_1nm": 5}
+
+
 @pytest.mark.parametrize(
     "change", [("contact.load=1054e3", "contact.radius=0.00955"), ("contact.load=2108e3",)]
 )
@@ -200,7 +209,7 @@ DAMAGE = [
     (change("total newton", lambda v: np.inf), "total newton is inf"),
     (change("a", lambda v: 0.0), "a .half width"),
     (change("a", lambda v: 2.0 * v), "its nodes lie from"),
-    (lambda arrays, _: arrays.pop("m_older"), "its film contents m, m_older are missing"),
+    (lambda arrays, _: arrays.pop("m_older"), "m, m_older are missing"),
 ]
 
 

@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {
     "errors",
     "quantity",
-    "sides",
+    "names",
     "compiled",
     "environment",
     "command_parser",

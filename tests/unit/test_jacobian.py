@@ -83,7 +83,7 @@ def scene(name):
     w[touching] = system.model.w_from_state(np.zeros(1), np.full(1, 0.4))
     history = None
     if problem.fluid is not None:
-        m = problem.content(q, w)
+        m = problem.mass_per_area(q, w)
         history = FilmHistory(*(m * rng.uniform(0.6, 1.6, n) + 1e-6 for _ in range(2)), 0.01, 0.012)
     state = np.append(np.stack([q, w], axis=1).ravel(), H00)
     return Scene(solver, state, problem.inputs(1e-5 * rng.standard_normal(n), history), sorted(touching))

@@ -14,7 +14,7 @@ WITHIN = {
     "p_max": 1.2e9,
     "oil_pressure": 1.2e9,
     "mass_error": 1e-7,
-    "molecular_films": 0,
+    "nodes_below_1nm": 0,
 }
 
 
@@ -54,8 +54,8 @@ def test_nothing_is_said_where_no_step_was_taken():
         ({"oil_pressure": 9e9}, "viscosity: 5.0e+08"),
         ({"mass_error": 0.44}, "oil balance: in one step 44 % of the oil"),
         ({"mass_error": 101.3}, "oil balance: in one step 101 times the oil"),
-        ({"molecular_films": 7}, "film: 7 times a node"),
-        ({"molecular_films": 1}, "film: 1 time a node"),
+        ({"nodes_below_1nm": 7}, "film: 7 times a node"),
+        ({"nodes_below_1nm": 1}, "film: 1 time a node"),
     ],
 )
 def test_each_limit_is_told_with_its_figure(changed, words):

@@ -13,12 +13,13 @@ import pytest
 
 from ehlpetsc.analysis import compare, contact_statistics, ensemble
 from ehlpetsc.errors import OutputError
+from ehlpetsc.names import former_name
 from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import statistics
-from ehlpetsc.sides import former_name
+from ehlpetsc.results.totals import Totals
 
 OLDER = Path(__file__).parents[1] / "data" / "older"
 
@@ -62,6 +63,15 @@ def test_what_yielded_is_read(folder):
                 found["deepest"] == pytest.approx(row[former_name(side)]["deepest"], rel=1e-12)
                 and found["deepest"] > 0.0
             )
+
+
+def test_scalars_are_read_under_current_and_former_names(folder):
+    with read_result(folder / "passes.pass1.h5") as result:
+        thin = result.steps.nodes_below_1nm
+        np.testing.assert_array_equal(result.steps.molecular_films, thin)
+        np.testing.assert_array_equal(result["steps/nodes_below_1nm"][:], thin)
+        assert "nodes_below_1nm" in result.scalars and "molecular_films" not in result.scalars
+        assert Totals.of_result(result).values["nodes_below_1nm"] == thin.sum()
 
 
 def test_a_result_of_post_processing_is_read(folder):

@@ -36,7 +36,7 @@ def state(n):
 
 def with_history(inputs, reynolds, q, h):
     rng = np.random.default_rng(6)
-    m = reynolds.content(q, h, inputs.fluid)[0]
+    m = reynolds.mass_per_area(q, h, inputs.fluid)
     history = FilmHistory(m * rng.uniform(0.6, 1.6, len(m)), m * rng.uniform(0.6, 1.6, len(m)), 0.01, 0.012)
     return replace(inputs, history=history)
 

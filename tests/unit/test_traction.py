@@ -123,7 +123,7 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
     for left in (0.0, 1e-17, 1e-9):
         w = h / scales.h
         w[[30, 60]] = left
-        state = State(p / scales.p0, w, 0.0, h=w, m=w, imbalance=np.zeros_like(w))
+        state = State(p / scales.p0, w, 0.0, h=w, m=w, reynolds_residual=np.zeros_like(w))
         _, fields, touching = diagnostics(
             Scene(case, scales, operation_of(case, scales), None), problem, [], state, 0.0
         )

@@ -110,7 +110,7 @@ def flow(case, scales, state, left):
 
 
 def stored(state):
-    """What BDF2 keeps of the film content of equal steps, at every node."""
+    """Mass per area that BDF2 keeps with equal steps, at every node."""
     return np.maximum(state.m + 0.5 * (state.m - state.m_older), 0.5 * state.m)
 
 

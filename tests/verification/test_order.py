@@ -39,7 +39,7 @@ SCENE = (
 def solution(points, steps):
     """Film [um] and pressure [p0] in the window at the end, and how near the schemes came to their limiter.
 
-    The limiter of :func:`positive_extrapolation` acts where the film content halves within a
+    The limiter of :func:`positive_extrapolation` acts where the mass per area halves within a
     cell or a step: the last value is the least ratio, full film up to the end of the window.
     """
     scene = Scene("ridge.toml", f"mesh.points_per_half_width={points}", *SCENE).start()

@@ -31,8 +31,8 @@ def test_flow_out_of_contact_nodes_is_not_negative(states):
     _, found = states
     for _, state in found:
         touching = state.h == 0.0
-        assert state.imbalance[touching].min(initial=0.0) >= -TOLERANCE
-        assert np.linalg.norm(state.imbalance[~touching]) <= TOLERANCE
+        assert state.reynolds_residual[touching].min(initial=0.0) >= -TOLERANCE
+        assert np.linalg.norm(state.reynolds_residual[~touching]) <= TOLERANCE
 
 
 def test_what_the_default_tolerance_leaves(states):

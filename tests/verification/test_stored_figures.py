@@ -186,7 +186,7 @@ def test_figures_of_the_oil_and_of_thin_films(run):
         oil = np.where(touching, 0.0, result.pressure)
     np.testing.assert_allclose(steps.oil_pressure, oil.max(axis=1), rtol=1e-12)
     thin = ~touching & (result.film_thickness < 1e-9)
-    np.testing.assert_array_equal(steps.molecular_films, thin.sum(axis=1))
+    np.testing.assert_array_equal(steps.nodes_below_1nm, thin.sum(axis=1))
 
 
 def test_shares_and_lengths_of_mixed_contact(run):
@@ -225,9 +225,9 @@ def test_nodes_that_the_solver_leaves_out_are_flagged_and_their_oil_is_counted()
         left_out = state.in_contact & (state.solution.w > 0.0)
         assert (state.film_thickness[state.in_contact] == 0.0).all()
         above += left_out.sum()
-        imbalance = np.abs(state.solution.imbalance)
-        assert imbalance[~state.in_contact].max() < 1e-6
+        residual = np.abs(state.solution.reynolds_residual)
+        assert residual[~state.in_contact].max() < 1e-6
         if left_out.any():
-            lost = max(lost, imbalance[left_out].sum())
-            assert state.mass_error > 0.1 * imbalance[left_out].sum()
+            lost = max(lost, residual[left_out].sum())
+            assert state.mass_error > 0.1 * residual[left_out].sum()
     assert above > 10 and lost > 0.01

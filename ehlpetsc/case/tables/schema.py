@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 from ehlpetsc.case.tables.table import Table
 from ehlpetsc.case.tables.validation import Field, confloat, constr, root_validator, validator
+from ehlpetsc.names import current_name
 from ehlpetsc.quantities import FIELDS, STORED
-from ehlpetsc.sides import current_name
 
 DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_0-9]+)+$"  # a key below a table
 MAX_MEMBERS = 10_000  # of a series

@@ -4,7 +4,7 @@ from typing import Literal
 
 from ehlpetsc.case.tables.table import Table
 from ehlpetsc.case.tables.validation import Field, confloat, conint, root_validator, validator
-from ehlpetsc.sides import FORMER
+from ehlpetsc.names import FORMER
 
 Height = confloat(ge=1e-12, le=1e-2)
 Length = confloat(ge=1e-9, le=1.0)

@@ -7,7 +7,7 @@ upwind and implicit,
 .. math:: m_o(T_i-T_i^{old})\frac{\Delta x}{\Delta t}+(um)_{i-1/2}(T_i-T_{i-1})
    =\frac{\Delta x}{\rho c}[\ldots],
 
-:math:`m_o` the film content that the mass balance carries over. It produces no new extremes. With the mass
+:math:`m_o` the mass per area that the mass balance carries over. It produces no new extremes. With the mass
 balance it is a balance of heat in which oil that the pressure turns back in the inlet leaves with the
 temperature at which it turns.
 """
@@ -23,7 +23,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     H,
     M,
     P,
-    fill_content,
+    fill_mass,
     positive_extrapolation,
 )
 from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
@@ -46,7 +46,7 @@ def heated_nodal(q, h, density, p0, film, unit, heat, at):
     """
     nodes, law = len(q), heat.law
     for i in range(nodes):
-        p = fill_content(i, q[i], h[i], density, p0, film, unit, at)
+        p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
         walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
         of_node = heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
         left = 1.0 + min(q[i], 0.0)
@@ -58,7 +58,7 @@ def heated_nodal(q, h, density, p0, film, unit, heat, at):
         at[LN_ETA_P, i] = p0 * (by_p + by_t * t_p)
         at[LN_ETA_H, i] = film * by_t * t_h
     if at.shape[1] > nodes:
-        p = fill_content(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
+        p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
         ln_eta, by_p, _ = _log_viscosity(p, heat.guess[nodes - 1], law.pressure_law, law.thermal_law)
         at[FLUIDITY, nodes], at[LN_ETA_P, nodes] = np.exp(-ln_eta) / law.eta0, p0 * by_p
         at[LN_ETA_H, nodes] = 0.0

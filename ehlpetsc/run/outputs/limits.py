@@ -7,7 +7,7 @@ import numpy as np
 
 from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, flash_temperature
 from ehlpetsc.physics.rheology import viscosity
-from ehlpetsc.stepping.observables import MOLECULES
+from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
 from ehlpetsc.surfaces.profile import WAVE_NODES
 
@@ -86,12 +86,12 @@ def _balance(case, totals):
 
 
 def _molecules(totals):
-    count = totals["molecular_films"]
+    count = totals["nodes_below_1nm"]
     if not count:
         return None
     return (
-        f"film: {count} time{'s' * (count > 1)} a node out of contact had less than {1e9 * MOLECULES:g} nm "
-        "of oil, the size of a molecule or two, where oil is no continuum"
+        f"film: {count} time{'s' * (count > 1)} a node out of contact had less than "
+        f"{1e9 * MIN_CONTINUUM_FILM:g} nm of oil, the size of a molecule or two, where oil is no continuum"
     )
 
 

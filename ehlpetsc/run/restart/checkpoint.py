@@ -8,6 +8,7 @@ import numpy as np
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
+from ehlpetsc.names import current_name
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.series_index import flat_keys
 from ehlpetsc.run.restart.contents import RECORD, TOTAL, fault
@@ -140,7 +141,9 @@ def load(path, case, scales, model):
         earlier=_earlier(model, arrays),
         records=records,
     )
-    totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
+    totals = {
+        current_name(n.removeprefix(TOTAL)): v.item() for n, v in attributes.items() if n.startswith(TOTAL)
+    }
     notes = changes(earlier, tomllib.loads(case.text))
     smooth, number = _unknowns(model, arrays, "smooth_"), _pass_number(attributes)
     return Checkpoint(state, smooth, arrays["contact_count"], totals, positions, number), notes
@@ -197,7 +200,7 @@ def _misfit(arrays, attributes, earlier, case, scales):
         one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
         return f"a run {one} [fluid] cannot go on {other} it"
     if case.fluid is not None and attributes["dt"] and not {"m", "m_older"} <= arrays.keys():
-        return "damaged restart file: its film contents m, m_older are missing"
+        return "damaged restart file: its masses per area m, m_older are missing"
     for side, name, speed in (("1", "u1", scales.u1), ("2", "u2", scales.u2)):
         if case.surface.side(side) and np.sign(attributes[name]) != np.sign(speed):
             return (

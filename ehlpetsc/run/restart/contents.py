@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehlpetsc.effects import EFFECTS
+from ehlpetsc.names import current_name
 from ehlpetsc.quantities import STEP_SCALARS
 
 TOTAL = "total "  # before the names of totals among the attributes
@@ -54,7 +55,7 @@ ARRAYS = (
     | _state("earlier_", "one and two levels ago", "level")
     | {
         "earlier_travelled": Item("way of the film at these levels [m]", ("level",), needed=False),
-        "m": Item("film content in a^2/R", ("node",), 0.0, needed=False),
+        "m": Item("mass per area of the film in a^2/R", ("node",), 0.0, needed=False),
         "m_older": Item("one level ago", ("node",), 0.0, needed=False),
     }
 )
@@ -136,7 +137,7 @@ def _fault_of_totals(attributes):
     for name, value in attributes.items():
         if not name.startswith(TOTAL):
             continue
-        if name.removeprefix(TOTAL) not in STEP_SCALARS:
+        if current_name(name.removeprefix(TOTAL)) not in STEP_SCALARS:
             return f"unknown entry {name}"
         if not isinstance(value, int | float | np.integer | np.floating) or np.isinf(value):
             plain = value.item() if isinstance(value, np.generic) else value  # numpy 2 would print its type

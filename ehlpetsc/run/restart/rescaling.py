@@ -8,8 +8,8 @@ Fields stay where they are in x/a, the same node of the mesh. There
   :func:`ehlpetsc.physics.exact_solutions.hertz_gap`;
 * a cavity keeps its oil in metres, :math:`(1+q)h=r(1+q_0)h_0`.
 
-Earlier film contents do not apply to the new contact: the next step is one of backward Euler from the content
-of the present state, and earlier levels are left out.
+Earlier masses per area do not apply to the new contact: the next step is one of backward Euler from that of
+the present state, and earlier levels are left out.
 """
 
 import numpy as np
