@@ -4,24 +4,24 @@ A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.yielding` 
 points that face each other: to the softer one, or half to each where both yield at the same pressure.
 """
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.body_depth import BodyDepth
 from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
 
 
 class PlasticRecord(NamedTuple):
-    """Plastic deformation of both bodies; depth that the last step added at the nodes [m], shape (nx,)."""
+    """Plastic deformation of both bodies and its hidden part; what the last step added at the nodes [m]."""
 
     depth: BodyFields
     added: np.ndarray
+    hidden: BodyFields
 
 
-class PlasticDeformation(Effect):
+class PlasticDeformation(BodyDepth):
     """Depth of the plastic deformation, added to the gap and kept in the bodies."""
 
     name = "plastic_deformation"
@@ -56,12 +56,10 @@ class PlasticDeformation(Effect):
 
     def start(self, before=None):
         """No deformation, or that of the pass before."""
-        scales = self.scene.scales
-        return before or PlasticRecord(BodyFields.zero(scales.dx), np.zeros(scales.nx))
-
-    def inputs(self, record, inputs, step):
-        """Add both indentations to the gap."""
-        return replace(inputs, phi=inputs.phi + sum(self._at_nodes(record, step)) / self.scene.scales.h)
+        zero = BodyFields.zero(self.scene.scales.dx)
+        if before is None:
+            return PlasticRecord(zero, np.zeros(self.scene.scales.nx), zero)
+        return before._replace(hidden=self.ahead_of_profiles(before.depth))
 
     def accept(self, record, solution, step):
         """Add the depth of the step to both bodies."""
@@ -70,16 +68,10 @@ class PlasticDeformation(Effect):
             return record
         total = self.scene.scales.h * plastic.depth
         depths = [share * total for share in self._shares]
-        return PlasticRecord(self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths), total)
+        depth = self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths)
+        return PlasticRecord(depth, total, record.hidden)
 
     def observe(self, record, solution, step):
         """Indentations at the nodes, number of yielding nodes, volume."""
-        fields = dict(zip(self.fields, self._at_nodes(record, step), strict=True))
+        fields = dict(zip(self.fields, self.in_gap(record, step), strict=True))
         return fields, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}
-
-    def on_surfaces(self, record, points):
-        """Indentation along both surfaces."""
-        return {"set": self.scene.mesh_on_bodies.at_points(record.depth, points)}
-
-    def _at_nodes(self, record, step):
-        return self.scene.mesh_on_bodies.means(record.depth, step.travelled)

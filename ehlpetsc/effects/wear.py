@@ -7,10 +7,9 @@ the pressure of the solids in mixed contact and :math:`k_i` the specific wear ra
 coefficient over the hardness. Implicit in time: a step wears with the pressure at its end.
 """
 
-from dataclasses import replace
 from typing import NamedTuple
 
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.body_depth import BodyDepth
 from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
 
@@ -33,12 +32,13 @@ def wear_depth(coefficient, contact_pressure, sliding, dt):
 
 
 class WearRecord(NamedTuple):
-    """Wear depth of both bodies."""
+    """Wear depth of both bodies, and its hidden part."""
 
     depth: BodyFields
+    hidden: BodyFields
 
 
-class Wear(Effect):
+class Wear(BodyDepth):
     """Wear depth, added to the gap and kept in the bodies."""
 
     name = "wear"
@@ -65,11 +65,10 @@ class Wear(Effect):
 
     def start(self, before=None):
         """No wear, or that of the pass before."""
-        return before or WearRecord(BodyFields.zero(self.scene.scales.dx))
-
-    def inputs(self, record, inputs, step):
-        """Add both wear depths to the gap."""
-        return replace(inputs, phi=inputs.phi + sum(self._at_nodes(record, step)) / self.scene.scales.h)
+        zero = BodyFields.zero(self.scene.scales.dx)
+        if before is None:
+            return WearRecord(zero, zero)
+        return before._replace(hidden=self.ahead_of_profiles(before.depth))
 
     def accept(self, record, solution, step):
         """Wear both surfaces where the solids carry."""
@@ -77,16 +76,9 @@ class Wear(Effect):
             return record
         pressure, sliding = self.scene.scales.p0 * solution.contact_pressure, step.conditions.sliding
         depths = [wear_depth(k, pressure, sliding, step.dt) for k in self.scene.case.wear.coefficient]
-        return WearRecord(self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
+        return record._replace(depth=self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
 
     def observe(self, record, solution, step):
         """Wear depths at the nodes and worn volume."""
-        fields = dict(zip(self.fields, self._at_nodes(record, step), strict=True))
+        fields = dict(zip(self.fields, self.in_gap(record, step), strict=True))
         return fields, {"wear_volume": record.depth.volume}
-
-    def on_surfaces(self, record, points):
-        """Wear depth along both surfaces."""
-        return {"wear": self.scene.mesh_on_bodies.at_points(record.depth, points)}
-
-    def _at_nodes(self, record, step):
-        return self.scene.mesh_on_bodies.means(record.depth, step.travelled)

@@ -92,7 +92,7 @@ class Positions:
             faces = np.concatenate([scene.mesh_on_bodies.faces(way)[k][[0, -1]] for way in ends])
             stretch = self._stretch(body, k, position)
             fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged))
-        records = {"wear": WearRecord(BodyFields(*fields))}
+        records = {"wear": WearRecord(BodyFields(*fields), BodyFields.zero(self.scales.dx))}
         return records | ({"plastic_deformation": plastic} if plastic else {})
 
     @property

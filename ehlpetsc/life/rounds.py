@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.effects.plastic_deformation import PlasticRecord
 from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
@@ -111,7 +110,7 @@ class Round(NamedTuple):
         if records[0] is None:
             return None
         depth = BodyFields(*(_deepest([record.depth[k] for record in records]) for k in range(2)))
-        return PlasticRecord(depth, records[-1].added)
+        return records[-1]._replace(depth=depth)
 
     def figures(self):
         """Friction and share of the solids, means over the round; largest pressure [Pa]."""

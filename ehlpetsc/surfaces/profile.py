@@ -94,6 +94,10 @@ class Profile:
         mean = self._level + np.diff(self._integral(X + self._begin)) / np.diff(X)
         return self._entry_factor(0.5 * (X[1:] + X[:-1])) * mean if self.is_moving else mean
 
+    def entered(self, s):
+        """Share of the heights that has come in at body points s [m]: 0 ahead of the profile."""
+        return self._entry_factor(self._sign * (s - self._origin))
+
     def extremes_of_cells(self, cell):
         """Lowest and highest mean height [m] over cells of a mesh, wherever they lie on the profile.
 
