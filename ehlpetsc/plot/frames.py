@@ -129,7 +129,7 @@ def instant(results, indices):
 def pressure_and_film(axes, results, indices, colours, window):
     """Pressure above, film below; of a single result its contacts and what the solids carry of the pressure.
 
-    The film axis ends above the thickest film inside the contact, or in view if that is elsewhere.
+    The film axis ends above the thickest film inside the contact, or in view where it is closed or elsewhere.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def pressure_and_film(axes, results, indices, colours, window):
     """
     upper, lower = axes
     _hertz(upper, results, colours, window)
-    highest, thickest = 0.0, 1e-3
+    highest, thickest = 0.0, 0.0
     for number, (result, index, colour) in enumerate(zip(results, indices, colours, strict=True)):
         style = dict(color=colour, lw=1.1, ls="--" if number == 1 and len(results) == 2 else "-")
         x = result.x / result.attrs["a"]
@@ -153,7 +153,7 @@ def pressure_and_film(axes, results, indices, colours, window):
         shown = (x >= window[0]) & (x <= window[1])
         inside = shown & (np.abs(x) <= 1.0)
         highest = max(highest, pressure[shown].max())
-        thickest = max(thickest, film[inside if inside.any() else shown].max())
+        thickest = max(thickest, film[inside].max(initial=0.0) or film[shown].max())
         if len(results) == 1:
             if "contact_pressure" in result:
                 solids = 1e-9 * result.frame("contact_pressure", index)
@@ -166,7 +166,7 @@ def pressure_and_film(axes, results, indices, colours, window):
     upper.set_ylabel(PRESSURE)
     upper.set_ylim(0.0, 1.05 * highest or 1.0)
     lower.set_ylabel(FILM if any(map(lubricated, results)) else GAP)
-    lower.set_ylim(0.0, 1.15 * thickest)
+    lower.set_ylim(0.0, 1.15 * thickest or 1.0)
     lower.set_xlabel(ACROSS)
     lower.set_xlim(*window)
 

@@ -307,6 +307,18 @@ def test_a_dry_contact_has_a_gap_and_no_flow(tmp_path, drawn):
     assert lower.get_legend().texts[0].get_text() == "gap"
 
 
+def test_the_gap_beside_a_closed_contact_is_in_view(tmp_path):
+    path = make_result(tmp_path / "closed.h5")
+    with h5py.File(path, "r+", libver="latest") as file:
+        inside = np.abs(file["x"][:]) <= A
+        file["film_thickness"][:, inside] = 0.0
+    figure = Figure()
+    with read_result(path) as closed:
+        beside = 1e6 * closed.frame("film_thickness", 0)[np.abs(closed.x) <= 1.2 * A].max()
+        drawing.pressure_and_film(figure.subplots(2), [closed], [0], ["k"], (-1.2, 1.2))
+    assert beside > 0.0 and figure.axes[1].get_ylim() == pytest.approx((0.0, 1.15 * beside))
+
+
 def test_no_solids_no_entry_of_theirs(tmp_path):
     path = with_solids(make_result(tmp_path / "m.h5"))
     with h5py.File(path, "r+", libver="latest") as file:
