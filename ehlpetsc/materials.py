@@ -12,6 +12,11 @@ the others those of Roessle and Fatemi (2000), Int. J. Fatigue 22, 495, from the
 with :math:`n'=b/c` and :math:`K'=\sigma_f'/\varepsilon_f'^{n'}`, so that both curves agree. The estimates
 are checked against a published application of the method to another steel (Metals 15 (2025) 780, table of
 the Roessle-Fatemi method); the original article itself was not available.
+
+Hardnesses are nominal, of the condition that the `source` of a steel names, and from data sheets that quote
+the standards, not from these: EN 10084 for 16MnCr5 (Akrostal: at least 60 HRC carburised, quenched and
+tempered), EN ISO 683-17 for 100Cr6 (Lucefin: 62 HRC tempered at 250 C, 59 HRC at 300 C), DIN 50150 for
+42CrMo4 (995 MPa: 310 HV, 295 HB, 31 HRC). For 18CrNiMo7-6 the hardness is assumed to be that of 16MnCr5.
 """
 
 from dataclasses import dataclass
@@ -21,7 +26,7 @@ PLASTIC_STRAIN = 0.002  # at which the cyclic yield stress is read
 FLOW_FACTOR = (2 + pi) / sqrt(3)  # 2.97
 HRC_60 = 654  # HB of 60 HRC, ASTM E140
 ISO_MODULUS = 206e9  # Pa, ISO 6336-2
-CASE_HARDENED = "case-hardened surface of 60 HRC (ISO 6336-5: 58 to 64); constants from hardness"
+CASE_HARDENED = "case-hardened surface, nominally 60 HRC (EN 10084); constants from hardness"
 
 
 @dataclass(frozen=True)
@@ -114,17 +119,19 @@ def steel_of_hardness(hardness, youngs_modulus, source, poisson_ratio=0.3):
 
 STEELS = {
     "16MnCr5": steel_of_hardness(HRC_60, ISO_MODULUS, CASE_HARDENED),
-    "18CrNiMo7-6": steel_of_hardness(HRC_60, ISO_MODULUS, CASE_HARDENED),
+    "18CrNiMo7-6": steel_of_hardness(
+        HRC_60, ISO_MODULUS, "case-hardened surface, 60 HRC assumed as of 16MnCr5; constants from hardness"
+    ),
     "100Cr6": steel_of_hardness(
-        HRC_60, 207e9, "hardened to 60 HRC (bearings: 58 to 65); constants from hardness"
+        HRC_60, 207e9, "hardened, tempered at 250 to 300 C, nominally 60 HRC; constants from hardness"
     ),
     "42CrMo4": steel_of_hardness(
         295,
         ISO_MODULUS,
-        "quenched and tempered to 1000 MPa (EN ISO 683-2), 295 HB by ISO 18265; constants from hardness",
+        "quenched and tempered to 1000 MPa, nominally 295 HB (DIN 50150); constants from hardness",
     ),
     "SAE4340": Steel(
-        "Holmes, Qiao, Evans and Snidle (2005), Table 1; n' as in the paper, K' from both curves",
+        "Holmes, Qiao, Evans and Snidle (2005), Table 1; no hardness; n' of the paper, K' from both curves",
         207e9,
         0.3,
         None,

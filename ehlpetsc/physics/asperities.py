@@ -6,9 +6,10 @@ asperities that a nominally flat rough surface carries
 .. math:: p_c(h)=\beta E^*e^{-h/(\gamma\sigma)},\qquad E^*=E'/2,
 
 at the mean separation h, :math:`\sigma` the rms height. Akarapu, Sharp and Robbins (2011, Phys. Rev. Lett.
-106, 204301) find the same exponential, and area and stiffness linear in the load, in simulations with many
-Hurst exponents, system sizes and Poisson ratios. Of both letters only the abstracts were available, which
-state these laws; no equation number is quoted from them, and the constants are not theirs.
+106, 204301; arXiv:1011.1479) find the same exponential, and area and stiffness linear in the load, in
+simulations with many Hurst exponents, system sizes and Poisson ratios. Of both letters only the abstracts
+were available, which state these laws; no equation number is quoted from them, and the constants are not
+theirs.
 
 Both constants are evaluated here from :math:`p=-dU/dh` with the energy of Yang and Persson (2008, J. Phys.:
 Condens. Matter 20, 215214), as Almqvist, Campana, Prodanov and Persson (2011, J. Mech. Phys. Solids 59,

@@ -32,7 +32,7 @@ def mean_line(x, z, cutoff, key):
     :math:`\alpha=\sqrt{\ln 2/\pi}`: of a wave of length :math:`\lambda` it passes
     :math:`2^{-(\lambda_c/\lambda)^2}` of the amplitude, half at the cut-off. At the ends the profile is
     mirrored, as it is when it is run; a cosine transform then gives the convolution exactly, however short
-    the cut-off.
+    the cut-off. (ISO drops half a cut-off at either end, where a slope makes a kink of what is mirrored.)
 
     Parameters
     ----------
