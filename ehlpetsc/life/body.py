@@ -1,5 +1,6 @@
 """A body over its life: wear, pits and damage in columns of cells below its surface."""
 
+from bisect import bisect_left
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,8 @@ class LifeBody(NamedTuple):
         Columns in which failed cells have reached the surface.
     volume : float
         Worn off since the first pass, beyond the columns too [m^2].
+    wear_rate, damage_rate, volume_rate
+        Of a pass at the begin of the last jump: [m] and 1, shapes (n,) and (cells, n), and [m^2].
     """
 
     s: np.ndarray
@@ -39,15 +42,17 @@ class LifeBody(NamedTuple):
     damage: np.ndarray
     failed: np.ndarray
     is_pitted: np.ndarray
-    volume: float = 0.0
+    volume: float
+    wear_rate: np.ndarray
+    damage_rate: np.ndarray
+    volume_rate: float
 
     @classmethod
     def new(cls, s, height, edges):
         """Without wear and damage."""
-        cells, zero = (len(edges) - 1, len(s)), np.zeros(len(s))
-        return cls(
-            s, edges, height, zero, zero, np.zeros(cells), np.full(cells, np.inf), np.zeros(len(s), bool)
-        )
+        zero, cells = np.zeros(len(s)), np.zeros((len(edges) - 1, len(s)))
+        never = np.full_like(cells, np.inf)
+        return cls(s, edges, height, zero, zero, cells, never, zero > 0.0, 0.0, zero, cells, 0.0)
 
     @property
     def recession(self):
@@ -73,6 +78,10 @@ class LifeBody(NamedTuple):
     def pits(self):
         """Number of pits."""
         return laws.number_of_pits(self.is_pitted)
+
+    def broken_out_since(self, other):
+        """Number of columns that have broken out since another state of the body."""
+        return int(np.count_nonzero(self.pit > other.pit))
 
     @property
     def is_there(self):
@@ -158,26 +167,61 @@ class LifeBody(NamedTuple):
             to_come = np.nan_to_num(np.cumsum(added * thickness, axis=0) / wear.mean(), posinf=np.inf)
         return float(np.max(self.damage + to_come, initial=0.0, where=self.is_there))
 
-    def after(self, wear, added, passes, done, breaks, volume):
+    def passes_to(self, rates, wear, damage):
+        """Passes after which a column has worn by a depth [m], or an intact cell has got so much damage.
+
+        Parameters
+        ----------
+        rates : rates.Rates
+        wear, damage : float
+        """
+        intact = self.is_there & (self.damage < 1.0)
+        reached = rates.passes_to_damage(damage)
+        return min(rates.passes_to_wear(wear).min(), np.min(reached, initial=np.inf, where=intact))
+
+    def passes_to_break_out(self, rates, most):
+        """Passes after which the first cells break out, `most` where none do before.
+
+        Parameters
+        ----------
+        rates : rates.Rates
+        most : int
+        """
+
+        def breaks(passes):
+            wear, added, _ = rates.after(passes)
+            recession = self.recession + wear
+            return bool((laws.broken_out(self.damage + added, self.edges, recession) > recession).any())
+
+        if not breaks(most):
+            return most
+        levels = np.array([1.0, laws.WEAKENED])[:, None, None] - self.damage
+        times = rates.passes_to_damage(np.maximum(levels, 0.0))
+        times = np.unique(np.floor(times[times < most]) + 1.0)
+        return int(times[bisect_left(times, True, hi=len(times) - 1, key=breaks)])
+
+    def after(self, rates, passes, done, breaks):
         """The body after a jump.
 
         Parameters
         ----------
-        wear, added : ndarray
-            As of `rates`.
+        rates : rates.Rates
         passes, done : int
             Passes of the jump, and before it.
         breaks : bool
             Whether failed cells break out; else they are counted.
-        volume : float
-            Worn off by one pass [m^2].
         """
-        failed = np.minimum(self.failed, laws.failures(self.damage, added, passes, done))
+        wear, added, volume = rates.after(passes)
+        fails = (self.damage < 1.0) & (self.damage + added >= 1.0)
+        failed = np.where(fails, done + rates.passes_to_damage(1.0 - self.damage), np.inf)
         body = self._replace(
-            wear=self.wear + passes * wear,
-            damage=self.damage + passes * added,
-            failed=failed,
-            volume=self.volume + passes * volume,
+            wear=self.wear + wear,
+            damage=self.damage + added,
+            failed=np.minimum(self.failed, failed),
+            volume=self.volume + volume,
+            wear_rate=rates.wear,
+            damage_rate=rates.damage,
+            volume_rate=rates.volume,
         )
         bottom = laws.broken_out(body.damage, body.edges, body.recession)
         is_new = bottom > body.recession

@@ -151,14 +151,24 @@ class _Life:
         from ehlpetsc.run.on_root import on_root
 
         done = self.history.done
-        bodies, jump, rates = self.jumps.take(bodies, one, done)
+        after, jump, rates = self.jumps.take(bodies, one, done, self._smooth_since(one))
         row = {"passes": done + jump, "jump": jump, "solved": len(one.passes), "yielded": one.yielded}
+        row["broken_out"] = sum(new.broken_out_since(old) for new, old in zip(after, bodies, strict=True))
         row |= one.figures()
-        for k, (body, (wear, added, _)) in enumerate(zip(bodies, rates, strict=True), 1):
-            row[f"damage_ahead_{k}"] = body.damage_ahead(wear, added)
+        for k, (body, rate) in enumerate(zip(after, rates, strict=True), 1):
+            row[f"damage_ahead_{k}"] = body.damage_ahead(rate.wear, rate.damage)
             row |= {f"pits_{k}": body.pits, f"pitted_share_{k}": body.pitted_share, f"ra_{k}": body.ra}
             row |= {f"wear_volume_{k}": body.volume, f"damage_{k}": body.largest_damage}
-            row |= {f"wear_rate_{k}": float(wear.max()), f"damage_rate_{k}": float(added.max())}
+            row |= {f"wear_rate_{k}": float(rate.wear.max()), f"damage_rate_{k}": float(rate.damage.max())}
         plastic = flat(one.plastic, "plastic_deformation") if one.plastic else {}
-        self.history.add(row, bodies, plastic)
+        self.history.add(row, after, plastic)
         on_root(self.comm, self.file.store, self.history)
+
+    def _smooth_since(self, one):
+        """Passes of the last jump; 0 where its rates do not lead smoothly to those of this round."""
+        if not self.history.rows:
+            return 0
+        last = self.history.rows[-1]
+        parted = last["broken_out"] or last["solved"] != len(one.passes)
+        yields = self.jumps.is_yielding(max(last["yielded"], one.yielded))
+        return 0 if parted or yields else int(last["jump"])

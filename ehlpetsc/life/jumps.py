@@ -1,9 +1,8 @@
 """Jumps: both bodies after many passes like those of a solved round, and how many rounds are to come."""
 
-import numpy as np
+from ehlpetsc.life.rates import LONGER
 
-from ehlpetsc.life import laws
-
+AWAITED = 1.1  # times what is allowed: a break-out so late still ends the jump
 MOST_EXPECTED = 200  # rounds looked ahead one by one
 
 
@@ -25,8 +24,8 @@ class Jumps:
         """Whether passes yield so much [m] that each is solved: plastic deformation is not multiplied."""
         return yielded > self.wear_allowed
 
-    def take(self, bodies, one, done):
-        """Jump with a solved round.
+    def take(self, bodies, one, done, before=0):
+        """Jump with a solved round, until what is allowed is worn or damaged or a cell breaks out.
 
         Parameters
         ----------
@@ -34,30 +33,47 @@ class Jumps:
         one : rounds.Round
         done : int
             Passes before it.
+        before : int
+            Passes of the jump before, where rates go on from it smoothly.
 
         Returns
         -------
         bodies : pair of body.LifeBody
         jump : int
             Passes of the jump, those of the round among them.
-        rates : pair of (ndarray, ndarray, float)
-            As of `rounds.Round.rates`.
+        rates : pair of rates.Rates
         """
-        rates, left = one.rates(bodies), self.passes - done
-        jump = left
-        for body, (wear, added, _) in zip(bodies, rates, strict=True):
-            there = np.where(body.is_there, body.damage, np.nan)
-            allowed = self.wear_allowed, self.life.damage_jump
-            jump = laws.passes_to_jump(jump, wear, allowed[0], added, there, allowed[1])
-        jump = min(left, max(1 if self.is_yielding(one.yielded) else jump, len(one.passes)))
-        after = tuple(
-            body.after(wear, added, jump, done, self.life.pits, volume)
-            for body, (wear, added, volume) in zip(bodies, rates, strict=True)
+        rates, most = one.rates(bodies), self.passes - done
+        if before:
+            rates = tuple(
+                rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before)
+                for rate, body in zip(rates, bodies, strict=True)
+            )
+            most = min(most, int(LONGER * before))
+        jump = self._allowed(bodies, rates, one, most)
+        return self._after(bodies, rates, jump, done), jump, rates
+
+    def _after(self, bodies, rates, jump, done):
+        return tuple(
+            body.after(rate, jump, done, self.life.pits) for body, rate in zip(bodies, rates, strict=True)
         )
-        return after, jump, rates
+
+    def _allowed(self, bodies, rates, one, left):
+        """Passes until what is allowed is worn or damaged or a cell breaks out, `left` at most."""
+        most = 1 if self.is_yielding(one.yielded) else left
+        for body, rate in zip(bodies, rates, strict=True):
+            most = min(most, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
+        most = max(int(most), 1)
+        if self.life.pits:
+            late = min(left, int(AWAITED * most))
+            ends = min(body.passes_to_break_out(rate, late) for body, rate in zip(bodies, rates, strict=True))
+            most = ends if ends < late else most
+        return min(left, max(most, len(one.passes)))
 
     def expected_rounds(self, bodies, one, done):
         """Rounds to be solved until the life is over, if all are like this one.
+
+        Columns that break out on the way are taken to carry no more: a pit relieves them.
 
         Parameters
         ----------
@@ -65,8 +81,13 @@ class Jumps:
         one : rounds.Round
         done : int
         """
-        rounds, jump = 0, 1
+        rounds, jump, begin = 0, 1, bodies
         while done < self.passes and rounds < MOST_EXPECTED:
-            bodies, jump, _ = self.take(bodies, one, done)
+            rates = tuple(
+                rate.without(body.pit > new.pit)
+                for rate, body, new in zip(one.rates(bodies), bodies, begin, strict=True)
+            )
+            jump = self._allowed(bodies, rates, one, self.passes - done)
+            bodies = self._after(bodies, rates, jump, done)
             rounds, done = rounds + 1, done + jump
         return rounds + -(-(self.passes - done) // jump)

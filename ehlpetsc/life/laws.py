@@ -11,36 +11,29 @@ import numpy as np
 FINE_CELLS = 12  # cells of equal thickness below the surface as made
 GROWTH = 1.25  # of the thickness of the cells below them
 
+WEAKENED = 0.9  # damage from which cells break out with a failed one
 
-def passes_to_jump(left, wear, wear_allowed, added, damage, damage_allowed):
-    r"""Number of passes for which one solved pass may stand.
 
-    .. math:: N = \max(1, \min(\Delta r/\max dr, \Delta D/\max D, N_\mathrm{left}))
+def sum_over(passes, rate, slope):
+    """Sum over passes of a rate that changes by `slope` from pass to pass."""
+    return passes * rate + 0.5 * passes**2 * slope
+
+
+def passes_to(amount, rate, slope):
+    r"""Number of passes after which the sum of a changing rate has an amount; inf: never.
+
+    .. math:: t=\frac{2c}{f\,(1+\sqrt{1+2sc/f^2})}\quad\text{of}\quad c = ft+\tfrac12st^2
 
     Parameters
     ----------
-    left : int
-        Passes to go.
-    wear : ndarray
-        Depth by which a pass wears each column [m].
-    wear_allowed : float
-        Depth of wear in one jump [m].
-    added, damage : ndarray, shape (cells, columns)
-        D of a pass and the sum so far. Cells that have failed or are gone do not count.
-    damage_allowed : float
-        Damage in one jump.
-
-    Returns
-    -------
-    int
+    amount, rate, slope : float or ndarray
+        c > 0, f >= 0 and s.
     """
-    intact = (damage < 1.0) & np.isfinite(damage)
-    rates = (
-        np.max(wear, initial=0.0) / wear_allowed,
-        np.max(added, initial=0.0, where=intact) / damage_allowed,
-    )
-    fastest = max(rates)
-    return int(max(1, min(left, 1.0 / fastest if fastest * left > 1.0 else left)))
+    positive = np.where(np.asarray(rate) > 0.0, rate, 1.0)
+    constant = amount / positive
+    root = 1.0 + 2.0 * slope * constant / positive
+    found = 2.0 * constant / (1.0 + np.sqrt(np.maximum(root, 0.0)))
+    return np.where((np.asarray(rate) > 0.0) & (root >= 0.0), found, np.inf)
 
 
 def cell_edges(thickness, deepest):
@@ -105,23 +98,11 @@ def damage_at(depths, damage, at):
     return np.where(known & (z <= depths[-1]), found, 0.0)
 
 
-def failures(damage, added, passes, done):
-    """Numbers of passes after which cells fail within a jump; inf where they do not, or did before.
-
-    Parameters
-    ----------
-    damage, added : ndarray
-        Sum before the jump, and D of a pass.
-    passes, done : int
-        Passes of the jump, and before it.
-    """
-    fails = (damage < 1.0) & (damage + passes * added >= 1.0)
-    rate = np.where(fails, added, 1.0)
-    return np.where(fails, done + (1.0 - damage) / rate, np.inf)
-
-
 def broken_out(damage, edges, recession):
     """Depths to which columns break out: failed cells connected with the surface, and all above them.
+
+    A crack takes the weakened cells with it that are connected with the failed one: they carry on alone
+    for few passes, and a pit is as deep as they reach, however long the jump in which it appears.
 
     Parameters
     ----------
@@ -142,11 +123,11 @@ def broken_out(damage, edges, recession):
     failed = there & (damage >= 1.0)
     if not failed.any():
         return np.array(recession, float)
-    numbers, _ = label(failed)
+    numbers, _ = label(there & (damage >= WEAKENED))
     top = there.argmax(axis=0)
     columns = np.arange(damage.shape[1])
-    at_surface = np.unique(numbers[top, columns][there.any(axis=0)])
-    breaks = np.isin(numbers, at_surface[at_surface > 0])
+    at_surface = numbers[top, columns][there.any(axis=0)]
+    breaks = np.isin(numbers, np.intersect1d(at_surface, numbers[failed]))
     bottom = np.where(breaks, edges[1:, None], 0.0).max(axis=0)
     return np.maximum(bottom, recession)
 

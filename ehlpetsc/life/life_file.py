@@ -16,8 +16,9 @@ from ehlpetsc.results.hdf5.datasets import close, create, extend, room
 
 FIXED = {"s": "m", "edges": "m", "height": "m"}  # of a body
 CHANGING = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
+CHANGING |= {"wear_rate": "m", "damage_rate": "1", "volume_rate": "m^2"}  # of a pass
 KIND = "surfaces over their life"
-FORMAT = 2
+FORMAT = 3
 VOUCHING = "passes"  # of the figures, written last
 ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
+from ehlpetsc.life.rates import Rates
 from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
@@ -77,7 +78,7 @@ class Round(NamedTuple):
     passes_2: float
 
     def rates(self, bodies):
-        """Wear [m], damage and worn volume [m^2] that a pass adds to each body: means over the round.
+        """Wear, damage and worn volume that a pass adds to each body: means over the round.
 
         Parameters
         ----------
@@ -85,13 +86,13 @@ class Round(NamedTuple):
 
         Returns
         -------
-        pair of (ndarray, ndarray, float)
+        pair of rates.Rates
         """
         found = []
         for k, (body, factor) in enumerate(zip(bodies, (1.0, self.passes_2), strict=True)):
             parts = [(*body.rates(one.bodies[k]), one.bodies[k].volume) for one in self.passes]
             means = [sum(values) / len(parts) for values in zip(*parts, strict=True)]
-            found.append(tuple(factor * mean for mean in means) if factor != 1.0 else tuple(means))
+            found.append(Rates(*(factor * mean for mean in means)))
         return tuple(found)
 
     @property

@@ -1,5 +1,7 @@
 """Laws of a surface over its life: jumps, ageing of cells under a receding surface, micropits, its file."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from support import CASES
@@ -10,15 +12,29 @@ from ehlpetsc.life import laws, read_life
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case
 from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.pass_result import OfBody
+from ehlpetsc.life.rates import LONGER, Rates
 from ehlpetsc.surfaces.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])
 
 
+def jumps(wear_jump=0.05, damage_jump=0.1, passes=1000, pits=True):
+    table = SimpleNamespace(passes=passes, wear_jump=wear_jump, damage_jump=damage_jump, pits=pits)
+    return Jumps(table, 1.0)
+
+
+def round_of(rates):
+    """A round whose rates follow from a body alone, the same for both."""
+    return SimpleNamespace(rates=lambda bodies: tuple(map(rates, bodies)), yielded=0.0, passes=[None])
+
+
 def jump(wear=0.0, added=0.0, damage=0.0, left=1000):
-    cells = [np.full((2, 3), value) for value in (added, damage)]
-    return laws.passes_to_jump(left, np.array([0.0, wear]), 0.05, cells[0], cells[1], 0.1)
+    """Length of a jump at these rates."""
+    one = body()._replace(damage=np.full((3, 8), damage))
+    rates = Rates(np.append(np.zeros(7), wear), np.full((3, 8), added), 0.0)
+    return jumps(passes=left, pits=False).take((one, one), round_of(lambda body: rates), 0)[1]
 
 
 def test_a_jump_ends_where_wear_or_damage_reach_what_is_allowed():
@@ -28,7 +44,61 @@ def test_a_jump_ends_where_wear_or_damage_reach_what_is_allowed():
     assert jump() == 1000, "nothing changes: all the rest at once"
     assert jump(wear=1.0) == 1, "one pass at least"
     assert jump(added=0.01, damage=1.0) == 1000, "cells that have failed do not count"
-    assert jump(added=0.01, damage=np.nan) == 1000, "nor do those that are gone"
+
+
+@pytest.mark.parametrize("slope", [-3e-4, 0.0, 2e-3])
+def test_a_sum_reaches_an_amount_after_the_passes_found(slope):
+    assert laws.sum_over(laws.passes_to(0.7, 0.05, slope), 0.05, slope) == pytest.approx(0.7, rel=1e-13)
+
+
+def test_a_sum_that_falls_short_never_reaches_it():
+    assert laws.passes_to(0.7, 0.0, 0.0) == np.inf and laws.passes_to(0.7, 0.05, -2e-3) == np.inf
+
+
+def test_rates_go_on_as_they_changed_but_do_not_change_sign():
+    rates = Rates(np.array([3.0, 1.0, 1.0]), np.zeros((1, 3)), 2.0)
+    found = rates.continued((np.array([2.0, 0.9, 9.0]), np.zeros((1, 3)), 2.0), 10)
+    assert found.slopes[0] == pytest.approx([0.1, 0.01, -1.0 / (LONGER * 10)])
+    assert found.after(20)[0] == pytest.approx([80.0, 22.0, 10.0]) and found.after(20)[2] == 40.0
+
+
+def test_wear_and_damage_converge_with_the_square_of_the_jumps():
+    """Rates that wear lets fall: dw/dt = exp(-w), hence w = ln(1 + t), and D = -ln(1 - w/3)."""
+
+    def rates(one):
+        rate = 1e-3 * np.exp(-one.wear)
+        return Rates(rate, np.tile(rate / (3.0 - one.wear), (3, 1)), float(rate.sum()))
+
+    errors = []
+    for part in (1.0, 0.5, 0.25):
+        bodies, done, before = (body(), body()), 0, 0
+        while done < 5000:
+            all_jumps = jumps(0.2 * part, 0.1 * part, passes=5000, pits=False)
+            bodies, before, _ = all_jumps.take(bodies, round_of(rates), done, before)
+            done += before
+        exact = np.log(6.0)
+        ends = bodies[0].wear[0] - exact, bodies[0].damage[2, 0] + np.log(1.0 - exact / 3.0)
+        errors.append(np.abs(ends))
+    assert errors[0] == pytest.approx([0.0, 0.0], abs=0.03)
+    assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(2.0, abs=0.4)
+
+
+def test_a_jump_ends_with_the_first_break_out_and_leaves_the_same_pit_whatever_is_allowed():
+    def rates(one):
+        added = 1e-5 * np.exp(-0.2 * laws.cell_depths(EDGES, one.recession)) * np.arange(1, 9)
+        return Rates(np.zeros(8), np.nan_to_num(added), 0.0)
+
+    ends = []
+    for allowed in (0.1, 0.03):
+        bodies, done = (body(), body()), 0
+        while not bodies[0].pits:
+            bodies, jump, _ = jumps(damage_jump=allowed, passes=100_000).take(bodies, round_of(rates), done)
+            done += jump
+        ends.append((done, *bodies[0].pit))
+    assert ends[0] == ends[1]
+    assert ends[0][0] == int(np.exp(0.1) / 8e-5) + 1
+    assert bodies[0].pit[-1] == 1.0 and np.count_nonzero(bodies[0].pit) == 1
+    assert bodies[0].failed[0, -1] == pytest.approx(np.exp(0.1) / 8e-5, rel=1e-12)
 
 
 def test_cells_reach_the_depth_and_grow_below_the_first_ones():
@@ -51,12 +121,6 @@ def test_damage_between_depths_is_exponential_and_exact_at_them():
     assert found[:, 0] == pytest.approx([1e-4, 1e-3, 1e-2, 5e-3, 0.0, 0.0, 0.0], rel=1e-12)
 
 
-def test_cells_fail_where_miners_sum_is_one():
-    damage, added = np.array([0.0, 0.5, 0.99, 1.2]), np.array([1e-3, 1e-2, 1e-5, 1.0])
-    found = laws.failures(damage, added, 100, 7)
-    assert found.tolist() == [np.inf, pytest.approx(57.0), np.inf, np.inf]
-
-
 def test_failed_cells_break_out_only_with_those_that_reach_the_surface():
     damage = np.zeros((3, 5))
     damage[0, 1] = damage[1, 1] = damage[1, 2] = 1.0  # at the surface, and beside it below
@@ -64,6 +128,10 @@ def test_failed_cells_break_out_only_with_those_that_reach_the_surface():
     assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 0.0, 0.0]
     lowered = np.array([0.0, 2.5, 0.0, 0.0, 2.5])
     assert laws.broken_out(damage, EDGES, lowered).tolist() == [0.0, 2.5, 0.0, 0.0, 4.0]
+    damage[:2, 3] = 0.95, 0.89
+    assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 0.0, 0.0], "none failed"
+    damage[0, 2] = 0.91
+    assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 1.0, 0.0]
     assert laws.number_of_pits(np.array([True, True, False, True])) == 2
 
 
@@ -85,15 +153,14 @@ def test_wear_faster_than_damage_leaves_no_cell_to_fail():
     for depth in (0.01, 0.2):
         one = body()
         for _ in range(12):
-            wear, added = one.rates(of_pass(0.02, depth))
-            one = one.after(wear, added, 1, 0, True, 8.0 * depth)
+            rates = Rates(*one.rates(of_pass(0.02, depth)), 8.0 * depth)
+            one = one.after(rates, 1, 0, True)
         ends[depth] = one
     assert ends[0.2].wear == pytest.approx(12 * 0.2) and ends[0.2].volume == pytest.approx(12 * 1.6)
     assert ends[0.2].largest_damage < ends[0.01].largest_damage
     slow = ends[0.01]
-    wear, added = slow.rates(of_pass(0.02, 0.01))
-    pitted = slow.after(wear, added, 100, 12, True, 0.08)
-    counted = slow.after(wear, added, 100, 12, False, 0.08)
+    rates = Rates(*slow.rates(of_pass(0.02, 0.01)), 0.08)
+    pitted, counted = (slow.after(rates, 100, 12, breaks) for breaks in (True, False))
     assert pitted.is_pitted.all() and pitted.pits == 1 and pitted.pit.min() > 0.0
     assert counted.is_pitted.all() and not counted.pit.any(), "failed cells are counted alone"
 

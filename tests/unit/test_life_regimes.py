@@ -12,6 +12,7 @@ from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.pass_result import OfBody
+from ehlpetsc.life.rates import Rates
 from ehlpetsc.life.regimes import index_of, outcome, winner
 from ehlpetsc.surfaces.body_field import BodyField
 
@@ -84,7 +85,7 @@ def test_rounds_to_come_are_those_that_follow_if_all_are_alike():
     of = OfBody(body.s, np.array([0.0, 4e-7]), np.zeros((2, 8)), (none, worn))
 
     def rates(bodies):
-        return tuple((*one.rates(of), of.volume) for one in bodies)
+        return tuple(Rates(*one.rates(of), of.volume) for one in bodies)
 
     one = SimpleNamespace(rates=rates, yielded=0.0, passes=[None])
     jumps = Jumps(SimpleNamespace(passes=1e5, wear_jump=0.05, damage_jump=0.1, pits=True), 2e-7)

@@ -1,0 +1,31 @@
+"""A series of lives, dealt to ranks that were just started: each takes lives of its own, and all end."""
+
+import json
+import subprocess
+
+from support import CASES
+from support.running import BARE, PYTHON, SCRIPT
+
+KEYS = (
+    "mesh.points_per_half_width=8",
+    "time.travel=3.6",
+    "life.max_solved=1",
+    "series={key='wear.coefficient',values=[1e-19,1e-18]}",
+)
+
+
+def test_lives_on_two_ranks_end(tmp_path):
+    """PETSc starts on all ranks together: one that met it alone in its first life waited for ever."""
+    words = [word for key in KEYS for word in ("--set", key)]
+    done = subprocess.run(
+        ["mpirun", "-n", "2", PYTHON, "-m", "ehlpetsc.life", CASES / "life.toml", "--no-picture", *words],
+        cwd=tmp_path,
+        env=BARE | SCRIPT,
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert done.returncode == 0, done.stderr
+    members = json.loads((tmp_path / "life.life.series.json").read_text())["members"]
+    assert [member["state"] for member in members] == ["done", "done"]
+    assert [member["solved"] for member in members] == [1, 1]
