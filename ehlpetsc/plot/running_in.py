@@ -1,5 +1,7 @@
 """Running in: heights and pressure before and after, and what each pass still changes."""
 
+import tomllib
+
 import numpy as np
 
 from ehlpetsc.errors import OutputError
@@ -12,7 +14,10 @@ from ehlpetsc.results.running_in import heights, pass_figures
 SIZE, WIDER = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
 STRETCH = 0.6  # half widths of profile shown, around the deepest set
 ROOM = 1.15  # above the highest value
+APART = 2.0  # by which the length, which follows the share, is drawn lower than it
 FIRST, LAST = "0.65", "C3"
+MANY, BLOCK = 30, 10  # passes: of more than these, dots and their means over so many
+LEAST = 1e-3  # of what the first pass added: less is drawn at the edge
 
 
 def draw_running_in(results, _options):
@@ -38,7 +43,8 @@ def draw_running_in(results, _options):
     figure, axes = labels.new_figure(2, 3 if known else 2, WIDER if known else SIZE)
     surface(axes[0, 0], results)
     pressure(axes[1, 0], results)
-    added(axes[0, 1], rows)
+    time = tomllib.loads(results[0].attrs["case"]).get("time", {})
+    added(axes[0, 1], rows, bool(time.get("pass_shift")))
     contact(axes[1, 1], rows)
     if known:
         for row, side in zip(axes, ("1", "2"), strict=True):
@@ -83,28 +89,46 @@ def pressure(axes, results):
     above(axes, title=at)
 
 
-def above(axes, title=None):
-    """A legend in a row over the axes, where no curve runs."""
+def above(axes, *others, title=None):
+    """A legend in a row over the axes, where no curve runs, with what other axes there show."""
+    handles = [handle for one in (axes, *others) for handle in one.get_legend_handles_labels()[0]]
     place = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
-    axes.legend(title=title, fontsize="small", title_fontsize="small", **place)
+    if handles:
+        axes.legend(handles=handles, title=title, fontsize="small", title_fontsize="small", **place)
 
 
-def added(axes, rows):
+def added(axes, rows, is_shifted):
     """Plastically displaced area that each pass adds, relative to the first, and Ra of both surfaces."""
     numbers = np.arange(1, len(rows) + 1)
     volumes = np.array([row["set_volume"] for row in rows])
     parts = np.diff(volumes, prepend=0.0) / volumes[0]
-    axes.semilogy(numbers, np.maximum(parts, 1e-6), "o-", color=LAST)
+    axes.set_yscale("log")
+    course(axes, numbers, parts, LAST, "o-", LEAST)
     axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
     axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=ticks(numbers))
+    axes.set_ylim(bottom=0.8 * LEAST)
     beside = axes.twinx()
-    for side, style in (("1", "^--"), ("2", "v--")):
+    names = {"1": "Ra 1", "2": "Ra 2, its stretch moves on" if is_shifted else "Ra 2"}
+    for side, style in (("1", "^--"), ("2", "v:")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
             ra = [1e6 * row[side]["ra"] for row in rows]
-            beside.plot(numbers, ra, style, color="C0", ms=4, label=f"Ra {side}")
+            ms = 4 if len(rows) <= MANY else 0
+            beside.plot(numbers, ra, style, color="C0", ms=ms, alpha=0.6, label=names[side])
     beside.set_ylabel("Ra [µm]", color="C0")
-    if beside.lines:
-        above(beside)
+    above(beside, axes)
+
+
+def course(axes, numbers, values, colour, style, least=-np.inf):
+    """A quantity pass by pass, at least `least`; of more than `MANY` passes dots and means over `BLOCK`."""
+    shown = np.maximum(values, least)
+    if len(numbers) <= MANY:
+        axes.plot(numbers, shown, style, color=colour, ms=4)
+        return
+    axes.plot(numbers, shown, style[0], color=colour, ms=3, alpha=0.4, mew=0)
+    begins = range(0, len(numbers), BLOCK)
+    means = [np.mean(values[begin : begin + BLOCK]) for begin in begins]
+    edges = [0.5, *(min(begin + BLOCK, len(numbers)) + 0.5 for begin in begins)]
+    axes.stairs(means, edges, baseline=None, color=colour, lw=2.0, label=f"means of {BLOCK} passes")
 
 
 def contact(axes, rows):
@@ -114,13 +138,14 @@ def contact(axes, rows):
         np.array([np.nan if row.get(name) is None else row[name] for row in rows])
         for name in ("contact_share", "contact_length")
     )
-    axes.plot(numbers, share, "o-", color=LAST)
+    course(axes, numbers, share, LAST, "o-")
     axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers))
     axes.set_ylim(0.0, _top(share, ROOM))
     beside = axes.twinx()
-    beside.plot(numbers, 1e6 * length, "s--", color="C0", ms=4)
+    course(beside, numbers, 1e6 * length, "C0", "s--")
+    above(axes)
     beside.set_ylabel("length in contact [µm]", color="C0")
-    beside.set_ylim(0.0, _top(1e6 * length, ROOM**2))
+    beside.set_ylim(0.0, _top(1e6 * length, APART * ROOM))
     if not np.isfinite(share).any():
         note = "the run ends before both surfaces\nfill the contact: no means over time"
         axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")

@@ -5,6 +5,7 @@ import numpy as np
 from ehlpetsc.quantities import OTHERS, STEP_SCALARS
 
 DEPTHS = [name.removeprefix("surface/") for name in OTHERS if name.startswith("surface/")][2:]
+SHIFTED_IN_A_ROW = 10  # passes of surfaces that are shifted from pass to pass
 RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
@@ -61,15 +62,16 @@ def statistics(result, side):
     }
 
 
-def passes_to_run_in(rows):
+def passes_to_run_in(rows, in_a_row=1):
     """Number of the pass from which on each adds less than `RUN_IN` of what the first one added; None: none.
-
-    Where the surfaces are shifted from pass to pass, one that adds little may be followed by others.
 
     Parameters
     ----------
     rows : list of dict
         Of the passes from the first on, each with its number, "pass", and the volume it "added".
+    in_a_row : int
+        Passes that it takes: where the surfaces are shifted from pass to pass, one that adds little may be
+        followed by others.
     """
     if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
         return None
@@ -78,4 +80,4 @@ def passes_to_run_in(rows):
         if row["added"] >= RUN_IN * rows[0]["added"]:
             break
         found = row["pass"]
-    return found
+    return found if found and len(rows) - found + 1 >= in_a_row else None

@@ -14,7 +14,7 @@ from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.output_guard import Lock, check_index, check_output_path, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
-from ehlpetsc.results.running_in import RUN_IN, pass_figures, passes_to_run_in
+from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_figures, passes_to_run_in
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
@@ -146,10 +146,11 @@ class Passes:
         if self.comm.rank != 0:
             return
         self._say(f"passes: {self.index}")
-        number = passes_to_run_in(self.rows)
+        shift = self.case.time.pass_shift
+        number = passes_to_run_in(self.rows, SHIFTED_IN_A_ROW if shift else 1)
         if number:
             self._say(f"run in: from pass {number} on each adds less than {RUN_IN:.0%} of the first one's")
-        if len(self.rows) > 1 and not self.case.time.pass_shift:
+        if len(self.rows) > 1 and not shift:
             self._say("the same asperities have met in every pass; time.pass_shift brings others together")
 
     def _say(self, text):
