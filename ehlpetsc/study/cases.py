@@ -54,7 +54,7 @@ CORRELATION = 25e-6  # m
 SHORT_DOMAIN = ("mesh.inlet=-1.5", "mesh.outlet=1.3", "output.every=1000000", 'output.fields=["pressure"]')
 
 _TABLE = tomllib.loads(TABLE_1)
-RADIUS, LOAD = (_TABLE["contact"][key] for key in ("radius", "load"))  # R [m], w' [N/m]
+RADIUS = _TABLE["contact"]["radius"]  # R [m]
 SPEED, POISSON = _TABLE["motion"]["entrainment_speed"], _TABLE["contact"]["poisson_ratio"]
 MODULUS = reduced_modulus(_TABLE["contact"]["youngs_modulus"], POISSON)
 

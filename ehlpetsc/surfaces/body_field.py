@@ -110,7 +110,7 @@ class MeshOnBodies:
     ----------
     scales : scales.Scales
     offsets : (float, float)
-        Abscissas at which both bodies begin to enter, as of :attr:`.profile.Profile.body_offset` [m].
+        Signed shift of the points of both bodies [m], as of :meth:`.roughness.SurfacePositions.offsets`.
     """
 
     def __init__(self, scales, offsets=(0.0, 0.0)):

@@ -35,7 +35,7 @@ class SurfacePositions:
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
 
     def offsets(self, speeds):
-        """Signed shift of the body points by `profile_offsets` [m], as `profile.Profile.body_offset`.
+        """Signed shift of the body points by `profile_offsets` [m].
 
         Parameters
         ----------

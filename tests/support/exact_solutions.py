@@ -1,6 +1,7 @@
-"""Exact solutions and published formulas that tests alone compare with: wavy and quartic profiles, films."""
+"""Exact solutions and published formulas for tests: wavy and quartic profiles, films, heated bands."""
 
 import numpy as np
+from scipy.special import k0e
 
 
 def westergaard_full_pressure(amplitude, wavelength, modulus):
@@ -62,3 +63,39 @@ def waviness_ratio(r):
     :math:`r=(\lambda/b)M^{3/4}L^{-1/2}`; Venner, Couhier, Lubrecht & Greenwood 1997, their fit.
     """
     return 1.0 / (1.0 + 0.17 * r + 0.03 * r**2)
+
+
+def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
+    r"""Steady surface temperature by Jaeger's integral.
+
+    :math:`T(x)=\frac1{\pi k}\int q(s)e^{U(x-s)}K_0(U|x-s|)\,ds`, :math:`U=u/(2\chi)` (Jaeger 1942),
+    q constant over the cells of equally spaced x.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        [m]
+    flux : ndarray, shape (n,)
+        [W/m^2]
+    diffusivity, conductivity, speed : float
+    subdivisions : int
+        Gauss points in each half cell.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [K]
+    """
+    dx, u = x[1] - x[0], speed / (2.0 * diffusivity)
+    points, weights = np.polynomial.legendre.leggauss(subdivisions)
+    s = 0.5 * (1.0 + points)  # s^3 clusters the points at the logarithm of K0
+    offsets = 0.5 * dx * s**3
+    lengths = 0.5 * dx * 0.5 * weights * 3.0 * s**2
+    n = len(x)
+    lag = np.arange(-(n - 1), n) * dx
+    kernel = np.zeros(2 * n - 1)
+    for sign in (1.0, -1.0):
+        for offset, length in zip(offsets, lengths, strict=True):
+            r = lag + sign * offset
+            kernel += length * np.exp(u * r - abs(u) * np.abs(r)) * k0e(abs(u) * np.abs(r))
+    return np.convolve(flux, kernel)[n - 1 : 2 * n - 1] / (np.pi * conductivity)

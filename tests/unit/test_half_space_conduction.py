@@ -4,10 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.exact_solutions import moving_band
 
 from ehlpetsc.discretisation.heat.bodies import Body
 from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature, moving_band
+from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature
 from ehlpetsc.physics.heat.half_space_conduction import StepWeights, diffuse, exponentials
 
 STEEL = Solid(46.0, 7850.0, 470.0)

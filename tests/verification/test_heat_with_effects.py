@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from support import CASES
+from support.exact_solutions import moving_band
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.heat.flash_temperature import moving_band
 from ehlpetsc.run.simulation import Simulation
 
 BULK = 363.0

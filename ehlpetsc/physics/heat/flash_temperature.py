@@ -1,4 +1,4 @@
-"""Closed forms of surface temperatures under heated contacts: Jaeger's moving band, Blok's formula."""
+"""Flash temperature of a line contact by Blok's formula, and the friction expected of a case."""
 
 import numpy as np
 
@@ -8,44 +8,6 @@ from ehlpetsc.physics.rheology import viscosity, wall_shear
 STEEL = Solid(46.0, 7850.0, 470.0)
 WORTH_HEAT = 20.0  # K: flash temperature above which a case should not be isothermal
 MOST_FRICTION = 0.1  # coefficient of a film: isothermal Newtonian estimates may be anything
-
-
-def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
-    r"""Steady surface temperature by Jaeger's integral.
-
-    :math:`T(x)=\frac1{\pi k}\int q(s)e^{U(x-s)}K_0(U|x-s|)\,ds`, :math:`U=u/(2\chi)` (Jaeger 1942),
-    q constant over the cells of equally spaced x.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        [m]
-    flux : ndarray, shape (n,)
-        [W/m^2]
-    diffusivity, conductivity, speed : float
-    subdivisions : int
-        Gauss points in each half cell.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [K]
-    """
-    from scipy.special import k0e
-
-    dx, u = x[1] - x[0], speed / (2.0 * diffusivity)
-    points, weights = np.polynomial.legendre.leggauss(subdivisions)
-    s = 0.5 * (1.0 + points)  # s^3 clusters the points at the logarithm of K0
-    offsets = 0.5 * dx * s**3
-    lengths = 0.5 * dx * 0.5 * weights * 3.0 * s**2
-    n = len(x)
-    lag = np.arange(-(n - 1), n) * dx
-    kernel = np.zeros(2 * n - 1)
-    for sign in (1.0, -1.0):
-        for offset, length in zip(offsets, lengths, strict=True):
-            r = lag + sign * offset
-            kernel += length * np.exp(u * r - abs(u) * np.abs(r)) * k0e(abs(u) * np.abs(r))
-    return np.convolve(flux, kernel)[n - 1 : 2 * n - 1] / (np.pi * conductivity)
 
 
 def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):

@@ -11,7 +11,6 @@ ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER = 0, 1, 2, 3
 KELVIN = 273.15  # K at 0 degrees Celsius
 ROELANDS_ZERO = 138.0  # K
 WALTHER_SHIFT = 0.7  # mm^2/s
-LN10 = np.log(10.0)
 
 
 def log_viscosity(p, temperature, pressure_law, thermal_law):
@@ -46,14 +45,14 @@ def log_viscosity(p, temperature, pressure_law, thermal_law):
         base = 1.0 + p / reference
         power = base**z
         by_p, rise = z * power / (base * reference), power - 1.0
-    if kind == 2:  # ROELANDS
-        theta = ((temperature - 138.0) / (t0 - 138.0)) ** (-first)
+    if kind == ROELANDS:
+        theta = ((temperature - ROELANDS_ZERO) / (t0 - ROELANDS_ZERO)) ** (-first)
         ln_eta = factor * (rise * theta + (theta - 1.0))
-        return ln_eta, factor * by_p * theta, -factor * power * theta * first / (temperature - 138.0)
+        return ln_eta, factor * by_p * theta, -factor * power * theta * first / (temperature - ROELANDS_ZERO)
     ln_eta, by_p, by_t = factor * rise, factor * by_p, 0.0 * temperature
-    if kind == 1:  # EXPONENTIAL
+    if kind == EXPONENTIAL:
         return ln_eta - first * (temperature - t0), by_p, by_t - first
-    if kind == 3:  # WALTHER
+    if kind == WALTHER:
         nu, slope = _walther(temperature, first, second)
         return ln_eta + np.log(nu) - np.log(_walther(t0, first, second)[0]), by_p, slope
     return ln_eta, by_p, by_t
@@ -130,8 +129,3 @@ def limited_shear(stress, limit):
     else:
         value = stress * (1.0 + ratio**4) ** -0.25
     return value, (value / stress) ** 5, (value / limit) ** 5
-
-
-def conductivity_factor(p, coefficient):
-    """Conductivity of the oil over its ambient one, ``1 + coefficient p``, and its derivative [1/Pa]."""
-    return 1.0 + coefficient * p, coefficient
