@@ -46,7 +46,8 @@ class Result(reader.Result):
         """
         from matplotlib import pyplot
 
-        from ehlpetsc.plot import frames, labels
+        from ehlpetsc.plot import labels
+        from ehlpetsc.plot.panels import frames
 
         (index,), ((colour,), *_) = frames.choose_frames([self], step, time), labels.series_colours([self])
         window = self._window(window)

@@ -1,10 +1,10 @@
-"""Film breakdown at the collisions of a series: which show it, how film and pressure go there."""
+"""Film breakdown at the collisions of a series: film and pressure from member to member."""
 
 import numpy as np
 
 
-def spread(points, count):
-    """At most `count` of the contact points, in turns from those that break down at each member."""
+def selected(points, count):
+    """At most `count` contact points, taken in turn from the groups that break down at each member."""
     groups = {}
     for point in points:
         groups.setdefault(int(np.argmax(np.asarray(point.film) <= 0.0)), []).append(point)
@@ -88,7 +88,7 @@ def smooth_films(results):
 
 
 def breakdown(found, values, smooth):
-    """How the films of the collisions reach zero and the pressures go on, as lines of text."""
+    """Report on film breakdown and the pressures after it, as lines of text."""
     points = contact_points(found)
     if not points:
         return ["no point with two full films before contact and two members in contact after them"]
@@ -96,7 +96,7 @@ def breakdown(found, values, smooth):
     jumps = [slope_jumps(values, c.film) for c in points]
     lines = [
         f"{len(points)} contact points with two full films or more before, and contact ever after",
-        f"contact where the last two films extrapolate to: {share([j[-1] <= 0.0 for j in jumps])}",
+        f"contact where the last two films extrapolate to: {count_of([j[-1] <= 0.0 for j in jumps])}",
         "growth of the film's slope from interval to interval before, median and largest:",
     ]
     for what, abscissa in (("swept value", values), ("smooth film", smooth)):
@@ -107,13 +107,13 @@ def breakdown(found, values, smooth):
     return [
         *lines,
         "pressure grows once the film is gone:",
-        f"  from each member to the next: {share([(s > 0.0).all() for s in steps])}",
-        f"  from the first in contact to the last: {share([np.prod(1.0 + s) > 1.0 for s in steps])}",
-        f"  in single changes: {share(every > 0.0)}",
+        f"  from each member to the next: {count_of([(s > 0.0).all() for s in steps])}",
+        f"  from the first in contact to the last: {count_of([np.prod(1.0 + s) > 1.0 for s in steps])}",
+        f"  in single changes: {count_of(every > 0.0)}",
     ]
 
 
-def share(flags):
+def count_of(flags):
     """``5 of 6 (83 %)``."""
     flags = np.asarray(flags, bool)
     return f"{flags.sum()} of {len(flags)} ({100 * flags.mean():.0f} %)"

@@ -3,10 +3,10 @@ OUTPUT.series.json, OUTPUT.passes.json.
 
 Pressure and film of one frame, by default that with the largest share of the load on the solids or, without
 such a share, of the highest pressure; of several files, a series, at the same travel in one picture. Or a map
-of pressure over place and time, contacts per millisecond, a movie; of a series its collisions, film and
+of pressure over x and time, contacts per millisecond, a movie; of a series its collisions, film and
 pressure at contact points against the swept value, its Stribeck curve, traction curves; of one result its
-temperatures, oil trapped between two contacts, or all of it as one HTML page. The ending of the file given by
--o chooses the format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). Input files are never
+temperatures, oil trapped between two contacts, or all of it as one HTML page. The file name given by -o
+chooses the format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). Input files are never
 overwritten.
 
 Exit status: 0 drawn, 2 bad input.
@@ -27,14 +27,14 @@ from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PIC
 from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160
-ENDINGS = {"movie": ".gif", "report": ".html"}  # of what is no picture
-KINDS = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
+ENDINGS = {"movie": ".gif", "report": ".html"}  # of outputs that are not pictures
+SIGNATURES = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
 WITHOUT_FRAMES = (
     "contacts",
     "stribeck",
     "traction",
     "ensemble",
-)  # kinds that need the figures of the steps alone
+)  # kinds that need the scalars of the steps alone
 
 
 def _check(results, kind, options):
@@ -62,11 +62,11 @@ def _parser():
     instant = parser.add_mutually_exclusive_group()
     instant.add_argument("--step", type=int, help="number of the time step [largest share on solids]")
     instant.add_argument("--time", type=float, help="time [s]")
-    parser.add_argument("--around", type=float, metavar="X", help="place to look at closely [half widths]")
-    view = f"width of the view around it [{AROUND_WIDTH}; of a collision {COLLISION_WIDTH}]"
+    parser.add_argument("--around", type=float, metavar="X", help="centre of the view, x/a [half widths]")
+    view = f"width of the view [{AROUND_WIDTH}; of a collision {COLLISION_WIDTH}]"
     parser.add_argument("--width", type=float, help=view)
     kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--map", action="store_true", help="pressure over place and time, contacts marked")
+    kind.add_argument("--map", action="store_true", help="pressure over x and time, contacts marked")
     kind.add_argument("--contacts", action="store_true", help="contacts per millisecond along the contact")
     parser.add_argument("--polynomial", action="store_true", help="of --contacts, order 8")
     numbers = "by their number in the list of python3 -m ehlpetsc.analysis.collisions [two best]"
@@ -141,7 +141,7 @@ def _run(options, kind, output):
     with contextlib.ExitStack() as stack:
         results = in_order(open_all(options.results, stack))
         inputs = [*map(Path, options.results), *(r.path for r in results)]
-        check_derived(output, inputs, KINDS.get(kind, PICTURE_SIGNATURES))
+        check_derived(output, inputs, SIGNATURES.get(kind, PICTURE_SIGNATURES))
         draw(results, kind, options, output)
     print(output)
 

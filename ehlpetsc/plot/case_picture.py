@@ -1,4 +1,4 @@
-"""Picture of a case before it runs: the profiles as used, where they enter, what part of them passes."""
+"""Picture of a case before it runs: its profiles, where they enter, and which part passes the contact."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ehlpetsc.surfaces.roughness import Roughness
 
 SIZE = (12.0, 3.6)  # inches, for each profile
 POINTS = 20_000  # drawn of a profile
-PASSES, OUTSIDE = labels.SINGLE_COLOUR, "0.65"
+PASSING_COLOUR, OTHER_COLOUR = labels.SINGLE_COLOUR, "0.65"
 NAMES = {"ra": "Ra", "rq": "Rq", "rz": "Rz", "rk": "Rk", "rpk": "Rpk", "rvk": "Rvk"}
 
 
@@ -50,7 +50,7 @@ def draw_case(path, overrides=()):
 
 
 def conditions(case, scales):
-    """Half-width, Hertz' pressure and speeds in words."""
+    """Text with half-width, Hertz pressure and speeds."""
     parts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.motion:
         parts.append(f"u = {scales.u:g} m/s, slide/roll ratio {scales.xi:g}")
@@ -79,11 +79,11 @@ def passing(profile, case, scales):
 def _heights(axes, profile, case, scales, side):
     X, z = profile.X, profile.heights
     stride = -(-len(X) // POINTS)
-    axes.plot(1e3 * X[::stride], 1e6 * z[::stride], color=OUTSIDE, lw=0.7)
+    axes.plot(1e3 * X[::stride], 1e6 * z[::stride], color=OTHER_COLOUR, lw=0.7)
     begin, end = passing(profile, case, scales)
     inside = (X >= begin) & (X <= end)
     if end > begin:
-        axes.plot(1e3 * X[inside][::stride], 1e6 * z[inside][::stride], color=PASSES, lw=0.8)
+        axes.plot(1e3 * X[inside][::stride], 1e6 * z[inside][::stride], color=PASSING_COLOUR, lw=0.8)
     axes.set_xlim(1e3 * X[0], 1e3 * X[-1])
     top, bottom = 1e6 * z.max(), 1e6 * z.min()
     room = 0.18 * (top - bottom)
@@ -96,10 +96,10 @@ def _heights(axes, profile, case, scales, side):
     axes.annotate(
         name, (at + width, top + 0.5 * room), xytext=(4, 0), textcoords="offset points", va="center"
     )
-    axes.set_title(_said(profile, case, scales, begin, end), fontsize="small", loc="left")
+    axes.set_title(_description(profile, case, scales, begin, end), fontsize="small", loc="left")
 
 
-def _said(profile, case, scales, begin, end):
+def _description(profile, case, scales, begin, end):
     coarse = profile.unresolved_variance(scales.dx)
     mesh = f"{100 * coarse:.2g} % of the height variance in waves of fewer than 4 nodes"
     if case.time is None or not profile.is_moving:
@@ -118,8 +118,10 @@ def _said(profile, case, scales, begin, end):
 def _abbott(axes, profile):
     ratio, height = abbott_curve(profile.X, profile.heights)
     found, about = roughness_parameters(profile.X, profile.heights), core(ratio, height)
-    axes.plot(100.0 * ratio, 1e6 * height, color=PASSES, lw=1.2)
-    axes.plot([0.0, 100.0], [1e6 * about["top"], 1e6 * about["bottom"]], color="#b35806", lw=0.9, ls="--")
+    axes.plot(100.0 * ratio, 1e6 * height, color=PASSING_COLOUR, lw=1.2)
+    axes.plot(
+        [0.0, 100.0], [1e6 * about["top"], 1e6 * about["bottom"]], color=labels.SECOND_COLOUR, lw=0.9, ls="--"
+    )
     axes.set(xlabel="material ratio [%]", ylabel="height [µm]", xlim=(0.0, 100.0))
     lines = [f"{name} {1e6 * found[key]:.3f} µm" for key, name in NAMES.items()]
     lines.insert(3, f"Rsk {found['rsk']:.2f}")

@@ -1,23 +1,25 @@
-"""Whole figures of one or several results, one function a kind; `FIGURES` lists them."""
+"""Figures of one or several results, one function for each kind: `FIGURES`."""
 
 import numpy as np
 from matplotlib.lines import Line2D
 
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot import collision_pictures, frames, labels, over_time
-from ehlpetsc.plot.ensemble import draw_ensemble
-from ehlpetsc.plot.running_in import draw_running_in
-from ehlpetsc.plot.stribeck import draw_stribeck
+from ehlpetsc.plot import labels
+from ehlpetsc.plot.panels import collisions as panels
+from ehlpetsc.plot.panels import frames, over_time
+from ehlpetsc.plot.series.ensemble import draw_ensemble
+from ehlpetsc.plot.series.running_in import draw_running_in
+from ehlpetsc.plot.series.stribeck import draw_stribeck
+from ehlpetsc.plot.series.traction import draw_traction
 from ehlpetsc.plot.temperatures import temperatures
-from ehlpetsc.plot.traction import draw_traction
 from ehlpetsc.results.series_index import from_thick_to_thin
 
 SIZE = (8.4, 5.6)  # inches
-TALL = 7.6  # inches: with the surfaces
-AROUND_WIDTH = 0.5  # of a view around a place, half widths
-COLLISION_WIDTH = 0.12
-MAX_POINTS = 8  # most contact points in one picture
+TALL = 7.6  # inches: height with the surfaces
+AROUND_WIDTH = 0.5  # half widths: of a view around a point
+COLLISION_WIDTH = 0.12  # half widths
+MAX_POINTS = 8  # contact points in one picture
 
 
 def two_panels():
@@ -26,7 +28,7 @@ def two_panels():
 
 
 def window(results, options):
-    """Limits of x/a that the user asked for, or the contact."""
+    """Limits of x/a of the options, by default around the contact."""
     if options.around is None:
         return frames.default_window(results)
     half = 0.5 * (options.width or AROUND_WIDTH)
@@ -34,21 +36,21 @@ def window(results, options):
 
 
 def panel_title(results, indices=None):
-    """Common title of all results, and the instant of stored frames."""
+    """Title that all results share, and the instant of stored frames."""
     titles = {result.attrs["title"] for result in results}
     parts = [titles.pop() if len(titles) == 1 else "", indices and frames.instant(results, indices)]
     return ": ".join(part for part in parts if part)
 
 
 def fill_frame(axes, results, indices, options):
-    """Pressure, film and their legends at an instant, into given axes."""
+    """Draw pressure, film and their legends at an instant into given axes."""
     colours, names, key = labels.series_colours(results)
     frames.pressure_and_film(axes, results, indices, colours, window(results, options))
     if len(results) > 1:
         hertz = Line2D([], [], color=frames.HERTZ_GREY, label="Hertz", **frames.HERTZ_STYLE)
-        more = [hertz] if labels.one_hertz(results) else []
+        more = [hertz] if labels.share_hertz_contact(results) else []
         dashed = len(results) == 2
-        labels.series_legend(axes[0], colours, labels.with_hertz(names, results), key, more, dashed)
+        labels.series_legend(axes[0], colours, labels.labels_with_hertz(names, results), key, more, dashed)
     else:
         frames.frame_legend(axes, results[0], indices[0], colours[0])
     frames.x_in_mm(axes[0], results)
@@ -73,7 +75,7 @@ def draw_frame(results, options):
 
 
 def draw_map(results, options):
-    """Figure of pressure over place and time, a panel each result, all in the same colours."""
+    """Figure of pressure over x and time, one panel for each result, with common colours."""
     size = (SIZE[0] * max(1.0, 0.6 * len(results)), SIZE[1])
     figure, axes = labels.new_figure(1, len(results), size, squeeze=False)
     views = [window([result], options) for result in results]
@@ -92,7 +94,7 @@ def draw_map(results, options):
 
 
 def draw_contacts(results, options):
-    """Figure of the contacts per millisecond along the contact, raw and smoothed."""
+    """Figure of contacts per millisecond along the contact, raw and smoothed."""
     colours, names, key = labels.series_colours(results)
     figure, axes = two_panels()
     means = over_time.contact_rates(axes, results, colours, options.polynomial)
@@ -109,7 +111,7 @@ def draw_contacts(results, options):
 
 
 def draw_collision(results, options):
-    """Figure of collisions in all members of a series, a column each; by default of the two best to see."""
+    """Figure of collisions in all members of a series, a column each; by default the two best ranked."""
     found = collisions.find(from_thick_to_thin(results)[0])
     numbers = options.collision or film_breakdown.ranked(found)[:2]
     if not numbers or not 0 <= min(numbers) <= max(numbers) < len(found):
@@ -119,7 +121,7 @@ def draw_collision(results, options):
     size = (SIZE[0] * max(1.0, 0.6 * len(chosen)), SIZE[1])
     figure, axes = labels.new_figure(2, len(chosen), size, squeeze=False, sharex="col")
     width = options.width or COLLISION_WIDTH
-    collision_pictures.collisions(axes, results, chosen, colours, width)
+    panels.draw_collisions(axes, results, chosen, colours, width)
     labels.series_legend(axes[0, -1], colours, names, key)
     figure.suptitle(results[0].attrs["title"], fontsize="medium")
     return figure
@@ -128,21 +130,21 @@ def draw_collision(results, options):
 def draw_points(results, _options):
     """Figure of film and pressure at the points of contact against the swept value."""
     results, values, key = from_thick_to_thin(results)
-    points = film_breakdown.spread(film_breakdown.contact_points(collisions.find(results)), MAX_POINTS)
+    points = film_breakdown.selected(film_breakdown.contact_points(collisions.find(results)), MAX_POINTS)
     if not points:
         raise OutputError("no contact point with two full films before it and two members in contact")
     figure, axes = two_panels()
-    collision_pictures.against_value(axes, points, values, key, results[0].attrs["a"])
+    panels.draw_contact_points(axes, points, values, key, results[0].attrs["a"])
     axes[0].set_title(results[0].attrs["title"], fontsize="medium")
     return figure
 
 
 def draw_entrapment(results, options):
-    """Figure of four instants of the strongest entrapment of a result."""
+    """Figure of the strongest entrapment of a result at four instants."""
     size = (1.6 * SIZE[0], SIZE[1])
     figure, axes = labels.new_figure(2, 4, size, sharex="col", sharey="row")
     found = entrapment.find(results[0])[0]
-    collision_pictures.entrapped(axes, results[0], found, options.width or COLLISION_WIDTH)
+    panels.draw_entrapment(axes, results[0], found, options.width or COLLISION_WIDTH)
     figure.suptitle(results[0].attrs["title"], fontsize="medium")
     return figure
 

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from ehlpetsc.results.series_index import distinguishing_names, series_values
 
 SINGLE_COLOUR = "#1f4e79"
+SECOND_COLOUR = "#b35806"
 CONTACT_COLOUR = "#d62728"
 SOLIDS_COLOUR = "#e08214"
 LEGEND_ENTRIES = 10
@@ -22,7 +23,7 @@ UNITS = {
 
 
 def new_figure(rows, columns, size, **shared):
-    """Figure and axes that are drawn into files alone: pyplot, and with it a notebook, knows nothing of them.
+    """Figure and axes for files alone, unknown to pyplot and thus to a notebook.
 
     Parameters
     ----------
@@ -37,13 +38,13 @@ def new_figure(rows, columns, size, **shared):
 
 
 def series_colours(results):
-    """Colours and labels of several results: the swept value where there is one, otherwise what names each.
+    """Colours and labels of several results: the swept value, else distinguishing names.
 
     Returns
     -------
     colours, labels : list
     key : str or None
-        What is swept.
+        Key of the series.
     """
     if len(results) == 1:
         return [SINGLE_COLOUR], [results[0].path.stem], None
@@ -55,7 +56,7 @@ def series_colours(results):
 
 
 def names(results):
-    """Labels of results: their titles, else the keys that differ, else the files."""
+    """Labels of results: titles where they differ, else the keys that differ, else file names."""
     titles = [result.attrs["title"] for result in results]
     apart = distinguishing_names(results)
     if len(set(titles)) == 1 and apart:
@@ -68,7 +69,7 @@ def names(results):
 
 
 def conditions(results):
-    """Speed, sliding, Hertz' contact and oil that all results share, in one line.
+    """Speed, sliding, Hertz contact and oil that all results share, in one line.
 
     Parameters
     ----------
@@ -97,15 +98,15 @@ def _conditions(result):
     return parts
 
 
-def one_hertz(results):
+def share_hertz_contact(results):
     """Whether all results have the same Hertz contact."""
     contacts = np.array([(result.attrs["a"], result.attrs["p0"]) for result in results])
     return np.allclose(contacts, contacts[0], rtol=1e-9, atol=0.0)
 
 
-def with_hertz(labels, results):
-    """Labels with the Hertz contact of each, where they differ in it."""
-    if one_hertz(results):
+def labels_with_hertz(labels, results):
+    """Labels with the Hertz contact of each result where these differ."""
+    if share_hertz_contact(results):
         return labels
     return [
         f"{label}\na = {1e3 * r.attrs['a']:.3g} mm, p0 = {1e-9 * r.attrs['p0']:.3g} GPa"
@@ -114,7 +115,7 @@ def with_hertz(labels, results):
 
 
 def series_legend(axes, colours, labels, title, more=(), dashed=False):
-    """Legend right of the axes: all of a series or, where it is long, every so many members, and `more`.
+    """Legend right of the axes: at most `LEGEND_ENTRIES` members of a series, and `more`.
 
     With `dashed` the second line is: two equal curves then do not hide each other.
     """
@@ -126,7 +127,7 @@ def series_legend(axes, colours, labels, title, more=(), dashed=False):
 
 
 def legend_beside(axes, handles=None, title=None):
-    """Legend right of the axes, where no curve runs; by default of what the axes hold."""
+    """Legend right of the axes; by default of all labelled artists."""
     handles = axes.get_legend_handles_labels()[0] if handles is None else handles
     place = dict(loc="center left", bbox_to_anchor=(1.0, 0.5))
     small = dict(fontsize="small", title_fontsize="small", frameon=False)

@@ -8,26 +8,31 @@ from matplotlib.animation import FFMpegWriter, PillowWriter
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import fill_frame, two_panels
-from ehlpetsc.plot.frames import choose_frames
+from ehlpetsc.plot.panels.frames import choose_frames
 from ehlpetsc.results.atomic_write import replacing
 
-FRAMES = 150
+MAX_FRAMES = 150
 RATE = 15  # frames per second
 DPI = 80
-EVEN = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p"]  # what players take
+EVEN_SIZE = [
+    "-vf",
+    "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
+    "-pix_fmt",
+    "yuv420p",
+]  # players refuse odd sizes
 CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
 
 
 def save_movie(results, options, path):
-    """Write at most `FRAMES` frames, all within the same axes.
+    """Write at most `MAX_FRAMES` frames with common axes.
 
     Raises
     ------
     OutputError
-        The ending of `path` is none of a movie, or its encoder is not installed.
+        The file name does not end like a movie, or the encoder is not installed.
     """
     last = len(results[0].time) - 1
-    steps = np.unique(np.linspace(0, last, min(last + 1, FRAMES)).round().astype(int))
+    steps = np.unique(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int))
     figure, axes = two_panels()
     limits = _limits(results, steps)
     with recording(figure, path) as writer:
@@ -37,7 +42,7 @@ def save_movie(results, options, path):
             fill_frame(axes, results, choose_frames(results, time=results[0].time[index]), options)
             for panel, limit in zip(axes, limits, strict=True):
                 panel.set_ylim(0.0, limit)
-            if number == 0:  # its layout holds for all: the axes stand still
+            if number == 0:  # its layout is kept, so that the axes do not move
                 figure.draw_without_rendering()
                 figure.set_layout_engine("none")
             writer.grab_frame()
@@ -45,7 +50,7 @@ def save_movie(results, options, path):
 
 @contextlib.contextmanager
 def recording(figure, path):
-    """A movie of a figure, for a ``with`` statement: frames are added by its `grab_frame()`.
+    """Writer of a movie of a figure, for a ``with`` statement; its `grab_frame()` adds a frame.
 
     Parameters
     ----------
@@ -59,7 +64,7 @@ def recording(figure, path):
     Raises
     ------
     OutputError
-        The ending of `path` is none of a movie, or its encoder is not installed.
+        The file name does not end like a movie, or the encoder is not installed.
     """
     writer = _writer(path)
     with replacing(path, keep_ending=True) as beside, _encoding(path), writer.saving(figure, beside, DPI):
@@ -68,7 +73,7 @@ def recording(figure, path):
 
 @contextlib.contextmanager
 def _encoding(path):
-    """An encoder that ends before its time, as on a full disk, is an OutputError."""
+    """Turn the failure of an encoder, as on a full disk, into an OutputError."""
     try:
         yield
     except subprocess.CalledProcessError as error:
@@ -84,11 +89,11 @@ def _writer(path):
         raise OutputError(f"{path}: allowed for a movie: .gif, {', '.join(CODECS)}")
     if not FFMpegWriter.isAvailable():
         raise OutputError(f"{path}: {ending} needs ffmpeg, which is not installed; without it, allowed: .gif")
-    return FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN)
+    return FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN_SIZE)
 
 
 def _limits(results, frames):
-    """Upper ends of the axes [GPa, um]: all pressures, and the film inside the contact."""
+    """Upper limits of the axes [GPa, um]: of all pressures, and of the film inside the contact."""
     film = 1e-9
     for result in results:
         inside = np.abs(result.x) <= result.attrs["a"]

@@ -1,25 +1,25 @@
-"""Temperatures of one result: film and surfaces over pressure and film, a surface over place and time."""
+"""Temperatures of one result: film and surfaces over pressure and film, a surface over x and time."""
 
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot import frames
-from ehlpetsc.plot.labels import SINGLE_COLOUR, conditions, new_figure
-from ehlpetsc.plot.over_time import MAP_ROWS
+from ehlpetsc.plot.labels import SECOND_COLOUR, SINGLE_COLOUR, conditions, new_figure
+from ehlpetsc.plot.panels import frames
+from ehlpetsc.plot.panels.over_time import MAP_ROWS
 
 SIZE = (8.4, 10.0)  # inches
 STEADY_SIZE = (8.4, 6.6)
 COLOURS = {
     "film_temperature": ("film", "#cc3311"),
     "temperature_1": ("surface 1", SINGLE_COLOUR),
-    "temperature_2": ("surface 2", frames.LOWER_COLOUR),
+    "temperature_2": ("surface 2", SECOND_COLOUR),
 }
 HEIGHTS = (1, 1, 1, 1.5)
 KELVIN = 273.15
 
 
 def temperatures(results, window, options):
-    """Figure of temperatures, pressure and film at an instant, and the hotter surface over place and time.
+    """Figure of temperatures, pressure and film at an instant, and the hotter surface over x and time.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def temperatures(results, window, options):
 
 
 def _instant(axes, result, index, window):
-    """Temperatures along the contact, in K and in degrees Celsius."""
+    """Draw temperatures along the contact, in K and in degrees Celsius."""
     x = result.x / result.attrs["a"]
     shown = (x >= window[0]) & (x <= window[1])
     for name, (label, colour) in COLOURS.items():
@@ -74,7 +74,7 @@ def _instant(axes, result, index, window):
 
 
 def _over_time(axes, result, window):
-    """The hotter surface over place and time; returns the image and which surface it is."""
+    """Draw the hotter surface over x and time; returns the image and the name of the surface."""
     side = max("12", key=lambda name: np.nanmean(result.steps(f"temperature_{name}_mean")))
     x, time = result.x / result.attrs["a"], 1e6 * result.time
     shown = np.flatnonzero((x >= window[0]) & (x <= window[1]))

@@ -10,7 +10,7 @@ from support.made_results import A
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
-from ehlpetsc.plot.over_time import space_time_map
+from ehlpetsc.plot.panels.over_time import space_time_map
 from ehlpetsc.results import series_index as swept
 from ehlpetsc.results.contacts import film_at_contact, in_contact
 from ehlpetsc.results.hdf5.datasets import Layout
@@ -120,8 +120,8 @@ def test_no_film_is_a_bound_where_nothing_touches(tmp_path):
 
 def test_points_are_spread_over_the_members():
     one, two, three = (collisions.Collision(0, 0, 0, 0, (), film, ()) for film in ((1, 0), (1, 0), (2, 1, 0)))
-    assert film_breakdown.spread([one, two, three], 2) == [one, three]
-    assert film_breakdown.spread([one, two, three], 9) == [one, three, two]
+    assert film_breakdown.selected([one, two, three], 2) == [one, three]
+    assert film_breakdown.selected([one, two, three], 9) == [one, three, two]
 
 
 def test_report_of_a_series(tmp_path, series, capsys):

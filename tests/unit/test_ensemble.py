@@ -12,7 +12,7 @@ from support.made_results import make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.plot.__main__ import main as plot
-from ehlpetsc.plot.ensemble import draw_ensemble
+from ehlpetsc.plot.series.ensemble import draw_ensemble
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import distinguishing_names
 

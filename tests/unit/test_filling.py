@@ -7,7 +7,7 @@ from support.made_results import A, make_result
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.plot.running_in import draw_running_in
+from ehlpetsc.plot.series.running_in import draw_running_in
 from ehlpetsc.results.filling import RAMP, both_fill, filled_from, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces import roughness

@@ -14,8 +14,11 @@ from support.made_results import P0, A, make_result, with_solids
 from ehlpetsc.case.loading import Case
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
-from ehlpetsc.plot import figures, labels, movies, over_time, stribeck
-from ehlpetsc.plot import frames as drawing
+from ehlpetsc.plot import figures, labels, movies
+from ehlpetsc.plot.panels import frames as drawing
+from ehlpetsc.plot.panels import over_time
+from ehlpetsc.plot.series import stribeck
+from ehlpetsc.plot.series.operating_points import time_statistics
 from ehlpetsc.results import series_index as swept
 from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.hdf5.datasets import Layout
@@ -145,7 +148,7 @@ def test_maps_of_a_series_stand_side_by_side(series, drawn):
 
 
 def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
-    monkeypatch.setattr(movies, "FRAMES", 4)
+    monkeypatch.setattr(movies, "MAX_FRAMES", 4)
     monkeypatch.setattr(movies, "DPI", 40)
     assert draw(make_result(tmp_path / "one.h5", nodes=41, steps=9), "--movie") == 0
     with image.open(tmp_path / "one.gif") as movie:
@@ -452,7 +455,7 @@ def test_the_axes_of_a_movie_stand_still(tmp_path, monkeypatch):
 
     monkeypatch.setattr(movies, "PillowWriter", Writer)
     monkeypatch.setattr(movies, "DPI", 40)
-    monkeypatch.setattr(movies, "FRAMES", 6)
+    monkeypatch.setattr(movies, "MAX_FRAMES", 6)
     assert draw(make_result(tmp_path / "one.h5", nodes=41, steps=9), "--movie") == 0
     assert len(seen) == 6 and all(frame == seen[0] for frame in seen)
 
@@ -520,6 +523,6 @@ def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, 
 
 
 def test_means_over_time_weigh_each_step_by_its_length():
-    found = stribeck.spread(np.array([1.0, 2.0, np.nan, 9.0]), np.array([1.0, 3.0, 1.0, 0.0]))
+    found = time_statistics(np.array([1.0, 2.0, np.nan, 9.0]), np.array([1.0, 3.0, 1.0, 0.0]))
     assert found.mean == pytest.approx(1.75)
     assert 1.0 <= found.low < found.high <= 2.0

@@ -10,7 +10,7 @@ from support.made_results import make_result
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import FIGURES
-from ehlpetsc.plot.stribeck import curves
+from ehlpetsc.plot.series.stribeck import curves_by_contact
 from ehlpetsc.results.series_index import open_all
 
 HEAT = "[heat]\nbulk_temperature = 350.0\n"
@@ -103,5 +103,5 @@ def test_temperatures_of_others_are_refused(tmp_path):
 def test_stribeck_curves_with_and_without_heat(tmp_path):
     paths = [member(tmp_path / f"{k}.h5", 0.25, 0.01, HEAT if k % 2 else "") for k in range(4)]
     with contextlib.ExitStack() as stack:
-        found = {label: len(members) for label, members in curves(open_all(paths, stack)).items()}
+        found = {label: len(members) for label, members in curves_by_contact(open_all(paths, stack)).items()}
     assert found == {"direct contact, isothermal": 2, "direct contact, with heat": 2}

@@ -79,7 +79,7 @@ def test_the_page_holds_the_fields_and_needs_no_network(tmp_path, page):
 
 
 def plot_first(result):
-    from ehlpetsc.plot.frames import frame_to_show
+    from ehlpetsc.plot.panels.frames import frame_to_show
 
     return frame_to_show(result)
 

@@ -1,4 +1,4 @@
-"""One result as one HTML page that needs nothing else: no network, no files beside it."""
+"""One result as a self-contained HTML page."""
 
 import html
 import json
@@ -14,7 +14,7 @@ PARTS = {"style": "report.css", "script": "report.js"}
 
 
 def _plotly():
-    """Plotly's script, of the Python package of that name."""
+    """Script of the Python package plotly."""
     if not has("plotly"):
         raise OutputError("the report is drawn by plotly; type: sudo apt-get install python3-plotly")
     return import_module("plotly.offline").get_plotlyjs()

@@ -5,34 +5,40 @@ import tomllib
 
 import numpy as np
 
-from ehlpetsc.plot.frames import default_window, frame_to_show, travel_of
+from ehlpetsc.plot.panels.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.totals import means
 
-FRAMES, NODES, ROWS, POINTS = 200, 1200, 2000, 2000  # most of each on a page
-STEADY = 1e-9  # relative change over a run that is none
-ERRORS = {"load_error", "mass_error"}  # relative: those of rounding are as good as none
-LEAST = {
+MAX_FRAMES, MAX_NODES, MAX_ROWS, MAX_POINTS = 200, 1200, 2000, 2000  # on a page
+MIN_CHANGE = 1e-9  # relative change over a run below which a scalar counts as constant
+ERROR_SCALARS = {"load_error", "mass_error"}  # relative errors: changes by rounding do not count
+MINIMUM_SCALARS = {
     "h_min",
     "film_central",
     "mean_gap_ratio",
-}  # of several steps the least counts, else the greatest
-SHOWN_IN = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
-UNSHOWN = {"step", "time", "load", "wall"}
-MEAN_WORDS = {
+}  # of several steps the minimum is shown, else the maximum
+SHOWN_UNITS = {
+    "m": ("µm", 1e6),
+    "Pa": ("GPa", 1e-9),
+    "s": ("µs", 1e6),
+    "N/m": ("N/mm", 1e-3),
+    "1": ("", 1.0),
+}
+HIDDEN_SCALARS = {"step", "time", "load", "wall"}
+MEAN_LABELS = {
     "friction_coefficient": "mean friction coefficient",
     "film_central": "mean central film",
     "lambda_ratio": "lambda ratio",
     "mean_gap_ratio": "mean gap ratio",
     "contact_share": "mean share of the load on the solids",
 }  # over the time in which both surfaces fill the contact
-MEAN_FORMS = {name: "{:.4g}".format for name in MEAN_WORDS} | {
+MEAN_FORMATS = {name: "{:.4g}".format for name in MEAN_LABELS} | {
     "film_central": lambda film: f"{1e6 * film:.4g} µm",
     "contact_share": lambda share: f"{100.0 * share:.3g} %",
 }
-FIRST = (
+LEADING_SCALARS = (
     "friction_coefficient",
     "contact_share",
     "h_min",
@@ -44,7 +50,7 @@ FIRST = (
 
 
 def report_data(result):
-    """Everything the page draws, to be written as JSON.
+    """Data of the page, for JSON.
 
     Parameters
     ----------
@@ -60,7 +66,7 @@ def report_data(result):
         "facts": facts(result),
         "case": str(attrs["case"]),
         "frames": frames(result),
-        "steps": step_figures(result),
+        "steps": scalars_over_time(result),
         "damage": damage(result),
     }
 
@@ -85,7 +91,7 @@ def _temperatures(result):
 
 
 def facts(result):
-    """Rows of the table at the top: what, figure."""
+    """Rows of the table at the top: name and value."""
     attrs = result.attrs
     case = tomllib.loads(str(attrs["case"]))
     motion, fluid, solids = (case.get(name, {}) for name in ("motion", "fluid", "contact"))
@@ -103,7 +109,7 @@ def facts(result):
         ("nodes, steps", f"{len(result.x)}, {len(result.steps('time')) - 1}"),
         ("minimum film", f"{1e6 * np.nanmin(result.steps('h_min')):.4g} µm"),
         ("maximum pressure", f"{1e-9 * np.nanmax(result.steps('p_max')):.4g} GPa"),
-        *((MEAN_WORDS[name], MEAN_FORMS[name](value)) for name, value in means(result).items()),
+        *((MEAN_LABELS[name], MEAN_FORMATS[name](value)) for name, value in means(result).items()),
         _temperatures(result),
     ]
     for name, words in (
@@ -118,19 +124,21 @@ def facts(result):
 
 
 def frames(result):
-    """Pressure, film and contacts of the stored frames in view."""
+    """Pressure, film and contacts of stored frames in view."""
     low, high = default_window([result])
     x = result.x / result.attrs["a"]
     part = np.flatnonzero((x >= low) & (x <= high))
-    columns, width = slice(part[0], part[-1] + 1), -(-len(part) // NODES)
+    columns, width = slice(part[0], part[-1] + 1), -(-len(part) // MAX_NODES)
     last = len(result.time) - 1
     fullest = frame_to_show(result)
-    chosen = np.unique(np.append(np.linspace(0, last, min(last + 1, FRAMES)).round().astype(int), fullest))
+    chosen = np.unique(
+        np.append(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int), fullest)
+    )
     names = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
     stored = {name: how for name, how in names.items() if name in result}
     fields = {
-        name: _packed([binned(factor * result.frame(name, k)[columns], width, take) for k in chosen])
-        for name, (factor, take) in stored.items()
+        name: _packed([binned(factor * result.frame(name, k)[columns], width, reduce) for k in chosen])
+        for name, (factor, reduce) in stored.items()
     }
     touching = [binned(in_contact(result, k, columns), width, np.max) for k in chosen]
     return {
@@ -146,32 +154,32 @@ def frames(result):
     }
 
 
-def step_figures(result):
-    """Per-step figures that vary, against time; nothing of a steady result."""
+def scalars_over_time(result):
+    """Scalars of the steps that vary, against time; none of a steady result."""
     time = result.steps("time")
     if len(time) < 2:
         return {"time": _packed([]), "figures": []}
-    width, figures = -(-len(time) // ROWS), []
-    for name in sorted(set(result.scalars) - UNSHOWN, key=_place):
+    width, figures = -(-len(time) // MAX_ROWS), []
+    for name in sorted(set(result.scalars) - HIDDEN_SCALARS, key=_sort_key):
         values = result.steps(name).astype(float)[1:]
         known = values[np.isfinite(values)]
-        if not known.size or np.ptp(known) <= STEADY * max(np.abs(known).max(), name in ERRORS):
+        if not known.size or np.ptp(known) <= MIN_CHANGE * max(np.abs(known).max(), name in ERROR_SCALARS):
             continue
         about = result[f"steps/{name}"].attrs
         units = about.get("units", "1")
-        unit, factor = SHOWN_IN.get(units, (units, 1.0))
+        unit, factor = SHOWN_UNITS.get(units, (units, 1.0))
         words = about.get("long_name", name.replace("_", " "))
-        take = np.fmin.reduce if name in LEAST else np.fmax.reduce
+        reduce = np.fmin.reduce if name in MINIMUM_SCALARS else np.fmax.reduce
         label = f"{words} [{unit}]" if unit else words
-        figures.append({"name": label, "y": _packed(binned(factor * values, width, take))})
+        figures.append({"name": label, "y": _packed(binned(factor * values, width, reduce))})
     return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
 
 
-def _place(name):
-    """Order of the charts: what a user asks for first, then as the table of quantities lists them."""
+def _sort_key(name):
+    """Sort key of the charts: `LEADING_SCALARS` first, then in the order of the table of quantities."""
     known = list(STEP_SCALARS)
     return (
-        FIRST.index(name) if name in FIRST else len(FIRST),
+        LEADING_SCALARS.index(name) if name in LEADING_SCALARS else len(LEADING_SCALARS),
         known.index(name) if name in known else len(known),
         name,
     )
@@ -182,7 +190,7 @@ def damage(result):
     found = damage_beside(result)
     if found is None:
         return None
-    width = -(-len(found.s) // POINTS)
+    width = -(-len(found.s) // MAX_POINTS)
     with np.errstate(divide="ignore", invalid="ignore"):
         decades = {side: np.log10(values) for side, values in found.damage.items()}
     for values in decades.values():
@@ -197,14 +205,14 @@ def damage(result):
     }
 
 
-def binned(values, width, take):
-    """One of every `width` values, chosen by `take(values, axis=-1)`."""
+def binned(values, width, reduce):
+    """Every `width` values reduced to one by `reduce(values, axis=-1)`."""
     values = np.asarray(values)
     if width == 1:
         return values
     short = -len(values) % width
     whole = np.concatenate([values, np.repeat(values[-1:], short)])
-    return take(whole.reshape(-1, width), axis=-1)
+    return reduce(whole.reshape(-1, width), axis=-1)
 
 
 def _packed(values, kind=np.float32):

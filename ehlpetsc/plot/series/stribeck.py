@@ -4,7 +4,6 @@ Means over the time in which both surfaces fill the contact, with the scatter ov
 """
 
 import tomllib
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -12,105 +11,18 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, conditions, legend_beside, new_figure
-from ehlpetsc.results.filling import both_fill
+from ehlpetsc.plot.labels import SECOND_COLOUR, SINGLE_COLOUR, UNITS, conditions, legend_beside, new_figure
+from ehlpetsc.plot.series.operating_points import BAND, QUANTITIES, operating_point
 from ehlpetsc.results.series_index import series_values
 
 SPEED = "motion.entrainment_speed"
-BAND = (5.0, 95.0)  # percentiles over time
 SIZE = (8.5, 7.5)  # inches
-LEAST_SHARE = 1e-5  # of the load on the solids that is drawn
-WIDE = 1e3  # of speeds: beyond it labels between powers of ten touch
-QUANTITIES = {
-    "friction_coefficient": "friction coefficient",
-    "contact_share": "share of the load\non the solids",
-    "mean_gap_ratio": "mean gap over\nthe combined Rq",
-}
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Mean over time and the percentiles `BAND`; nan where a result does not have the quantity."""
-
-    mean: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
-class Point:
-    """One speed of a Stribeck curve.
-
-    Attributes
-    ----------
-    speed : float
-        Mean speed of the surfaces [m/s].
-    figures : dict of str to Spread
-        By the names in `QUANTITIES`.
-    smooth : float
-        Friction coefficient of the smooth contact, before the roughness comes.
-    boundary : float
-        Friction coefficient of the solids.
-    """
-
-    speed: float
-    scalars: dict
-    smooth: float
-    boundary: float
-
-
-def per_step(result, name):
-    """A per-step figure by its name; the friction coefficient also of files that hold the force alone.
-
-    Returns
-    -------
-    ndarray, shape (nsteps,)
-        nan where the file does not have it.
-    """
-    if f"steps/{name}" in result:
-        values = result.steps(name).astype(float)
-    elif name == "friction_coefficient":
-        values = result.steps("friction") / result.steps("load")
-    else:
-        values = np.full(len(result.steps("time")), np.nan)
-    return np.abs(values) if name == "friction_coefficient" else values
-
-
-def spread(values, weights):
-    """Mean and percentiles of values that each stand for a time `weights`."""
-    known = np.isfinite(values) & (weights > 0.0)
-    if not known.any():
-        return Spread(np.nan, np.nan, np.nan)
-    values, weights = values[known], weights[known]
-    order = np.argsort(values)
-    reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
-    low, high = np.interp(BAND, reached, values[order])
-    return Spread(float(np.average(values, weights=weights)), float(low), float(high))
-
-
-def stribeck_point(result, speed):
-    """Figures of one member; None where it ends before both surfaces fill the contact.
-
-    Parameters
-    ----------
-    result : ehlpetsc.results.reader.Result
-    speed : float
-        m/s.
-    """
-    time = result.steps("time")
-    steady = len(time) == 1
-    kept = np.ones(1, bool) if steady else both_fill(result, time)
-    if not kept.any():
-        return None
-    weights = np.ones(1) if steady else np.nan_to_num(result.steps("dt"))[kept]
-    scalars = {name: spread(per_step(result, name)[kept], weights) for name in QUANTITIES}
-    contact = tomllib.loads(result.attrs["case"]).get("contact", {})
-    smooth = float(per_step(result, "friction_coefficient")[0])
-    return Point(speed, scalars, smooth, float(contact.get("boundary_friction", 0.0)))
+MIN_SHARE = 1e-5  # of the load on the solids that is drawn
+MAX_LABELLED_RATIO = 1e3  # of speeds: beyond it labels between powers of ten touch
 
 
 def stribeck_points(results):
-    """Points of a series over the speed, from slow to fast, and names of the members left out.
+    """Points of a series sorted by speed, and names of the members left out.
 
     Raises
     ------
@@ -128,7 +40,7 @@ def stribeck_points(results):
         )
     points, short = [], []
     for speed, result in sorted(zip(speeds, results, strict=True), key=lambda pair: pair[0]):
-        point = stribeck_point(result, speed)
+        point = operating_point(result, speed)
         points, short = (points + [point], short) if point else (points, [*short, result.path.name])
     if not points:
         raise OutputError(
@@ -137,8 +49,8 @@ def stribeck_points(results):
     return points, short
 
 
-def curves(results):
-    """Results that share contact law, mesh and [heat], by a label of these; the longest curve first."""
+def curves_by_contact(results):
+    """Results grouped by contact law, mesh and [heat], by their label; the longest curve first."""
     groups = {}
     for result in results:
         case = tomllib.loads(result.attrs["case"])
@@ -165,10 +77,9 @@ def _label(height, film, mesh, heat, with_mesh, with_heat):
 def draw_stribeck(results, _options):
     """Figure of friction, share on the solids and mean gap ratio against the speed.
 
-    Of results with several contact laws or meshes the longest curve has its scatter over time, the others are
-    lines of their means.
+    With several contact laws or meshes the longest curve is drawn with its scatter, the others as means.
     """
-    (main, members), *others = curves(results).items()
+    (main, members), *others = curves_by_contact(results).items()
     points, short = stribeck_points(members)
     figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
@@ -200,24 +111,26 @@ def draw_stribeck(results, _options):
     axes[0].set_title("\n".join(filter(None, [title, about])) + note, fontsize="medium")
     for panel in axes:
         panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-        panel.xaxis.set_minor_formatter(FuncFormatter(_few) if speeds.max() < WIDE * speeds.min() else "")
+        panel.xaxis.set_minor_formatter(
+            FuncFormatter(_minor_label) if speeds.max() < MAX_LABELLED_RATIO * speeds.min() else ""
+        )
         panel.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
-    axes[2].yaxis.set_minor_formatter(FuncFormatter(_few))
+    axes[2].yaxis.set_minor_formatter(FuncFormatter(_minor_label))
     return figure
 
 
 def _share_axis(axes, points):
-    """Logarithmic where the solids carry anything, as shares range over decades; down to `LEAST_SHARE`."""
+    """Set a logarithmic axis down to `MIN_SHARE` where solids carry load, as shares range over decades."""
     means = np.array([point.scalars["contact_share"].mean for point in points])
-    if (carried := means[means > 0.0]).size:
+    if (positive := means[means > 0.0]).size:
         axes.set_yscale("log")
-        axes.set_ylim(max(LEAST_SHARE, 0.5 * carried.min()), 1.3)
+        axes.set_ylim(max(MIN_SHARE, 0.5 * positive.min()), 1.3)
     else:
         axes.set_ylim(0.0, 1.02)
 
 
 def _hersey_axis(axes, results):
-    """A second axis above with the Hersey number eta0 u/w, where all results share viscosity and load."""
+    """Add an axis with the Hersey number eta0 u/w where all results share viscosity and load."""
     cases = [tomllib.loads(result.attrs["case"]) for result in results]
     given = {(c.get("fluid", {}).get("viscosity"), c.get("contact", {}).get("load")) for c in cases}
     if len(given) == 1 and None not in (pair := given.pop()):
@@ -227,14 +140,14 @@ def _hersey_axis(axes, results):
         above.tick_params(labelsize="small")
 
 
-def _few(value, _):
-    """Labels between powers of ten: 2 and 5 times one."""
+def _minor_label(value, _):
+    """Label of a minor tick: at 2 and 5 times powers of ten."""
     return f"{value:g}" if f"{value:e}"[0] in "25" else ""
 
 
 def _draw_means(axes, results, label, colour):
     given = [tomllib.loads(result.attrs["case"])["motion"]["entrainment_speed"] for result in results]
-    found = [stribeck_point(*pair) for pair in zip(results, given, strict=True)]
+    found = [operating_point(*pair) for pair in zip(results, given, strict=True)]
     points = sorted(filter(None, found), key=lambda point: point.speed)
     speeds = [abs(point.speed) for point in points]
     for panel, name in zip(axes, QUANTITIES, strict=True):
@@ -243,9 +156,9 @@ def _draw_means(axes, results, label, colour):
 
 
 def _references(axes, points, speeds):
-    """Limits of the coefficient: of the solids at the slow end, of the smooth contact at the fast one."""
+    """Draw the limits of the coefficient: of the solids at low speed, of the smooth contact at high speed."""
     solids, smooth = [p.boundary for p in points], [p.smooth for p in points]
-    axes.plot(speeds, solids, color="#b35806", lw=0.9, ls="--", label="solids alone\n(boundary_friction)")
+    axes.plot(speeds, solids, color=SECOND_COLOUR, lw=0.9, ls="--", label="solids alone\n(boundary_friction)")
     axes.plot(speeds, smooth, color="0.35", lw=0.9, ls=":", label="smooth contact")
     axes.set_ylim(bottom=0.0)
     legend_beside(axes)

@@ -1,17 +1,17 @@
-"""Pictures of collisions: over a series, against the swept value, and of lubricant entrapment."""
+"""Collisions of asperities and lubricant entrapment, drawn into given axes."""
 
 import numpy as np
 
 from ehlpetsc.analysis import entrapment
-from ehlpetsc.plot.frames import ACROSS, FILM, PRESSURE, pressure_and_film
-from ehlpetsc.plot.labels import CONTACT_COLOUR, SINGLE_COLOUR, UNITS, legend_beside
+from ehlpetsc.plot.labels import CONTACT_COLOUR, SECOND_COLOUR, SINGLE_COLOUR, UNITS, legend_beside
+from ehlpetsc.plot.panels.frames import ACROSS, FILM, PRESSURE, pressure_and_film
 from ehlpetsc.results.contacts import in_contact
 
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#17becf", "#7f7f7f")
 
 
-def collisions(axes, results, found, colours, width):
-    """Pressure above and film below at each collision, a column each; contacts of every member marked.
+def draw_collisions(axes, results, found, colours, width):
+    """Draw pressure and film at each collision, one column for each, with contacts of every member marked.
 
     Parameters
     ----------
@@ -32,12 +32,12 @@ def collisions(axes, results, found, colours, width):
         for result, frame, colour in zip(results, frames, colours, strict=True):
             x, film = result.x / a, 1e6 * result.frame("film_thickness", frame)
             pressure = 1e-9 * result.frame("pressure", frame)
-            shown = (x >= window[0]) & (x <= window[1])
-            touching = shown & in_contact(result, frame)
+            in_view = (x >= window[0]) & (x <= window[1])
+            touching = in_view & in_contact(result, frame)
             upper.plot(x[touching], pressure[touching], "v", color=colour, ms=4)
             if touching.any():  # an empty line that is not clipped would count for the layout
                 lower.plot(x[touching], film[touching], "v", color=colour, ms=4, clip_on=False)
-            thickest, highest = max(thickest, film[shown].max()), max(highest, pressure[shown].max())
+            thickest, highest = max(thickest, film[in_view].max()), max(highest, pressure[in_view].max())
         lower.set_ylim(0.0, 1.05 * thickest)
         upper.set_ylim(0.0, 1.05 * highest)
         upper.set_title(f"{1e6 * collision.time:.3f} µs", fontsize="medium")
@@ -47,8 +47,8 @@ def collisions(axes, results, found, colours, width):
             lower.set_ylabel("")
 
 
-def against_value(axes, points, values, key, a):
-    """Film above and pressure below at contact points, against the swept value; one line a point."""
+def draw_contact_points(axes, points, values, key, a):
+    """Draw film and pressure at contact points against the swept value, one line for each point."""
     upper, lower = axes
     for point, colour in zip(points, COLOURS, strict=False):
         film, pressure = 1e6 * np.array(point.film), 1e-9 * np.array(point.pressure)
@@ -70,8 +70,8 @@ def against_value(axes, points, values, key, a):
     lower.set_xlim(left=0.0)
 
 
-def entrapped(axes, result, found, width):
-    """Pressure above, the deformed surfaces below, at instants around an entrapment: a column each.
+def draw_entrapment(axes, result, found, width):
+    """Draw pressure and the deformed surfaces at instants around an entrapment, one column for each.
 
     Parameters
     ----------
@@ -85,16 +85,18 @@ def entrapped(axes, result, found, width):
     x = result.x / a
     for column, (frame, place) in enumerate(entrapment.instants(result, found, count=axes.shape[1])):
         upper, lower = axes[:, column]
-        shown = np.abs(result.x - place) <= 0.5 * width * a
-        pressure, touching = 1e-9 * result.frame("pressure", frame), in_contact(result, frame) & shown
-        slow, fast = (1e6 * height for height in entrapment.surfaces(result, frame))
-        upper.plot(x[shown], pressure[shown], color=SINGLE_COLOUR, lw=1.1)
+        in_view = np.abs(result.x - place) <= 0.5 * width * a
+        pressure, touching = 1e-9 * result.frame("pressure", frame), in_contact(result, frame) & in_view
+        surface_2, surface_1 = (1e6 * height for height in entrapment.surfaces(result, frame))
+        upper.plot(x[in_view], pressure[in_view], color=SINGLE_COLOUR, lw=1.1)
         upper.plot(x[touching], pressure[touching], "v", color=CONTACT_COLOUR, ms=4)
-        lower.fill_between(x[shown], slow[shown], slow[shown].min() - 0.05, color="0.75", lw=0)
-        lower.fill_between(x[shown], fast[shown], fast[shown].max() + 0.05, color="0.75", lw=0)
-        lower.plot(x[shown], slow[shown], color=SINGLE_COLOUR, lw=1.0)
-        lower.plot(x[shown], fast[shown], color="#b35806", lw=1.0)
-        lower.plot(x[touching], slow[touching], "v", color=CONTACT_COLOUR, ms=4)
+        for height, solid_end, colour in (
+            (surface_2, surface_2[in_view].min() - 0.05, SINGLE_COLOUR),
+            (surface_1, surface_1[in_view].max() + 0.05, SECOND_COLOUR),
+        ):
+            lower.fill_between(x[in_view], height[in_view], solid_end, color="0.75", lw=0)
+            lower.plot(x[in_view], height[in_view], color=colour, lw=1.0)
+        lower.plot(x[touching], surface_2[touching], "v", color=CONTACT_COLOUR, ms=4)
         upper.set_title(
             f"({'i' * (column + 1) if column < 3 else 'iv'}) {1e6 * result.time[frame]:.2f} µs",
             fontsize="medium",
@@ -102,7 +104,7 @@ def entrapped(axes, result, found, width):
         lower.set_xlabel(ACROSS)
         lower.locator_params(axis="x", nbins=4)
         lower.set_xlim(place / a - width / 2.0, place / a + width / 2.0)
-        highest = max(highest, pressure[shown].max())
+        highest = max(highest, pressure[in_view].max())
     for upper in axes[0]:
         upper.set_ylim(0.0, 1.05 * highest)
     axes[0, 0].set_ylabel(PRESSURE)

@@ -1,4 +1,4 @@
-"""Running in: heights and pressure before and after, and what each pass still changes."""
+"""Running in: heights and pressure before and after, and the changes of each pass."""
 
 import tomllib
 
@@ -6,18 +6,19 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
-from ehlpetsc.plot.frames import frame_to_show
+from ehlpetsc.plot.panels.frames import frame_to_show
 from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.running_in import heights, pass_figures
 
-SIZE, WIDER = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
-STRETCH = 0.6  # half widths of profile shown, around the deepest set
-ROOM = 1.15  # above the highest value
-APART = 2.0  # by which the length, which follows the share, is drawn lower than it
-FIRST, LAST = "0.65", "C3"
-MANY, BLOCK = 30, 10  # passes: of more than these, dots and their means over so many
-LEAST = 1e-3  # of what the first pass added: less is drawn at the edge
+SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
+STRETCH = 0.6  # half widths of profile shown, around the deepest indentation
+MARGIN_FACTOR = 1.15  # above the highest value
+LENGTH_AXIS_FACTOR = 2.0  # separates the length from the share, which it follows
+FIRST, LAST = "0.65", "C3"  # colours of the passes
+MAX_SINGLE_PASSES = 30  # more passes are drawn as dots and means over several
+PASSES_PER_MEAN = 10
+MIN_ADDED = 1e-3  # of the area that the first pass added: less is drawn at the edge
 
 
 def draw_running_in(results, _options):
@@ -35,32 +36,32 @@ def draw_running_in(results, _options):
     if len(results) < 2:
         raise OutputError("one pass alone; allowed: --running-in of two passes or more")
     if any("set_volume" not in result.scalars for result in results):
-        raise OutputError("solids that do not yield: there is no set; needs contact.yield_pressure")
+        raise OutputError("solids that do not yield: no plastic deformation; needs contact.yield_pressure")
     rows = [pass_figures(result, filled_from(result)) for result in results]
     found = [damage_beside(result) for result in results]
     known = all(found)
     damages = [one.summary() for one in found] if known else []
-    figure, axes = labels.new_figure(2, 3 if known else 2, WIDER if known else SIZE)
-    surface(axes[0, 0], results)
-    pressure(axes[1, 0], results)
+    figure, axes = labels.new_figure(2, 3 if known else 2, SIZE_WITH_DAMAGE if known else SIZE)
+    draw_surface(axes[0, 0], results)
+    draw_pressure(axes[1, 0], results)
     time = tomllib.loads(results[0].attrs["case"]).get("time", {})
-    added(axes[0, 1], rows, bool(time.get("pass_shift")))
-    contact(axes[1, 1], rows)
+    draw_plastic_area(axes[0, 1], rows, bool(time.get("pass_shift")))
+    draw_contact(axes[1, 1], rows)
     if known:
         for row, side in zip(axes, ("1", "2"), strict=True):
-            fatigue(row[2], damages, side)
+            draw_fatigue(row[2], damages, side)
     figure.suptitle(f"{results[0].attrs['title']}\n{labels.conditions(results)}", fontsize="medium")
     return figure
 
 
-def surface(axes, results):
-    """Heights of the surface with the deepest indentation before, after the first and after the last pass."""
+def draw_surface(axes, results):
+    """Draw the surface with the deepest indentation as made, after the first and after the last pass."""
     sides = [side for side in ("1", "2") if heights(results[-1], side) is not None]
     side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
     s, made, last = heights(results[-1], side)
     first = heights(results[0], side)[2]
     a = results[0].attrs["a"]
-    near = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * STRETCH * a
+    in_view = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * STRETCH * a
     forward = results[0].attrs["u1" if side == "1" else "u2"] > 0.0
     abscissa = 1e3 * (s.max() - s if forward else s - s.min())
     for z, colour, name, style in (
@@ -68,16 +69,16 @@ def surface(axes, results):
         (first, FIRST, "after pass 1", "-"),
         (last, LAST, f"after pass {len(results)}", "-"),
     ):
-        axes.plot(abscissa[near], 1e6 * z[near], style, color=colour, label=name)
+        axes.plot(abscissa[in_view], 1e6 * z[in_view], style, color=colour, label=name)
     axes.set(
         xlabel="abscissa of the profile, around the deepest indentation [mm]",
         ylabel=f"height of surface {side} [µm]",
     )
-    above(axes)
+    legend_above(axes)
 
 
-def pressure(axes, results):
-    """Pressure of the first and the last pass, when the first has its largest share on the solids."""
+def draw_pressure(axes, results):
+    """Draw the pressures of the first and the last pass at the largest share of solids of the first."""
     first, last = results[0], results[-1]
     common = min(len(first.time), len(last.time))
     frame = min(frame_to_show(first), common - 1)
@@ -86,79 +87,79 @@ def pressure(axes, results):
         axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
     axes.set(xlabel="x/a", ylabel="pressure [GPa]", xlim=(-1.2, 1.2))
     at = f"at {1e6 * first.time[frame]:.1f} µs"
-    above(axes, title=at)
+    legend_above(axes, title=at)
 
 
-def above(axes, *others, title=None):
-    """A legend in a row over the axes, where no curve runs, with what other axes there show."""
+def legend_above(axes, *others, title=None):
+    """Draw the legend of the axes and of others in a row above the axes."""
     handles = [handle for one in (axes, *others) for handle in one.get_legend_handles_labels()[0]]
     place = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
     if handles:
         axes.legend(handles=handles, title=title, fontsize="small", title_fontsize="small", **place)
 
 
-def added(axes, rows, is_shifted):
-    """Plastically displaced area that each pass adds, relative to the first, and Ra of both surfaces."""
+def draw_plastic_area(axes, rows, is_shifted):
+    """Draw the plastic area that each pass adds, relative to the first, and Ra of both surfaces."""
     numbers = np.arange(1, len(rows) + 1)
     volumes = np.array([row["set_volume"] for row in rows])
     parts = np.diff(volumes, prepend=0.0) / volumes[0]
     axes.set_yscale("log")
-    course(axes, numbers, parts, LAST, "o-", LEAST)
+    draw_course(axes, numbers, parts, LAST, "o-", MIN_ADDED)
     axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
     axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=ticks(numbers))
-    axes.set_ylim(bottom=0.8 * LEAST)
+    axes.set_ylim(bottom=0.8 * MIN_ADDED)
     beside = axes.twinx()
     names = {"1": "Ra 1", "2": "Ra 2, its stretch moves on" if is_shifted else "Ra 2"}
     for side, style in (("1", "^--"), ("2", "v:")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
             ra = [1e6 * row[side]["ra"] for row in rows]
-            ms = 4 if len(rows) <= MANY else 0
+            ms = 4 if len(rows) <= MAX_SINGLE_PASSES else 0
             beside.plot(numbers, ra, style, color="C0", ms=ms, alpha=0.6, label=names[side])
     beside.set_ylabel("Ra [µm]", color="C0")
-    above(beside, axes)
+    legend_above(beside, axes)
 
 
-def course(axes, numbers, values, colour, style, least=-np.inf):
-    """A quantity pass by pass, at least `least`; of more than `MANY` passes dots and means over `BLOCK`."""
+def draw_course(axes, numbers, values, colour, style, least=-np.inf):
+    """Draw a quantity pass by pass, at least `least`; of more than `MAX_SINGLE_PASSES` dots and means."""
     shown = np.maximum(values, least)
-    if len(numbers) <= MANY:
+    if len(numbers) <= MAX_SINGLE_PASSES:
         axes.plot(numbers, shown, style, color=colour, ms=4)
         return
     axes.plot(numbers, shown, style[0], color=colour, ms=3, alpha=0.4, mew=0)
-    begins = range(0, len(numbers), BLOCK)
-    means = [np.mean(values[begin : begin + BLOCK]) for begin in begins]
-    edges = [0.5, *(min(begin + BLOCK, len(numbers)) + 0.5 for begin in begins)]
-    axes.stairs(means, edges, baseline=None, color=colour, lw=2.0, label=f"means of {BLOCK} passes")
+    begins = range(0, len(numbers), PASSES_PER_MEAN)
+    means = [np.mean(values[begin : begin + PASSES_PER_MEAN]) for begin in begins]
+    edges = [0.5, *(min(begin + PASSES_PER_MEAN, len(numbers)) + 0.5 for begin in begins)]
+    axes.stairs(means, edges, baseline=None, color=colour, lw=2.0, label=f"means of {PASSES_PER_MEAN} passes")
 
 
-def contact(axes, rows):
-    """Share of the load on the solids and length of contact, means while both surfaces fill it."""
+def draw_contact(axes, rows):
+    """Draw the share of load on the solids and the length of contact, means while both surfaces fill it."""
     numbers = np.arange(1, len(rows) + 1)
     share, length = (
         np.array([np.nan if row.get(name) is None else row[name] for row in rows])
         for name in ("contact_share", "contact_length")
     )
-    course(axes, numbers, share, LAST, "o-")
+    draw_course(axes, numbers, share, LAST, "o-")
     axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers))
-    axes.set_ylim(0.0, _top(share, ROOM))
+    axes.set_ylim(0.0, _top(share, MARGIN_FACTOR))
     beside = axes.twinx()
-    course(beside, numbers, 1e6 * length, "C0", "s--")
-    above(axes)
+    draw_course(beside, numbers, 1e6 * length, "C0", "s--")
+    legend_above(axes)
     beside.set_ylabel("length in contact [µm]", color="C0")
-    beside.set_ylim(0.0, _top(1e6 * length, APART * ROOM))
+    beside.set_ylim(0.0, _top(1e6 * length, LENGTH_AXIS_FACTOR * MARGIN_FACTOR))
     if not np.isfinite(share).any():
         note = "the run ends before both surfaces\nfill the contact: no means over time"
         axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
 
 
-def _top(values, room):
-    """End of an axis above the largest value; 1 where all are 0 or unknown."""
+def _top(values, margin):
+    """Upper limit of an axis above the largest value; 1 where all are 0 or unknown."""
     largest = np.nanmax(values, initial=0.0)
-    return room * largest if largest > 0.0 else 1.0
+    return margin * largest if largest > 0.0 else 1.0
 
 
-def fatigue(axes, damages, side):
-    """Largest damage of a surface at each depth, pass by pass."""
+def draw_fatigue(axes, damages, side):
+    """Draw the largest damage of a surface at each depth, pass by pass."""
     numbers = np.arange(1, len(damages) + 1)
     depths = damages[0]["z_over_a"]
     if any(side not in one or one["z_over_a"] != depths for one in damages):
@@ -173,5 +174,5 @@ def fatigue(axes, damages, side):
 
 
 def ticks(numbers):
-    """At most ten whole numbers."""
+    """At most ten of the numbers of passes, for ticks."""
     return numbers[:: -(-len(numbers) // 10)]

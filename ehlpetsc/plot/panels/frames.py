@@ -9,20 +9,26 @@ from matplotlib.patches import Patch
 from ehlpetsc.analysis import entrapment
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
-from ehlpetsc.plot.labels import CONTACT_COLOUR, SINGLE_COLOUR, SOLIDS_COLOUR, legend_beside, one_hertz
+from ehlpetsc.plot.labels import (
+    CONTACT_COLOUR,
+    SECOND_COLOUR,
+    SINGLE_COLOUR,
+    SOLIDS_COLOUR,
+    legend_beside,
+    share_hertz_contact,
+)
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.filling import both_fill, travelled
 
 ACROSS = "x/a"
-LOWER_COLOUR = "#b35806"
 SIDES = ("surface 1", "surface 2")
 PRESSURE = "pressure [GPa]"
 FILM = "film thickness [µm]"
 GAP = "gap [µm]"  # without oil
-OUTSIDE = (-1.6, 1.4)  # limits of x/a worth seeing
+WINDOW = (-1.6, 1.4)  # limits of x/a by default
 HERTZ_STYLE = dict(lw=0.9, ls=":", zorder=1)
 HERTZ_GREY = "0.6"
-SHARE = 0.005  # of the load on the solids, below which the pressure chooses the instant
+MIN_SOLIDS_SHARE = 0.005  # of the load: below it the pressure chooses the instant
 
 
 def choose_frames(results, step=None, time=None):
@@ -69,9 +75,9 @@ def choose_frames(results, step=None, time=None):
 
 
 def _load_on_solids(result):
-    """By which results of a series are compared: largest share of the load on solids, then the pressure."""
+    """Sort key of results: largest share of the load on solids, then largest pressure."""
     share = np.nanmax(result.steps("contact_share")) if "contact_share" in result.scalars else 0.0
-    return (share if share > SHARE else 0.0), np.nanmax(result.steps("p_max"))
+    return (share if share > MIN_SOLIDS_SHARE else 0.0), np.nanmax(result.steps("p_max"))
 
 
 def travel_of(result):
@@ -82,14 +88,14 @@ def travel_of(result):
 def frame_to_show(result, reached=np.inf):
     """Index of the stored frame with the largest share of the load on the solids, or the highest pressure.
 
-    The share decides where it ever exceeds `SHARE`. Once both surfaces fill the contact, only such frames are
-    looked at: the edge of a profile that enters is no typical contact.
+    The share decides where it ever exceeds `MIN_SOLIDS_SHARE`. Frames before both surfaces fill the contact
+    count only if there are no others: the leading edge of a profile is no typical contact.
 
     Parameters
     ----------
     result : ehlpetsc.results.reader.Result
     reached : float
-        Travel [half-widths] up to which frames are looked at.
+        Travel [half-widths] of the last frame to consider.
     """
     allowed = travel_of(result) <= reached * (1.0 + 1e-9)
     if (filled := allowed & both_fill(result, result.time)).any():
@@ -98,24 +104,24 @@ def frame_to_show(result, reached=np.inf):
     values = result.steps("p_max")[rows]
     if "contact_share" in result.scalars:
         share = np.nan_to_num(result.steps("contact_share")[rows])
-        values = share if share[allowed].max() > SHARE else values
+        values = share if share[allowed].max() > MIN_SOLIDS_SHARE else values
     return int(np.argmax(np.where(allowed, np.nan_to_num(values), -1.0)))
 
 
-def lubricated(result):
+def is_lubricated(result):
     """Whether there is oil in the contact."""
     return "fluid" in tomllib.loads(str(result.attrs["case"]))
 
 
 def default_window(results):
-    """Limits of x/a without a wish: the contact and what is just outside, as far as all results reach."""
+    """Default limits of x/a: around the contact, within the domains of all results."""
     low = max(result.x[0] / result.attrs["a"] for result in results)
     high = min(result.x[-1] / result.attrs["a"] for result in results)
-    return max(low, OUTSIDE[0]), min(high, OUTSIDE[1])
+    return max(low, WINDOW[0]), min(high, WINDOW[1])
 
 
 def instant(results, indices):
-    """Travel of the stored frames in words, with step and time where all share them; "" if steady."""
+    """Text with the travel of stored frames, with step and time where all share them; "" if steady."""
     first, index = results[0], indices[0]
     if len(first.time) == 1:
         return ""
@@ -127,7 +133,7 @@ def instant(results, indices):
 
 
 def pressure_and_film(axes, results, indices, colours, window):
-    """Pressure above, film below; of a single result its contacts and what the solids carry of the pressure.
+    """Draw pressure and film; of a single result also contacts and the pressure of the solids.
 
     The film axis ends above the thickest film inside the contact, or in view where it is closed or elsewhere.
 
@@ -150,31 +156,31 @@ def pressure_and_film(axes, results, indices, colours, window):
         pressure, film = 1e-9 * result.frame("pressure", index), 1e6 * result.frame("film_thickness", index)
         upper.plot(x, pressure, **style)
         lower.plot(x, film, **style)
-        shown = (x >= window[0]) & (x <= window[1])
-        inside = shown & (np.abs(x) <= 1.0)
-        highest = max(highest, pressure[shown].max())
-        thickest = max(thickest, film[inside].max(initial=0.0) or film[shown].max())
+        in_view = (x >= window[0]) & (x <= window[1])
+        inside = in_view & (np.abs(x) <= 1.0)
+        highest = max(highest, pressure[in_view].max())
+        thickest = max(thickest, film[inside].max(initial=0.0) or film[in_view].max())
         if len(results) == 1:
             if "contact_pressure" in result:
                 solids = 1e-9 * result.frame("contact_pressure", index)
                 upper.fill_between(x, 0.0, solids, color=SOLIDS_COLOUR, lw=0, zorder=1.5)
-            touching = shown & in_contact(result, index)
-            if touching.any():  # none would be laid out far away
+            touching = in_view & in_contact(result, index)
+            if touching.any():  # an empty line would extend the layout
                 lower.plot(
                     x[touching], film[touching], "v", color=CONTACT_COLOUR, ms=4, clip_on=False, zorder=3
                 )
     upper.set_ylabel(PRESSURE)
     upper.set_ylim(0.0, 1.05 * highest or 1.0)
-    lower.set_ylabel(FILM if any(map(lubricated, results)) else GAP)
+    lower.set_ylabel(FILM if any(map(is_lubricated, results)) else GAP)
     lower.set_ylim(0.0, 1.15 * thickest or 1.0)
     lower.set_xlabel(ACROSS)
     lower.set_xlim(*window)
 
 
 def _hertz(axes, results, colours, window):
-    """Hertz's pressure, once where all results share it."""
+    """Draw the Hertz pressure, once where all results share it."""
     fine = np.linspace(*window, 801)
-    if one_hertz(results):
+    if share_hertz_contact(results):
         results, colours = results[:1], [HERTZ_GREY]
     for result, colour in zip(results, colours, strict=True):
         hertz = 1e-9 * hertz_pressure(fine, 1.0, result.attrs["p0"])
@@ -182,31 +188,31 @@ def _hertz(axes, results, colours, window):
 
 
 def x_in_mm(axes, results):
-    """A second axis above in mm where results agree in a, and the direction of flow where there is oil."""
+    """Add an axis in mm where all results have the same a, and the direction of flow where there is oil."""
     a = {float(result.attrs["a"]) for result in results}
     if len(a) == 1:
         scale = 1e3 * a.pop()
         above = axes.secondary_xaxis("top", functions=(lambda x: x * scale, lambda x: x / scale))
         above.tick_params(labelsize="small")
         above.set_xlabel("x [mm]", fontsize="small")
-    if not any(map(lubricated, results)):
+    if not any(map(is_lubricated, results)):
         return
-    place = dict(xy=(0.13, 0.9), xytext=(0.02, 0.9), xycoords="axes fraction", textcoords="axes fraction")
-    axes.annotate("", **place, arrowprops=dict(arrowstyle="->", color="0.35"))
+    position = dict(xy=(0.13, 0.9), xytext=(0.02, 0.9), xycoords="axes fraction", textcoords="axes fraction")
+    axes.annotate("", **position, arrowprops=dict(arrowstyle="->", color="0.35"))
     axes.text(0.14, 0.9, "flow", transform=axes.transAxes, va="center", fontsize="small", color="0.35")
 
 
 def deformed_surfaces(axes, result, index, window):
-    """Both deformed surfaces at an instant, the lower one below, solids in grey."""
+    """Draw both deformed surfaces at an instant, solids in grey."""
     x = result.x / result.attrs["a"]
-    shown = (x >= window[0]) & (x <= window[1])
+    in_view = (x >= window[0]) & (x <= window[1])
     lower, upper = (1e6 * height for height in entrapment.surfaces(result, index))
-    inside = shown & (np.abs(x) <= 1.0)
-    part = inside if inside.any() else shown
+    inside = in_view & (np.abs(x) <= 1.0)
+    part = inside if inside.any() else in_view
     bottom, top = lower[part].min(), upper[part].max()
     room = 0.15 * (top - bottom)
     for height, end, colour, name in (
-        (upper, top + room, LOWER_COLOUR, 0),
+        (upper, top + room, SECOND_COLOUR, 0),
         (lower, bottom - room, SINGLE_COLOUR, 1),
     ):
         axes.fill_between(x, height, end, color="0.85", lw=0)
@@ -217,16 +223,16 @@ def deformed_surfaces(axes, result, index, window):
 
 
 def frame_legend(axes, result, index, colour):
-    """Legends beside the panels of `pressure_and_film`: of what is in view."""
+    """Draw the legends of `pressure_and_film`, of the curves in view."""
     x, (low, high) = result.x / result.attrs["a"], axes[1].get_xlim()
-    shown = (x >= low) & (x <= high)
-    solids = "contact_pressure" in result and result.frame("contact_pressure", index)[shown].any()
+    in_view = (x >= low) & (x <= high)
+    solids = "contact_pressure" in result and result.frame("contact_pressure", index)[in_view].any()
     handles = [Line2D([], [], color=colour, lw=1.1, label="total pressure" if solids else "pressure")]
     if solids:
         handles.append(Patch(color=SOLIDS_COLOUR, label="of the solids"))
     handles.append(Line2D([], [], color=HERTZ_GREY, label="Hertz", **HERTZ_STYLE))
     legend_beside(axes[0], handles)
-    films = [Line2D([], [], color=colour, lw=1.1, label="film" if lubricated(result) else "gap")]
-    if in_contact(result, index)[shown].any():
+    films = [Line2D([], [], color=colour, lw=1.1, label="film" if is_lubricated(result) else "gap")]
+    if in_contact(result, index)[in_view].any():
         films.append(Line2D([], [], color=CONTACT_COLOUR, marker="v", ls="", ms=4, label="in contact"))
     legend_beside(axes[1], films)

@@ -1,23 +1,23 @@
-"""Pictures over time: pressure over place and time, contacts per millisecond; drawn into given axes."""
+"""Pressure over x and time, and contacts per millisecond, drawn into given axes."""
 
 import numpy as np
 from matplotlib.colors import ListedColormap
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.frames import ACROSS
 from ehlpetsc.plot.labels import CONTACT_COLOUR
+from ehlpetsc.plot.panels.frames import ACROSS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.filling import travelled
 
-MAP_ROWS = 1000  # rows of pixels worth drawing in a space-time map
-FEW_CONTACTS = 3000  # nodes in contact in a map that would be lost as single pixels
-COLOUR_PERCENTILE = 99.9  # of pressure, where colours end: a few sharp peaks would darken all the rest
+MAP_ROWS = 1000  # most rows of pixels of a space-time map
+FEW_CONTACTS = 3000  # nodes in contact: fewer are marked by dots, as single pixels would not be seen
+COLOUR_PERCENTILE = 99.9  # of pressure: upper end of the colours, which a few sharp peaks would stretch
 MEAN_WIDTH = 0.1  # half-widths of a mean along the contact
 POLYNOMIAL_ORDER = 8  # Holmes et al. 2005, figure 7 (ii)
 
 
 def space_time_map(axes, result, window, highest):
-    """Pressure over place and time, contacts marked; returns the image for a colour bar.
+    """Draw pressure over x and time with contacts marked; returns the image for a colour bar.
 
     At most `MAP_ROWS` frames are drawn; contacts of the frames between them are marked all the same.
 
@@ -35,7 +35,7 @@ def space_time_map(axes, result, window, highest):
     OutputError
         The result has one frame only.
     """
-    x, time, pressure, columns, stride = _over_time(result, window)
+    x, time, pressure, columns, stride = _pressures(result, window)
     rows = time[::stride]
     mesh = dict(cmap="viridis", shading="nearest", rasterized=True)
     image = axes.pcolormesh(x, rows, pressure, vmin=0.0, vmax=highest, **mesh)
@@ -49,8 +49,8 @@ def space_time_map(axes, result, window, highest):
     axes.set_xlabel(ACROSS)
     axes.set_ylabel("time [µs]")
     if constant and scale > 0.0:
-        beside = axes.secondary_yaxis("right", functions=(lambda t: t * scale, lambda way: way / scale))
-        beside.set_ylabel("travel [a]")
+        travel = axes.secondary_yaxis("right", functions=(lambda t: t * scale, lambda x: x / scale))
+        travel.set_ylabel("travel [a]")
     axes.set_xlim(x[0], x[-1])
     axes.set_ylim(time[0], time[-1])
     return image
@@ -58,11 +58,11 @@ def space_time_map(axes, result, window, highest):
 
 def colour_limit(results, window):
     """Pressure [GPa] at which the colours of all results end."""
-    return max(float(np.percentile(_over_time(result, window)[2], COLOUR_PERCENTILE)) for result in results)
+    return max(float(np.percentile(_pressures(result, window)[2], COLOUR_PERCENTILE)) for result in results)
 
 
-def _over_time(result, window):
-    """x/a and time [us] in view, pressure [GPa] of the frames drawn, columns and stride of those."""
+def _pressures(result, window):
+    """x/a and time [us] in view, pressure [GPa] of the frames drawn, their columns and stride."""
     if len(result.time) < 2:
         raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
     x, time = result.x / result.attrs["a"], 1e6 * result.time
@@ -74,14 +74,14 @@ def _over_time(result, window):
 
 
 def _contacts(result, columns, stride):
-    """1 where a node is in contact in any of `stride` frames, a row each `stride` frames."""
+    """1 where a node is in contact in any of `stride` frames, one row for every `stride` frames."""
     last = len(result.time)
     blocks = (slice(begin, min(begin + stride, last)) for begin in range(0, last, stride))
     return np.array([in_contact(result, block, columns).any(axis=0) for block in blocks], dtype=int)
 
 
 def contact_rates(axes, results, colours, polynomial=False):
-    """Contacts per millisecond along the contact: raw above, smoothed below.
+    """Draw contacts per millisecond along the contact, raw and smoothed.
 
     Smoothed by a mean over `MEAN_WIDTH` or, with `polynomial`, by a polynomial of 8th order as in Holmes et
     al. 2005, figure 7 (ii), which needs many contacts: through few of them it oscillates.

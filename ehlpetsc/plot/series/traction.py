@@ -6,7 +6,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import UNITS, conditions, legend_beside, new_figure
-from ehlpetsc.plot.stribeck import stribeck_point
+from ehlpetsc.plot.series.operating_points import operating_point
 from ehlpetsc.results.series_index import distinguishing_names
 
 RATIO = "motion.slide_roll_ratio"
@@ -16,8 +16,7 @@ SIZE = (8.5, 4.6)  # inches
 def draw_traction(results, _options):
     """Figure of the friction coefficient against the slide/roll ratio.
 
-    Results that differ in more than the ratio are curves of their own; isothermal ones are dashed where there
-    are others with a table [heat].
+    Results that differ in other keys form separate curves; isothermal ones are dashed beside those with heat.
 
     Raises
     ------
@@ -68,14 +67,14 @@ def _curves(results):
             groups.setdefault(name, []).append((ratio, result))
     found = {}
     for name, members in groups.items():
-        points = [(ratio, stribeck_point(result, ratio)) for ratio, result in members]
+        points = [(ratio, operating_point(result, ratio)) for ratio, result in members]
         rows = [(ratio, point.scalars["friction_coefficient"].mean) for ratio, point in points if point]
         found[name] = np.array(rows).reshape(-1, 2).T
     return found
 
 
 def _mark_largest(axes, ratios, friction, colour):
-    """A ring and figures at a largest value that is not at the end of a curve."""
+    """Mark the largest value with its figures unless it is at the end of a curve."""
     if friction.size < 3 or friction.argmax() in (0, friction.size - 1):
         return
     at = friction.argmax()

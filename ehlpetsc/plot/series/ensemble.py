@@ -1,4 +1,4 @@
-"""Picture of ensembles over seeds: every run as a dot, mean and bootstrap interval beside it."""
+"""Ensembles over seeds: every run as a dot, with mean and bootstrap interval."""
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -10,7 +10,7 @@ from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
 RUNS_COLOUR = "0.6"
 PANEL = (3.1, 2.4)  # inches
 COLUMNS = 3
-SHOWN = {  # figure: label, factor from SI units
+PANELS = {  # figure: label, factor from SI units
     "friction_coefficient": ("friction coefficient", 1.0),
     "film_central": ("mean central film [µm]", 1e6),
     "mean_gap_ratio": ("mean gap over the combined Rq", 1.0),
@@ -24,20 +24,21 @@ SHOWN = {  # figure: label, factor from SI units
 
 
 def draw_ensemble(results, _options):
-    """Figure of every per-run figure, a panel each, against what differs beside the seeds."""
+    """Figure of the scalars of runs, one panel for each, against the key that differs beside the seeds."""
     found = ensembles(results)
-    names = [name for name in SHOWN if all(name in one.scalars for one in found)]
+    names = [name for name in PANELS if all(name in one.scalars for one in found)]
     if not names:
-        raise OutputError("no figure that all runs have")
+        raise OutputError("no scalar that all runs have")
     rows = -(-len(names) // COLUMNS)
     figure, axes = new_figure(rows, COLUMNS, (PANEL[0] * COLUMNS + 1.2, PANEL[1] * rows), squeeze=False)
-    places, label, ticks = _places(found)
+    abscissae, label, ticks = _abscissae(found)
     for panel, name in zip(axes.flat, names, strict=False):
-        _fill(panel, found, places, name)
+        _draw_panel(panel, found, abscissae, name)
         panel.set_xlabel(label, fontsize="small")
-        panel.set_xlim(_margins(places))
+        panel.set_xlim(_margins(abscissae))
         if ticks:
-            panel.set_xticks(places, ticks, rotation=20 if max(map(len, ticks)) > 6 else 0, fontsize="small")
+            rotation = 20 if max(map(len, ticks)) > 6 else 0
+            panel.set_xticks(abscissae, ticks, rotation=rotation, fontsize="small")
     for panel in axes.flat[len(names) :]:
         panel.set_axis_off()
     handles = [
@@ -53,8 +54,8 @@ def _mean_and_interval():
     return f"mean and its\n{100 * CONFIDENCE:g} % interval\n(bootstrap)"
 
 
-def _places(found):
-    """Abscissae of the ensembles, what they are, and ticks where they are no numbers."""
+def _abscissae(found):
+    """Abscissae of the ensembles, their label, and tick labels where they are not numbers."""
     keys = list(found[0].values)
     if len(keys) == 1:
         values = [one.values[keys[0]] for one in found]
@@ -65,21 +66,21 @@ def _places(found):
     return list(map(float, range(len(found)))), "", [one.name for one in found]
 
 
-def _margins(places):
-    span = (max(places) - min(places)) or 1.0
-    return min(places) - 0.3 * span, max(places) + 0.3 * span
+def _margins(abscissae):
+    span = (max(abscissae) - min(abscissae)) or 1.0
+    return min(abscissae) - 0.3 * span, max(abscissae) + 0.3 * span
 
 
-def _fill(panel, found, places, name):
-    label, factor = SHOWN[name]
-    low, high = _margins(places)
+def _draw_panel(panel, found, abscissae, name):
+    label, factor = PANELS[name]
+    low, high = _margins(abscissae)
     shift = 0.02 * (high - low)
-    for place, one in zip(places, found, strict=True):
+    for x, one in zip(abscissae, found, strict=True):
         values = factor * one.scalars[name]
-        panel.plot(np.full(values.size, place - shift), values, "o", color=RUNS_COLOUR, ms=3, mew=0)
+        panel.plot(np.full(values.size, x - shift), values, "o", color=RUNS_COLOUR, ms=3, mew=0)
         mean, ends = values.mean(), bootstrap(values)
-        panel.plot(place + shift, mean, "o", color=SINGLE_COLOUR, ms=5)
+        panel.plot(x + shift, mean, "o", color=SINGLE_COLOUR, ms=5)
         if np.isfinite(ends).all():
-            panel.vlines(place + shift, *ends, color=SINGLE_COLOUR, lw=1.6)
+            panel.vlines(x + shift, *ends, color=SINGLE_COLOUR, lw=1.6)
     panel.set_ylabel(label, fontsize="small")
     panel.grid(axis="y", lw=0.3)
