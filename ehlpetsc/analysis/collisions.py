@@ -105,7 +105,7 @@ def _points(result):
 
 
 def _label(points, spacing, interval):
-    """For each member the number of the collision that each of its points belongs to."""
+    """Number of the collision of every point, an array for each member."""
     from scipy.ndimage import binary_dilation, label
 
     cells = [(np.rint(t / interval).astype(int), np.rint(x / spacing).astype(int)) for t, x in points]
@@ -121,13 +121,13 @@ def _label(points, spacing, interval):
 
 
 class _Reader:
-    """Film and pressure of one member at places and times."""
+    """Film and pressure of one member at given x and times."""
 
     def __init__(self, result):
         self.result = result
 
     def has(self, time):
-        """Whether a frame of just that time is stored: meshes share only some of their levels."""
+        """Whether a frame at this very time is stored: meshes share only some of their levels."""
         stored = self.result.time
         return bool(np.abs(stored - time).min() < TIME_TOLERANCE * np.diff(stored).max())
 
@@ -153,7 +153,7 @@ def _collision(parts, at):
 
 
 def report(results):
-    """Collisions of a series and what they show, as lines of text."""
+    """Report on the collisions of a series, as lines of text."""
     results, values, key = from_thick_to_thin(results)
     found = find(results)
     a = results[0].attrs["a"]

@@ -183,7 +183,7 @@ class _Reader:
 
 
 def table(differences, a, rtol, atol):
-    """The differences as text, a line each."""
+    """Lines of text, one for each difference."""
     lines = [
         f"{'quantity':<20} {'unit':<6} {'scale':>11} {'max/scale':>10} {'rms/scale':>10} {'at x/a':>8}"
         f" {'at t/us':>10}"
@@ -206,7 +206,7 @@ def _about(result):
 
 
 def _only_in_one(one, other):
-    """Faults that are no numbers: fields that only one file stores, runs that ended differently."""
+    """Differences that are not numbers: fields of one file alone, different ends of the runs."""
     for result, lacking in ((one, other), (other, one)):
         for name in sorted(set(result.fields) - set(lacking.fields)):
             yield f"{name} is stored in {result.path} alone"

@@ -1,4 +1,4 @@
-"""Runs that differ in their seeds alone: mean and bootstrap interval of every figure of a run.
+"""Ensembles of runs that differ in seeds alone: means with bootstrap intervals.
 
 ``python3 -m ehlpetsc.analysis.ensemble OUTPUT.series.json [-o OUTPUT.ensemble.csv]``
 
@@ -118,7 +118,7 @@ def _damage(found):
 
 
 def ensembles(results):
-    """Results put together that differ in nothing but keys named seed.
+    """Ensembles among results: those that differ in nothing but keys named seed.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def write(rows, path):
 
 
 def text(rows):
-    """The table for the eye, a line a row."""
+    """Lines of the table, for printing."""
     widths = [max(len(name), *(len(str(row[name])) for row in rows)) for name in COLUMNS[:4]]
     lines = [" ".join(f"{n:<{w}}" for n, w in zip(COLUMNS, widths, strict=False))]
     lines[0] += "".join(f"{name:>12}" for name in COLUMNS[4:])

@@ -59,7 +59,7 @@ def find(result):
 
 
 def _is_single(pressure, peak):
-    """Whether the pressure rises up to the peak and falls from there on: one peak, amid the oil."""
+    """Whether the pressure has a single peak between the contacts."""
     rise = np.diff(pressure)
     return bool((rise[:peak] > 0.0).all() and (rise[peak:] < 0.0).all())
 

@@ -70,7 +70,7 @@ def statistics(result):
 
 
 def table(results):
-    """Rows of all results, the head first."""
+    """Rows of all results, preceded by the names of the columns."""
     key, values = series_values(results)
     cases = [f"{key} = {v:g}" for v in values] if key else distinguishing_names(results)
     cases = cases or [str(result.attrs["title"]) for result in results]

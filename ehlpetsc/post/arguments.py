@@ -1,4 +1,4 @@
-"""The arguments of the command, and what is refused of them before a file is opened."""
+"""Arguments of the command, checked before a file is opened."""
 
 import argparse
 import math

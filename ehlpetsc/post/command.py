@@ -25,15 +25,15 @@ SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.ST
 
 
 class Progress:
-    """Share of the work done, rewritten in place on a terminal and nowhere else."""
+    """Progress in percent, rewritten in place; on terminals only."""
 
     def __init__(self, name):
         self.name, self.last = name, 0.0
         self.shown, self.parent = sys.stderr.isatty(), os.getppid()
 
     def __call__(self, done, total):
-        """Show done of total depths, at most five times a second."""
-        if os.getppid() != self.parent:  # the process that answers for this one was killed
+        """Show the finished part of all depths, at most five times a second."""
+        if os.getppid() != self.parent:  # the parent process was killed
             raise KeyboardInterrupt
         now = time.monotonic()
         if self.shown and (now - self.last > 0.2 or done >= total):
@@ -48,7 +48,7 @@ class Progress:
 
 
 def say(text):
-    """A line to standard error."""
+    """Print lines to standard error."""
     for line in text.splitlines():
         print(f"ehlpetsc.post: {line}", file=sys.stderr)
 
@@ -84,7 +84,7 @@ def _process(path, chosen):
 
 
 def _summary(output, wall):
-    """One greppable line a result, and one a depth."""
+    """Print one line for each depth and one for the result."""
     result = PostResult(output)
     for k, z in enumerate(result.z):
         print(
@@ -103,7 +103,7 @@ def _summary(output, wall):
 
 
 def _temperatures(surface, found):
-    """Surface temperatures of the body points of a surface."""
+    """Text of the surface temperatures of body points."""
     flash, mean = found.flash[~np.isnan(found.flash)], found.mean[~np.isnan(found.mean)]
     return (
         f"surface {surface} temperature: highest={np.nanmax(found.highest):.5g} K "
@@ -112,7 +112,7 @@ def _temperatures(surface, found):
 
 
 def _weibull(fit):
-    """Distribution over the asperities, where there are enough of them."""
+    """Text of the Weibull distribution over asperities; "" where they are too few."""
     if not fit.beta > 0:
         return ""
     return f" weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}"
@@ -124,7 +124,7 @@ def _passes_file(chosen):
 
 
 def _store_passes(paths, chosen):
-    """Mean and scatter over the passes, in a file of its own and one greppable line a depth."""
+    """Store mean and scatter over passes in a separate file, and print one line for each depth."""
     if len(paths) < len(chosen.results):
         raise PostError("not all of the passes could be processed")
     results = [PostResult(_output(path, chosen)) for path in paths]
@@ -143,7 +143,7 @@ def _store_passes(paths, chosen):
 
 
 def _note_damage(index):
-    """Damage of every pass into the index of a run, and one greppable line a pass."""
+    """Add the damage of every pass to the index of a run, and print one line for each pass."""
     found = note_damage(index)
     for number, known in found:
         largest = (f"{side} D_max={max(known[side]['largest']):.3e}" for side in ("1", "2") if side in known)
@@ -164,7 +164,7 @@ def _draw(paths, chosen):
 
 
 def _status(work, path, output):
-    """Exit status of work(), its faults printed; `path` is its input, `output` its output."""
+    """Run work(), print its faults and return the exit status; `path` is its input, `output` its output."""
     try:
         work()
     except (PostError, OutputError, CaseError) as fault:
@@ -186,11 +186,11 @@ def _status(work, path, output):
 def main(argv=None, call=lambda name, work: work()):
     """Process each file, draw what could be processed; returns the exit status.
 
-    Parameters
-    ----------
-    argv : list of str, optional
-    call : callable(name, work), optional
-        Gets each piece of work, which returns its exit status, and what it is about.
+        Parameters
+        ----------
+        argv : list of str, optional
+        call : callable(name, work), optional
+    Runs a piece of work of a given name and returns its exit status.
     """
     chosen = arguments(argv)
     if not COMPILED:
@@ -222,7 +222,7 @@ def main(argv=None, call=lambda name, work: work()):
 
 
 def command():
-    """Run as a command: every file in a process of its own, so that none can take the others with it."""
+    """Run as a command, every file in a separate process, so that a crash leaves the others unaffected."""
     status = main(call=SubprocessGuard(say))
     sys.stdout.flush()
     os._exit(status)  # the system frees all at once; Python would search it for cycles

@@ -1,4 +1,4 @@
-"""Everything that is counted on a history, one counter a worker: the paper's damage, then criteria."""
+"""Counters of a stress history: the paper's damage, then the other criteria."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ class Counters:
         material = settings.material(surface)
         self.parts = [(Counter(material, counting, samples), len(PAPER))]
         for name in criteria:
-            from ehlpetsc.post.criteria.search import counter_of  # only where asked: it takes long to compile
+            from ehlpetsc.post.criteria.search import counter_of  # slow to compile: only if requested
 
             counter = counter_of(
                 name, material, settings.criteria, counting.residue, counting.strain, samples
@@ -43,7 +43,7 @@ class Counters:
 
 
 def columns(criteria):
-    """(criterion, column) of everything beside the paper's, in the order of the results."""
+    """Pairs (criterion, column) of the criteria beside the paper's, in the order of the results."""
     if not criteria:
         return []
     from ehlpetsc.post.criteria.search import columns_of  # as above

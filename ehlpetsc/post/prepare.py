@@ -1,4 +1,4 @@
-"""Settings, body points and their passages of one result file, shared by all of its tasks."""
+"""Preparation of a result file: settings, body points and their passages."""
 
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 
 
 class Prepared(NamedTuple):
-    """A result file ready to be computed from.
+    """Checked data of a result file, shared by all tasks.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Prepared(NamedTuple):
 
 
 def prepare(loads, surfaces, report):
-    """Check a result file against its own case and find out which body points can be computed.
+    """Check a result file against its case and find the body points that can be computed.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def _motions(loads, surfaces):
 
 def _flank(loads, surface):
     """Points of a flank between the ends of its path of contact, where the run has come to the end of it."""
-    case, number = loads.case, int(surface in ("2", "2"))
+    case, number = loads.case, int(surface) - 1
     if case.gears is None:
         return NO_FLANK
     pair, begin = case.gears.pair, case.conditions.profile_offsets[number]

@@ -1,4 +1,4 @@
-"""From a result file to a post-processing result: tasks over surfaces and depths."""
+"""Post-processing of one result file, in tasks over surfaces and depths."""
 
 from functools import partial
 from pathlib import Path
@@ -27,7 +27,7 @@ DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
 
 
 class Job(NamedTuple):
-    """One result file and the choices of how it is processed.
+    """One result file and the settings of its processing.
 
     `depths` replaces those of the case, `settings` ("table.key=value") other keys of it; the strain rule of
     `counting` is that of the case.
@@ -109,7 +109,7 @@ def run(job, report=None, progress=None):
 
 
 def _note_material(case, criteria, report):
-    """Which steel counts where the case names none, and on what Dang Van's limit rests."""
+    """Report the default steel where the case names none, and the assumptions of Dang Van's limits."""
     if case.contact.material is None and all(getattr(case.post, key) is None for key in FATIGUE_KEYS):
         report(f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel")
     if "dang-van" in criteria:
@@ -120,7 +120,7 @@ def _note_material(case, criteria, report):
 
 
 def _note_heat(loads, surfaces, report):
-    """Notes on the part of heat in the result."""
+    """Report how the result accounts for heat."""
     if loads.case.heat is None:
         return
     if cold := [surface for surface in surfaces if surface not in loads.heated([surface])]:

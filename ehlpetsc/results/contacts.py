@@ -1,4 +1,4 @@
-"""Where a result's surfaces touch, whatever it stores and whatever bound its film has."""
+"""Contact in a result file, as stored or from its films."""
 
 import tomllib
 

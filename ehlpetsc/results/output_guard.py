@@ -56,7 +56,7 @@ def check_output_path(path, inputs, option="-ehl_output"):
 
 
 def check_derived(path, inputs, kinds, option="-o"):
-    """Refuse an output made from results that is an input, of no such kind, or in the place of another file.
+    """Refuse a derived output that is an input, of another kind, or would replace a foreign file.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def post_path(path):
 
 
 class PostResult:
-    """Everything of a result of post-processing in memory; what an older one does not hold is empty.
+    """A result of post-processing in memory; parts that an older file does not hold are empty.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where a result comes from: versions and the commit of the code."""
+"""Provenance of a result: versions and the commit of the code."""
 
 import json
 import platform

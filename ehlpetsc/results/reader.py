@@ -24,7 +24,7 @@ def read_result(path, **options):
 
 
 def _whole_rows(group, path):
-    """Rows that a group's datasets share; its ``time`` is written last and so vouches for the rest."""
+    """Number of complete rows of a group; its ``time`` is written last."""
     rows = [d for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in OVER_NODES]
     for dataset in rows:
         if not dataset.shape:

@@ -48,7 +48,7 @@ def save_restart(path, arrays, attrs):
 
 
 def load_restart(path):
-    """Read what `save_restart` wrote.
+    """Read a file of `save_restart`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Running in: surfaces and contact pass by pass, from the results of the passes."""
+"""Running in: surfaces and contact after each pass."""
 
 import numpy as np
 
@@ -13,16 +13,16 @@ MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient"
 def pass_figures(result, begin):
     """Roughness and depths at the end of a pass, and means over the time that both surfaces fill the contact.
 
-    Parameters
-    ----------
-    result : results.reader.Result
-    begin : float
-        Time from which both surfaces fill the contact [s].
+        Parameters
+        ----------
+        result : results.reader.Result
+        begin : float
+            Time from which both surfaces fill the contact [s].
 
-    Returns
-    -------
-    dict
-        SI units; a surface is None where nothing is known of it.
+        Returns
+        -------
+        dict
+    SI units; a surface is None where it is not stored.
     """
     steps = result.steps
     dt = np.where(steps("time") >= begin, steps("dt"), 0.0)
@@ -36,7 +36,7 @@ def pass_figures(result, begin):
 
 
 def heights(result, side):
-    """Body points, heights as made and as the pass has left them [m]; None: nothing is known of them."""
+    """Body points, heights as made and after the pass [m]; None: not stored."""
     name = f"surface/{side}"
     if f"{name}/s" not in result:
         return None
@@ -46,7 +46,7 @@ def heights(result, side):
 
 
 def statistics(result, side):
-    """Ra, Rq [m], Rsk, largest slope and deepest set [m] of a surface as a pass has left it."""
+    """Ra, Rq [m], Rsk, largest slope and deepest indentation [m] of a surface after a pass."""
     found = heights(result, side)
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""Results that belong together: the members of a series opened, and sorted by their swept value."""
+"""Results of a series, opened and sorted by their swept value."""
 
 import contextlib
 import json
@@ -27,7 +27,7 @@ WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which f
 
 
 def open_all(paths, stack):
-    """Results of the files named; of a series' index (.series.json) the members that have a file.
+    """Results of files; of the index of a series (.series.json) those of its members that exist.
 
     Files of post-processing and restart files among results are left out.
 
@@ -126,7 +126,7 @@ def read_index(path):
 
 
 def series_values(results):
-    """The one number that the case files of a series do not share.
+    """Key and numbers of the one number in which the case files of a series differ.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def differences(results):
 
 
 def distinguishing_names(results):
-    """A name for each result by the values in which their cases differ; None where that tells none apart.
+    """Names of results by the values in which their cases differ; None where these are not unique.
 
     Returns
     -------

@@ -1,16 +1,16 @@
-"""The figures of all steps put together to those of a run, and of several runs, as their table says."""
+"""Totals of the scalars of all steps of a run, and of several runs."""
 
 import numpy as np
 
 from ehlpetsc.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.results.filling import both_fill
 
-OF_ALL = ("sum", "min", "max")  # reductions that mean something of several runs
+OF_ALL = ("sum", "min", "max")  # reductions that are meaningful over several runs
 REDUCED = {name: figure for name, figure in STEP_SCALARS.items() if figure.over_run}
 
 
 class Totals:
-    """Figures of a run.
+    """Totals of a run.
 
     Parameters
     ----------
@@ -50,11 +50,11 @@ class Totals:
         return cls({name: REDUCTIONS[named[name]](values) for name, values in of_all.items()})
 
     def add(self, scalars):
-        """Take those of the next step.
+        """Add the scalars of the next step.
 
         Parameters
         ----------
-        figures : dict of str to number
+        scalars : dict of str to number
         """
         for name in REDUCED.keys() & scalars.keys():
             one, other = self.values.get(name, scalars[name]), scalars[name]
@@ -74,7 +74,7 @@ class Totals:
 
 
 def _sliding_reverses(result):
-    """Whether the sliding speed has both signs during the run: friction then is averaged by its magnitude."""
+    """Whether the sliding speed changes sign during the run: means of friction are then of its magnitude."""
     if "speed_1" not in result.scalars:
         return False
     sliding = result.steps("speed_1") - result.steps("speed_2")

@@ -84,7 +84,7 @@ class ResultWriter:
         self._batch, self._flushed = Batch(self._file, len(layout.x)), clock.monotonic()
 
     def append(self, step, time, fields, scalars, in_contact, frame=None):
-        """Take an accepted time step.
+        """Hold an accepted time step, and write when the buffer is full.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class ResultWriter:
             self.flush()
 
     def flush(self):
-        """Hand everything taken so far to the operating system; afterwards a kill does not lose it."""
+        """Hand all rows to the operating system; a killed process then does not lose them."""
         self._check_still_there()
         with self._plain_faults("not written on"), room(self._file, self._batch.size):
             self._batch.write(self.contact_count)
@@ -127,7 +127,7 @@ class ResultWriter:
             self._file[f"surface/{side}/{name}"][:] = depth
 
     def close(self, status, limits=()):
-        """Write what is left, note how the run ended and close.
+        """Write the remaining rows, store the status and close.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class ResultWriter:
             close(self._file, status, "\n".join(limits))
 
     def _check_still_there(self):
-        """The file of that name must be the one that is written."""
+        """Refuse to continue if the file has been replaced or removed."""
         if self.path is None:
             return
         with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""Solutions that the ends of the domain cut off: they mean nothing, however well they converged."""
+"""Check that the domain does not cut off pressure or contact: such a solution is meaningless."""
 
 from ehlpetsc.errors import NotConverged
 

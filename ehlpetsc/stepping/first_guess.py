@@ -59,7 +59,7 @@ def hertz_start(problem, film, inputs, thick=1.3):
 
 
 def smoothed(p, width):
-    """Mean of p, zero beyond its ends, under a Gaussian of so many nodes, which is cut at the mesh's length.
+    """Mean of p, zero beyond its ends, under a Gaussian of a width in nodes, cut off at the mesh's length.
 
     (scipy.ndimage has it, but loads 14 MB, which a smooth contact has no other need of.)
     """

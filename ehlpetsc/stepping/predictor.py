@@ -1,4 +1,4 @@
-r"""First guess of a time step: what the roughness has changed of the smooth solution, moved along.
+r"""First guess of a time step: the change of the smooth solution by roughness, advected.
 
 It is carried with the mean speed (of films the ratio, which keeps them positive), from that one of the last
 three time levels whose way from here is nearest to a whole number of nodes. Asperity pressures are
@@ -19,7 +19,7 @@ AGE = 0.03  # nodes off a whole number that a level one step younger makes up fo
 
 
 class TimeLevel(NamedTuple):
-    """Unknowns of an earlier time level, and the way that the film had gone there [m]."""
+    """Unknowns of an earlier time level, and the distance travelled by the film [m]."""
 
     travelled: float
     q: np.ndarray
@@ -28,7 +28,7 @@ class TimeLevel(NamedTuple):
 
 @compiled
 def advected(share, nodes):
-    """Move what the roughness has changed of the smooth solution along by `nodes` nodes.
+    """Advect the change of the smooth solution by roughness by `nodes` nodes.
 
     Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of
     asperities, two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's
@@ -51,7 +51,7 @@ def advected(share, nodes):
 
 
 def neighbours(v, nodes):
-    """Values of the two nodes that a point moved by `nodes` nodes has come from between."""
+    """Values of the two nodes upstream of each point moved by `nodes` nodes."""
     source = np.arange(len(v)) - int(np.floor(nodes))
     return v.take(source, mode="clip"), v.take(source - 1, mode="clip")
 

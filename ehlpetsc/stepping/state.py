@@ -9,7 +9,7 @@ from ehlpetsc.stepping.predictor import TimeLevel
 
 @dataclass(frozen=True)
 class State:
-    """One time level and what the next step needs of the past; arrays of shape (nx,), dimensionless.
+    """One time level with the history needed by the next step; arrays of shape (nx,), dimensionless.
 
     Attributes
     ----------

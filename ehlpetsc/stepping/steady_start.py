@@ -1,4 +1,4 @@
-r"""The steady solution that every run begins with, and how a hard one is reached.
+r"""Steady start of a run, with continuation for hard cases.
 
 From Hertz' pressure, smoothed, under a film 1.3 times Moes' central one, Newton's method takes 4 to 7
 iterations for most oils and loads. Where it does not arrive, pressures of the exit spike swing: beyond about
@@ -105,7 +105,7 @@ def yielding_start(solver, film, inputs, watch=None):
 
 
 class SolveAttempts:
-    """Certified solves from one state or another, `MAX_ATTEMPTS` at most.
+    """Checked solves from given states, `MAX_ATTEMPTS` at most.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class SolveAttempts:
 
 
 class Continuation:
-    """Solve at once or, failing that, with a growing share of what makes the contact hard."""
+    """Solve directly or, failing that, with growing fractions of pressure-viscosity effect and roughness."""
 
     def __init__(self, solver, inputs, max_it=None, watch=None):
         self.inputs, self.attempt = inputs, SolveAttempts(solver, max_it, watch)

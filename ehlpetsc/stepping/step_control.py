@@ -1,4 +1,4 @@
-"""The size of the next time step, in one place."""
+"""Size of the next time step."""
 
 import numpy as np
 

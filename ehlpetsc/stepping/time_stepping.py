@@ -1,4 +1,4 @@
-"""From the start to the end of a run: steady solution, time steps, retries.
+"""Time stepping of a run: steady solution, time steps, retries.
 
 The first guess of a step is :mod:`.predictor`'s. A step that does not converge is halved and counted;
 :mod:`.step_control` returns to the nominal one.
@@ -77,7 +77,7 @@ class TimeStepping:
         return self._settled(state, inputs, records, watch)
 
     def _settled(self, state, inputs, before, watch):
-        """Steady solution that agrees with the records it leads to, by solving again with these."""
+        """Steady solution consistent with the records of the effects, by repeated solves."""
         end, newton = self._step_end(), state.newton
         for _ in range(MAX_STEADY_SOLUTIONS):
             if all(e.is_settled(before[e.name], state.records[e.name]) for e in self.effects):
@@ -118,10 +118,10 @@ class TimeStepping:
         return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.residual()[1])
 
     def _start_by_time_stepping(self, records, watch):
-        """State at time 0 of a film into which roughness at rest has grown by time steps before.
+        """State at time 0 after time steps during which roughness at rest has grown.
 
-        It lies under the film from the start, where Newton's method may find no way to it; the roughness of
-        a moving body comes in through the inlet. The growth covers `RAMP_LENGTH` at the mean speed.
+        Roughness at rest is under the film from the start, where Newton's method may not converge; that of a
+        moving body enters through the inlet. It grows over `RAMP_LENGTH` at the mean speed.
         """
         try:
             end = self._step_end()
@@ -206,7 +206,7 @@ class TimeStepping:
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
     def _solve(self, inputs, q, w, h00, watch):
-        """Solution of a step; where solids yield and there is none, from the elastic one."""
+        """Solution of a step; where solids yield and it fails, from the elastic solution."""
         elastic = self.problem.model.elastic()
         try:
             return solve_checked(self.solver, q, w, h00, inputs, watch=watch)

@@ -1,4 +1,4 @@
-r"""Depth field of a body, in cells that travel with it.
+r"""Depth field of a body on cells fixed to it.
 
 A step's contribution at the nodes of the mesh is distributed to these cells by overlap, and the mesh gets the
 means over its own cells back: both conserve the volume. Nothing is moved from cell to cell, hence nothing is

@@ -1,4 +1,4 @@
-r"""The worst plane of a history: damage counted on planes in three dimensions, the largest one kept.
+r"""Critical plane of a history: the plane of largest damage in three dimensions.
 
 A criterion is a quantity whose cycles are counted on a plane and a parameter P of each cycle (laws in
 :mod:`ehlpetsc.post.criteria.laws`). The largest normal stress of a cycle is that within its closed loop.
@@ -69,7 +69,7 @@ def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
 
 @compiled(error_model="python", nogil=True)
 def plane_damage(kind, angles, stress, size, law, share, work):
-    """Damage on one plane; cycles below `share` of the widest range are left out."""
+    """Damage on one plane, without cycles below `share` of the widest range."""
     nu, residual, closed, sensitivity, curve, lives = law
     stack, first, second, weight, series, normal = work
     _on_plane(kind, angles, stress, size, nu, residual, series, normal)

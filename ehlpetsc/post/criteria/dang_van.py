@@ -1,4 +1,4 @@
-r"""Dang Van's criterion: is the fatigue limit kept in every grain? A utilisation, not a damage.
+r"""Dang Van's criterion: utilisation of the fatigue limit in every grain.
 
 .. math::
     U = \max_t \frac{\tau(t) + a\,\max(\sigma_H(t), 0)}{\tau_w}, \qquad

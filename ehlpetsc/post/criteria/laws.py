@@ -1,4 +1,4 @@
-r"""The criteria beside the paper's: their equations, sources and the constants they need.
+r"""Fatigue criteria beside the paper's: equations, sources, constants.
 
 Plain shear strain (the plane of the largest damage by shear alone) and Fatemi & Socie (1988), Fatigue Fract.
 Engng Mater. Struct. 11, whose normal stress opens the crack that shear makes:

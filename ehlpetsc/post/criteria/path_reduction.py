@@ -1,4 +1,4 @@
-"""The few samples of a history that matter to any plane: where its path in stress space turns.
+"""Reduction of a history to the samples where its path in stress space turns.
 
 A plane sees a sum of the three stresses. Samples at which one of 13 such sums turns back by more than a
 tolerance are kept, and between them those that lie off the straight line; the path between kept samples is
@@ -51,7 +51,7 @@ def _mark_reversals(points, size, direction, tolerance, kept):
 
 @compiled(error_model="python", nogil=True)
 def _off_line(points, first, last):
-    """Sample between two that lies farthest off the straight line from the one to the other, and how far."""
+    """Sample between two that is farthest from the straight line through them, and its distance."""
     dx, dy = points[0, last] - points[0, first], points[1, last] - points[1, first]
     dz = points[2, last] - points[2, first]
     length = dx * dx + dy * dy + dz * dz
@@ -68,7 +68,7 @@ def _off_line(points, first, last):
 
 @compiled(error_model="python", nogil=True)
 def turning_samples(points, size, places):
-    """Write the samples of points (3, :size) that are kept into `places`; return how many."""
+    """Write the indices of the samples of points (3, :size) to keep into `places`; return their number."""
     extent = 0.0
     for k in range(3):
         extent = max(extent, points[k, :size].max() - points[k, :size].min())

@@ -1,4 +1,4 @@
-r"""Planes in three dimensions and what plane-strain stresses do on them, as weights of (sx, sz, txz).
+r"""Normal and shear stresses of plane strain on planes in three dimensions, as weights of (sx, sz, txz).
 
 The normal of a plane has the angle :math:`\theta` from x towards z in the section and the tilt
 :math:`\varphi` out of it; a direction in the plane the angle :math:`\psi` from the section's:

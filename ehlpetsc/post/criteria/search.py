@@ -93,7 +93,7 @@ class LimitCounter:
 
 
 def columns_of(criterion):
-    """Names of what a criterion gives for each history."""
+    """Names of the results of a criterion for each history."""
     return (LimitCounter if criterion == "dang-van" else PlaneCounter).columns
 
 

@@ -1,1 +1,1 @@
-"""From stress histories to damage: rainflow cycles, life, Miner's sum, statistics over asperities."""
+"""Fatigue damage of stress histories: rainflow cycles, life, Miner's sum, statistics over asperities."""

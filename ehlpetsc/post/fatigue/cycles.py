@@ -1,4 +1,4 @@
-"""Rainflow counting by the four-point method, with the residue counted: closed on itself, or as half cycles.
+"""Rainflow counting by the four-point method; the residue is counted as a closed history or as half cycles.
 
 A four-point count alone leaves a residue of the largest ranges uncounted, which is not conservative. The
 history of a point that the contact passes over and over is periodic, so by default the residue is closed:
@@ -15,7 +15,7 @@ RESIDUES = ("closed", "half")
 
 @compiled(error_model="python", nogil=True)
 def _close(series, stack, bottom, top, first, second, weight, n):
-    """Take off closed cycles: the inner range of the last four reversals is within both its neighbours."""
+    """Count and remove closed cycles: of four reversals the inner range is within both neighbouring ones."""
     while top - bottom >= 4:
         b, c = series[stack[top - 3]], series[stack[top - 2]]
         inner = abs(c - b)

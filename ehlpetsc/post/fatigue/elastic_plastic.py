@@ -1,4 +1,4 @@
-r"""The elastic-plastic range that belongs to an elastic one: none, Neuber's or Glinka's rule.
+r"""Elastic-plastic range of an elastic one: unchanged, by Neuber's or by Glinka's rule.
 
 .. math::
     \text{direct:}\quad \Delta\sigma = \Delta\sigma_e

@@ -1,4 +1,4 @@
-"""Histories given as arrays of any shape, counted as the blocks of a result file are."""
+"""Evaluation of stress histories given as arrays of any shape."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""1/N over the stress range as a table, for the inner loop of the damage sum.
+"""Table of 1/N over the stress range, for the inner loop of the damage sum.
 
 ln(1/N) over ln(dsv^2) by cubic Hermite interpolation between 4,096 values with exact slopes, straight lines
 in logarithms (the power laws of the two curves' ends) outside. Relative error of 1/N below 1e-9, as tested.
@@ -54,7 +54,7 @@ def life_table(material, strain="direct"):
 
 @compiled(error_model="python", nogil=True)
 def interpolate(logarithm, table):
-    """Value of a :func:`curve_table` at a logarithm; straight on beyond its ends."""
+    """Value of a :func:`curve_table` at a logarithm, extrapolated linearly beyond its ends."""
     last = table.shape[0] - 2
     place = (logarithm - table[last + 1, 0]) / table[last + 1, 1]
     if place <= 0:

@@ -1,4 +1,4 @@
-r"""The closed loop of a counted cycle and how wide it is in stress space.
+r"""Closed loop of a counted cycle and its width in stress space.
 
 A cycle is closed by the counted scalar. Its loop are all instants about its two reversals, on either side,
 at which the scalar stays within the cycle's range: the way from the one to the other, and the ways on which
@@ -68,7 +68,7 @@ def equivalent_points(stress, nu, points):
 
 @compiled(error_model="python", nogil=True)
 def repeat_points(points, size):
-    """Write points[:, :size] once more behind themselves: a loop across the end of a history is one slice."""
+    """Repeat points[:, :size], so that a loop across the end of a history is one slice."""
     for part in range(3):
         for k in range(size):
             points[part, size + k] = points[part, k]
@@ -100,7 +100,7 @@ def _widest_of_few(x, y, z):
 
 @compiled(error_model="python", nogil=True)
 def _balls(x, y, z, places):
-    """Middle point and radius of each BLOCK of points at `places`, which follow each other on the path."""
+    """Middle point and radius of each BLOCK of consecutive points of the path, given by their indices."""
     count = -(-places.size // BLOCK)
     middles, radii = np.empty(count, np.int64), np.empty(count)
     for m in range(count):
@@ -114,7 +114,7 @@ def _balls(x, y, z, places):
 
 @compiled(error_model="python", nogil=True)
 def _far_from(x, y, z, middle, best):
-    """Places of the points that can belong to a squared distance above `best`."""
+    """Indices of the points that can have a squared distance above `best`."""
     squared, largest = np.empty(x.size), 0.0
     for k in range(x.size):
         squared[k] = (x[k] - middle[0]) ** 2 + (y[k] - middle[1]) ** 2 + (z[k] - middle[2]) ** 2

@@ -1,4 +1,4 @@
-r"""Damage of several passes of the same points: mean, scatter, and passes to failure by Miner's sum.
+r"""Damage over several passes of the same points: mean, scatter and passes to failure by Miner's sum.
 
 One pass meets one part of the other surface; the next one meets another. After M passes
 :math:`\sum_m D_m = M\bar D`, and failure is expected after :math:`1/\bar D` passes (Palmgren-Miner).

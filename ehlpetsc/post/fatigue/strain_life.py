@@ -1,4 +1,4 @@
-r"""From stress ranges to life: equivalent range, cyclic stress-strain curve, strain-life curve.
+r"""Life of stress ranges: equivalent range, cyclic stress-strain curve, strain-life curve.
 
 .. math::
     \Delta\sigma_v = \sqrt{\tfrac12[(\Delta\sigma_x-\Delta\sigma_y)^2+(\Delta\sigma_y-\Delta\sigma_z)^2
@@ -60,7 +60,7 @@ class Material:
         return self.cyclic_strength or self.fatigue_strength / self.fatigue_ductility**self.cyclic_hardening
 
     def constants(self):
-        """(E, K', n', sigma_f', eps_f', b, c), what the compiled functions take."""
+        """Constants (E, K', n', sigma_f', eps_f', b, c) of the compiled functions."""
         return (
             self.youngs_modulus,
             self.hardening_coefficient,

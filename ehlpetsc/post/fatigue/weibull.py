@@ -1,4 +1,4 @@
-r"""How sure a Weibull distribution is: maximum likelihood beside median ranks, and bounds by resampling."""
+r"""Confidence of a Weibull distribution: maximum likelihood, and bounds by resampling."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""A result file against its own case: numbers in wrong units, or of another case, are refused."""
+"""Consistency of a result file with its case: wrong units and numbers of another case are refused."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ COLDEST = 100.0  # K: less is in degrees Celsius, or a rise
 
 
 def check_scales(loads):
-    """Half width, Hertz pressure, speeds and nodes against the case; PostError with a line a fault."""
+    """Check half width, Hertz pressure, speeds and nodes against the case; PostError with all faults."""
     if not loads.has_conditions:
         return
     scales, faults = loads.scales, []
@@ -46,7 +46,7 @@ def check_scales(loads):
 
 
 def check_time_step(loads):
-    """Times of the frames against the case's time step: PostError if they are in another unit."""
+    """Check the times of the frames against the time step of the case; PostError if in another unit."""
     step = np.median(np.diff(loads.time) / np.diff(loads.step))
     if loads.dt and not MIN_STEP < step / loads.dt < MAX_STEP:
         raise PostError(
@@ -55,7 +55,7 @@ def check_time_step(loads):
 
 
 class Balance:
-    """Each frame's pressure and shear against the load of the case and the scalars of its time step."""
+    """Checks of pressure and shear of each frame against the load of the case and the scalars of its step."""
 
     def __init__(self, loads):
         self.loads = loads
@@ -64,7 +64,7 @@ class Balance:
         self.of_step = {name: loads.step_scalar(name) for name in names}
 
     def check_pressure(self, first, total, low, high):
-        """Sums, minima and maxima of the pressures of frames from `first` on."""
+        """Check sums, minima and maxima of the pressures of frames from `first` on."""
         p0, force = self.loads.p0, total * self.loads.dx
         load = self.load[first : first + len(force)]
         wrong = ~(np.abs(force - load) <= LOAD_AGREES * load)
@@ -73,18 +73,18 @@ class Balance:
         self._of_step(first, force, "load", "pressure", "its integral over x", self.load[0])
         self._of_step(first, high, "p_max", "pressure", "its greatest value", p0)
 
-    def check_slow_shear(self, first, total):
-        """Sums of the shear stresses on surface 2 of frames from `first` on."""
+    def check_shear_2(self, first, total):
+        """Check sums of the shear stresses on surface 2 of frames from `first` on."""
         force, small = total * self.loads.dx, 1e-3 * self.load[0]
         self._of_step(first, force, "friction", "shear_stress_2", "its integral over x", small)
 
     def check_shear_size(self, name, first, size):
-        """Greatest magnitudes of a shear stress against the Hertz pressure."""
+        """Check the largest magnitudes of a shear stress against the Hertz pressure."""
         limit = 10 * self.loads.p0
         self._refuse(size > limit, first, size, name, "its greatest value", limit, "or less")
 
     def check_temperature(self, name, first, low, high):
-        """Least and greatest temperatures of frames from `first` on."""
+        """Check the extreme temperatures of frames from `first` on."""
         self._refuse(low < COLDEST, first, low, name, "its least value", COLDEST, "K or more")
         self._of_step(first, high, f"{name}_max", name, "its greatest value", COLDEST)
 

@@ -1,4 +1,4 @@
-"""Frames missing from a result, seen from the numbers of the steps and from their times."""
+"""Frames missing from a result, by the numbers of the steps and their times."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from ehlpetsc.post.inputs.consistency import MAX_STEP
 
 
 class Gaps(NamedTuple):
-    """Which frames are missing.
+    """Positions and numbers of missing frames.
 
     Attributes
     ----------

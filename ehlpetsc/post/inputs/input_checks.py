@@ -1,4 +1,4 @@
-"""Check of all frames before anything is computed: finite, plausible, and a digest that identifies them."""
+"""Checks of all frames before a computation, and the digest that identifies them."""
 
 import hashlib
 
@@ -50,7 +50,7 @@ def _check_rows(balance, name, first, rows, total):
         return
     balance.check_shear_size(name, first, np.maximum(-low, high))
     if name == "shear_stress_2":
-        balance.check_slow_shear(first, total)
+        balance.check_shear_2(first, total)
 
 
 def _check_finite(loads, name, first, rows, sums):

@@ -1,4 +1,4 @@
-"""Pressure and wall shear of a result file, read a few frames at a time, and the case they belong to."""
+"""Pressure and wall shear of a result file, read in blocks of frames, with the case."""
 
 from pathlib import Path
 
@@ -141,7 +141,7 @@ class Loads:
 
     def bulk_temperature(self, surface):
         """Temperature of the body of `surface` far from the contact [K]."""
-        return self.case.heat.bulk_temperature[SURFACES[::-1].index(surface)]
+        return self.case.heat.bulk_temperature[int(surface) - 1]
 
     def needed(self, surfaces):
         """Names of the fields that post-processing of `surfaces` reads."""

@@ -1,1 +1,1 @@
-"""The post-processing result file: written, and read back."""
+"""Post-processing result files."""

@@ -1,4 +1,4 @@
-"""The datasets of a post-processing result, from computed damage."""
+"""Datasets of a post-processing result, from computed damage."""
 
 import numpy as np
 
@@ -79,7 +79,7 @@ class Contents:
         beyond = (under >= 1).sum(axis=1)
         self._put("asperities", inner, s=peaks.s, height=peaks.height, damage=under, largest=near)
         self._put("weibull", inner, **dict(zip(("alpha", "beta", "r_squared"), fits.T, strict=True)))
-        self._put_sureness(inner, [log_life(row) for row in under])
+        self._put_confidence(inner, [log_life(row) for row in under])
         self._put("weibull", inner, at_least_one=beyond, undamaged=(under == 0).sum(axis=1))
         for group in ("asperities", "weibull"):
             self.groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
@@ -92,7 +92,7 @@ class Contents:
                     f"or more at z/a = {depth:g}: failure in the first pass"
                 )
 
-    def _put_sureness(self, inner, lives):
+    def _put_confidence(self, inner, lives):
         """Maximum likelihood and bounds by resampling, for each depth."""
         best = np.array([weibull_likelihood(row) for row in lives]).reshape(-1, 2)
         bounds = [weibull_bounds(row, self.regression) for row in lives]

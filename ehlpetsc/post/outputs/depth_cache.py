@@ -1,4 +1,4 @@
-"""Finished depths beside the output, from which an interrupted run continues."""
+"""Cache of finished depths, from which an interrupted run continues."""
 
 import contextlib
 import io
@@ -15,7 +15,7 @@ FINGERPRINT = "mark"
 class DepthCache:
     """Finished (surface, depth) results in a folder beside the output, each written atomically.
 
-    For who holds the lock on the output.
+    The caller must hold the lock on the output.
 
     Parameters
     ----------

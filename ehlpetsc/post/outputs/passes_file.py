@@ -1,4 +1,4 @@
-"""Several results as passes of one surface: the points they share, and what is stored of them."""
+"""Several results as passes of one surface: common points and stored statistics."""
 
 import numpy as np
 

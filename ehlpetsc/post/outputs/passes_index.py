@@ -1,4 +1,4 @@
-"""Damage of every pass of a run, put into the index that the run has left of its passes."""
+"""Damage of every pass of a run, added to the index of its passes."""
 
 import json
 from pathlib import Path
@@ -16,7 +16,7 @@ def is_of_passes(path):
 
 
 def note_damage(index):
-    """Add to each pass of an index what post-processing has left beside it, under "damage".
+    """Add the damage found by post-processing to each pass of an index, under "damage".
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The post-processing result: its layout, and what may be overwritten by it."""
+"""Layout of a post-processing result, and checks of its path."""
 
 import hashlib
 import io
@@ -90,7 +90,7 @@ def check_output(path, inputs):
 
 
 def write_result(path, datasets, attrs, group_attrs):
-    """Write the result in memory, then beside `path`, and rename it: a file under that name is whole.
+    """Write a result atomically: in memory first, then beside `path`, renamed at the end.
 
     HDF5 itself does not end cleanly on a full disk; a plain write does.
 
@@ -121,7 +121,7 @@ def write_result(path, datasets, attrs, group_attrs):
 
 
 def _plain(name):
-    """The name under which DESCRIPTIONS knows it: without the second surface."""
+    """Key of a dataset in DESCRIPTIONS: its name without the second surface."""
     group, *_, last = name.split("/")
     plain = f"{group}/{last}"
     return plain if plain in DESCRIPTIONS else f"{group}/{last.partition('_')[2]}"

@@ -1,4 +1,4 @@
-"""Criteria beside the paper's damage: maps of each, and point by point against it."""
+"""Criteria beside the paper's damage: a map of each, and a comparison point by point."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -96,7 +96,7 @@ def _colours(z):
 
 
 def _depth_colours(figure, axes, result):
-    """The legend of depths, in the empty place beside the paper's map."""
+    """Draw the legend of depths in the empty axes beside the paper's map."""
     for z, colour in zip(result.z, _colours(result.z), strict=True):
         axes.plot([], [], "o", ms=4, color=colour, label=f"z/a = {z:g}")
     axes.legend(ncol=2, fontsize=8, frameon=False, loc="center", title="depths of the points below")

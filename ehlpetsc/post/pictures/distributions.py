@@ -23,7 +23,7 @@ def depth_picture(result):
     axes = figure.subplots()
     for k, color in enumerate(_colours(len(result.z))):
         _curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
-        _sureness(axes, result.under[k], result.attrs["regression"], color)
+        _draw_confidence(axes, result.under[k], result.attrs["regression"], color)
     _explain_marks(axes)
     _finish(
         axes, f"{result.height.size} asperities, surface {result.main}, slide/roll ratio {result.ratio:.3g}"
@@ -59,8 +59,8 @@ def _curve(axes, under, fit, label, color):
     axes.plot(values, fitted_exceedance(values, fit), color=color, lw=1.2, label=label)
 
 
-def _sureness(axes, under, regression, color):
-    """Where the fitted share lies when asperities are drawn anew, and the fit of the largest likelihood."""
+def _draw_confidence(axes, under, regression, color):
+    """Draw the confidence band of the fit by resampling, and the fit of maximum likelihood."""
     lives = log_life(under)
     bounds, best = weibull_bounds(lives, regression), weibull_likelihood(lives)
     if not (bounds.draws.size and np.isfinite(best.beta)):
@@ -74,7 +74,7 @@ def _sureness(axes, under, regression, color):
 
 
 def _explain_marks(axes):
-    """Entries of the legend for dots, lines, dashes and bands."""
+    """Add legend entries for dots, lines, dashes and bands."""
     for style, words in (
         (dict(marker=".", ls=""), "asperities"),
         (dict(lw=1.2), "Weibull, median ranks"),
@@ -85,7 +85,7 @@ def _explain_marks(axes):
 
 
 def _finish(axes, title):
-    """Axes common to the distributions."""
+    """Set scales, labels and title of the distributions."""
     axes.set_xscale("log")
     low, high = np.log10(axes.get_xlim())
     axes.set_xlim(10 ** np.floor(low), 10 ** np.ceil(high))

@@ -30,7 +30,7 @@ LAYER = 0.2  # half widths of depth in a picture of several results: damage unde
 
 
 def _save(figure, stem):
-    """Write all formats, under one layout that is found once: it takes longer than to draw."""
+    """Write all formats with one layout, which takes longer to find than to draw."""
     figure.set_dpi(DPI)
     figure.get_layout_engine().execute(figure)
     figure.set_layout_engine(None)
@@ -47,7 +47,7 @@ def _save(figure, stem):
 
 @matplotlib.rc_context(STYLE)
 def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
-    """Draw everything there is to draw; returns the names of the files.
+    """Draw all pictures; returns the names of the files.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def field_picture(path, result, frame):
 
 
 def _check_passed(result, surface, s):
-    """Refuse a body point whose history is not whole, saying which are."""
+    """Refuse a body point whose history is incomplete; the message names the range of complete ones."""
     passed, spacing = result.complete[surface], (result.s[-1] - result.s[0]) / (result.s.size - 1)
     place = (s - result.s[0]) / spacing
     around = np.clip(np.array([np.floor(place + 1e-6), np.ceil(place - 1e-6)]), -1, passed.size).astype(int)

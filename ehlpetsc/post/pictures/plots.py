@@ -16,7 +16,7 @@ HOT = "#cc3311"
 
 
 def decades(largest):
-    """Powers of ten, whole ones, that end above the largest damage; None if there is none."""
+    """Integer powers of ten up to above the largest damage; None without damage."""
     if not (np.isfinite(largest) and largest > 0):
         return None
     top = int(np.ceil(np.log10(largest)))
@@ -43,7 +43,7 @@ def stretch(result, surface, longest=None):
 
 
 def profile(axes, result, surface, ends):
-    """The profile between two ends in mm, heights in um."""
+    """Draw the profile between two ends in mm, heights in um."""
     axes.set_ylabel("z [µm]")
     axes.axhline(0, color="0.8", lw=0.6)
     axes.yaxis.set_major_locator(MaxNLocator(3))
@@ -55,7 +55,7 @@ def profile(axes, result, surface, ends):
 
 
 def temperatures(axes, result, surface):
-    """Highest and mean temperature of the points of a surface over that of the body, over mm."""
+    """Draw flash and mean temperature rise of the points of a surface over mm."""
     found, passed = result.temperatures[surface], result.complete[surface]
     x, bulk = along_body(result, surface, result.s[passed]), found.highest - found.flash
     axes.plot(x, found.flash[passed], color=HOT, lw=0.8, label="flash")
@@ -67,7 +67,7 @@ def temperatures(axes, result, surface):
 
 
 def _under_surface(axes, result, surface, ends, depths, gap):
-    """Axes of a map under a surface, in mm, z/a and um; abscissae of the points that passed and depths."""
+    """Set the axes of a map under a surface, in mm, z/a and um; returns abscissae and depths."""
     depth, ticks = _depth_axis(depths, gap)
     axes.set_yticks(depth[ticks], [f"{z:g}" for z in depths[ticks]])
     axes.set_xlim(*ends)
@@ -81,7 +81,7 @@ def _under_surface(axes, result, surface, ends, depths, gap):
 
 
 def damage_contours(axes, result, surface, ends, levels, deepest=np.inf, gap=0.07):
-    """Filled contours of log10 D over body point and depth, whose axis shows the root of the depth.
+    """Draw filled contours of log10 D over body point and square root of depth.
 
     Ticks are `gap` of the axis or more apart.
     """
@@ -97,7 +97,7 @@ def damage_contours(axes, result, surface, ends, levels, deepest=np.inf, gap=0.0
 
 
 def utilisation_contours(figure, axes, result, surface, values, ends):
-    """Filled contours of the utilisation of a fatigue limit, and the line where it is used up."""
+    """Draw filled contours of the utilisation of a fatigue limit, and its contour at 1."""
     x, depth = _under_surface(axes, result, surface, ends, result.z, 0.1)
     if len(depth) < 2:
         return
@@ -110,7 +110,7 @@ def utilisation_contours(figure, axes, result, surface, values, ends):
 
 
 def _depth_axis(z, gap):
-    """Square root of depth, which opens up the layer near the surface, and ticks that do not crowd."""
+    """Square root of depth, which stretches the layer near the surface, and ticks at least `gap` apart."""
     depth = np.sqrt(z)
     gap *= depth[-1] - depth[0] or 1.0
     ticks = []
@@ -121,12 +121,12 @@ def _depth_axis(z, gap):
 
 
 def legend_beside(axes):
-    """A legend to the right of the axes, where no curve runs."""
+    """Draw the legend right of the axes."""
     axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.01, 0.5))
 
 
 def stress_field(axes, x, z, values, label):
-    """One stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign.
+    """Draw one stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign.
 
     The colours span all but the highest and lowest thousandths: peaks under single asperities would leave the
     rest in one colour.
@@ -147,7 +147,7 @@ def stress_field(axes, x, z, values, label):
 
 
 def mark_largest(axes, x, z, values, a):
-    """A cross at the largest von Mises stress, its depth beside the name of the picture; z in half widths."""
+    """Mark the largest von Mises stress, with its depth in the title; z in half widths."""
     k, j = np.unravel_index(values.argmax(), values.shape)
     axes.plot(x[j], z[k], "x", color="#cc3311", ms=6)
     axes.set_title(
@@ -158,7 +158,7 @@ def mark_largest(axes, x, z, values, a):
 
 
 def ticks_within(levels):
-    """About five round values between the ends of `levels`."""
+    """About five round values within the range of `levels`."""
     ticks = MaxNLocator(5).tick_values(levels[0], levels[-1])
     return ticks[(ticks >= levels[0]) & (ticks <= levels[-1])]
 
@@ -171,7 +171,7 @@ def stress_fields(sx, sz, txz, nu):
 
 
 def history(axes, time, values, channel):
-    """The three components over time, and the largest cycles of the counted one, whose number it returns."""
+    """Draw three components over time and the largest cycles of the counted one; returns its cycles."""
     for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833"), strict=True):
         axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
     counted = values[channel] / 1e9
@@ -187,13 +187,13 @@ def history(axes, time, values, channel):
 
 
 def surface_temperature(axes, time, temperature):
-    """Temperature of the surface over a body point, over time."""
+    """Draw the surface temperature of a body point over time."""
     axes.plot(time, temperature, color=HOT, lw=0.9)
     axes.set_ylabel("temperature\nof the surface [K]")
 
 
 def cycle_histogram(axes, cycles, damages):
-    """Each cycle's range and what it adds to the damage; none that adds less than 1e-12 of the largest."""
+    """Draw range and damage of each cycle above 1e-12 of the largest damage."""
     shown = damages > 1e-12 * damages.max(initial=0.0)
     axes.scatter(cycles[shown, 0], damages[shown], s=10, color="#cc3311")
     axes.set_yscale("log")
@@ -209,7 +209,7 @@ def cycle_histogram(axes, cycles, damages):
 
 
 def counted_channel(count, values, material):
-    """Channel whose cycles a picture shows: the counted one, or that of the largest damage."""
+    """Channel of the cycles in a picture: the counted one, or that of the largest damage."""
     from ehlpetsc.post.fatigue.accumulate import damage
 
     if len(CHANNELS[count]) == 1:

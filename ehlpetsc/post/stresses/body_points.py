@@ -1,4 +1,4 @@
-"""Points fixed in a moving body: where each is at each time, and which passed the whole contact."""
+"""Points fixed in a moving body: positions over time, and those that passed the whole contact."""
 
 from typing import NamedTuple
 

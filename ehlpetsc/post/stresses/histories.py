@@ -1,4 +1,4 @@
-"""Whole histories of body points, collected from the frames of a result file on one thread or more.
+"""Complete histories of body points, collected from the frames of a result file by one or more threads.
 
 A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
 """
@@ -44,7 +44,7 @@ def runs_of_points(motion, memory, depths):
 
 @contextmanager
 def workers(count):
-    """Something to use as `map` on `count` threads; for one thread map itself."""
+    """Map function on `count` threads, for a ``with`` statement."""
     if count == 1:
         yield map
         return
@@ -53,9 +53,9 @@ def workers(count):
 
 
 class Sweep:
-    """Collects the histories of consecutive points and hands them over, a part of the points to each worker.
+    """Collects the histories of consecutive points and distributes them to the workers.
 
-    A worker is a thread: what takes time does without Python's lock.
+    A worker is a thread: the expensive parts release Python's lock.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Sweep:
         self.weights = offset_weights(motion.offset)
 
     def __call__(self, points, finish):
-        """Go through the frames of consecutive complete `points`.
+        """Process the frames of consecutive complete `points`.
 
         Parameters
         ----------

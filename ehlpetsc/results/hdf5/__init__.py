@@ -1,1 +1,1 @@
-"""HDF5 files: attributes, datasets, rows buffered before they are written, continued results."""
+"""HDF5 files: attributes, datasets, buffered rows, continuation of results."""

@@ -39,7 +39,7 @@ def _put_text(item, name, raw):
 
 
 def change(item, name, text):
-    """Put another text of at most its length into an attribute, in place: a file being read allows that."""
+    """Overwrite the text of an attribute in place, as allowed while a file is read; it must not be longer."""
     attribute = item.attrs.get_id(name)
     attribute.write(_padded(text.encode(), attribute), mtype=attribute.get_type())
 
@@ -70,13 +70,13 @@ class Attributes(dict):
 
 
 def plain(value):
-    """An attribute's value, a text as str that can be printed: bytes that are no UTF-8 are replaced."""
+    """Value of an attribute; a text as printable str, bytes that are no UTF-8 replaced."""
     if isinstance(value, str):  # h5py keeps such bytes of a text of variable length as lone surrogates
         return value.encode(errors="replace").decode()
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
 def one_line(fault):
-    """The first line of what an exception says, its kind where it says nothing."""
+    """First line of the message of an exception; its type without one."""
     line = next(iter(str(fault).strip().splitlines()), type(fault).__name__)[:200]
     return "".join(character if character.isprintable() else "?" for character in line)

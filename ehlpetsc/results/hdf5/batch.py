@@ -15,7 +15,7 @@ def frame_fields(file):
 
 
 class Batch:
-    """Rows of a result file that are not in it yet.
+    """Rows of a result file that have not been written yet.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Batch:
         return frames * self._frames_held + 8 * (len(self._columns) + 3) * self._held
 
     def hold_step(self, step, time, scalars):
-        """Take the figures of a step; those left out become nan, counts 0."""
+        """Hold the scalars of a step; missing ones become nan, counts 0."""
         row, self._held = self._held, self._held + 1
         self._times[row] = time
         for name, column in self._columns.items():
@@ -54,14 +54,14 @@ class Batch:
         self._columns["step"][row] = step
 
     def hold_frame(self, step, time, fields, in_contact):
-        """Take the fields of a step."""
+        """Hold the fields of a step."""
         row, self._frames_held = self._frames_held, self._frames_held + 1
         self._frame_times[row], self._frame_steps[row] = time, step
         for name, held in self._frames.items():
             held[row] = in_contact if name == "in_contact" else fields[name]
 
     def write(self, contact_count):
-        """Write what is held, the times last, which vouch for the rest; afterwards nothing is held."""
+        """Write the rows held, the times last: rows without a time do not count."""
         file, steps, frames = self._file, slice(self._held), slice(self._frames_held)
         for name, column in self._columns.items():
             extend(file[f"steps/{name}"], column[steps])

@@ -1,4 +1,4 @@
-"""A result that is gone on with: whether it is an earlier part of the same run, and its rows copied."""
+"""Continuation of a result: check that it is an earlier part of the same run, and copy of its rows."""
 
 import numpy as np
 
@@ -69,7 +69,7 @@ def _copy_rows(file, old, name, rows):
 
 
 def _misfit(file, old, step, count_from_file):
-    """Why a file is not an earlier part of the same run; None: it is."""
+    """Reason why a file is not an earlier part of the same run; None: it is."""
     last = max(old.steps("step"), default=None)
     if not np.array_equal(old.x, file["x"][:]):
         return "it was computed on another mesh, or for another half width"

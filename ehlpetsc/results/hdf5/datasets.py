@@ -1,4 +1,4 @@
-"""The datasets of a result file: created up front with dimension scales, then lengthened row by row."""
+"""Datasets of a result file, created with dimension scales and extended row by row."""
 
 import contextlib
 import itertools
@@ -84,7 +84,7 @@ def last_row(file):
 
 
 def create(path):
-    """Create an HDF5 file for writing, None: in memory; OSError if the disk has no room for an empty one."""
+    """Create an HDF5 file for writing, None: in memory; OSError if the disk is full."""
     if path is None:
         name = f"result {next(NUMBERS)}"  # HDF5 takes two of one name for one file
         return h5py.File(name, "w", driver="core", block_size=MEMORY_BLOCK, backing_store=False)
@@ -95,7 +95,7 @@ def create(path):
 
 @contextlib.contextmanager
 def room(file, data_bytes):
-    """Make sure of the disk space before HDF5 writes, which crashes on a full disk; flush what was written.
+    """Check the disk space before HDF5 writes, which crashes on a full disk, and flush afterwards.
 
     Some space is kept in reserve behind the data, so that the file can always be closed.
 
@@ -126,7 +126,7 @@ def room(file, data_bytes):
 
 
 def close(file, status, limits=""):
-    """Note how the run ended, close the file and give its reserve back; one in memory stays open."""
+    """Store the status of the run, close the file and free its reserve; one in memory stays open."""
     if in_memory(file):
         _note_end(file, status, limits)
         return
@@ -146,7 +146,7 @@ def _note_end(file, status, limits):
 
 
 def in_memory(file):
-    """Whether there is no disk behind a file."""
+    """Whether a file is in memory."""
     return file.driver == "core"
 
 

@@ -1,4 +1,4 @@
-"""Result files opened, also while they are written or after a killed run, and checked to be whole."""
+"""Opening of result files, also while they are written or after a killed run, and checks of them."""
 
 import os
 from pathlib import Path
@@ -50,7 +50,7 @@ def _marked_as_being_written(path):
 
 
 def open_result(path, **options):
-    """The HDF5 file of a result, checked to be one; further options are those of `h5py.File`.
+    """Open and check the HDF5 file of a result; further options are those of `h5py.File`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Profiles that cannot be meant: absurd beside half width, film or mesh, for the most part a wrong unit."""
+"""Implausible profiles compared with half width, film and mesh, mostly a wrong unit."""
 
 import numpy as np
 

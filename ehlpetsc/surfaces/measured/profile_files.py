@@ -1,4 +1,4 @@
-"""Reading measured profiles: text in many layouts, and what the package SurfaceTopography reads."""
+"""Measured profiles: text files in many layouts, and the formats of the package SurfaceTopography."""
 
 import functools
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
 @dataclass(frozen=True)
 class Layout:
-    """How a profile file is written; what is left out is found from the file, or it is refused.
+    """Layout of a profile file; parts left out are detected in the file.
 
     Attributes
     ----------
@@ -188,7 +188,7 @@ def checked(x, z, layout):
 
 
 def _with_missing_lines(x, z):
-    """The points with a nan for each that an otherwise equally spaced file leaves out."""
+    """Profile with a nan for every point missing in an otherwise equally spaced file."""
     step = np.diff(x)
     usual = np.median(step)
     equal, wide = np.abs(step - usual) <= EQUAL * usual, step > 1.5 * usual
@@ -209,7 +209,7 @@ def _with_missing_lines(x, z):
 
 
 def _filled(x, z, longest, notes):
-    """The profile with its missing heights filled by the spline, those at its ends cut off."""
+    """Profile with missing heights filled by the spline, and cut off at its ends."""
     from scipy.interpolate import CubicSpline
 
     there = np.flatnonzero(~np.isnan(z))

@@ -1,4 +1,4 @@
-"""Columns of numbers out of a text file as measuring instruments write them.
+"""Columns of numbers in text files of measuring instruments.
 
 Separator and decimal sign are found from the lines that hold nothing but numbers; what could be read in two
 ways is refused with the key that settles it. Blocks of lines that hold nothing else are read by numpy, all
@@ -138,7 +138,7 @@ def _holds_numbers_alone(block):
 
 
 def _numbers_alone(text, begin):
-    """Lines that hold nothing but numbers, many at once."""
+    """Numbers of many lines at once, where they hold nothing else."""
     for _, block in _blocks(text, begin):
         if _holds_numbers_alone(block):
             yield block
@@ -154,7 +154,7 @@ def _between_digits(text, begin):
 
 @dataclass(frozen=True)
 class _Words:
-    """How the numbers of a file are parted and written.
+    """Separator and decimal sign of a file.
 
     Attributes
     ----------
@@ -194,7 +194,7 @@ class _Words:
         return self.separator.split(self._with_points(line))
 
     def table(self, block):
-        """Numbers of a block, a row each line; None where it has to be read line by line."""
+        """Numbers of a block, one row for each line; None where it must be read line by line."""
         if not _holds_numbers_alone(block) or block.isspace():
             return None
         text = self._with_points(block)
