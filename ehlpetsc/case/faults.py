@@ -3,8 +3,8 @@
 import json
 
 from ehlpetsc.case.hints import nearest, not_modelled, slip
-from ehlpetsc.case.tables.table import Needs, item_type
-from ehlpetsc.case.tables.validation import ValidationError
+from ehlpetsc.case.schema.table import Needs, item_type
+from ehlpetsc.case.schema.validation import ValidationError
 
 
 def allowed(field):

@@ -3,7 +3,7 @@
 import difflib
 import math
 
-from ehlpetsc.case.tables.table import item_type
+from ehlpetsc.case.schema.table import item_type
 
 MAX_NUMBER = 1e100
 POWERS = {"Pa": (9, 6), "1/Pa": (-9,), "m": (-3, -6, -9)}  # of units that values are often written in

@@ -4,9 +4,9 @@ import json
 
 from ehlpetsc.case.faults import allowed
 from ehlpetsc.case.loading import Case
-from ehlpetsc.case.tables.equations import EQUATIONS, SYMBOLS
+from ehlpetsc.case.schema.equations import EQUATIONS, SYMBOLS
+from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.tables.surface import SYNTHETIC
-from ehlpetsc.case.tables.table import Table
 from ehlpetsc.errors import UsageError
 
 # what a case cannot do without, or would hardly be written without: Table 1 of Holmes et al. 2005

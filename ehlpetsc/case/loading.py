@@ -18,9 +18,9 @@ from ehlpetsc.case.derived.oil_grade import with_grade
 from ehlpetsc.case.derived.solids import with_material
 from ehlpetsc.case.faults import describe, shortened, show
 from ehlpetsc.case.profiles import profile_faults
+from ehlpetsc.case.schema.validation import ValidationError
 from ehlpetsc.case.settings import parsed, put, text_with
 from ehlpetsc.case.tables.case import Case
-from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.units import in_si
 from ehlpetsc.errors import CaseError

@@ -1,8 +1,8 @@
 """Faults of the profile files that a case names: unreadable, or absurd beside its contact."""
 
 from ehlpetsc.case.faults import show
+from ehlpetsc.case.schema.validation import ValidationError
 from ehlpetsc.case.tables.surface import SurfaceProfile
-from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.names import FORMER, SIDES
 from ehlpetsc.physics.film_formulas import expected_film

@@ -7,8 +7,8 @@ import importlib
 import re
 from functools import cache
 
+from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.tables.surface import SYNTHETIC
-from ehlpetsc.case.tables.table import Table
 from ehlpetsc.errors import CaseError
 
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")

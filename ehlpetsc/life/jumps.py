@@ -11,7 +11,7 @@ class Jumps:
 
     Parameters
     ----------
-    life : case.tables.life.Life
+    life : case.tables.post.Life
     rq : float
         Combined root mean square roughness [m].
     """

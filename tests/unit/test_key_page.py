@@ -10,7 +10,7 @@ from support import ROOT
 
 from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load
-from ehlpetsc.case.tables.equations import EQUATIONS
+from ehlpetsc.case.schema.equations import EQUATIONS
 from ehlpetsc.errors import CaseError, UsageError
 from ehlpetsc.physics.rheology import density
 

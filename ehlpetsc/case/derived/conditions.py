@@ -7,9 +7,9 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 import numpy as np
 
 from ehlpetsc.case.derived.conditions_file import TableFault, read_table
+from ehlpetsc.case.schema.validation import ValidationError
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.operation import COLUMNS
-from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import CaseError
 from ehlpetsc.gears import path_of_contact
 from ehlpetsc.physics.conditions_table import ConditionsTable

@@ -3,8 +3,8 @@
 import math
 from pathlib import Path
 
+from ehlpetsc.case.schema.validation import ValidationError
 from ehlpetsc.case.tables.surface import SurfaceProfile
-from ehlpetsc.case.tables.validation import ValidationError
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.surfaces.samples import samples
 

@@ -1,6 +1,6 @@
 """Keys of `[fluid]` that follow from the grade of an oil, as data sheets give it."""
 
-from ehlpetsc.case.tables.table import is_of
+from ehlpetsc.case.schema.table import is_of
 
 MM2 = 1e6  # mm^2/s in m^2/s
 

@@ -4,17 +4,17 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.case.faults import show
-from ehlpetsc.case.tables.contact import Contact
+from ehlpetsc.case.schema.table import Needs, Table, is_plain
+from ehlpetsc.case.schema.validation import Field, PrivateAttr, validator
+from ehlpetsc.case.tables.contact import Contact, Wear
+from ehlpetsc.case.tables.discretisation import Mesh, Time
 from ehlpetsc.case.tables.fluid import Fluid
 from ehlpetsc.case.tables.gears import Gears
 from ehlpetsc.case.tables.heat import Heat
-from ehlpetsc.case.tables.life import Life
-from ehlpetsc.case.tables.operation import Operation
-from ehlpetsc.case.tables.post import Post
-from ehlpetsc.case.tables.schema import Mesh, Motion, Output, Series, Time, Wear
+from ehlpetsc.case.tables.operation import Motion, Operation
+from ehlpetsc.case.tables.output import Output, Series
+from ehlpetsc.case.tables.post import Life, Post
 from ehlpetsc.case.tables.surface import Surface
-from ehlpetsc.case.tables.table import Needs, Table, is_plain
-from ehlpetsc.case.tables.validation import Field, PrivateAttr, validator
 
 
 class Case(Table):

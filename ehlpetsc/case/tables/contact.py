@@ -1,9 +1,9 @@
-"""Table `[contact]` of a case file: solids, load and contact model."""
+"""Tables `[contact]` and `[wear]` of a case file: solids, load, contact model, wear rate."""
 
 from typing import Literal
 
-from ehlpetsc.case.tables.table import Needs, Table
-from ehlpetsc.case.tables.validation import Field, confloat, validator
+from ehlpetsc.case.schema.table import Needs, Table
+from ehlpetsc.case.schema.validation import Field, confloat, validator
 from ehlpetsc.materials import STEELS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
@@ -12,6 +12,7 @@ SteelName = Literal[tuple(STEELS)]
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
 Pressure = confloat(ge=1e6, le=1e18)
+WearRate = confloat(ge=0.0, le=1e-10)
 
 
 class Contact(Table):
@@ -129,3 +130,15 @@ class Contact(Table):
         if value is not None and values.get("model") != "mixed":
             raise Needs('contact.model = "mixed"')
         return value
+
+
+class Wear(Table):
+    """`[wear]`: left out, surfaces do not wear."""
+
+    coefficient: tuple[WearRate, WearRate] = Field(
+        ..., unit="m^2/N", one_for_both=True, description="specific wear rate k, of both or of each surface"
+    )
+
+    @validator("coefficient", pre=True)
+    def _of_both(cls, value):
+        return value if isinstance(value, (list, tuple)) else [value, value]

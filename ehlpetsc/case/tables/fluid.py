@@ -3,8 +3,8 @@
 import math
 from typing import Literal
 
-from ehlpetsc.case.tables.table import Table
-from ehlpetsc.case.tables.validation import Field, root_validator, validator
+from ehlpetsc.case.schema.table import Table
+from ehlpetsc.case.schema.validation import Field, root_validator, validator
 
 # the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
 TEXTBOOKS = "the density 1 + 0.6e-9 p/(1 + 1.7e-9 p) of textbooks is"

@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from ehlpetsc.case.tables.table import Table
-from ehlpetsc.case.tables.validation import Field, confloat, conint, root_validator
+from ehlpetsc.case.schema.table import Table
+from ehlpetsc.case.schema.validation import Field, confloat, conint, root_validator
 from ehlpetsc.gears.geometry import MESH_STIFFNESS, GearPair
 from ehlpetsc.gears.load_sharing import RULES
 

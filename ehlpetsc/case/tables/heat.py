@@ -1,7 +1,7 @@
 """Keys of `[heat]`: temperatures, and thermal properties of both bodies and of the oil."""
 
-from ehlpetsc.case.tables.table import Table
-from ehlpetsc.case.tables.validation import Field, confloat, root_validator, validator
+from ehlpetsc.case.schema.table import Table
+from ehlpetsc.case.schema.validation import Field, confloat, root_validator, validator
 
 Temperature = confloat(ge=150.0, le=2000.0)
 Conductivity = confloat(ge=1e-3, le=1e4)

@@ -1,7 +1,7 @@
-"""`[operation]`: load, radius and speeds as functions of time."""
+"""Tables `[motion]` and `[operation]`: constant speeds; load, radius and speeds as functions of time."""
 
-from ehlpetsc.case.tables.table import Table
-from ehlpetsc.case.tables.validation import Field, confloat, root_validator
+from ehlpetsc.case.schema.table import Table
+from ehlpetsc.case.schema.validation import Field, confloat, root_validator
 
 COLUMNS = {  # of the table, by key, with the names that a file may give them
     "time": ("time", "t"),
@@ -16,6 +16,13 @@ Number = confloat(ge=-1e15, le=1e15)
 def _column(unit, description):
     text = f"{description}, here instead of in a file"
     return Field(None, min_items=2, unit=unit, description=text)
+
+
+class Motion(Table):
+    """`[motion]`: speeds of the surfaces."""
+
+    entrainment_speed: float = Field(..., ge=1e-9, le=1e3, unit="m/s", description="mean of both, not zero")
+    slide_roll_ratio: float = Field(0.0, ge=-100, le=100, description="(u1 - u2)/u")
 
 
 class Operation(Table):

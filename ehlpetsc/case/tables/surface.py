@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from ehlpetsc.case.tables.table import Table
-from ehlpetsc.case.tables.validation import Field, confloat, conint, root_validator, validator
+from ehlpetsc.case.schema.table import Table
+from ehlpetsc.case.schema.validation import Field, confloat, conint, root_validator, validator
 from ehlpetsc.names import FORMER
 
 Height = confloat(ge=1e-12, le=1e-2)

@@ -6,7 +6,7 @@ import os
 import shlex
 from dataclasses import dataclass, field
 
-from ehlpetsc.case.tables.table import is_plain
+from ehlpetsc.case.schema.table import is_plain
 from ehlpetsc.command_parser import program
 from ehlpetsc.errors import UsageError
 from ehlpetsc.run.cli.options import OWN, usage

@@ -2,7 +2,7 @@
 
 import re
 
-from ehlpetsc.case.tables.validation import BaseModel, Extra, validator
+from ehlpetsc.case.schema.validation import BaseModel, Extra, validator
 
 
 class Needs(ValueError):
