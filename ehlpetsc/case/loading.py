@@ -4,7 +4,6 @@ import tomllib
 from functools import partial
 from pathlib import Path
 
-from ehlpetsc.case.case_file import parse_toml, read_text
 from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
 from ehlpetsc.case.derived.conditions import (
     TableFault,
@@ -24,6 +23,7 @@ from ehlpetsc.case.tables.case import Case
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.case.units import in_si
 from ehlpetsc.errors import CaseError
+from ehlpetsc.toml_file import parse_toml, read_text
 
 DICT = "case"  # what faults call a case that is no file
 __all__ = ["Case", "CaseError", "load", "members"]

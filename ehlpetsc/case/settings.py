@@ -6,8 +6,7 @@ import tomlkit
 
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.names import stored_name
-
-MAX_PARTS = 50  # of a dotted key: more than any case has
+from ehlpetsc.toml_file import MAX_PARTS
 
 
 def parsed(override):

@@ -1,6 +1,6 @@
 r"""Plastic deformation of both surfaces: where solids yield they keep an indentation.
 
-A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.yielding` to the surfaces at the
+A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.contact.yielding` to the surfaces at the
 points that face each other: to the softer one, or half to each where both yield at the same pressure.
 """
 

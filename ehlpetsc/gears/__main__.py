@@ -7,15 +7,13 @@ post-processed, RESULT.post.h5, also the damage along both flanks.
 """
 
 import sys
-import tomllib
 from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.results.atomic_write import atomic_write, replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
-
-MOST_BYTES = 2**26  # of a case file
+from ehlpetsc.toml_file import parse_toml, read_text
 
 
 def arguments():
@@ -41,7 +39,7 @@ def run(chosen):
 
     if Path(chosen.case).suffix == ".h5":
         return _run_of(chosen)
-    case = _read(chosen.case)
+    case = parse_toml(chosen.case, read_text(chosen.case))
     if not isinstance(case.get("gears"), dict):
         raise CaseError([f"{chosen.case}: no [gears] table; allowed: a case with one"])
     try:
@@ -91,19 +89,6 @@ def _run_of(chosen):
             with replacing(flanks, keep_ending=True) as beside:
                 damage.draw(found.path.pair, beside, found.title)
             print(flanks)
-
-
-def _read(path):
-    try:
-        with open(path, "rb") as file:  # a device has no end
-            whole = file.read(MOST_BYTES + 1)
-        if len(whole) > MOST_BYTES:
-            raise CaseError([f"{path}: larger than {MOST_BYTES >> 20} MB; allowed: a TOML file of a case"])
-        return tomllib.loads(whole.decode("utf-8-sig"))
-    except OSError as error:
-        raise CaseError([f"{path or repr(path)}: cannot be read: {error.strerror}"]) from None
-    except (ValueError, RecursionError) as error:
-        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
 
 
 def _picture(chosen):

@@ -24,7 +24,7 @@ from dataclasses import replace
 
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.stepping.bounded_contact import bounded_start
-from ehlpetsc.stepping.certificate import solve_checked
+from ehlpetsc.stepping.convergence_check import solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
 
 MIN_STIFFNESS_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous

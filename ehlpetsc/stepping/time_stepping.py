@@ -12,7 +12,7 @@ from ehlpetsc.discretisation.reynolds import FilmHistory, mirrored
 from ehlpetsc.effects.effect import Solution, Step
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
-from ehlpetsc.stepping.certificate import solve_checked
+from ehlpetsc.stepping.convergence_check import solve_step
 from ehlpetsc.stepping.predictor import TimeLevel, predict
 from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.steady_start import steady
@@ -86,7 +86,10 @@ class TimeStepping:
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
                 solution, more, residual = self._inlet_first(
-                    again, lambda i, q, w, h00=state.h00: self._solve(i, q, w, h00, watch), state.q, state.w
+                    again,
+                    lambda i, q, w, h00=state.h00: solve_step(self.solver, q, w, h00, i, watch),
+                    state.q,
+                    state.w,
                 )
             except SolveFailed as error:
                 raise NoSteadyStart(error, None, newton + error.iterations) from error
@@ -205,25 +208,6 @@ class TimeStepping:
         nodes = [(then - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
-    def _solve(self, inputs, q, w, h00, watch):
-        """Solution of a step; where solids yield and it fails, from the elastic solution."""
-        elastic = self.problem.model.elastic()
-        try:
-            return solve_checked(self.solver, q, w, h00, inputs, watch=watch)
-        except SolveFailed as error:
-            if elastic is None:
-                raise
-            spent = error.iterations
-        try:
-            *begin, more = solve_checked(
-                self.solver, q, w, h00, replace(inputs, contact=elastic), watch=watch
-            )
-            spent += more
-            *state, more = solve_checked(self.solver, *begin, inputs, watch=watch)
-        except SolveFailed as error:
-            raise error.after(spent) from error
-        return *state, spent + more
-
     def advance(self, state, dt=None, watch=None):
         """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
@@ -235,7 +219,7 @@ class TimeStepping:
             try:
                 step, inputs = self.inputs(state, dt)
                 solution, iterations, residual = self._inlet_first(
-                    inputs, lambda i, q, w: self._solve(i, q, w, state.h00, watch), *guess
+                    inputs, lambda i, q, w: solve_step(self.solver, q, w, state.h00, i, watch), *guess
                 )
                 break
             except SolveFailed as error:

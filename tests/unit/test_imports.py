@@ -12,6 +12,7 @@ GROUND = {
     "errors",
     "quantity",
     "names",
+    "toml_file",
     "compiled",
     "environment",
     "command_parser",
@@ -52,7 +53,7 @@ MAY_IMPORT = (
         "commands": set(),  # starts each command by its name
     }
     | {name: set() for name in GROUND}
-    | {"command_parser": {"errors"}}
+    | {"command_parser": {"errors"}, "toml_file": {"errors"}}
 )
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy

@@ -1,4 +1,4 @@
-"""Solids that yield: the certificate of every step, dry cylinders beyond yield, passes."""
+"""Solids that yield: the convergence check of every step, dry cylinders beyond yield, passes."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def added(simulation, state):
 
 
 @pytest.mark.slow
-def test_every_step_is_certified(rough):
+def test_every_step_passes_the_convergence_check(rough):
     simulation, states = rough
     bound, film = simulation.case.contact.yield_pressure[0], simulation.case.contact.boundary_film
     assert sum(state.yielding for state in states) > 30

@@ -1,41 +1,11 @@
-"""Pydantic's first interface, which its second release carries along: one schema for both."""
+"""Pydantic's first interface, which its second release includes: one schema for both."""
 
 try:
-    from pydantic.v1 import (
-        BaseModel,
-        Extra,
-        Field,
-        PrivateAttr,
-        ValidationError,
-        confloat,
-        conint,
-        constr,
-        root_validator,
-        validator,
-    )
+    from pydantic import v1 as pydantic
 except ImportError:  # before 1.10.17 there is no such name
-    from pydantic import (
-        BaseModel,
-        Extra,
-        Field,
-        PrivateAttr,
-        ValidationError,
-        confloat,
-        conint,
-        constr,
-        root_validator,
-        validator,
-    )
+    import pydantic
 
-__all__ = [
-    "BaseModel",
-    "Extra",
-    "Field",
-    "PrivateAttr",
-    "ValidationError",
-    "confloat",
-    "conint",
-    "constr",
-    "root_validator",
-    "validator",
-]
+BaseModel, Extra, Field = pydantic.BaseModel, pydantic.Extra, pydantic.Field
+PrivateAttr, ValidationError = pydantic.PrivateAttr, pydantic.ValidationError
+confloat, conint, constr = pydantic.confloat, pydantic.conint, pydantic.constr
+root_validator, validator = pydantic.root_validator, pydantic.validator

@@ -22,12 +22,12 @@ from ehlpetsc.discretisation.contact.node_state import (
     PlasticState,
     limit_cavitation,
 )
-from ehlpetsc.discretisation.contact.yielding import Hardening
+from ehlpetsc.discretisation.contact.yielding import Yielding
 from ehlpetsc.discretisation.interleaving import q_columns, w_columns
 from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
 
 
-class CompliantYieldingContact(Hardening, CompliantContact):
+class CompliantYieldingContact(Yielding, CompliantContact):
     """Compliant layer on solids that yield.
 
     Parameters
@@ -60,27 +60,18 @@ class CompliantYieldingContact(Hardening, CompliantContact):
     def state(self, q, w):
         """See :class:`.model.ContactModel`."""
         elastic = super().state(q, np.maximum(w, self.smallest))
-        closed, oil, one = w < self.smallest, np.maximum(q, 0.0), np.ones_like(w)
-        excess = elastic.pressure - self.yield_pressure
+        closed, excess = w < self.smallest, elastic.pressure - self.yield_pressure
         by_oil = (excess > 0.0) & (q > AMBIENT_TOLERANCE) & ~closed
-        yielding = by_oil | closed
-        solids = elastic.pressure - oil
         plastic = PlasticState(
             np.where(closed, self.smallest - w, np.where(by_oil, self.compliance * excess, 0.0)),
-            yielding,
+            by_oil | closed,
             np.where(by_oil, self.compliance, 0.0),
             np.where(closed, -1.0, np.where(by_oil, self.compliance * elastic.p_w, 0.0)),
             np.where(by_oil, 0.0, 1.0),
             np.where(by_oil, -elastic.p_w, 0.0),
         )
-        return elastic._replace(
-            reynolds_unknown=np.where(by_oil, self.yield_pressure - solids, q),
-            pressure=np.minimum(elastic.pressure, self.yield_pressure),
-            p_q=np.where(yielding, 0.0, elastic.p_q),
-            p_w=np.where(yielding, 0.0, elastic.p_w),
-            h_w=np.where(closed, 0.0, one),
-            plastic=plastic,
-        )
+        state = self.at_yield_pressure(elastic, plastic, elastic.pressure - np.maximum(q, 0.0))
+        return state._replace(h_w=np.where(closed, 0.0, 1.0))
 
     def reset_yielding(self, q, w):
         """See :class:`.model.ContactModel`."""

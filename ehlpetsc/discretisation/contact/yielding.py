@@ -25,8 +25,27 @@ ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method lo
 HARDENING = 1.0
 
 
-class Hardening:
-    """Linearisation of models whose nodes may all yield at once."""
+class Yielding:
+    """State and linearisation of models whose nodes may yield, all at once too."""
+
+    def at_yield_pressure(self, elastic, plastic, solids):
+        """State of the nodes with the pressure of those that yield at its limit.
+
+        Parameters
+        ----------
+        elastic : node_state.NodeState
+        plastic : node_state.PlasticState
+        solids : ndarray
+            Pressure of the solids in p0.
+        """
+        by_oil = plastic.depth_q > 0.0
+        return elastic._replace(
+            reynolds_unknown=np.where(by_oil, self.yield_pressure - solids, elastic.reynolds_unknown),
+            pressure=np.minimum(elastic.pressure, self.yield_pressure),
+            p_q=np.where(plastic.yielding, 0.0, elastic.p_q),
+            p_w=np.where(plastic.yielding, 0.0, elastic.p_w),
+            plastic=plastic,
+        )
 
     def linearised(self, state, own, ranks_sum):
         """See :class:`.model.ContactModel`.
@@ -54,7 +73,7 @@ class Hardening:
         return yielding > 0 and elastic < ELASTIC_NODES
 
 
-class YieldingContact(Hardening, MixedContact):
+class YieldingContact(Yielding, MixedContact):
     """Mixed contact of solids that yield.
 
     Parameters
@@ -92,13 +111,7 @@ class YieldingContact(Hardening, MixedContact):
             np.where(by_oil, 0.0, 1.0),
             np.where(by_oil, -elastic.p_w, 0.0),
         )
-        return elastic._replace(
-            reynolds_unknown=np.where(by_oil, self.yield_pressure - solids, q),
-            pressure=np.minimum(elastic.pressure, self.yield_pressure),
-            p_q=np.where(yielding, 0.0, elastic.p_q),
-            p_w=np.where(yielding, 0.0, elastic.p_w),
-            plastic=plastic,
-        )
+        return self.at_yield_pressure(elastic, plastic, solids)
 
     def contact_pressure(self, w):
         """Pressure of the solids in p0, at most the yield pressure."""

@@ -11,6 +11,8 @@ Of the rows of :mod:`ehlpetsc.discretisation.ehl_problem` at the solution
 * everything finite, and no node with less than no oil, :math:`q\ge-1`.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from ehlpetsc.errors import SolveFailed
@@ -34,6 +36,27 @@ def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
     if fault:
         raise SolveFailed("solution check:", fault, iterations)
     return *solution, iterations
+
+
+def solve_step(solver, q, w, h00, inputs, watch=None):
+    """Checked solution of a time step; where solids yield and it fails, from that of elastic solids.
+
+    Parameters, returned values and errors are those of :func:`solve_checked`.
+    """
+    elastic = solver.problem.model.elastic()
+    try:
+        return solve_checked(solver, q, w, h00, inputs, watch=watch)
+    except SolveFailed as error:
+        if elastic is None:
+            raise
+        spent = error.iterations
+    try:
+        *begin, more = solve_checked(solver, q, w, h00, replace(inputs, contact=elastic), watch=watch)
+        spent += more
+        *state, more = solve_checked(solver, *begin, inputs, watch=watch)
+    except SolveFailed as error:
+        raise error.after(spent) from error
+    return *state, spent + more
 
 
 def find_fault(problem, q, w, h00, rows, tolerance):

@@ -1,4 +1,4 @@
-"""A step counts by the program's own certificate, whatever SNES says of it; both contact models."""
+"""The convergence check accepts and refuses solutions independently of SNES; both contact models."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from support import CASES
 
 import ehlpetsc
 from ehlpetsc.errors import NotConverged
-from ehlpetsc.stepping.certificate import find_fault
+from ehlpetsc.stepping.convergence_check import find_fault
 
 MESH = {"mesh.points_per_half_width": 30, "mesh.inlet": -1.5, "mesh.outlet": 1.3}
 CLOSED = 20  # a node that is put into contact

@@ -7,9 +7,9 @@ import re
 import tomllib
 from pathlib import Path
 
-from ehlpetsc.case.settings import MAX_PARTS
 from ehlpetsc.errors import CaseError
 
+MAX_PARTS = 50  # of a dotted key: more than any case has
 MAX_BYTES = 2**26  # of a case file: far more than any profile written out in it
 LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MAX_PARTS}}}""")
 
