@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 from ehlpetsc import __version__
-from ehlpetsc.docs.mathjax import PARTS, SETTINGS, mathjax_folder
+from ehlpetsc.docs.mathjax import MATHJAX_FILES, SETTINGS, mathjax_folder
 from ehlpetsc.docs.pages import FRONT, PAGES, contents
 
 project, author, release = "ehlpetsc", "", __version__
@@ -32,7 +32,7 @@ def _complete(app, failure):
     if failure is None:
         shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
         folder = mathjax_folder()
-        for part in PARTS:
+        for part in MATHJAX_FILES:
             target = Path(app.outdir, "_static", "mathjax", part)
             if not target.exists():
                 (shutil.copytree if (folder / part).is_dir() else shutil.copy)(folder / part, _made(target))

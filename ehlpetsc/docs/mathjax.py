@@ -3,7 +3,7 @@
 from pathlib import Path
 
 DEBIANS = Path("/usr/share/javascript/mathjax")
-PARTS = (
+MATHJAX_FILES = (
     "MathJax.js",
     "extensions",
     "jax/element",

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 SAMPLES = 4096  # at least, of a table, for time steps and extremes
-END = 1e-9  # of the duration: times nearer to its end are the end
+END_TOLERANCE = 1e-9  # of the duration: times nearer to its end are the end
 COUNTERMOTION = 1e-3  # of the surface speeds: an entrainment speed that is nowhere larger is no scale
 
 
@@ -94,7 +94,7 @@ class ConditionsTable(NamedTuple):
 
     def directions(self):
         """Direction of each body's motion: 1, -1, or 0 where it reverses or rests."""
-        signs = [np.sign(u[np.abs(u) > END * self.speed.max()]) for u in (self.u1, self.u2)]
+        signs = [np.sign(u[np.abs(u) > END_TOLERANCE * self.speed.max()]) for u in (self.u1, self.u2)]
         return tuple(int(s[0]) if len(s) and (s == s[0]).all() else 0 for s in signs)
 
     def swept_length(self):

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ehlpetsc.physics.conditions_table import END, ConditionsTable, cumulative
+from ehlpetsc.physics.conditions_table import END_TOLERANCE, ConditionsTable, cumulative
 from ehlpetsc.physics.operation import LEVEL, Conditions, ConstantOperation
 
 SPEED_CHANGE = 0.04  # of the largest speed, for a Courant number of 1: largest change in a time step
@@ -53,7 +53,7 @@ class VariableOperation:
     def is_reversing(self):
         """Whether the entrainment speed changes its sign."""
         u = self.table.sampled().entrainment
-        scale = END * np.abs(u).max()
+        scale = END_TOLERANCE * np.abs(u).max()
         return bool(u.min() < -scale and u.max() > scale)
 
     def _local(self, time):
@@ -61,7 +61,8 @@ class VariableOperation:
         period = self.period
         done = min(max(int(time // period), 0), self.table.repeat - 1)
         local = min(max(time - done * period, 0.0), period)
-        if period - local < END * period and done < self.table.repeat - 1:  # but for rounding the next one
+        is_at_end = period - local < END_TOLERANCE * period
+        if is_at_end and done < self.table.repeat - 1:  # but for rounding the next repeat
             done, local = done + 1, 0.0
         return done, local
 
@@ -94,13 +95,13 @@ class VariableOperation:
     def remaining(self, time, travelled):
         """Time left to the end of the run [s]."""
         left = self.duration - time
-        return left if left > END * self.duration else 0.0
+        return left if left > END_TOLERANCE * self.duration else 0.0
 
     @cached_property
     def duration(self):
         """Length of the whole run [s]."""
         whole = self.table.repeat * self.period
-        if self.travel is None or self.travel >= self.table.swept_length() * (1.0 - END):
+        if self.travel is None or self.travel >= self.table.swept_length() * (1.0 - END_TOLERANCE):
             return whole
         fine = self.table.sampled()
         swept = cumulative(fine.speed, fine.time)
@@ -152,7 +153,7 @@ class VariableOperation:
         part = level - np.floor(level + LEVEL)
         left = (1.0 - part) * step if part > LEVEL else step
         end = self.duration - time
-        return min(left, end) if end > END * self.duration else left
+        return min(left, end) if end > END_TOLERANCE * self.duration else left
 
 
 def operation_of(case, scales):

@@ -12,7 +12,7 @@ from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS
 from ehlpetsc.post.outputs.passes_index import is_of_passes
-from ehlpetsc.post.run import WITHIN
+from ehlpetsc.post.run import ASPERITY_HALF_WIDTH
 from ehlpetsc.results.post_result import SURFACES
 from ehlpetsc.results.series_index import files_of
 
@@ -82,10 +82,10 @@ def arguments(argv=None):
     add(
         "--within",
         type=float,
-        default=WITHIN,
+        default=ASPERITY_HALF_WIDTH,
         metavar="W/A",
         help=f"half widths either side of an asperity's peak in which its largest damage is sought "
-        f"(default {WITHIN:g})",
+        f"(default {ASPERITY_HALF_WIDTH:g})",
     )
     add("--regression", choices=REGRESSIONS, default="x on y", help="of the median ranks")
     add("--jobs", type=_jobs, default=1, metavar="N", help="threads (default 1)")

@@ -13,10 +13,10 @@ from ehlpetsc.post.inputs.settings import Settings, read_settings
 from ehlpetsc.post.stresses.body_points import NO_FLANK, body_points, passage
 
 MAX_POINTS = 5_000_000
-FEW_POINTS = 30  # fewer decide nothing about a surface
-ENDED = 0.01  # of the duration: a last frame nearer to its end is at it
-MIN_SPEED = 1e-3  # of the faster surface's speed: nobody waits for less
-EVERY_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
+FEW_POINTS = 30  # fewer are not representative of a surface
+END_TOLERANCE = 0.01  # of the duration: a last frame nearer to its end is at it
+MIN_SPEED = 1e-3  # of the faster surface's speed: slower surfaces take too long to pass
+DAMAGE_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
 # thinned by tests/benchmarks/post_every.py
 
@@ -117,7 +117,7 @@ def _flank(loads, surface):
         return NO_FLANK
     pair, begin = case.gears.pair, case.conditions.profile_offsets[number]
     arc = pair.flank_arcs(pair.points["E"])[number]
-    ended = loads.time[-1] > (1.0 - ENDED) * loads.operation.duration
+    ended = loads.time[-1] > (1.0 - END_TOLERANCE) * loads.operation.duration
     return begin - arc if ended else np.inf, begin
 
 
@@ -125,8 +125,8 @@ def _warn(loads, gaps, motions, whole, report):
     if loads.status not in ("done", "unknown"):
         report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
     if gaps.every > 1:
-        steps = min(EVERY_LOSS, key=lambda known: abs(known - gaps.every))
-        top, below = EVERY_LOSS[steps]
+        steps = min(DAMAGE_LOSS, key=lambda known: abs(known - gaps.every))
+        top, below = DAMAGE_LOSS[steps]
         report(
             f"warning: stored with output.every = {gaps.every}: peaks between frames are lost; with every "
             f"{steps} two measured surfaces lost {top} % of a typical point's damage at z = 0 and {below} % "

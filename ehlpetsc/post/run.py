@@ -21,8 +21,8 @@ from ehlpetsc.post.stresses.histories import Sweep, runs_of_points, workers
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import SURFACES
 
-MEMORY = 1e9  # bytes of open histories; too few and frames are gone through twice
-WITHIN = 0.02  # half widths either side of an asperity's peak in which its largest damage is sought
+MAX_HISTORY_BYTES = 1e9  # with fewer, frames are read several times
+ASPERITY_HALF_WIDTH = 0.02  # half widths on either side of a peak, where its largest damage is sought
 DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
 
 
@@ -41,7 +41,7 @@ class Job(NamedTuple):
     regression: str = "x on y"
     jobs: int = 1
     criteria: tuple = ()
-    within: float = WITHIN
+    within: float = ASPERITY_HALF_WIDTH
     settings: tuple = ()
 
     def overrides(self):
@@ -165,7 +165,7 @@ def solve(job, prepared, task, map_=map, progress=None):
     if not motion.complete.any():
         return out
     lengths = motion.leave - motion.enter + 3
-    runs = runs_of_points(motion, MEMORY, len(task.depths))
+    runs = runs_of_points(motion, MAX_HISTORY_BYTES, len(task.depths))
     frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points in runs)
     done = 0
 

@@ -6,7 +6,7 @@ from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.load_interpolation import limited_slopes
 from ehlpetsc.results.post_result import PointTemperatures
 
-READ = 256  # frames at a time
+FRAMES_READ = 256  # at a time
 
 
 def point_temperatures(loads, surface, motion, points):
@@ -31,8 +31,8 @@ def point_temperatures(loads, surface, motion, points):
     """
     highest, sums, times = np.full(points, -np.inf), np.zeros(points), np.zeros(points)
     lasts = _weights(loads.time)
-    for begin in range(0, loads.time.size, READ):
-        frames = np.arange(begin, min(begin + READ, loads.time.size))
+    for begin in range(0, loads.time.size, FRAMES_READ):
+        frames = np.arange(begin, min(begin + FRAMES_READ, loads.time.size))
         rows = _between(loads, surface, frames, motion.offset[frames])
         for frame, values in zip(frames, rows, strict=True):
             x = loads.x[: values.size] + motion.offset[frame] * loads.dx

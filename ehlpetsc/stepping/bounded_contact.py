@@ -13,7 +13,7 @@ from ehlpetsc.stepping.first_guess import AMBIENT, load_of, smoothed, undeformed
 
 MAX_EIGENVALUE = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
 MAX_STEPS = 1000  # steps
-STILL = 1e-5  # change in a step, of the yield pressure, that ends it
+STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
 HALVINGS = 60  # of an interval: to rounding
 
 
@@ -38,7 +38,7 @@ def bounded_pressure(problem, inputs):
     momentum = 1.0
     for _ in range(MAX_STEPS):
         new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
-        if np.abs(new - p).max() < STILL * limit:
+        if np.abs(new - p).max() < STEP_TOLERANCE * limit:
             break
         if (ahead - new) @ (new - p) > 0.0:
             momentum = 1.0

@@ -17,7 +17,7 @@ import numpy as np
 
 from ehlpetsc.errors import SolveFailed
 
-SLACK = 1.0 + 1e-6  # of a tolerance: sums taken in another order
+SUM_ROUNDING = 1.0 + 1e-6  # of a tolerance: the order of sums differs
 VOID_TOLERANCE = 1e-9  # void fractions beyond 1 by no more than this are rounding
 
 
@@ -76,7 +76,7 @@ def find_fault(problem, q, w, h00, rows, tolerance):
         return "it is not finite"
     if problem.fluid is not None and q.min() < -1.0 - VOID_TOLERANCE:
         return f"a node has {q.min() + 1.0:.2g} of its gap full of oil"
-    bound = SLACK * tolerance
+    bound = SUM_ROUNDING * tolerance
     fault, reynolds = problem.model.check(w, reynolds, bound)
     if fault:
         return fault

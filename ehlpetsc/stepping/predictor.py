@@ -14,8 +14,8 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL
 
-THIN = 1e-3  # of the expected film, least divisor of films: on a coarse mesh the smooth one may touch too
-AGE = 0.03  # nodes off a whole number that a level one step younger makes up for
+MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth one may touch too
+LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that outweighs one step of age
 
 
 class TimeLevel(NamedTuple):
@@ -74,10 +74,10 @@ def predict(problem, smooth, levels, nodes):
     nodes : sequence of float
         Way of each to the new time, with the mean speed, in nodes.
     """
-    best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + AGE * k)
+    best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
     level, way, model = levels[best], nodes[best], problem.model
     q0, film = smooth.q, model.state(level.q, level.w).film
-    h0 = np.maximum(model.state(q0, smooth.w).film, THIN * problem.film_scale)
+    h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
     q = q0 + advected(level.q - q0, way)
     # where there was oil, the differences carried must not leave a cavity: it fills by a few nodes an
     # iteration, one that opens does so at once

@@ -28,10 +28,10 @@ from ehlpetsc.stepping.convergence_check import solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
 
 MIN_STIFFNESS_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
-FROM = 0.8  # of the load under which Hertz' pressure is the yield pressure
-PRESSED = 1.2  # growth of the load from there
+FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
+LOAD_GROWTH = 1.2  # factor from one load to the next
 MIN_RAMP_INCREMENT = 1e-3  # of the share, from one solution to the next
-MAX_ATTEMPTS = 100  # at a solution of one start, those that fail too
+MAX_ATTEMPTS = 100  # solves of one start, including failed ones
 
 
 def steady(solver, film, inputs, watch=None):
@@ -91,12 +91,12 @@ def yielding_start(solver, film, inputs, watch=None):
         state = attempt(bounded_start(problem, film, inputs, width), inputs)
         if state is not None:
             return *state, attempt.spent
-    load, reached = FROM * problem.model.yield_pressure**2, 0.0
+    load, reached = FIRST_LOAD_RATIO * problem.model.yield_pressure**2, 0.0
     state = hertz_start(problem, film, replace(inputs, load_share=load))
     while reached < 1.0:
         nearer = attempt(state, replace(inputs, load_share=load))
         if nearer is not None:
-            state, reached, load = nearer, load, min(load * PRESSED, 1.0)
+            state, reached, load = nearer, load, min(load * LOAD_GROWTH, 1.0)
             continue
         load = 0.5 * (reached + load)
         if load < reached * (1.0 + MIN_RAMP_INCREMENT) or not reached:

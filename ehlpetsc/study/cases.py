@@ -40,14 +40,14 @@ BARUS = TABLE_1.replace('law = "seed"', 'law = "barus"')
 ROELANDS = TABLE_1.replace('law = "seed"', 'law = "roelands"\nroelands_z = 0.68\nroelands_pressure = 0.196e9')
 MOES = BARUS.replace("eyring_stress = 10e6", "").replace('"dowson-higginson"', '"incompressible"')
 
-DRY = TABLE_1[: TABLE_1.index("[fluid]")] + TABLE_1[TABLE_1.index("[motion]") :]
+DRY_TABLE_1 = TABLE_1[: TABLE_1.index("[fluid]")] + TABLE_1[TABLE_1.index("[motion]") :]
 NEWTON = TABLE_1.replace("eyring_stress = 10e6\n", "")
 BASES = {
     "table_1": TABLE_1,
     "barus": BARUS,
     "roelands": ROELANDS,
     "moes": MOES,
-    "dry": DRY,
+    "dry": DRY_TABLE_1,
     "newton": NEWTON,
 }
 CORRELATION = 25e-6  # m

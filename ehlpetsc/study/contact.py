@@ -22,8 +22,8 @@ from ehlpetsc.study.runs import csv_table, greatest_damage, run
 from ehlpetsc.study.setting import FILM, MESH, MODEL, STEP, Setting, stored
 
 DEPTHS = (0.0, 0.01)  # half widths, of the damage
-THIN = (2.0, 5.0, 10.0)  # boundary films below which a film counts as thin
-REPORTED = (
+THIN_FILMS = (2.0, 5.0, 10.0)  # boundary films below which a film counts as thin
+REPORTED_ORDERS = (
     "length",
     "share",
     "thin_length",
@@ -116,7 +116,7 @@ def _of_frame(result, frame, boundary_film):
     p, h = result.frame("pressure", frame), result.frame("film_thickness", frame)
     name = "contact_pressure" if "contact_pressure" in result else "pressure"
     solids = result.frame(name, frame)[result["in_contact"][frame].astype(bool)].sum()
-    thin, below_5, below_10 = (h < factor * boundary_film for factor in THIN)
+    thin, below_5, below_10 = (h < factor * boundary_film for factor in THIN_FILMS)
     return solids, thin.sum(), p[thin].sum(), p[below_5].sum(), below_10.sum(), p.max()
 
 
@@ -232,6 +232,6 @@ def orders(rows):
         if not fine or mesh % 4 or not found.keys() >= set(coarser):
             continue
         described = ", ".join(f"{column}={value}" for column, value in _described(setting).items())
-        for name in REPORTED:
+        for name in REPORTED_ORDERS:
             exponent, limit = order(*(getattr(found[key], name) for key in coarser), getattr(fine, name))
             yield f"{described}: {name} order {exponent:.2f}, limit {limit:.4g}"

@@ -25,9 +25,9 @@ COLUMNS = (
     "reason",
 )
 LAWS, LAYER = {"compliant": "mixed"}, "contact.asperity_height=10e-9"
-COARSE = ("mesh.points_per_half_width=50",)
+COARSE_MESH = ("mesh.points_per_half_width=50",)
 BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
-SWIFT = ("time.courant=1.0",)  # of cases without a time step of their own, and of runs before: fewer steps
+LONG_STEPS = ("time.courant=1.0",)  # of cases without a time step, and of first runs
 
 
 def cases(short=False, far=False, model=None):
@@ -58,9 +58,9 @@ def _of_model(case, model):
 def _shortened(case):
     keys = {override.partition("=")[0] for override in case.overrides}
     brief = BRIEF if "time.travel" in keys else ()
-    brief += SWIFT if brief and "time.courant" not in keys else ()
-    coarse = () if "mesh.points_per_half_width" in keys else COARSE
-    before = case.before and (*case.before, *coarse, *SWIFT)  # the mesh of both runs is one
+    brief += LONG_STEPS if brief and "time.courant" not in keys else ()
+    coarse = () if "mesh.points_per_half_width" in keys else COARSE_MESH
+    before = case.before and (*case.before, *coarse, *LONG_STEPS)  # the mesh of both runs is one
     return replace(case, overrides=(*case.overrides, *coarse, *brief), before=before)
 
 

@@ -13,7 +13,7 @@ from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.surfaces.measured import filters
-from ehlpetsc.surfaces.measured.thinning import MANY, MAX_POINTS_PER_CELL, thinned
+from ehlpetsc.surfaces.measured.thinning import MAX_POINTS_PER_CELL, MIN_THINNED_POINTS, thinned
 from ehlpetsc.surfaces.mesh_resolution import _running_median, spikes
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.samples import Samples
@@ -53,7 +53,7 @@ def test_means_over_cells_stay(even, cells, error):
 
 
 def test_what_is_not_dense_stays_as_it_is():
-    for n, cell in ((MANY - 1, 1e-3), (2 * MANY, 1e-3 / 12_500)):
+    for n, cell in ((MIN_THINNED_POINTS - 1, 1e-3), (2 * MIN_THINNED_POINTS, 1e-3 / 12_500)):
         X, z = waves(n, 1e-3, [1e-5])
         assert thinned(X, z, cell)[1] is z
 
@@ -71,7 +71,7 @@ def test_the_filter_of_long_profiles_is_that_of_short_ones(monkeypatch, cutoff):
     z = np.random.default_rng(1).normal(size=100_004)
     X = 1e-7 * np.arange(z.size)
     long = filters.low_pass(X, z, cutoff)
-    monkeypatch.setattr(filters, "MANY", 10**9)
+    monkeypatch.setattr(filters, "MAX_EXACT_LENGTH", 10**9)
     np.testing.assert_allclose(long, filters.low_pass(X, z, cutoff), rtol=0.0, atol=1e-7)
 
 

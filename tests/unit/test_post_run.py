@@ -106,7 +106,7 @@ def arrays(path):
 def test_two_threads_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
     run(Job(str(result), str(tmp_path / "one.h5")))
     run(Job(str(result), str(tmp_path / "two.h5"), jobs=2))
-    monkeypatch.setattr(runner, "MEMORY", 2e5)  # some tens of histories at a time
+    monkeypatch.setattr(runner, "MAX_HISTORY_BYTES", 2e5)  # some tens of histories at a time
     run(Job(str(result), str(tmp_path / "small.h5")))
     one = arrays(tmp_path / "one.h5")
     for other in ("two.h5", "small.h5"):

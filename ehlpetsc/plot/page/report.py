@@ -10,7 +10,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.page.report_data import report_data
 from ehlpetsc.results.atomic_write import atomic_write
 
-PARTS = {"style": "report.css", "script": "report.js"}
+PAGE_FILES = {"style": "report.css", "script": "report.js"}
 
 
 def _plotly():
@@ -32,7 +32,7 @@ def save_report(result, path):
     data = report_data(result)
     page = files("ehlpetsc.plot.page")
     text = page.joinpath("report.html").read_text(encoding="utf-8")
-    for name, file in PARTS.items():
+    for name, file in PAGE_FILES.items():
         text = text.replace("{{" + name + "}}", page.joinpath(file).read_text(encoding="utf-8"))
     rows = "".join(f"<tr><th>{html.escape(k)}</th><td>{html.escape(v)}</td></tr>" for k, v in data["facts"])
     for name, value in (("title", data["title"]), ("case", data["case"])):

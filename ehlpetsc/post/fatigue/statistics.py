@@ -8,7 +8,7 @@ from ehlpetsc.results.post_result import WeibullFit
 
 PROMINENCE = 0.1  # of Rq: lower bumps are noise of the measurement, not asperities
 REGRESSIONS = ("x on y", "y on x")
-LEAST_SPREAD = 1e-6  # of the values: damages are sure to some 1e-6, what is closer together has no shape
+MIN_SPREAD = 1e-6  # of the values: damages are accurate to some 1e-6, closer values have no shape
 
 
 class Asperities(NamedTuple):
@@ -51,7 +51,7 @@ def benard_ranks(n):
 
 def too_alike(values):
     """Whether values above 0 are fewer than two, or spread by less than LEAST_SPREAD of the largest."""
-    return values.size < 2 or values.max() - values.min() <= LEAST_SPREAD * values.max()
+    return values.size < 2 or values.max() - values.min() <= MIN_SPREAD * values.max()
 
 
 def weibull_fit(values, regression="x on y"):

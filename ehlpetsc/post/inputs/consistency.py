@@ -5,13 +5,13 @@ import numpy as np
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.inputs.loads import UNITS
 
-AGREE = 1e-4  # relative: attributes and case are the same numbers but for rounding
-LOAD_AGREES = 0.01  # the solver balances the load to rounding; other programs' quadrature may differ
-FRAME_AGREES = 1e-4  # a stored frame, in single precision too, and the scalars of its step
+SCALE_TOLERANCE = 1e-4  # relative: attributes and case are the same numbers but for rounding
+LOAD_TOLERANCE = 0.01  # the solver balances the load to rounding; other programs' quadrature may differ
+FRAME_TOLERANCE = 1e-4  # a stored frame, in single precision too, and the scalars of its step
 MIN_STEP = 2.0**-13  # of the nominal one: the solver gives up at twice that
 MAX_STEP = 1.5  # the solver's steps are at most the nominal one
-NEGATIVE = 1e-3  # of p0: rounding of a pressure at 0
-COLDEST = 100.0  # K: less is in degrees Celsius, or a rise
+MAX_NEGATIVE_PRESSURE = 1e-3  # of p0: rounding of a pressure at 0
+MIN_TEMPERATURE = 100.0  # K: less is in degrees Celsius, or a rise
 
 
 def check_scales(loads):
@@ -27,16 +27,16 @@ def check_scales(loads):
         ("u2", "m/s", scales.u_max),
     ):
         wanted = getattr(scales, name)
-        if not abs(found[name] - wanted) <= AGREE * size:
+        if not abs(found[name] - wanted) <= SCALE_TOLERANCE * size:
             faults.append(f"attribute {name} = {found[name]:.6g}: its case gives {wanted:.6g} {unit}")
     for surface, speed in loads.profile_speeds.items():
-        if not abs(speed - loads.speeds[surface]) <= AGREE * scales.u_max:
+        if not abs(speed - loads.speeds[surface]) <= SCALE_TOLERANCE * scales.u_max:
             faults.append(
                 f"attribute speed of surface/{surface} = {speed:g} m/s: the surface has "
                 f"{loads.speeds[surface]:g} m/s"
             )
     inlet = scales.x[0] * scales.a
-    if abs(loads.dx - scales.dx) > AGREE * scales.dx or abs(loads.x[0] - inlet) > 0.01 * scales.a:
+    if abs(loads.dx - scales.dx) > SCALE_TOLERANCE * scales.dx or abs(loads.x[0] - inlet) > 0.01 * scales.a:
         faults.append(
             f"dataset x: begins at {loads.x[0]:.6g} with a spacing of {loads.dx:.6g}, its case's mesh at "
             f"{inlet:.6g} m with {scales.dx:.6g} m"
@@ -67,9 +67,10 @@ class Balance:
         """Check sums, minima and maxima of the pressures of frames from `first` on."""
         p0, force = self.loads.p0, total * self.loads.dx
         load = self.load[first : first + len(force)]
-        wrong = ~(np.abs(force - load) <= LOAD_AGREES * load)
+        wrong = ~(np.abs(force - load) <= LOAD_TOLERANCE * load)
         self._refuse(wrong, first, force, "pressure", "its integral over x", load, "N/m, the case's load")
-        self._refuse(low < -NEGATIVE * p0, first, low, "pressure", "its least value", 0.0, "or more")
+        negative = low < -MAX_NEGATIVE_PRESSURE * p0
+        self._refuse(negative, first, low, "pressure", "its least value", 0.0, "or more")
         self._of_step(first, force, "load", "pressure", "its integral over x", self.load[0])
         self._of_step(first, high, "p_max", "pressure", "its greatest value", p0)
 
@@ -85,14 +86,14 @@ class Balance:
 
     def check_temperature(self, name, first, low, high):
         """Check the extreme temperatures of frames from `first` on."""
-        self._refuse(low < COLDEST, first, low, name, "its least value", COLDEST, "K or more")
-        self._of_step(first, high, f"{name}_max", name, "its greatest value", COLDEST)
+        self._refuse(low < MIN_TEMPERATURE, first, low, name, "its least value", MIN_TEMPERATURE, "K or more")
+        self._of_step(first, high, f"{name}_max", name, "its greatest value", MIN_TEMPERATURE)
 
     def _of_step(self, first, found, name, dataset, what, size):
         known = self.of_step[name]
         if known is not None:
             known = known[first : first + len(found)]
-            wrong = ~(np.abs(found - known) <= FRAME_AGREES * np.maximum(np.abs(known), size))
+            wrong = ~(np.abs(found - known) <= FRAME_TOLERANCE * np.maximum(np.abs(known), size))
             self._refuse(wrong, first, found, dataset, what, known, f"as steps/{name} has it")
 
     def _refuse(self, wrong, first, found, dataset, what, wanted, why):

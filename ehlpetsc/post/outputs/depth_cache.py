@@ -9,7 +9,7 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.atomic_write import atomic_write
 
-FINGERPRINT = "mark"
+FINGERPRINT_FILE = "mark"
 
 
 class DepthCache:
@@ -35,7 +35,7 @@ class DepthCache:
             raise OutputError(f"{self.folder} is in the way: not a folder of this program; remove it")
         self.folder.mkdir(parents=True, exist_ok=True)
         try:
-            stored = self.folder / FINGERPRINT
+            stored = self.folder / FINGERPRINT_FILE
             if not stored.is_file() or stored.read_bytes() != fingerprint.encode():
                 self._empty()
                 atomic_write(stored, fingerprint.encode())
@@ -53,7 +53,7 @@ class DepthCache:
     def _is_ours(self):
         if not self.folder.is_dir() or self.folder.is_symlink():
             return False
-        return all(p.name == FINGERPRINT or p.suffix in (".npy", ".tmp") for p in self.folder.iterdir())
+        return all(p.name == FINGERPRINT_FILE or p.suffix in (".npy", ".tmp") for p in self.folder.iterdir())
 
     def _empty(self):
         for path in self.folder.iterdir():

@@ -7,7 +7,7 @@ from ehlpetsc.errors import PostError
 from ehlpetsc.post.fatigue.passes import pass_statistics
 from ehlpetsc.post.outputs.result_file import check_output, fingerprint, write_result
 
-SAME = 1e-3  # of a spacing of body points; of the profile's height
+PROFILE_TOLERANCE = 1e-3  # of a spacing of body points; of the profile's height
 
 
 def same_points(results, surface):
@@ -29,7 +29,7 @@ def same_points(results, surface):
             raise PostError("the results have different depths: give --depths")
         shift = _shift_of_profile(first, other, surface)
         offset = (other.s[0] - first.s[0] - shift) / spacing
-        is_on_grid = shift or abs(offset - round(offset)) <= SAME
+        is_on_grid = shift or abs(offset - round(offset)) <= PROFILE_TOLERANCE
         if abs((other.s[1] - other.s[0]) / spacing - 1) > 1e-6 or not is_on_grid:
             raise PostError("the results have different body points: passes need one mesh")
         firsts.append(round(offset))
@@ -64,7 +64,7 @@ def _is_same_profile(one, other, shift):
     if np.count_nonzero(inside) < 2:
         return False
     apart = np.abs(np.interp(s[inside] + shift, other_s, other_z) - z[inside])
-    return apart.max() <= SAME * np.ptp(z)
+    return apart.max() <= PROFILE_TOLERANCE * np.ptp(z)
 
 
 def store_passes(path, results, surface):

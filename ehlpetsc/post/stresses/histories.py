@@ -12,8 +12,8 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.body_stress import BATCH, BodyStress, offset_weights
 
-READ = 144  # frames read at a time by each thread
-BYTES = 12  # of a sample: three stresses in single precision
+FRAMES_READ = 144  # at a time by each thread
+SAMPLE_BYTES = 12  # three stresses in single precision
 
 
 @compiled(error_model="python", nogil=True)
@@ -35,7 +35,7 @@ def _collect(stress, begin, first, shift, enter, leave, quantum, histories):
 def runs_of_points(motion, memory, depths):
     """Split the complete points into runs of consecutive ones whose histories fit in `memory` bytes."""
     points = np.flatnonzero(motion.complete)
-    room = max(1, int(memory / (BYTES * depths * (motion.samples() + 2))))
+    room = max(1, int(memory / (SAMPLE_BYTES * depths * (motion.samples() + 2))))
     runs = []
     for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
         runs += np.array_split(stretch, -(-stretch.size // room))
@@ -90,8 +90,8 @@ class Sweep:
         motion = self.motion
         histories = np.zeros((self.depths, points.size, 3, motion.samples() + 2), np.float32)
         frames = motion.enter[points].min(), motion.leave[points].max() + 1
-        for begin in range(*frames, READ * len(finish)):
-            end = min(begin + READ * len(finish), frames[1])
+        for begin in range(*frames, FRAMES_READ * len(finish)):
+            end = min(begin + FRAMES_READ * len(finish), frames[1])
             loads = self.loads.read(self.surface, begin, end)
             starts = range(begin, end, BATCH)
             list(self.map(partial(self._add_frames, loads, begin, points[0], histories), starts))

@@ -15,8 +15,8 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.kernels import hat, point_kernels
 
-NEAR = 24  # elements; beyond it a kernel is smooth over an element and quadrature is exact
-PARTS = 64  # hats an element that stand for the cubics near by: 2e-4 of a one-node peak at most
+NEAR_ELEMENTS = 24  # beyond it a kernel is smooth over an element and quadrature is exact
+HATS_PER_ELEMENT = 64  # approximate the cubics of near elements to 2e-4 of a one-node peak
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
@@ -60,8 +60,9 @@ def _shapes(t):
 
 
 def _near(u, z):
-    t = np.arange(1 - PARTS, PARTS) / PARTS
-    kernels = hat(PARTS * (u[:, None] - t).ravel(), PARTS * z).reshape(4, u.size, t.size)
+    t = np.arange(1 - HATS_PER_ELEMENT, HATS_PER_ELEMENT) / HATS_PER_ELEMENT
+    distances = HATS_PER_ELEMENT * (u[:, None] - t).ravel()
+    kernels = hat(distances, HATS_PER_ELEMENT * z).reshape(4, u.size, t.size)
     return kernels @ _shapes(t).T
 
 
@@ -79,7 +80,7 @@ def hermite_spectra(nx, z, offset):
     """
     n = padded_length(nx)
     distance = np.arange(-nx, nx)
-    near = np.abs(distance) <= NEAR
+    near = np.abs(distance) <= NEAR_ELEMENTS
     kernels = np.zeros((2, 4, n))
     for chosen, integrals in ((distance[near], _near), (distance[~near], _far)):
         kernels[:, :, chosen] = -2 / np.pi * np.moveaxis(integrals(chosen + offset, z), -1, 0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 
-ROOM = 16  # least bytes of a text, so that "running" may become "not converged" in place
+MIN_TEXT_BYTES = 16  # so that "running" can be overwritten by "not converged"
 
 
 def put(item, values):
@@ -29,7 +29,7 @@ def put(item, values):
 
 def _put_text(item, name, raw):
     kind = h5py.h5t.C_S1.copy()
-    kind.set_size(max(len(raw) + 1, ROOM))
+    kind.set_size(max(len(raw) + 1, MIN_TEXT_BYTES))
     kind.set_cset(h5py.h5t.CSET_UTF8)
     if name in item.attrs:
         del item.attrs[name]

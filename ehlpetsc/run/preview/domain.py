@@ -10,11 +10,11 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 
-LEFT = 0.95  # of the flooded film: below it the inlet is reported as too near
-ENOUGH = 0.99  # of the flooded film, with the inlet that is proposed
+MIN_FILM_LEFT = 0.95  # of the flooded film: below it the inlet is reported as too near
+PROPOSED_FILM_LEFT = 0.99  # of the flooded film, with the proposed inlet
 MAX_FILM_SLOPE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
-BRINK = 1.1  # no warning of a mesh that lacks a few percent of its points
-CLOSED = 5.0  # the same: a smooth film has none left
+MESH_MARGIN = 1.1  # a mesh that lacks a few percent of its points causes no warning
+MAX_OPENING = 5.0  # films opened from one node to the next: no smooth film is left
 MAX_INLET = 100.0  # half widths that mesh.inlet may be
 
 
@@ -34,7 +34,7 @@ def domain_warnings(case, scales):
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
-    if BRINK * MAX_FILM_SLOPE < opening:
+    if MESH_MARGIN * MAX_FILM_SLOPE < opening:
         notes.append(f"{_coarse(opening)}: the film comes out too thin; {_cure(case, scales)}")
     return notes
 
@@ -49,7 +49,7 @@ def domain_faults(case, scales):
     if case.fluid is None or case.contact.has_contact_pressure:  # where the boundary film stays
         return []
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
-    if opening <= CLOSED:
+    if opening <= MAX_OPENING:
         return []
     points = case.mesh.points_per_half_width
     where = f"{case.path}: mesh.points_per_half_width = {points}"
@@ -76,15 +76,15 @@ def _thinnest(case, scales):
 def _near_inlet(case, scales):
     film, inlet = expected_film(case, scales), -case.mesh.inlet
     left = film_left_by_inlet(film, inlet)
-    if left >= LEFT:
+    if left >= MIN_FILM_LEFT:
         return []
     further = inlet
-    while further < MAX_INLET and film_left_by_inlet(film, further) < ENOUGH:
+    while further < MAX_INLET and film_left_by_inlet(film, further) < PROPOSED_FILM_LEFT:
         further += 0.1
     return [
         f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * left:.0f} % of "
         f"the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * further) / 10.0:g} leaves "
-        f"{100 * ENOUGH:g} %"
+        f"{100 * PROPOSED_FILM_LEFT:g} %"
     ]
 
 

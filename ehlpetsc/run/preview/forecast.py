@@ -16,8 +16,8 @@ from ehlpetsc.surfaces.entry_times import entry_times
 ITERATION, NODE = 0.105, 6.7e-5
 # iterations a step: before roughness comes, under it, in mixed lubrication
 SMOOTH, FILM, MIXED = 1.6, 2.5, 4.5
-PROBE = 3000  # operations of the probe
-BEGIN = 70.0  # times of `probe` for imports and compiled loops from their cache
+PROBE_OPERATIONS = 3000
+START_PROBES = 70.0  # time of imports and of loading compiled loops, over that of `probe`
 FULL_FILM = 3.0  # lambda ratio from which on they do not
 STEADY = 20  # iterations of a steady solution
 
@@ -35,7 +35,7 @@ def run_time(case, s, rough):
 
 def begin_time():
     """Of it what comes before the first iteration; a series has it once [s]."""
-    return BEGIN * probe()
+    return START_PROBES * probe()
 
 
 def work_time(case, s, rough):
@@ -63,14 +63,14 @@ def _share_under_roughness(case, s, rough):
 
 @cache
 def probe():
-    """Seconds that this machine takes for `PROBE` small array operations, such as a step consists of."""
+    """Time of `PROBE_OPERATIONS` small array operations on this machine [s], such as a step consists of."""
     return sorted(_timed_operations() for _ in range(3))[1]
 
 
 def _timed_operations():
     small = np.linspace(0.0, 1.0, 400)
     begun = clock.perf_counter()
-    for k in range(PROBE):
+    for k in range(PROBE_OPERATIONS):
         other = small * 0.5 + small
         other[3:30] = other[2:29]
         float(np.fft.rfft(other)[k % 200].real if k % 4 == 0 else other.max())

@@ -10,9 +10,9 @@ from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz' pressure of EHL contacts, with room
-THICK = 0.1  # half-widths: films of EHL contacts are a hundredth of it and less
+MAX_EHL_FILM = 0.1  # half-widths: films of EHL contacts are a hundredth of it and less
 TILT = 0.5  # of the height variance, above which a profile counts as tilted
-SOFT = 0.25  # of p0: solids softer than that flow as a whole
+MIN_YIELD_PRESSURE = 0.25  # of p0: solids softer than that flow as a whole
 
 
 def warnings(case, scales):
@@ -25,7 +25,7 @@ def warnings(case, scales):
     """
     rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
     notes = []
-    if case.contact.yield_pressure and min(case.contact.yield_pressure) < SOFT * scales.p0:
+    if case.contact.yield_pressure and min(case.contact.yield_pressure) < MIN_YIELD_PRESSURE * scales.p0:
         notes.append(
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
             f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, which no half space tells"
@@ -66,7 +66,7 @@ def magnitude_warnings(case, scales):
             f"radius = {scales.R:g} m, load = {scales.load:g} N/m?"
         )
     film = expected_film(case, scales) * scales.h if case.fluid else 0.0
-    if film > THICK * scales.a:
+    if film > MAX_EHL_FILM * scales.a:
         notes.append(
             f"the expected film, {1e6 * film:.3g} um, is more than a tenth of the contact's half-width, "
             f"{1e6 * scales.a:.3g} um: "

@@ -9,7 +9,7 @@ import time as clock
 from mpi4py import MPI
 
 REQUEST, ANSWER = 71, 72
-PAUSE = 0.01  # s between two looks of a rank that waits
+POLL_SECONDS = 0.01  # between two polls of a waiting rank
 
 
 class WorkQueue:
@@ -115,4 +115,4 @@ class PollingStop:
 def wait(ready):
     """Poll until `ready()`."""
     while not ready():
-        clock.sleep(PAUSE)
+        clock.sleep(POLL_SECONDS)

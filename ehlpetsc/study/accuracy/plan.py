@@ -3,7 +3,7 @@
 from ehlpetsc.study.setting import ATOL, MESH, NEAR, RANKS, RTOL, STEP, Setting
 
 TOLERANCES = {ATOL: (1e-2, 1e-3, 1e-4, 1e-5, 1e-7), RTOL: (1e-1, 1e-2, 1e-4, 1e-6, 1e-8)}
-TIGHT = {ATOL: 1e-9, RTOL: 1e-10}
+REFERENCE_TOLERANCES = {ATOL: 1e-9, RTOL: 1e-10}
 NEAR_FIELDS = (5, 10, 20, 40)
 
 
@@ -26,7 +26,7 @@ def plan(case, meshes, steps, ranks):
     runs : list of Setting
     """
     base = {MESH: case.mesh.points_per_half_width, NEAR: case.mesh.near_field, RANKS: 1}
-    finest = {MESH: 2 * max(meshes), **TIGHT}
+    finest = {MESH: 2 * max(meshes), **REFERENCE_TOLERANCES}
     varied = [(MESH, meshes), (NEAR, NEAR_FIELDS), *TOLERANCES.items(), (RANKS, ranks)]
     if case.time:
         base[STEP], finest[STEP] = case.time.courant, 0.5 * min(steps)

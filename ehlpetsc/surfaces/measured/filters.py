@@ -5,7 +5,8 @@ import numpy as np
 from ehlpetsc.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # rounding in a file's abscissae, against a spacing that really varies
-MANY, FAR = 100_000, 10_000  # points
+MAX_EXACT_LENGTH = 100_000  # points: longer transforms are padded to a fast length
+MIN_PADDING = 10_000  # points
 MIN_SPACINGS = 2  # spacings: a profile holds no shorter wave
 
 
@@ -31,8 +32,8 @@ def mean_line(x, z, cutoff, key):
     The convolution with :math:`s(x)=\frac{1}{\alpha\lambda_c}\exp[-\pi(x/\alpha\lambda_c)^2]`,
     :math:`\alpha=\sqrt{\ln 2/\pi}`: of a wave of length :math:`\lambda` it passes
     :math:`2^{-(\lambda_c/\lambda)^2}` of the amplitude, half at the cut-off. At the ends the profile is
-    mirrored, as it is when it is run; a cosine transform then gives the convolution exactly, however short
-    the cut-off. (ISO drops half a cut-off at either end, where a slope makes a kink of what is mirrored.)
+    mirrored, as in a run; a cosine transform then gives the convolution exactly, however short the cut-off.
+    (ISO drops half a cut-off at either end, where a slope makes a kink of what is mirrored.)
 
     Parameters
     ----------
@@ -41,7 +42,7 @@ def mean_line(x, z, cutoff, key):
     cutoff : float
         Wavelength [m].
     key : str
-        What the user calls this cut-off.
+        Key of this cut-off in the case.
 
     Raises
     ------
@@ -61,8 +62,10 @@ def mean_line(x, z, cutoff, key):
             f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {least:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
-    size, beyond = x.size, int(2.0 * cutoff / step) + FAR  # where the filter's weights are gone
-    if size > MANY and beyond < size:  # lengths with a large prime factor cost six times the memory
+    size, beyond = x.size, int(2.0 * cutoff / step) + MIN_PADDING  # where the filter's weights are gone
+    if (
+        size > MAX_EXACT_LENGTH and beyond < size
+    ):  # lengths with a large prime factor cost six times the memory
         size = next_fast_len(size - 1 + beyond, real=True) + 1
         size = size if size - x.size < x.size else x.size
     spectrum = dct(np.concatenate([z, z[-2 : -2 - (size - x.size) : -1]]), type=1, overwrite_x=True)

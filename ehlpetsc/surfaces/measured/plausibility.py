@@ -4,11 +4,11 @@ import numpy as np
 
 from ehlpetsc.surfaces.measured.profile_files import UNITS
 
-MAX_SPACING = 0.25  # half widths between two points: no asperity of such a profile lies in the contact
-HIGH = 0.1  # half widths: greatest Rq
-DEEP = 30.0  # times the elastic approach a^2/R, or the film: greatest Rq
-STEEP = 1.0  # greatest root mean square slope
-ATOM = 1e-11  # m: least Rq
+MAX_SPACING = 0.25  # half widths between two points: wider than asperities
+MAX_RQ = 0.1  # half widths: greatest Rq
+MAX_RQ_RATIO = 30.0  # times the elastic approach a^2/R, or the film: greatest Rq
+MAX_SLOPE = 1.0  # greatest root mean square slope
+MIN_RQ = 1e-11  # m: least Rq
 CELLS = 4  # of the mesh: least length
 TYPICAL_SPACING, TYPICAL_RQ = (5e-9, 3e-5), (3e-10, 2e-5)  # m: of measured profiles
 
@@ -26,16 +26,16 @@ def absurd(given, a, dx, approach, film):
     """
     rq = float(given.z.std())
     slope = float(np.sqrt(np.mean((np.diff(given.z) / np.diff(given.X)) ** 2)))
-    highest = min(HIGH * a, DEEP * max(approach, film))
+    highest = min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film))
     if given.spacing > MAX_SPACING * a:
         fault = f"points {_um(given.spacing)} apart beside a half width of {_um(a)}"
     elif rq > highest:
         fault = (
             f"Rq {_um(rq)} beside a half width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
         )
-    elif slope > STEEP:
+    elif slope > MAX_SLOPE:
         fault = f"slopes of {slope:.3g} in the root mean square"
-    elif 0.0 < rq < ATOM:
+    elif 0.0 < rq < MIN_RQ:
         fault = f"Rq {_um(rq)}, less than an atom"
     elif given.length < CELLS * dx:
         fault = f"{_um(given.length)} long beside cells of the mesh of {_um(dx)}"

@@ -11,8 +11,9 @@ from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 OTHER_FORMATS = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}
-MANY = 50  # points: fewer are a shape made by hand, between whose points there is nothing to miss
-EQUAL, MOST = 0.02, 0.9  # how far equal spacings differ, and how many must be equal where lines are missing
+MIN_MEASURED_POINTS = 50  # fewer are a shape made by hand, without missing points
+SPACING_VARIATION = 0.02  # relative, of equal spacings
+MIN_EQUAL_SHARE = 0.9  # of the spacings, where lines are missing
 MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
@@ -191,8 +192,9 @@ def _with_missing_lines(x, z):
     """Profile with a nan for every point missing in an otherwise equally spaced file."""
     step = np.diff(x)
     usual = np.median(step)
-    equal, wide = np.abs(step - usual) <= EQUAL * usual, step > 1.5 * usual
-    if x.size < MANY or not wide.any() or not (equal | wide).all() or equal.mean() < MOST:
+    equal, wide = np.abs(step - usual) <= SPACING_VARIATION * usual, step > 1.5 * usual
+    is_measured = x.size >= MIN_MEASURED_POINTS and equal.mean() >= MIN_EQUAL_SHARE
+    if not (is_measured and wide.any() and (equal | wide).all()):
         return x, z
     counts = np.rint(step / usual)
     if counts.sum() > 2 * x.size:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-MANY = 200_000  # points; a spline through fewer takes negligible time
+MIN_THINNED_POINTS = 200_000  # points; a spline through fewer takes negligible time
 MAX_POINTS_PER_CELL = 16  # points to a cell of the mesh, or to the shortest cut-off
 
 
@@ -27,7 +27,7 @@ def thinned(X, z, shortest):
         The same arrays where there is nothing to be saved.
     """
     count = max(int(MAX_POINTS_PER_CELL * (X[-1] - X[0]) / shortest), MAX_POINTS_PER_CELL) + 1
-    if X.size < max(MANY, 2 * count):
+    if X.size < max(MIN_THINNED_POINTS, 2 * count):
         return X, z
     nearest = np.rint(np.linspace(0, X.size - 1, count)).astype(int)
     edges = np.concatenate([[0], (nearest[1:] + nearest[:-1]) // 2, [X.size - 1]])
