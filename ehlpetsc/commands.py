@@ -9,11 +9,12 @@ import importlib
 import os
 import shlex
 import sys
+from functools import partial
 
 from ehlpetsc.environment import NUMERICS, missing
 
 DRAWING = (*NUMERICS, "matplotlib")
-SUBCOMMANDS = {  # name: module, function, what it needs, what it does
+SUBCOMMANDS = {  # name: module, function, packages needed, description
     "plot": ("ehlpetsc.plot.__main__", "main", DRAWING, "pictures of results, of a series or of a case"),
     "post": ("ehlpetsc.post.command", "command", NUMERICS, "subsurface stresses, fatigue damage, statistics"),
     "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
@@ -21,21 +22,12 @@ SUBCOMMANDS = {  # name: module, function, what it needs, what it does
     "gears": ("ehlpetsc.gears.__main__", "main", DRAWING, "path of contact of spur gears, and runs along it"),
     "life": ("ehlpetsc.life.__main__", "main", DRAWING, "wear against fatigue over many passes"),
     "study": ("ehlpetsc.study.__main__", "main", DRAWING, "accuracy, speed, robustness"),
-    "ensemble": (
-        "ehlpetsc.analysis.ensemble",
-        "main",
-        NUMERICS,
-        "means over runs of several seeds",
-    ),
+    "ensemble": ("ehlpetsc.analysis.ensemble", "main", NUMERICS, "means over runs of several seeds"),
     "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),
     "docs": ("ehlpetsc.docs.__main__", "main", (), "these pages as one site, opened in a browser"),
     "contacts": ("ehlpetsc.analysis.contact_statistics", "main", NUMERICS, "counts and lengths of contact"),
 }
-OF_A_CASE = {
-    "explain": "--explain",
-    "keys": "--keys",
-    "template": "--template",
-}  # names of the solver's options
+OF_A_CASE = {name: f"--{name}" for name in ("explain", "keys", "template")}  # options of a run
 COMPLETION = """_ehlpetsc() {{
     local words="{words}"
     if [ "$COMP_CWORD" = 1 ]; then
@@ -51,28 +43,8 @@ def solver():
     return dispatch(lambda: importlib.import_module("ehlpetsc.__main__").run_guarded(sys.argv))
 
 
-def post():
-    """``ehlpetsc-post RESULT.h5 ...``: damage, statistics and pictures."""
-    return _start("post")
-
-
-def plot():
-    """``ehlpetsc-plot RESULT.h5 ...``: pictures."""
-    return _start("plot")
-
-
-def compare():
-    """``ehlpetsc-compare A.h5 B.h5``: two results field by field."""
-    return _start("compare")
-
-
-def study():
-    """``ehlpetsc-study CASE.toml``: accuracy, speed, robustness."""
-    return _start("study")
-
-
 def dispatch(run):
-    """Start the subcommand that the first word names, else what runs a case; returns the exit status."""
+    """Start the subcommand named by the first word, else run a case; returns the exit status."""
     first = sys.argv[1] if len(sys.argv) > 1 else ""
     if first in OF_A_CASE:
         sys.argv[1] = OF_A_CASE[first]
@@ -112,6 +84,7 @@ def _start(name):
     return getattr(importlib.import_module(module), function)()
 
 
+post, plot, compare, study = (partial(_start, name) for name in ("post", "plot", "compare", "study"))
 BY_NAME = {
     "ehlpetsc": solver,
     "ehlpetsc-post": post,

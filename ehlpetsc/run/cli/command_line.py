@@ -1,4 +1,4 @@
-"""The command line taken apart: the case file, settings of its keys, and what is PETSc's."""
+"""Parsing of the command line: case file, settings of its keys, options of PETSc."""
 
 import difflib
 import itertools
@@ -11,28 +11,16 @@ from ehlpetsc.command_parser import program
 from ehlpetsc.errors import UsageError
 from ehlpetsc.run.cli.options import OWN, usage
 
-PETSC = (
-    *("snes", "ksp", "pc", "mat", "vec", "sub", "mg", "sys", "log", "options", "help", "info", "malloc"),
-    *(
-        "citations",
-        "get_total_flops",
-        "checkstack",
-        "on_error",
-        "fp_trap",
-        "version",
-        "debug",
-        "ehl",
-        "da",
-        "dm",
-    ),
-    *("start_in_debugger", "stop_for_debugger", "debugger", "error_output", "shared_tmp", "use_gpu", "cuda"),
-    *("memory", "v", "h", "skip_petscrc", "python", "viewer", "tao", "ts", "prefix", "no_signal_handler"),
-)  # beginnings of PETSc's names, and of own ones, whose misspelt forms are refused later with the nearest
+PETSC = tuple(
+    "snes ksp pc mat vec sub mg sys log options help info malloc citations get_total_flops checkstack "
+    "on_error fp_trap version debug ehl da dm start_in_debugger stop_for_debugger debugger error_output "
+    "shared_tmp use_gpu cuda memory v h skip_petscrc python viewer tao ts prefix no_signal_handler".split()
+)  # beginnings of PETSc's names and of own ones; misspelt own ones are refused later with the nearest
 
 
 @dataclass
 class Command:
-    """A command line taken apart.
+    """A parsed command line.
 
     Attributes
     ----------
@@ -56,11 +44,11 @@ class Command:
 
 
 def parse_command_line(arguments):
-    """Take the command line apart.
+    """Parse the command line.
 
-    The case file is the one word that ends in .toml, else the first word. -ehl_set is taken out, here and
-    from PETSC_OPTIONS, because PETSc's table keeps only the last option of a name. Two dashes before a name
-    count as one: PETSc would treat the name as another option, an unused one.
+    The case file is the word that ends in .toml, else the first word. -ehl_set is removed, also from
+    PETSC_OPTIONS, because PETSc's table keeps only the last option of a name. Two dashes before a name count
+    as one: PETSc would treat the name as another option, an unused one.
 
     Raises
     ------
@@ -79,12 +67,12 @@ def parse_command_line(arguments):
     command.overrides = earlier + sets
     command.explain, command.ranks = "--explain" in rest, "--ranks" in rest
     rest = [word for word in rest if word not in ("--explain", "--ranks")]
-    places = [at for at, word in enumerate(rest) if word.endswith(".toml") and not _is_value(rest, at)]
-    places = places or [at for at, word in enumerate(rest[:1]) if word[:1] != "-"]
-    if len(places) > 1:
-        raise UsageError(f"one case file at a time, not {' and '.join(rest[at] for at in places)}: {usage()}")
-    if places:
-        command.case = rest.pop(places[0])
+    cases = [at for at, word in enumerate(rest) if word.endswith(".toml") and not _is_value(rest, at)]
+    cases = cases or [at for at, word in enumerate(rest[:1]) if word[:1] != "-"]
+    if len(cases) > 1:
+        raise UsageError(f"one case file at a time, not {' and '.join(rest[at] for at in cases)}: {usage()}")
+    if cases:
+        command.case = rest.pop(cases[0])
         if not command.case:
             raise UsageError(f"which case? an empty name is none: {usage()}")
     elif not {"-help", "--help", "-h"} & set(rest):
