@@ -67,8 +67,8 @@ def _of_petsc_dir():
     if "PETSC_DIR" not in os.environ:
         return []
     home, arch = Path(os.environ["PETSC_DIR"]), os.environ.get("PETSC_ARCH", "")
-    places = (home / arch / "lib", home / "lib", home / "lib/python3/dist-packages")
-    return [place for place in places if (place / "petsc4py").is_dir()]
+    folders = (home / arch / "lib", home / "lib", home / "lib/python3/dist-packages")
+    return [folder for folder in folders if (folder / "petsc4py").is_dir()]
 
 
 def _debians():

@@ -116,8 +116,8 @@ def compare(one, other):
     for name in FIELDS:
         if name in one.fields and name in other.fields:
             yield _field(one, other, name, x, times, same_mesh or name != "in_contact")
-    shares = [Line(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
-    yield _curves(Difference("contact_count", "share"), shares, x=x)
+    contact_shares = [Line(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
+    yield _curves(Difference("contact_count", "share"), contact_shares, x=x)
     both = set(one.scalars) & set(other.scalars)
     step_times = common_points(one.steps("time"), other.steps("time"), "time steps")
     for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in both]:

@@ -111,9 +111,9 @@ def _damage(found):
     quantiles = {}
     for surface in found.surfaces if found else ():
         for depth, row in zip(found.z, found.passed(surface), strict=True):
-            for share in QUANTILES if row.size else ():
-                name = f"damage_{surface} z/a={depth:g} q={share:g}"
-                quantiles[name] = float(np.quantile(row, share))
+            for quantile in QUANTILES if row.size else ():
+                name = f"damage_{surface} z/a={depth:g} q={quantile:g}"
+                quantiles[name] = float(np.quantile(row, quantile))
     return quantiles
 
 
@@ -134,13 +134,14 @@ def ensembles(results):
     }
     groups = {}
     for number, result in enumerate(results):
-        own = {key: values[number] for key, values in differing.items()}
-        groups.setdefault(json.dumps(own, default=str), (own, []))[1].append(run_figures(result))
+        conditions = {key: values[number] for key, values in differing.items()}
+        key = json.dumps(conditions, default=str)
+        groups.setdefault(key, (conditions, []))[1].append(run_figures(result))
     made = []
-    for own, runs in groups.values():
+    for conditions, runs in groups.values():
         shared = [name for name in runs[0] if all(name in run for run in runs)]
-        name = ", ".join(f"{key.rpartition('.')[2]} = {value}" for key, value in own.items())
-        made.append(Ensemble(name, own, {n: np.array([run[n] for run in runs]) for n in shared}))
+        name = ", ".join(f"{key.rpartition('.')[2]} = {value}" for key, value in conditions.items())
+        made.append(Ensemble(name, conditions, {n: np.array([run[n] for run in runs]) for n in shared}))
     return made
 
 

@@ -52,17 +52,17 @@ def statistics(result):
         As `COLUMNS` from "scalar" on.
     """
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
-    kept = both_fill(result, time)
-    kept = kept if kept.any() else np.ones(len(time), bool)
+    filled = both_fill(result, time)
+    filled = filled if filled.any() else np.ones(len(time), bool)
     weights = np.ones(len(time)) if len(time) == 1 else dt
     rows = []
     for name in [name for name in STEP_SCALARS if name in result.scalars and name not in LEFT_OUT]:
         values = result.steps(name).astype(float)
-        known = kept & np.isfinite(values) & (weights > 0.0)
+        known = filled & np.isfinite(values) & (weights > 0.0)
         if known.any():
             v, w = values[known], weights[known]
-            spread = weighted_percentiles(v, w, PERCENTILES)
-            found = (np.average(v, weights=w), *spread, v.min(), v.max(), v[-1])
+            percentiles = weighted_percentiles(v, w, PERCENTILES)
+            found = (np.average(v, weights=w), *percentiles, v.min(), v.max(), v[-1])
             unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
             begin = (time - dt)[known][0]
             rows.append((name, unit, *(f"{x:.6g}" for x in found), f"{begin:.6g}", int(known.sum())))

@@ -20,7 +20,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact import contact_model, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.contact.node_state import NodeState, changes
+from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.deflection import Deflection, deflection_rows
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
 from ehlpetsc.discretisation.interleaving import n_dofs, q_of, w_of
@@ -232,7 +232,7 @@ def jacobian_rows(
     `change` (3, window) is room for the changes of Reynolds unknown, film and separation.
     """
     for k in range(3):
-        changes(by[k + 1], nodes, 0, change[k])
+        directional_derivative(by[k + 1], nodes, 0, change[k])
     local = 2 * len(derivatives)
     deflection_rows(
         change[2],

@@ -71,7 +71,7 @@ def sweep(q, h, p, then, deflection, bound, relaxation):
                 by_q, by_h = derivatives[i, 2 * k], derivatives[i, 2 * k + 1]
                 r -= by_q * (q[j] - q_then[j]) + by_h * (h[j] - h_then[j])
         if i == n - 1:
-            q[i] = limited((r - b * h[i]) / a, q_then[i])
+            q[i] = limit_update((r - b * h[i]) / a, q_then[i])
             p[i] = max(q[i], 0.0)
             break
         low, high = max(i - near, 0), min(i + near + 1, n)
@@ -90,13 +90,13 @@ def sweep(q, h, p, then, deflection, bound, relaxation):
         else:
             new_q = q[i] + relaxation[i] * (new_q - q[i])
             new_h = max(h[i] + relaxation[i] * (new_h - h[i]), bound)
-        q[i] = limited(new_q, q_then[i])
+        q[i] = limit_update(new_q, q_then[i])
         h[i] = new_h
         p[i] = max(q[i], 0.0)
 
 
 @compiled
-def limited(q, then):
+def limit_update(q, then):
     """A pair's new q, kept to where the coefficients of the last evaluation hold."""
     if then > 0.0:
         return min(max(q, -PRESSURE_AFTER_REFILL, then - STEP_LIMIT), then + STEP_LIMIT)

@@ -181,11 +181,11 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
     # ln(sinh(s)/s), so that neither a huge viscosity nor a steep gradient overflows
     small = sigma < SERIES_LIMIT
     s = np.where(small, 1.0, sigma)
-    spread = np.where(
+    log_sinh_ratio = np.where(
         small, sigma**2 / 6 - sigma**4 / 180 + sigma**6 / 2835, s + np.log1p(-np.exp(-2 * s)) - np.log(2 * s)
     )
     with np.errstate(divide="ignore"):
-        ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - spread
+        ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - log_sinh_ratio
     large = ln_argument > 20.0
     asinh = np.where(large, ln_argument + np.log(2.0), np.arcsinh(np.exp(np.minimum(ln_argument, 20.0))))
     mean = _limited_mean(tau0 * np.sign(sliding) * asinh, fluid, p)

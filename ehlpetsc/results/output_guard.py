@@ -74,8 +74,8 @@ def check_derived(path, inputs, kinds, option="-o"):
     OutputError
     """
     check_output_path(path, inputs, option)
-    mark = kinds.get(path.suffix.lower())
-    if mark is None:
+    signature = kinds.get(path.suffix.lower())
+    if signature is None:
         raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(kinds)}")
     if exists(path):
         try:
@@ -83,7 +83,7 @@ def check_derived(path, inputs, kinds, option="-o"):
                 head = file.read(SIGNATURE_BYTES)
         except OSError as error:
             raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
-        if head and mark not in head:
+        if head and signature not in head:
             raise OutputError(f"{path}: exists and is not of that kind; remove it or give another {option}")
 
 

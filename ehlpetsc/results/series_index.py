@@ -42,14 +42,14 @@ def open_all(paths, stack):
     OutputError
         A file cannot be read, or no member of a series has one.
     """
-    kept = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
-    if not kept:
+    result_paths = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
+    if not result_paths:
         kinds = {".post.h5": "of post-processing", ".restart.h5": "of a restart"}
         refused = ", ".join(
             f"{path}: a file {kinds[OTHER_ENDINGS[str(path).endswith(OTHER_ENDINGS[1])]]}" for path in paths
         )
         raise OutputError(f"{refused}; give the result, {_result_of(paths[0])}")
-    return [stack.enter_context(read_result(file)) for path in kept for file in files_of(path)]
+    return [stack.enter_context(read_result(file)) for path in result_paths for file in files_of(path)]
 
 
 def _result_of(path):

@@ -36,18 +36,18 @@ def diagnostics(scene, problem, effects, state, started):
         e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case)
     )
     ln_eta = next((values for values in found if values is not None), None)
-    fields, touching = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
+    fields, contact_mask = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, film = s.dx * pressure.sum(), mean_film(s, state.h)
     friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
     smooth_film = smooth_films(case.fluid, s.E, conditions)[1] if case.fluid else np.nan
-    figures = {
+    scalars = {
         "dt": state.dt or 0.0,
         "newton": state.newton,
         "retries": state.retries,
         "h_min": thickness.min(),
         "p_max": pressure.max(),
-        "contacts": int(touching.sum()),
+        "contacts": int(contact_mask.sum()),
         "load": load,
         "load_error": abs(load / conditions.load - 1.0),
         "mass_error": mass_error(problem, state),
@@ -61,19 +61,19 @@ def diagnostics(scene, problem, effects, state, started):
         "wall": clock.monotonic() - started,
     }
     if case.conditions is not None:
-        figures |= {"load_given": conditions.load, "radius": conditions.radius}
-        figures |= {"speed_1": conditions.u1, "speed_2": conditions.u2}
-        figures |= dict(zip(("displacement_1", "displacement_2"), state.travelled, strict=True))
+        scalars |= {"load_given": conditions.load, "radius": conditions.radius}
+        scalars |= {"speed_1": conditions.u1, "speed_2": conditions.u2}
+        scalars |= dict(zip(("displacement_1", "displacement_2"), state.travelled, strict=True))
     if problem.fluid is not None:
-        figures |= _of_oil(loads, s)
-    figures |= problem.model.diagnostics(loads, s, case.output.thin_film)
+        scalars |= _of_oil(loads, s)
+    scalars |= problem.model.diagnostics(loads, s, case.output.thin_film)
     step = Step(state.time, state.dt, state.travelled, conditions)
     solution = Solution(problem.model.state(state.q, state.w), loads.contact_pressure, loads)
     for effect in effects:
         if effect.is_in(case):
             more = effect.observe(state.records[effect.name], solution, step)
-            fields, figures = fields | more[0], figures | more[1]
-    return figures, fields, touching
+            fields, scalars = fields | more[0], scalars | more[1]
+    return scalars, fields, contact_mask
 
 
 def _fields(case, s, conditions, problem, state, loads, ln_eta):

@@ -27,19 +27,19 @@ class TimeLevel(NamedTuple):
 
 
 @compiled
-def advected(share, nodes):
+def advected(values, nodes):
     """Advect the change of the smooth solution by roughness by `nodes` nodes.
 
     Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of
     asperities, two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's
     method iterations.
     """
-    whole, last, moved = int(np.floor(nodes)), len(share) - 1, np.empty_like(share)
+    whole, last, moved = int(np.floor(nodes)), len(values) - 1, np.empty_like(values)
     t = 1.0 - (nodes - whole)
-    for i in range(len(share)):
+    for i in range(len(values)):
         k = i - whole - 1
-        a, b = share[min(max(k - 1, 0), last)], share[min(max(k, 0), last)]
-        c, d = share[min(max(k + 1, 0), last)], share[min(max(k + 2, 0), last)]
+        a, b = values[min(max(k - 1, 0), last)], values[min(max(k, 0), last)]
+        c, d = values[min(max(k + 1, 0), last)], values[min(max(k + 2, 0), last)]
         value = (
             -t * (t - 1.0) * (t - 2.0) / 6.0 * a
             + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * b
@@ -75,17 +75,17 @@ def predict(problem, smooth, levels, nodes):
         Way of each to the new time, with the mean speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
-    level, way, model = levels[best], nodes[best], problem.model
+    level, distance, model = levels[best], nodes[best], problem.model
     q0, film = smooth.q, model.state(level.q, level.w).film
     h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
-    q = q0 + advected(level.q - q0, way)
+    q = q0 + advected(level.q - q0, distance)
     # where there was oil, the differences carried must not leave a cavity: it fills by a few nodes an
     # iteration, one that opens does so at once
-    least = np.minimum(*neighbours(level.q, way))
+    least = np.minimum(*neighbours(level.q, distance))
     refilled = np.minimum(
         np.minimum(least, level.q), PRESSURE_AFTER_REFILL
     )  # where the smooth film cavitates
     full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, least), refilled)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
-    interpolated = model.w_from_film(h0 * advected(film / h0, way))
-    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, way)))
+    interpolated = model.w_from_film(h0 * advected(film / h0, distance))
+    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, distance)))

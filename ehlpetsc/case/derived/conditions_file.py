@@ -29,7 +29,7 @@ def read_table(path):
     rows = [(k, line) for k, line in rows if line]
     if not rows:
         raise TableFault("no lines; allowed: a line of column names and one line a time")
-    separator = next((mark for mark in ";,\t" if mark in rows[0][1]), None)
+    separator = next((sign for sign in ";,\t" if sign in rows[0][1]), None)
     head, keys = rows[0], None
     if not _numbers(head[1], separator):
         keys, rows = _keys_of(*head, separator), rows[1:]

@@ -95,7 +95,7 @@ class NodeState(NamedTuple):
 
 
 @compiled
-def changes(by, nodes, first, change):
+def directional_derivative(by, nodes, first, change):
     """Fill in changes of one property with changes (nodes, 2) of q and w.
 
     Parameters

@@ -7,7 +7,7 @@ the default preconditioner takes its coefficients (``pc.getOperators()``). Other
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact.node_state import changes
+from ehlpetsc.discretisation.contact.node_state import directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.interleaving import (
@@ -80,7 +80,7 @@ class JacobianOperator:
         """Fill in the product with the local part of a vector; collective."""
         problem = self.problem
         with events.PRODUCT:
-            changes(self._by[0], pairs(v, problem.local), problem.own.start, self._pressure)
+            directional_derivative(self._by[0], pairs(v, problem.local), problem.own.start, self._pressure)
             at_nodes = self.exchange(v, self._pressure)
             problem.jacobian_vector_product(self._by, self.reynolds_derivatives, *at_nodes, out)
 

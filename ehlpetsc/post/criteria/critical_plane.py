@@ -68,15 +68,15 @@ def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
 
 
 @compiled(error_model="python", nogil=True)
-def plane_damage(kind, angles, stress, size, law, share, work):
-    """Damage on one plane, without cycles below `share` of the widest range."""
+def plane_damage(kind, angles, stress, size, law, threshold, work):
+    """Damage on one plane, without cycles below `threshold` of the widest range."""
     nu, residual, closed, sensitivity, curve, lives = law
     stack, first, second, weight, series, normal = work
     _on_plane(kind, angles, stress, size, nu, residual, series, normal)
     n = find_cycles(series[:size], closed, stack, first, second, weight)
     least = 0.0
-    if share > 0:
-        least = share * (series[:size].max() - series[:size].min())
+    if threshold > 0:
+        least = threshold * (series[:size].max() - series[:size].min())
     total = 0.0
     for k in range(n):
         width = abs(series[first[k]] - series[second[k]])
@@ -106,13 +106,13 @@ def _coarse(kind, grid, stress, size, law, work, bounds):
         if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
             break
         found = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE, work)
-        place = STARTS
-        while place > 0 and found > best[place - 1]:
-            place -= 1
-        for k in range(STARTS - 1, place, -1):
+        rank = STARTS
+        while rank > 0 and found > best[rank - 1]:
+            rank -= 1
+        for k in range(STARTS - 1, rank, -1):
             best[k], angles[k] = best[k - 1], angles[k - 1]
-        if place < STARTS:
-            best[place], angles[place] = found, grid[g]
+        if rank < STARTS:
+            best[rank], angles[rank] = found, grid[g]
     return angles, best
 
 
@@ -124,9 +124,9 @@ def _improve(kind, angles, damage, stress, size, law, work):
     while step > FINEST:
         better = False
         for axis in range(2 if kind == SWT else 3):
-            for way in (-step, step):
+            for change in (-step, step):
                 trial[:] = angles
-                trial[axis] += way
+                trial[axis] += change
                 found = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE, work)
                 if found > damage:
                     damage, better = found, True
@@ -155,11 +155,11 @@ def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out)
 
 
 @compiled(error_model="python", nogil=True)
-def reduced(stress, size, nu, points, places, few):
+def reduced(stress, size, nu, points, indices, few):
     """Fill `points` of loops.equivalent_points and `few` (3, :returned) with the samples that turn."""
     equivalent_points(stress[:, :size], nu, points)
-    count = turning_samples(points, size, places)
+    count = turning_samples(points, size, indices)
     for k in range(count):
         for part in range(3):
-            few[part, k] = stress[part, places[k]]
+            few[part, k] = stress[part, indices[k]]
     return count

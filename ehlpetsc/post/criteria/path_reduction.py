@@ -55,20 +55,20 @@ def _off_line(points, first, last):
     dx, dy = points[0, last] - points[0, first], points[1, last] - points[1, first]
     dz = points[2, last] - points[2, first]
     length = dx * dx + dy * dy + dz * dz
-    place, largest = first, 0.0
+    index, largest = first, 0.0
     for k in range(first + 1, last):
         x, y = points[0, k] - points[0, first], points[1, k] - points[1, first]
         z = points[2, k] - points[2, first]
         along = min(max((x * dx + y * dy + z * dz) / length, 0.0), 1.0) if length > 0 else 0.0
         away = (x - along * dx) ** 2 + (y - along * dy) ** 2 + (z - along * dz) ** 2
         if away > largest:
-            place, largest = k, away
-    return place, sqrt(largest)
+            index, largest = k, away
+    return index, sqrt(largest)
 
 
 @compiled(error_model="python", nogil=True)
-def turning_samples(points, size, places):
-    """Write the indices of the samples of points (3, :size) to keep into `places`; return their number."""
+def turning_samples(points, size, indices):
+    """Write the indices of the samples of points (3, :size) to keep into `indices`; return their number."""
     extent = 0.0
     for k in range(3):
         extent = max(extent, points[k, :size].max() - points[k, :size].min())
@@ -85,12 +85,12 @@ def turning_samples(points, size, places):
         ends[0], open_ends = last, 1
         while open_ends:  # stretches still to be looked at end here, the next one first
             end = ends[open_ends - 1]
-            place, away = _off_line(points, first, end)
+            index, away = _off_line(points, first, end)
             if away > tolerance:
-                ends[open_ends] = place
+                ends[open_ends] = index
                 open_ends += 1
             else:
-                places[count] = end
+                indices[count] = end
                 count += 1
                 first = end
                 open_ends -= 1

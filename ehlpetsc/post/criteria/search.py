@@ -32,10 +32,10 @@ class PlaneDamage(NamedTuple):
 
 @compiled(error_model="python", nogil=True)
 def _worst_planes(kind, grid, stress, lengths, law, work, spare, out):
-    points, places, few, bounds = spare
+    points, indices, few, bounds = spare
     for p in range(stress.shape[0]):
         history, size = stress[p], lengths[p]
-        count = reduced(history, size, law[0], points, places, few)
+        count = reduced(history, size, law[0], points, indices, few)
         worst_plane(kind, grid, history, size, few, count, law, work, bounds, out[p])
 
 

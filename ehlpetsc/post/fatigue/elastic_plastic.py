@@ -38,8 +38,8 @@ def _sum_of_powers(first, first_slope, second, second_slope, wanted):
         e, p = first + first_slope * y, second + second_slope * y
         high = max(e, p)
         total = high + log(exp(e - high) + exp(p - high))
-        share = exp(e - total)
-        slope = first_slope * share + second_slope * (1 - share)
+        weight = exp(e - total)
+        slope = first_slope * weight + second_slope * (1 - weight)
         step = (total - wanted) / slope
         y -= step
         if abs(step) <= 1e-14 * (1 + abs(y)):

@@ -56,13 +56,13 @@ def life_table(material, strain="direct"):
 def interpolate(logarithm, table):
     """Value of a :func:`curve_table` at a logarithm, extrapolated linearly beyond its ends."""
     last = table.shape[0] - 2
-    place = (logarithm - table[last + 1, 0]) / table[last + 1, 1]
-    if place <= 0:
-        return table[0, 0] + place * table[0, 1]
-    if place >= last:
-        return table[last, 0] + (place - last) * table[last, 1]
-    k = int(place)
-    t = place - k
+    position = (logarithm - table[last + 1, 0]) / table[last + 1, 1]
+    if position <= 0:
+        return table[0, 0] + position * table[0, 1]
+    if position >= last:
+        return table[last, 0] + (position - last) * table[last, 1]
+    k = int(position)
+    t = position - k
     low, high = table[k, 0], table[k + 1, 0]
     rise = high - low
     left, right = table[k, 1] - rise, rise - table[k + 1, 1]

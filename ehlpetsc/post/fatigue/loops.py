@@ -81,12 +81,12 @@ def _squared_distance(x, y, z, i, j):
 
 @compiled(error_model="python", nogil=True)
 def _farthest(x, y, z, i):
-    best, place = -1.0, i
+    best, index = -1.0, i
     for k in range(x.size):
         squared = _squared_distance(x, y, z, k, i)
         if squared > best:
-            best, place = squared, k
-    return best, place
+            best, index = squared, k
+    return best, index
 
 
 @compiled(error_model="python", nogil=True)
@@ -99,12 +99,12 @@ def _widest_of_few(x, y, z):
 
 
 @compiled(error_model="python", nogil=True)
-def _balls(x, y, z, places):
+def _balls(x, y, z, indices):
     """Middle point and radius of each BLOCK of consecutive points of the path, given by their indices."""
-    count = -(-places.size // BLOCK)
+    count = -(-indices.size // BLOCK)
     middles, radii = np.empty(count, np.int64), np.empty(count)
     for m in range(count):
-        block = places[m * BLOCK : (m + 1) * BLOCK]
+        block = indices[m * BLOCK : (m + 1) * BLOCK]
         middles[m], squared = block[block.size // 2], 0.0
         for i in block:
             squared = max(squared, _squared_distance(x, y, z, i, middles[m]))

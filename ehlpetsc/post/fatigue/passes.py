@@ -96,7 +96,7 @@ def fold(s, damage, stretch):
     return rows[passed]
 
 
-def largest_near(s, damage, places, distance):
+def largest_near(s, damage, positions, distance):
     """Largest damage within a distance of each place along the surface.
 
     Parameters
@@ -114,10 +114,10 @@ def largest_near(s, damage, places, distance):
     ndarray, shape (..., n)
     """
     known = np.where(np.isnan(damage), -np.inf, damage)
-    out = np.empty((*damage.shape[:-1], len(places)))
-    for k, place in enumerate(places):
-        first = np.searchsorted(s, place - distance, "left")
-        last = np.searchsorted(s, place + distance, "right")
-        nearest = int(np.abs(s - place).argmin())
+    out = np.empty((*damage.shape[:-1], len(positions)))
+    for k, position in enumerate(positions):
+        first = np.searchsorted(s, position - distance, "left")
+        last = np.searchsorted(s, position + distance, "right")
+        nearest = int(np.abs(s - position).argmin())
         out[..., k] = known[..., min(first, nearest) : max(last, nearest + 1)].max(axis=-1)
     return np.where(np.isinf(out), np.nan, out)

@@ -34,14 +34,14 @@ def asperities(profile, s, complete):
         return Asperities(np.empty(0), np.empty(0), np.empty(0, int))
     from scipy.signal import find_peaks  # a third of what the package takes to import
 
-    places, heights = profile
+    abscissae, heights = profile
     passed = s[complete]
-    inside = (places >= passed[0]) & (places <= passed[-1])
+    inside = (abscissae >= passed[0]) & (abscissae <= passed[-1])
     rough = np.std(heights[inside]) if inside.any() else 0.0
     peaks, _ = find_peaks(heights, prominence=max(PROMINENCE * rough, np.finfo(float).tiny))
     peaks = peaks[inside[peaks]]
-    nearest = np.rint((places[peaks] - s[0]) / (s[1] - s[0])).astype(int)
-    return Asperities(places[peaks], heights[peaks], nearest)
+    nearest = np.rint((abscissae[peaks] - s[0]) / (s[1] - s[0])).astype(int)
+    return Asperities(abscissae[peaks], heights[peaks], nearest)
 
 
 def benard_ranks(n):

@@ -33,8 +33,8 @@ def _derivatives(z, kind):
     exact = kind == 0
     first[exact] += 1
     below = kind < 0
-    share = hazard[below] / np.expm1(np.minimum(hazard[below], 700.0))
-    first[below], second[below] = share, share * (1 - hazard[below] - share)
+    ratio = hazard[below] / np.expm1(np.minimum(hazard[below], 700.0))
+    first[below], second[below] = ratio, ratio * (1 - hazard[below] - ratio)
     return first, second
 
 
@@ -87,14 +87,14 @@ def weibull_likelihood(values):
         gradient = np.array([-first.sum(), exact / slope + (first * y).sum()])
         across = -(second * y).sum()
         matrix = np.array([[second.sum(), across], [across, -exact / slope**2 + (second * y * y).sum()]])
-        step, share = np.linalg.solve(matrix, -gradient), 1.0
-        while share > 1e-12:
-            trial = shift + share * step[0], slope + share * step[1]
+        step, damping = np.linalg.solve(matrix, -gradient), 1.0
+        while damping > 1e-12:
+            trial = shift + damping * step[0], slope + damping * step[1]
             if trial[1] > 0:
                 found = _log_likelihood(trial[1] * y - trial[0], kind, trial[1], exact)
                 if found >= best:
                     break
-            share /= 2
+            damping /= 2
         else:
             break
         (shift, slope), best = trial, found

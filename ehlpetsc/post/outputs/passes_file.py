@@ -23,7 +23,7 @@ def same_points(results, surface):
     """
     first = results[0]
     spacing = first.s[1] - first.s[0]
-    firsts = []  # of the points of each result, in spacings from the first point of the first one
+    offsets = []  # of the points of each result, in spacings from the first point of the first one
     for other in results:
         if other.z.shape != first.z.shape or not np.allclose(other.z, first.z):
             raise PostError("the results have different depths: give --depths")
@@ -32,15 +32,15 @@ def same_points(results, surface):
         is_on_grid = shift or abs(offset - round(offset)) <= PROFILE_TOLERANCE
         if abs((other.s[1] - other.s[0]) / spacing - 1) > 1e-6 or not is_on_grid:
             raise PostError("the results have different body points: passes need one mesh")
-        firsts.append(round(offset))
+        offsets.append(round(offset))
     passed = [
-        set(start + np.flatnonzero(r.complete[surface])) for start, r in zip(firsts, results, strict=True)
+        set(start + np.flatnonzero(r.complete[surface])) for start, r in zip(offsets, results, strict=True)
     ]
-    places = np.array(sorted(set.intersection(*passed)), int)
-    if not places.size:
+    common = np.array(sorted(set.intersection(*passed)), int)
+    if not common.size:
         raise PostError(f"no point of surface {surface} passed the whole contact in all of the results")
-    rows = [r.damage[surface][:, places - start] for start, r in zip(firsts, results, strict=True)]
-    return first.s[0] + spacing * places, np.stack(rows)
+    rows = [r.damage[surface][:, common - start] for start, r in zip(offsets, results, strict=True)]
+    return first.s[0] + spacing * common, np.stack(rows)
 
 
 def _shift_of_profile(first, other, surface):

@@ -9,8 +9,8 @@ from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_
 from ehlpetsc.post.fatigue.weibull import LEVEL, WeibullLikelihood, weibull_bounds, weibull_likelihood
 from ehlpetsc.post.pictures.plots import legend_beside
 
-TELLING = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
-    "telling", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
+COLOUR_MAP = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
+    "distinct", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
 )
 
 
@@ -24,7 +24,7 @@ def depth_picture(result):
     for k, color in enumerate(_colours(len(result.z))):
         _curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
         _draw_confidence(axes, result.under[k], result.attrs["regression"], color)
-    _explain_marks(axes)
+    _add_legend_entries(axes)
     _finish(
         axes, f"{result.height.size} asperities, surface {result.main}, slide/roll ratio {result.ratio:.3g}"
     )
@@ -43,7 +43,7 @@ def ratio_picture(results, z):
 
 
 def _colours(count):
-    return [TELLING(k / max(count - 1, 1)) for k in range(count)]
+    return [COLOUR_MAP(k / max(count - 1, 1)) for k in range(count)]
 
 
 def _curve(axes, under, fit, label, color):
@@ -73,7 +73,7 @@ def _draw_confidence(axes, under, regression, color):
     axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
 
 
-def _explain_marks(axes):
+def _add_legend_entries(axes):
     """Add legend entries for dots, lines, dashes and bands."""
     for style, words in (
         (dict(marker=".", ls=""), "asperities"),

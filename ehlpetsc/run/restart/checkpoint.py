@@ -144,7 +144,7 @@ def load(path, case, scales, model):
     totals = {
         current_name(n.removeprefix(TOTAL)): v.item() for n, v in attributes.items() if n.startswith(TOTAL)
     }
-    notes = changes(earlier, tomllib.loads(case.text))
+    notes = changed_keys(earlier, tomllib.loads(case.text))
     smooth, number = _unknowns(model, arrays, "smooth_"), _pass_number(attributes)
     return Checkpoint(state, smooth, arrays["contact_count"], totals, positions, number), notes
 
@@ -210,7 +210,7 @@ def _misfit(arrays, attributes, earlier, case, scales):
     return None
 
 
-def changes(earlier, now):
+def changed_keys(earlier, now):
     """``fluid.viscosity was 0.002, is 0.004``, a line each for every key of the physics that differs."""
     one, other = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**one, **other} if one.get(key) != other.get(key)]
