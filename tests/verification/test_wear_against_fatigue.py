@@ -45,12 +45,12 @@ def test_without_wear_cells_fail_after_the_passes_of_the_damage_of_one_pass(tmp_
 
 @pytest.mark.parametrize("scale", [0.5, 1.0])
 def test_the_worn_volume_is_k_times_load_times_sliding_whatever_the_roughness(scale, tmp_path):
-    passes, k = 200_000, (1e-18, 3e-18)
+    passes, k = 40_000, (1e-18, 3e-18)
     one = case(scaled(scale) | {"wear.coefficient": list(k), "life.passes": passes, "life.wear_jump": 0.02})
     life = run_life(one, tmp_path / "a.life.h5")
     scales = Simulation(one).scales
     sliding = passes * abs(scales.u1 - scales.u2) * scales.duration
-    assert len(life.rows) >= 2 and life.done == passes
+    assert len(life.rows) >= 3 and life.done == passes
     for body, coefficient in zip(life.bodies[-1], k, strict=True):
         # the steps end within a step's length after the travel asked for, and the mesh holds the load
         assert body.volume == pytest.approx(coefficient * one.contact.load * sliding, rel=1e-6)
@@ -62,7 +62,7 @@ def test_wear_wins_at_a_high_rate_and_fatigue_at_a_low_one(tmp_path):
     for k in (1e-15, 1e-20):
         keys = {"wear.coefficient": k, "life.damage_jump": 0.5, "life.wear_jump": 0.1, "time.travel": 6.0}
         keys["mesh.points_per_half_width"] = 12
-        ends[k] = run_life(case(keys), tmp_path / f"{k}.life.h5", most=8)
+        ends[k] = run_life(case(keys), tmp_path / f"{k}.life.h5", most=6)
     polished, pitted = ends[1e-15], ends[1e-20]
     new = polished.bodies[0][0]
     new = new._replace(wear=np.zeros_like(new.wear))
@@ -74,8 +74,8 @@ def test_wear_wins_at_a_high_rate_and_fatigue_at_a_low_one(tmp_path):
 def test_half_the_allowed_jump_changes_pits_and_wear_by_less_than_a_tenth(tmp_path):
     ends = []
     for part in (1.0, 0.5):
-        keys = {"life.wear_jump": 0.05 * part, "life.damage_jump": 0.1 * part, "life.pits": False}
-        keys |= {"wear.coefficient": 1e-20, "life.passes": 2e6}
+        keys = {"life.wear_jump": 0.1 * part, "life.damage_jump": 0.2 * part, "life.pits": False}
+        keys |= {"wear.coefficient": 1e-20, "life.passes": 1.3e6}
         ends.append(run_life(case(keys), tmp_path / f"{part}.life.h5").rows[-1])
     assert ends[0]["pitted_share_1"] > 0.0
     for name in ("wear_volume_1", "wear_volume_2", "damage_1", "damage_2"):
