@@ -38,18 +38,22 @@ class Draw:
 
     def __init__(self, folder):
         self.folder, self.whole, self.lasts = folder / "run", {}, {}
-        for name in SCENES:
-            place = folder / name
-            place.mkdir()
-            begun = time.monotonic()
-            status, said = self._run(name, place)
-            assert status == 0, said
-            self.lasts[name] = time.monotonic() - begun
-            self.whole[name] = place
+
+    def _run_alone(self, name):
+        """Run a scene to its end without an accident, at its first draw."""
+        place = self.folder.with_name(name)
+        place.mkdir()
+        begun = time.monotonic()
+        status, said = self._run(name, place)
+        assert status == 0, said
+        self.lasts[name] = time.monotonic() - begun
+        self.whole[name] = place
 
     def __call__(self, rng):
         """Outcome and what was done."""
         name = str(rng.choice(list(SCENES)))
+        if name not in self.whole:
+            self._run_alone(name)
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir()
         for other, content in FOREIGN.items():

@@ -9,6 +9,7 @@ from ehlpetsc import post
 from ehlpetsc.post import Criteria, Material, cycles_to_failure, dang_van, strain_range, stress
 from ehlpetsc.post.criteria.critical_plane import plane_damage
 from ehlpetsc.post.criteria.dang_van import smallest_ball
+from ehlpetsc.post.criteria.path_reduction import turning_samples
 from ehlpetsc.post.criteria.planes import (
     normal_weights,
     planes,
@@ -137,6 +138,28 @@ def test_search_finds_what_trying_all_planes_finds(criterion):
         assert found.damage >= 0.98 * tried > 0
 
 
+def test_the_worst_planes_may_be_pressed_together_all_the_time():
+    """Static stress closes the planes of the largest shear and opens others, which promise more at first."""
+    constants = Criteria(normal_sensitivity=0.3)
+    tau, unit, turned = 3e8, 1.0 / constants.sensitivity(STEEL), np.radians(6.0)
+    mean, deviation = -0.842 * unit, 1.332 * unit
+    along = deviation * np.cos(turned) + tau * WAVE
+    found = critical_plane(
+        mean + along, mean - along, deviation * np.sin(turned) + NONE, STEEL, constants=constants
+    )
+    assert found.damage == pytest.approx(1 / shear_life(tau, 1.0, STEEL), rel=1e-3)
+
+
+@pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 2, 2), (1, 1, -2)])
+def test_of_a_straight_path_the_ends_are_kept_and_of_a_bent_one_the_bend(direction):
+    path, places = np.outer(direction, np.linspace(0.0, 1.0, 21)), np.empty(21, np.int64)
+    assert turning_samples(path, 21, places) == 2
+    assert places[:2].tolist() == [0, 20]
+    path[:, 8] += 0.2 * np.roll(direction, 1)
+    count = turning_samples(path, 21, places)
+    assert 8 in places[:count] and count <= 5
+
+
 def test_the_same_forwards_and_backwards():
     for criterion in KINDS:
         parts = np.array(contact_like(7))
@@ -212,6 +235,10 @@ def test_smallest_ball():
         for step in 1e-3 * rng.normal(size=(30, 3)):  # no centre near by does better
             moved = np.linalg.norm(points - (centre + step)[:, None], axis=0).max()
             assert moved >= radius - 1e-12
+    for unit in (1e-5, 1e9):  # whatever the unit of stress
+        found = smallest_ball(unit * points)
+        assert found[1] == pytest.approx(unit * radius, rel=1e-8)
+        assert found[0] == pytest.approx(unit * centre, rel=1e-8)
     line = np.outer([1.0, 2.0, 2.0], np.linspace(-1, 5, 61))[:, :31]
     centre, radius = smallest_ball(line)
     assert radius == pytest.approx(4.5) and centre == pytest.approx([0.5, 1, 1])

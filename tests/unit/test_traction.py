@@ -99,6 +99,23 @@ def test_void_carries_no_shear():
         np.testing.assert_allclose(half[side], 0.5 * full[side], rtol=1e-12)
 
 
+def test_a_cavity_shears_by_the_oil_that_fills_it():
+    """Eyring shear of the full gap times the fraction of oil, in the fields of an accepted state."""
+    case, scales, _, h = scene(0.5)
+    problem = EHLProblem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)
+    void = np.linspace(0.1, 0.9, scales.nx)
+    film = h / scales.h
+    q = np.where(np.arange(scales.nx) < 2, 0.1, -void)  # p0; something carries
+    state = State(q, film, 0.0, h=film, m=film, reynolds_residual=np.zeros_like(film))
+    setting = Scene(case, scales, operation_of(case, scales), None)
+    _, fields, _ = diagnostics(setting, problem, [], state, 0.0)
+    full = EYRING * np.arcsinh(0.005 * (scales.u1 - scales.u2) / h / EYRING)
+    expected = (full * (1.0 - void))[4:]
+    np.testing.assert_array_equal(fields["void_fraction"][4:], void[4:])
+    np.testing.assert_allclose(fields["shear_stress_2"][4:], expected, rtol=1e-9)
+    np.testing.assert_allclose(fields["shear_stress_1"][4:], -expected, rtol=1e-9)
+
+
 def test_in_mixed_contact_the_oil_drags_beside_the_solids():
     case, scales, p, h = scene(0.5)
     mixed = case.copy(update={"contact": case.contact.copy(update={"model": "mixed"})})

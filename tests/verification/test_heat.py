@@ -85,6 +85,23 @@ def test_slide_roll_ratios(ratio):
         assert state.h_min == pytest.approx(mirror.h_min, rel=1e-9)
 
 
+def test_flow_the_other_way_is_the_mirror_image():
+    """Steady and in time; the oil then leaves at the first node, and its heat with it."""
+    mesh = ["mesh.inlet=-1.6", "mesh.outlet=1.6", "mesh.points_per_half_width=40"]
+    runs = []
+    for way in (1.0, -1.0):
+        speeds = [f"operation.speed_{side}=[{way * u}, {way * u}]" for side, u in ((1, 12.0), (2, 8.0))]
+        table = ["operation.time=[0, 1e-6]", *speeds]
+        runs.append(solved("table1_smooth.toml", HEAT, THICK[0], *mesh, *table)[1])
+    assert len(runs[0]) == len(runs[1]) > 1
+    for there, back in zip(*runs, strict=True):
+        for name in ("film_temperature", "temperature_1", "temperature_2"):
+            one, other = getattr(there, name), getattr(back, name)[::-1]
+            np.testing.assert_allclose(other, one, atol=1e-6 * (one.max() - BULK))
+        assert back.film_temperature[0] > BULK + 1.0
+        assert max(there.scalars["heat_error"], back.scalars["heat_error"]) < 1e-9
+
+
 @pytest.mark.parametrize("speed, viscosity", [(0.001, 5.0), (100.0, 0.001)])
 def test_speeds(speed, viscosity):
     keys = [f"motion.entrainment_speed={speed}", f"fluid.viscosity={viscosity}"]
