@@ -5,6 +5,7 @@ import pytest
 
 from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
+from ehlpetsc.discretisation.contact.yielding import limit_yield_switch
 
 
 def pairs(*values):
@@ -41,3 +42,16 @@ def test_overlaps_touch():
     now, step = pairs((0.0, 1.0), (0.0, 1.0)), pairs((0.0, 0.5), (0.0, 1.5))
     close_overlaps(now, step, 0.0)
     assert (now - step)[:, 0] == pytest.approx([0.0, PRESSURE_AFTER_REFILL])
+
+
+def test_a_node_begins_to_touch_before_it_yields():
+    """A step to both at once stops where solids begin to carry, at the yield pressure."""
+    stiffness, limit = 10.0, 1.0
+    now = np.array([[0.2, 0.1], [0.2, -0.02], [0.2, 0.1]])
+    step = np.array([[-0.3, 0.2], [-0.3, 0.06], [-0.3, 0.12]])
+    limit_yield_switch(now, step, stiffness, limit)
+    q, w = (now - step).T
+    solids = stiffness * np.maximum(-w, 0.0)
+    assert q[0] + solids[0] == pytest.approx(limit, rel=1e-8) and 0.0 < solids[0] < 1e-8
+    assert q[1] + solids[1] == pytest.approx(limit, rel=1e-8) and solids[1] == pytest.approx(0.8)
+    assert (q[2], w[2]) == pytest.approx((0.5, -0.02))
