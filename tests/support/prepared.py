@@ -65,7 +65,7 @@ class Prepared:
 def load_compiled():
     """Have the compiled loops ready: to load them takes as long as all else that a short run does."""
     from ehlpetsc.case.loading import load
-    from ehlpetsc.discretisation.contact.node_state import changes
+    from ehlpetsc.discretisation.contact.node_state import directional_derivative
     from ehlpetsc.discretisation.ehl_problem import EHLProblem
     from ehlpetsc.discretisation.finite_volumes import extrapolated, reynolds_rounding
     from ehlpetsc.physics.scales import Scales
@@ -78,7 +78,7 @@ def load_compiled():
     step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
     now.flags.writeable = False  # as PETSc gives it
     by, rows = found.state.derivatives(), np.empty(2 * scales.nx + 1)
-    changes(by[0], step, problem.own.start, one)
+    directional_derivative(by[0], step, problem.own.start, one)
     sums = problem.deflection.sums(one)
     problem.jacobian_vector_product(by, found.reynolds_derivatives, step, 0.0, sums, rows)
     reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
