@@ -196,8 +196,10 @@ class LifeBody(NamedTuple):
         if not breaks(most):
             return most
         levels = np.array([1.0, laws.WEAKENED])[:, None, None] - self.damage
-        times = rates.passes_to_damage(np.maximum(levels, 0.0))
-        times = np.unique(np.floor(times[times < most]) + 1.0)
+        reached = rates.passes_to_damage(np.maximum(levels, 0.0))
+        uncovered = rates.passes_to_wear(np.maximum(self.edges[1:, None] - self.recession, 0.0))
+        times = np.floor(np.append(reached, uncovered)) + 1.0
+        times = np.unique(np.append(times[times < most], most))
         return int(times[bisect_left(times, True, hi=len(times) - 1, key=breaks)])
 
     def after(self, rates, passes, done, breaks):

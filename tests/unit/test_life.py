@@ -46,6 +46,14 @@ def test_a_jump_ends_where_wear_or_damage_reach_what_is_allowed():
     assert jump(added=0.01, damage=1.0) == 1000, "cells that have failed do not count"
 
 
+def test_a_jump_ends_where_wear_uncovers_cells_that_have_failed():
+    damage = np.zeros((3, 8))
+    damage[1] = 1.0
+    one, rates = body()._replace(damage=damage), Rates(np.full(8, 1e-3), np.zeros((3, 8)), 0.0)
+    bodies, jump, _ = jumps(wear_jump=5.0, passes=1500).take((one, one), round_of(lambda body: rates), 0)
+    assert jump == 1001 and bodies[0].pit == pytest.approx(2.0 - 1.001)
+
+
 @pytest.mark.parametrize("slope", [-3e-4, 0.0, 2e-3])
 def test_a_sum_reaches_an_amount_after_the_passes_found(slope):
     assert laws.sum_over(laws.passes_to(0.7, 0.05, slope), 0.05, slope) == pytest.approx(0.7, rel=1e-13)
