@@ -50,7 +50,9 @@ def fill_frame(axes, results, indices, options):
         hertz = Line2D([], [], color=frames.HERTZ_GREY, label="Hertz", **frames.HERTZ_STYLE)
         more = [hertz] if labels.share_hertz_contact(results) else []
         dashed = len(results) == 2
-        labels.series_legend(axes[0], colours, labels.labels_with_hertz(names, results), key, more, dashed)
+        about = labels.UNITS.get(key, key)
+        names = labels.labels_with_hertz(names, results)
+        labels.series_legend(axes[0], colours, names, about, more, dashed)
     else:
         frames.frame_legend(axes, results[0], indices[0], colours[0])
     frames.x_in_mm(axes[0], results)
@@ -122,8 +124,8 @@ def draw_collision(results, options):
     figure, axes = labels.new_figure(2, len(chosen), size, squeeze=False, sharex="col")
     width = options.width or COLLISION_WIDTH
     panels.draw_collisions(axes, results, chosen, colours, width)
-    labels.series_legend(axes[0, -1], colours, names, key)
-    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    labels.series_legend(axes[0, -1], colours, names, labels.UNITS.get(key, key))
+    figure.suptitle(labels.title(results), fontsize="medium")
     return figure
 
 
@@ -135,7 +137,7 @@ def draw_points(results, _options):
         raise OutputError("no contact point with two full films before it and two members in contact")
     figure, axes = two_panels()
     panels.draw_contact_points(axes, points, values, key, results[0].attrs["a"])
-    axes[0].set_title(results[0].attrs["title"], fontsize="medium")
+    axes[0].set_title(labels.title(results), fontsize="medium")
     return figure
 
 
@@ -145,7 +147,7 @@ def draw_entrapment(results, options):
     figure, axes = labels.new_figure(2, 4, size, sharex="col", sharey="row")
     found = entrapment.find(results[0])[0]
     panels.draw_entrapment(axes, results[0], found, options.width or COLLISION_WIDTH)
-    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    figure.suptitle(labels.title(results), fontsize="medium")
     return figure
 
 

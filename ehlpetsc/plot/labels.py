@@ -15,10 +15,10 @@ CONTACT_COLOUR = "#d62728"
 SOLIDS_COLOUR = "#e08214"
 LEGEND_ENTRIES = 10
 UNITS = {
-    "fluid.viscosity": "viscosity at ambient pressure [Pa s]",
-    "motion.entrainment_speed": "mean speed [m/s]",
+    "fluid.viscosity": "viscosity [Pa s]",
+    "motion.entrainment_speed": "entrainment speed [m/s]",
     "motion.slide_roll_ratio": "slide/roll ratio",
-    "mesh.points_per_half_width": "nodes a half width",
+    "mesh.points_per_half_width": "nodes per half width",
 }
 
 
@@ -77,6 +77,11 @@ def conditions(results):
     """
     of_each = [_conditions(result) for result in results]
     return ", ".join(part for part in of_each[0] if part and all(part in other for other in of_each))
+
+
+def title(results):
+    """Title of the first result above the conditions that all share."""
+    return f"{results[0].attrs['title']}\n{conditions(results)}"
 
 
 def _conditions(result):

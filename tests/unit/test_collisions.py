@@ -239,7 +239,7 @@ def test_picture_of_contact_points_shows_film_and_pressure_against_viscosity(ser
         lower.lines[0].get_xydata(), np.column_stack([values, 1e-9 * np.array(point.pressure)])
     )
     np.testing.assert_allclose(np.sort(markers(lower, "v")[:, 0]), [0.004, 0.006])  # those without a film
-    assert lower.get_xlabel() == "viscosity at ambient pressure [Pa s]"
+    assert lower.get_xlabel() == "viscosity [Pa s]"
 
 
 def test_picture_of_an_entrapment_shows_four_instants_between_both_contacts(tmp_path, capsys, drawn):

@@ -50,7 +50,7 @@ def draw_running_in(results, _options):
     if known:
         for row, side in zip(axes, ("1", "2"), strict=True):
             draw_fatigue(row[2], damages, side)
-    figure.suptitle(f"{results[0].attrs['title']}\n{labels.conditions(results)}", fontsize="medium")
+    figure.suptitle(labels.title(results), fontsize="medium")
     return figure
 
 
