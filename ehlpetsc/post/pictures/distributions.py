@@ -7,7 +7,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
 from ehlpetsc.post.fatigue.weibull import LEVEL, WeibullLikelihood, weibull_bounds, weibull_likelihood
-from ehlpetsc.post.pictures.plots import legend_beside
+from ehlpetsc.post.pictures import plots
 
 COLOUR_MAP = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
     "distinct", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
@@ -25,9 +25,8 @@ def depth_picture(result):
         _curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
         _draw_confidence(axes, result.under[k], result.attrs["regression"], color)
     _add_legend_entries(axes)
-    _finish(
-        axes, f"{result.height.size} asperities, surface {result.main}, slide/roll ratio {result.ratio:.3g}"
-    )
+    counted = f"{result.height.size} asperities, surface {result.main}, slide/roll ratio {result.ratio:.3g}"
+    _finish(axes, f"{counted}, {plots.strain_rule(result)}")
     return figure
 
 
@@ -38,7 +37,8 @@ def ratio_picture(results, z):
     for result, color in zip(results, _colours(len(results)), strict=True):
         k = int(np.argmin(np.abs(result.z - z)))
         _curve(axes, result.under[k], result.fits[k], f"slide/roll ratio {result.ratio:.3g}", color)
-    _finish(axes, f"z/a = {z:g}, surface {results[0].main}")
+    _add_legend_entries(axes, with_limits=False)
+    _finish(axes, f"z/a = {z:g}, surface {results[0].main}, {plots.strain_rule(results[0])}")
     return figure
 
 
@@ -73,20 +73,22 @@ def _draw_confidence(axes, under, regression, color):
     axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
 
 
-def _add_legend_entries(axes):
-    """Add legend entries for dots, lines, dashes and bands."""
-    for style, words in (
-        (dict(marker=".", ls=""), "asperities"),
-        (dict(lw=1.2), "Weibull, median ranks"),
-        (dict(lw=0.8, ls="--"), "Weibull, largest likelihood"),
-    ):
+def _add_legend_entries(axes, with_limits=True):
+    """Add legend entries for dots and lines, and for dashes and bands."""
+    marks = [(dict(marker=".", ls=""), "asperities"), (dict(lw=1.2), "Weibull, median ranks")]
+    if with_limits:
+        marks.append((dict(lw=0.8, ls="--"), "Weibull, largest likelihood"))
+    for style, words in marks:
         axes.plot([], [], color="0.3", label=words, **style)
+    if not with_limits:
+        return
     axes.fill_between([], [], color="0.3", alpha=0.15, lw=0, label=f"{100 * LEVEL:g} % bootstrap limits")
 
 
 def _finish(axes, title):
     """Set scales, labels and title of the distributions."""
     axes.set_xscale("log")
+    axes.margins(x=0.0)
     low, high = np.log10(axes.get_xlim())
     axes.set_xlim(10 ** np.floor(low), 10 ** np.ceil(high))
     axes.xaxis.set_major_locator(LogLocator(10, numticks=12))
@@ -97,4 +99,4 @@ def _finish(axes, title):
     axes.set_ylabel("share of asperities above D")
     axes.grid(color="0.92", which="both")
     axes.set_title(title, fontsize=9)
-    legend_beside(axes)
+    plots.legend_beside(axes)

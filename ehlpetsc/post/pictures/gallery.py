@@ -146,6 +146,7 @@ def stacked_picture(results, surface):
         drawn = plots.damage_contours(row, result, surface, ends, levels, LAYER, gap=0.1)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
+    axes[0].set_title(f"surface {surface}, {plots.strain_rule(results[0])}", fontsize=9)
     axes[-1].set_xlabel(plots.body_label(surface))
     _bar(figure, contours, list(axes))
     figure.align_ylabels(axes)

@@ -15,6 +15,14 @@ DARK = "#222222"
 HOT = "#cc3311"
 
 
+STRAIN_RULES = {"direct": "elastic range as it is", "neuber": "Neuber's rule", "glinka": "Glinka's rule"}
+
+
+def strain_rule(result):
+    """How the elastic stress range of a result entered the cyclic curve, for titles."""
+    return STRAIN_RULES[result.attrs.get("strain", "direct")]
+
+
 def decades(largest):
     """Integer powers of ten up to above the largest damage; None without damage."""
     if not (np.isfinite(largest) and largest > 0):
