@@ -1,4 +1,4 @@
-"""Several results as passes of one body: damage a pass with its scatter, and passes to failure."""
+"""Several results as passes of one body: damage a pass with its scatter, and passes to Miner's sum 1."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,7 +9,7 @@ from ehlpetsc.post.pictures import plots
 
 
 def passes_picture(results, surface):
-    """Damage a pass along the surface at the worst depth, and the share of points that have failed."""
+    """Damage a pass along the surface at the worst depth, and the share of points with Miner's sum 1."""
     s, damages = same_points(results, surface)
     found = pass_statistics(damages)
     worst = int(found.mean.max(axis=1).argmax())
@@ -31,9 +31,9 @@ def passes_picture(results, surface):
     top.set_ylabel("D of a pass")
     first, scatter = found.life[worst].min(), np.median((found.deviation / found.mean)[worst])
     top.set_title(
-        f"surface {surface}, z/a = {results[0].z[worst]:g}, {len(results)} passes: first failure expected "
-        f"after {first:.3g} passes\nscatter of D from pass to pass, at half of the points below "
-        f"{scatter:.2g} of its mean",
+        f"surface {surface}, z/a = {results[0].z[worst]:g}, {len(results)} passes, "
+        f"{plots.strain_rule(results[0])}: Miner's sum 1 from {first:.3g} passes on\n"
+        f"scatter of D from pass to pass, at half of the points below {scatter:.2g} of its mean",
         fontsize=9,
     )
     plots.legend_beside(top)
@@ -44,8 +44,8 @@ def passes_picture(results, surface):
     bottom.plot([], [], color="0.7", lw=0.7, label="each pass alone, again and again")
     bottom.plot(np.sort(found.life[worst]), share, color="#cc3311", lw=1.3, label="Miner's sum of all passes")
     bottom.set_xscale("log")
-    bottom.set_xlabel("passes")
-    bottom.set_ylabel("share of points failed")
+    bottom.set_xlabel("passes: compares points, is no life")
+    bottom.set_ylabel("share of points with\nMiner's sum 1 or more")
     bottom.grid(color="0.92")
     plots.legend_beside(bottom)
     return figure
