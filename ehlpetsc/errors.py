@@ -94,19 +94,7 @@ class Stopped(Exception):
 
 
 class NoSteadyStart(Exception):
-    """No steady solution was found.
-
-    Attributes
-    ----------
-    share : float or None
-        Fraction of the pressure-viscosity coefficient that was reached, None: none.
-    iterations : int
-        Spent on it.
-    """
-
-    def __init__(self, failure, share, iterations):
-        super().__init__(str(failure))
-        self.share, self.iterations = share, iterations
+    """No steady solution was found; the text gives the reason."""
 
 
 class NotConverged(Exception):

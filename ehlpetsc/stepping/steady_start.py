@@ -27,7 +27,7 @@ from ehlpetsc.stepping.bounded_contact import bounded_start
 from ehlpetsc.stepping.convergence_check import solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
 
-MIN_STIFFNESS_SHARE = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
+MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
 LOAD_GROWTH = 1.2  # factor from one load to the next
 MIN_RAMP_INCREMENT = 1e-3  # of the share, from one solution to the next
@@ -61,7 +61,7 @@ def steady(solver, film, inputs, watch=None):
     if problem.model.yield_pressure < 1.0:
         return yielding_start(solver, film, inputs, watch)
     if oil is None:
-        # the set of dry nodes may have all of them to go
+        # every node of the mesh may change to or from the dry set, one in each iteration
         max_it = problem.n if problem.fluid is None and solver.bounded else None
         return Continuation(solver, inputs, max_it, watch).solve(hertz_start(problem, film, inputs))
     flooded = replace(inputs, inlet_film=None)
@@ -73,7 +73,7 @@ def steady(solver, film, inputs, watch=None):
         begin = q, w, h00
     else:
         begin = starved_start(problem, film, inputs)
-    # the meniscus may have all nodes of the inlet to go
+    # the meniscus may pass all nodes of the inlet, one in each iteration
     *state, more = Continuation(solver, inputs, problem.n, watch).solve(begin)
     return *state, iterations + more
 
@@ -81,10 +81,10 @@ def steady(solver, film, inputs, watch=None):
 def yielding_start(solver, film, inputs, watch=None):
     """Steady solution of solids that yield under Hertz' pressure: from that of the dry contact.
 
-    Arguments, returns and errors of :func:`steady`. All that touches would yield at once under Hertz'
-    pressure, and a pressure that is at its bound everywhere tells Newton's method nothing of the load. Most
-    films want the edges of the flat pressure smoothed; of several times the yield pressure thin films do not,
-    and for thick ones the load is grown from where the solids begin to yield.
+    Arguments, returns and errors of :func:`steady`. All nodes in contact would yield at once under Hertz'
+    pressure, and a pressure at its bound everywhere does not depend on the load. Most films need smoothed
+    edges of the flat pressure; thin films far above the yield pressure do not, and for thick ones the load
+    is increased from where the solids begin to yield.
     """
     problem, attempt = solver.problem, SolveAttempts(solver, watch=watch)
     for width in (SMOOTHED, 0.0):
@@ -100,7 +100,7 @@ def yielding_start(solver, film, inputs, watch=None):
             continue
         load = 0.5 * (reached + load)
         if load < reached * (1.0 + MIN_RAMP_INCREMENT) or not reached:
-            raise NoSteadyStart(attempt.failure, None, attempt.spent)
+            raise NoSteadyStart(attempt.failure)
     return *state, attempt.spent
 
 
@@ -120,11 +120,11 @@ class SolveAttempts:
         self.made, self.spent, self.failure = 0, 0, None
 
     def __call__(self, begin, inputs):
-        """q, w and h00; None: Newton's method does not arrive."""
+        """q, w and h00; None: Newton's method does not converge."""
         if self.made == MAX_ATTEMPTS:
             tried = f"{self.made} attempts and {self.spent} Newton iterations"
             message = f"given up after {tried}; the last failure: {self.failure}"
-            raise NoSteadyStart(message, None, self.spent)
+            raise NoSteadyStart(message)
         self.made += 1
         try:
             *state, iterations = solve_checked(self.solver, *begin, inputs, self.max_it, self.watch)
@@ -147,44 +147,44 @@ class Continuation:
         return *state, self.attempt.spent
 
     def _by_steps(self, begin):
-        """The smooth contact, its oil made stiff by steps; then the roughness grown under it."""
+        """Increase the pressure-viscosity coefficient of the smooth contact, then the roughness."""
         rough = self.inputs.phi.any()
         state = self._try(begin, 1.0, 0.0) if rough else None
         if state is None:
-            state = self._ramp(*self._softened(begin), lambda share: (share, 0.0))
-        return self._ramp(state, 0.0, lambda share: (1.0, share)) if rough else state
+            state = self._ramp(*self._softened(begin), lambda fraction: (fraction, 0.0))
+        return self._ramp(state, 0.0, lambda fraction: (1.0, fraction)) if rough else state
 
     def _softened(self, begin):
-        share = 0.5 if self.inputs.fluid else 0.0  # without oil there is nothing to make easier
-        while share >= MIN_STIFFNESS_SHARE:
-            state = self._try(begin, share, 0.0)
+        fraction = 0.5 if self.inputs.fluid else 0.0  # without oil there is no viscosity to reduce
+        while fraction >= MIN_VISCOSITY_FRACTION:
+            state = self._try(begin, fraction, 0.0)
             if state is not None:
-                return state, share
-            share *= 0.5
-        raise NoSteadyStart(self.attempt.failure, None, self.attempt.spent)
+                return state, fraction
+            fraction *= 0.5
+        raise NoSteadyStart(self.attempt.failure)
 
-    def _ramp(self, state, share, of):
-        growth = share or 0.5
-        while share < 1.0:
-            nearer = self._try(state, *of(min(share + growth, 1.0)))
+    def _ramp(self, state, fraction, of):
+        growth = fraction or 0.5
+        while fraction < 1.0:
+            nearer = self._try(state, *of(min(fraction + growth, 1.0)))
             if nearer is not None:
-                state, share, growth = nearer, min(share + growth, 1.0), 1.5 * growth
+                state, fraction, growth = nearer, min(fraction + growth, 1.0), 1.5 * growth
                 continue
             growth *= 0.4
             if growth < MIN_RAMP_INCREMENT:
-                raise NoSteadyStart(self.attempt.failure, share, self.attempt.spent)
+                raise NoSteadyStart(self.attempt.failure)
         return state
 
-    def _try(self, begin, share, roughness):
-        return self.attempt(begin, easier(self.inputs, share, roughness))
+    def _try(self, begin, fraction, roughness):
+        return self.attempt(begin, easier(self.inputs, fraction, roughness))
 
 
-def easier(inputs, share, roughness):
-    """The inputs with a share of the pressure-viscosity coefficient, and a share of the roughness."""
+def easier(inputs, fraction, roughness):
+    """Inputs with fractions of the pressure-viscosity coefficient and of the roughness."""
     fluid = inputs.fluid
-    if fluid and share < 1.0:
-        change = {"pressure_viscosity": share * fluid.pressure_viscosity}
+    if fluid and fraction < 1.0:
+        change = {"pressure_viscosity": fraction * fluid.pressure_viscosity}
         if fluid.eyring_stress is not None:
-            change["eyring_stress"] = fluid.eyring_stress / share**4
+            change["eyring_stress"] = fluid.eyring_stress / fraction**4
         fluid = fluid.copy(update=change)
     return replace(inputs, fluid=fluid, phi=roughness * inputs.phi)

@@ -92,10 +92,10 @@ class TimeStepping:
                     state.w,
                 )
             except SolveFailed as error:
-                raise NoSteadyStart(error, None, newton + error.iterations) from error
+                raise NoSteadyStart(error) from error
             newton += more
             state = self._state(solution, residual, end, before, newton=newton)
-        raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects", None, newton)
+        raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
     def _inlet_first(self, inputs, solve, *nodal):
         """Solve with the inlet at the first node: mirrored where the entrainment speed is negative.

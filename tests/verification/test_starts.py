@@ -57,7 +57,7 @@ def test_roughness_at_rest_is_marched_to_where_no_steady_solution_is_found(monke
 
     def only_smooth(solver, film, inputs, watch=None):
         if inputs.phi.any():
-            raise NoSteadyStart("none", None, 0)
+            raise NoSteadyStart("none")
         return found(solver, film, inputs)
 
     monkeypatch.setattr(time_stepping, "steady", only_smooth)
