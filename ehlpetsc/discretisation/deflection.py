@@ -75,11 +75,11 @@ class Deflection:
     def __init__(self, n, dx, first, last):
         self.n, self.dx, self.first, self.last = n, dx, first, last
         self.window = slice(max(first - HALO, 0), min(last + HALO, n))
-        self.own = slice(first - self.window.start, last - self.window.start)
+        self.owned = slice(first - self.window.start, last - self.window.start)
         self.curvature = elasticity.curvature_kernel(n)
         self.curvature_coefficient, self.end_row_coefficient = np.pi / dx, 1.0 / dx
         self.ends = [end for end in (0, n - 1) if first <= end < last]
-        self.form = self.own.start, self.curvature_coefficient, self.end_row_coefficient, last == n
+        self.form = self.owned.start, self.curvature_coefficient, self.end_row_coefficient, last == n
         logarithm = self._logarithm()
         mine = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
         self.load_weights = np.stack([*mine, np.full(last - first, dx)])

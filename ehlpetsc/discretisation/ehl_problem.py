@@ -115,7 +115,7 @@ class EHLProblem:
 
     Attributes
     ----------
-    window, own : slice
+    window, owned : slice
         Nodes whose unknowns the local rows are given; the local ones among them.
     """
 
@@ -127,7 +127,7 @@ class EHLProblem:
         self.film_scale = film_scale = film_scale_of(case, scales, film_scale)
         self.model = contact_model(case, scales, film_scale, bound_tolerance)
         self.deflection = Deflection(self.n, self.dx, first, last)
-        self.window, self.own = self.deflection.window, self.deflection.own
+        self.window, self.owned = self.deflection.window, self.deflection.owned
         self._changes = np.empty((3, self.window.stop - self.window.start))
         self._parabola = 0.5 * self.x[self.window] ** 2
         self.inlet_film = None

@@ -21,7 +21,7 @@ class NoOil:
     """
 
     def __init__(self, first, last, start=0):
-        self.own, local = slice(first - start, last - start), last - first
+        self.owned, local = slice(first - start, last - start), last - first
         self.columns = np.full((local, n_dofs(STENCIL)), -1, dtype=np.int32)
         self.columns[:, OWN : OWN + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
         self._derivatives = np.zeros((local, n_dofs(STENCIL)))
@@ -33,4 +33,4 @@ class NoOil:
 
     def evaluate(self, q, h, inputs):
         """See :meth:`.reynolds.Reynolds.evaluate`."""
-        return q[self.own], self._derivatives
+        return q[self.owned], self._derivatives

@@ -24,14 +24,14 @@ def exchange(ranks, everyone):
         ranks.Allgather(MPI.IN_PLACE, everyone)
 
 
-def gathered(ranks, record, own):
-    """Named tuple of the arrays of all nodes, from one of arrays of which `own` are those of the rank."""
+def gathered(ranks, record, owned):
+    """Named tuple of the arrays of all nodes, from one of arrays of which `owned` are those of the rank."""
     if ranks.size == 1:
         return record
-    return record._make(_gathered(ranks, part, own) for part in record)
+    return record._make(_gathered(ranks, part, owned) for part in record)
 
 
-def _gathered(ranks, part, own):
+def _gathered(ranks, part, owned):
     if isinstance(part, np.ndarray):
-        return np.concatenate(ranks.allgather(part[own]))
-    return gathered(ranks, part, own) if isinstance(part, tuple) else part
+        return np.concatenate(ranks.allgather(part[owned]))
+    return gathered(ranks, part, owned) if isinstance(part, tuple) else part

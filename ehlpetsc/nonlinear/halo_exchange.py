@@ -73,12 +73,12 @@ class HaloExchange:
         mine[2 * edge] = vector[-1]  # h00 on the last rank
         mine[self._load : behind_load - 1], mine[behind_load - 1] = load, flag
         exchange(self.ranks, self._all)
-        window, own = self._window, problem.own
-        window[own] = nodes
+        window, owned = self._window, problem.owned
+        window[owned] = nodes
         if rank > 0:
-            window[: own.start] = pairs(self._all[rank - 1, edge:], HALO)
+            window[: owned.start] = pairs(self._all[rank - 1, edge:], HALO)
         if rank < self.ranks.size - 1:
-            window[own.stop :] = pairs(self._all[rank + 1], HALO)
+            window[owned.stop :] = pairs(self._all[rank + 1], HALO)
         loads = self._all[:, self._load : behind_load].sum(axis=0)
         self.flagged = loads[3] > 0.0
         sums = PressureSums(self._product.sums(self._all[:, behind_load:]), loads)

@@ -95,7 +95,7 @@ def test_it_solves_its_matrix(model):
     found = np.empty(2 * (last - first) + has_load)
     lu.solve(right[2 * first : 2 * last + has_load], np.tile(np.eye(2), (last - first, 1, 1)), found)
     found, approach = found[: 2 * (last - first)], ranks.bcast(found[-1], root=ranks.size - 1)
-    part.model.from_band(nodes, part.own, found.reshape(-1, 2))
+    part.model.from_band(nodes, part.owned, found.reshape(-1, 2))
     expected = np.linalg.solve(dense(whole, at, inactive_nodes), right)
     scale = np.tile(np.abs(expected[:-1]).reshape(-1, 2).max(axis=0), last - first)
     np.testing.assert_allclose(found / scale, expected[2 * first : 2 * last] / scale, rtol=0, atol=1e-7)

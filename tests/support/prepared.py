@@ -78,10 +78,10 @@ def load_compiled():
     step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
     now.flags.writeable = False  # as PETSc gives it
     by, rows = found.state.derivatives(), np.empty(2 * scales.nx + 1)
-    directional_derivative(by[0], step, problem.own.start, one)
+    directional_derivative(by[0], step, problem.owned.start, one)
     sums = problem.deflection.sums(one)
     problem.jacobian_vector_product(by, found.reynolds_derivatives, step, 0.0, sums, rows)
-    reynolds_rounding(found.reynolds_derivatives, one, one, problem.own.start)
+    reynolds_rounding(found.reynolds_derivatives, one, one, problem.owned.start)
     extrapolated(one, one, 1.0)
     advected(one, 1.0)
     problem.model.pressure_change(now, step)

@@ -71,7 +71,7 @@ class DirectContact(ContactModel):
         """See :class:`.model.ContactModel`."""
         return interpolated
 
-    def linearised(self, state, own, ranks_sum):
+    def linearised(self, state, owned, ranks_sum):
         """A node in contact and cavitated at once would leave its deflection row without an entry for q."""
         return state._replace(p_q=np.where(state.contact_mask, 1.0, state.p_q))
 

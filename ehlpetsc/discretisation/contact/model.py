@@ -87,13 +87,13 @@ class ContactModel:
 
     # --- nonlinear solver ---------------------------------------------------------------------------------
 
-    def linearised(self, state, own, ranks_sum):
+    def linearised(self, state, owned, ranks_sum):
         """State with the derivatives that the Newton step takes.
 
         Parameters
         ----------
         state : NodeState
-        own : slice
+        owned : slice
             Nodes of this rank.
         ranks_sum : callable
             Sum of a tuple of numbers over all ranks.

@@ -47,13 +47,13 @@ class Yielding:
             plastic=plastic,
         )
 
-    def linearised(self, state, own, ranks_sum):
+    def linearised(self, state, owned, ranks_sum):
         """See :class:`.model.ContactModel`.
 
         Where all nodes that carry yield, no pressure depends on any unknown: the solids are then taken to
         harden a little, by which the next iteration reaches nodes that do not carry yet.
         """
-        yielding, elastic = ranks_sum(self.yielding_and_elastic(state, own))
+        yielding, elastic = ranks_sum(self.yielding_and_elastic(state, owned))
         if not self.is_all_yielding(yielding, elastic):
             return state
         y, per_depth = state.plastic, HARDENING / self.compliance

@@ -70,7 +70,7 @@ class JacobianOperator:
     def linearise(self, evaluation):
         """Set the state whose derivatives the products have."""
         self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
-        self.state = self.model.linearised(evaluation.state, self.problem.own, self._ranks_sum)
+        self.state = self.model.linearised(evaluation.state, self.problem.owned, self._ranks_sum)
         self._by = self.state.derivatives()
 
     def _ranks_sum(self, numbers):
@@ -80,7 +80,7 @@ class JacobianOperator:
         """Fill in the product with the local part of a vector; collective."""
         problem = self.problem
         with events.PRODUCT:
-            directional_derivative(self._by[0], pairs(v, problem.local), problem.own.start, self._pressure)
+            directional_derivative(self._by[0], pairs(v, problem.local), problem.owned.start, self._pressure)
             at_nodes = self.exchange(v, self._pressure)
             problem.jacobian_vector_product(self._by, self.reynolds_derivatives, *at_nodes, out)
 
@@ -145,18 +145,18 @@ class RestrictedOperator:
 
 
 class NearFieldMatrix:
-    """The Jacobian with the deflection of `near` nodes on either side, in an AIJ matrix.
+    """The Jacobian with the deflection of `near_field` nodes on either side, in an AIJ matrix.
 
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    near : int
+    near_field : int
     matrix : petsc4py.PETSc.Mat
         AIJ, created with its sizes.
     """
 
-    def __init__(self, problem, near, matrix):
-        self.problem, self.matrix, self.near = problem, matrix, min(near, problem.n - 1)
+    def __init__(self, problem, near_field, matrix):
+        self.problem, self.matrix, self.near_field = problem, matrix, min(near_field, problem.n - 1)
         self._deflection_columns()
         rows, columns = self._pattern()
         matrix.setPreallocationCSR((rows, columns, np.zeros(len(columns))))
@@ -166,7 +166,7 @@ class NearFieldMatrix:
     def _deflection_columns(self):
         """Columns of the local deflection rows; -1: no entry."""
         p, n = self.problem, self.problem.n
-        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-self.near, self.near + 1)
+        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-self.near_field, self.near_field + 1)
         self.there = (nodes >= 0) & (nodes < n)
         self.nodes = np.clip(nodes, 0, n - 1)
         by_q = np.where(self.there, q_index(self.nodes), -1)
@@ -186,17 +186,17 @@ class NearFieldMatrix:
 
     def fill(self, state, derivatives):
         """Assemble the matrix of a state, which is that of the whole mesh, on every rank."""
-        p, d, near = self.problem, self.problem.deflection, self.near
-        kernel = np.tile(-d.curvature[np.abs(np.arange(-near, near + 1))], (p.local, 1))
+        p, d, near_field = self.problem, self.problem.deflection, self.near_field
+        kernel = np.tile(-d.curvature[np.abs(np.arange(-near_field, near_field + 1))], (p.local, 1))
         bend = np.zeros_like(kernel)
-        bend[:, near - 1 : near + 2] = d.curvature_coefficient * np.array(SECOND_DIFFERENCE)
+        bend[:, near_field - 1 : near_field + 2] = d.curvature_coefficient * np.array(SECOND_DIFFERENCE)
         for end in d.ends:
             row = end - p.first
             kernel[row], bend[row] = d.end_row(end)[self.nodes[row]], 0.0
-            bend[row, near] = d.end_row_coefficient
+            bend[row, near_field] = d.end_row_coefficient
         by_q = kernel * state.p_q[self.nodes] + bend * state.separation_q[self.nodes]
-        own = slice(p.first, p.last)
-        by_q[:, near] += pivot_regularisation(state.p_q[own], state.separation_q[own])
+        owned = slice(p.first, p.last)
+        by_q[:, near_field] += pivot_regularisation(state.p_q[owned], state.separation_q[owned])
         by_w = kernel * state.p_w[self.nodes] + bend * state.separation_w[self.nodes]
         approach = np.full((p.local, 1), -d.end_row_coefficient)
         nodes = np.arange(p.first, p.last, dtype=np.int32)

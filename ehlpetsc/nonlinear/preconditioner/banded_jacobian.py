@@ -131,10 +131,10 @@ class BandedJacobian:
     def _under_pressures(self):
         """Entries of recurrences and deflection rows in the columns of first unknowns."""
         p, inner, d = self.problem, self._inner(), self.problem.deflection
-        own = np.repeat(self.nodes, TERMS)
+        repeated = np.repeat(self.nodes, TERMS)
         rows = [self._sums(self._group(self.nodes)).ravel()]
-        nodes, values = [own], [np.tile(-2.0 * np.sinh(self.rates), len(self.nodes))]
-        bend, bent = dict(zip((-1, 0, 1), SECOND_DIFFERENCE, strict=True)), [np.zeros(len(own))]
+        nodes, values = [repeated], [np.tile(-2.0 * np.sinh(self.rates), len(self.nodes))]
+        bend, bent = dict(zip((-1, 0, 1), SECOND_DIFFERENCE, strict=True)), [np.zeros(len(repeated))]
         for k in range(1 - 2 * GROUP, 2 * GROUP):
             apart = np.abs(self._group(inner + k) - self._group(inner))
             near = (apart <= 1) & (inner + k >= 0) & (inner + k < p.n)
@@ -152,8 +152,8 @@ class BandedJacobian:
         nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
         self.by_depth, self.pressure_nodes = np.concatenate(bent), nodes - p.window.start
         self.pressure_place = self._at(np.concatenate(rows), self._pressure(nodes))
-        own = self._pressure(self.nodes)
-        self.diagonal = self._at(own, own)
+        pressures = self._pressure(self.nodes)
+        self.diagonal = self._at(pressures, pressures)
 
     def _inner(self):
         return self.nodes[(self.nodes > 0) & (self.nodes < self.problem.n - 1)]
@@ -214,11 +214,11 @@ class BandedJacobian:
             node = self.pressure_nodes[some]
             values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
             self.values[self.pressure_place[some]] = values
-            own = self.problem.own
-            local = np.flatnonzero(changed[own])
-            self.values[self.diagonal[local]] += pivot_regularisation(pressure[own][local], depth[own][local])
+            pressure, depth, changed = (part[self.problem.owned] for part in (pressure, depth, changed))
+            local = np.flatnonzero(changed)
+            self.values[self.diagonal[local]] += pivot_regularisation(pressure[local], depth[local])
             self.dense = np.zeros((len(self.under_pressure), self.size))
-            self.dense[:, self.dofs[::2]] = self.under_pressure * pressure[own]
+            self.dense[:, self.dofs[::2]] = self.under_pressure * pressure
         if film_changed.any():
             some = np.flatnonzero(film_changed[self.film_nodes])
             node = self.film_nodes[some]

@@ -26,7 +26,7 @@ class Factors:
 
     def __init__(self, problem, ranks):
         self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
-        self.fresh, self._own = False, problem.own
+        self.fresh, self._owned = False, problem.owned
         self._units = np.empty((2, problem.local, 2))
 
     def invalidate(self):
@@ -41,7 +41,7 @@ class Factors:
         self.fresh = True
         for k in range(2):
             self._units[k, :, k], self._units[k, :, 1 - k] = 1.0, 0.0
-            operator.model.from_band(state, self._own, self._units[k])
+            operator.model.from_band(state, self._owned, self._units[k])
         self.unknowns = self._units.transpose(1, 2, 0)
 
 

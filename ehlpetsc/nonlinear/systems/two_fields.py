@@ -159,7 +159,7 @@ class TwoFields:
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                whole = gathered(self.exchange.ranks, self.jacobian.state, self.problem.own)
+                whole = gathered(self.exchange.ranks, self.jacobian.state, self.problem.owned)
                 self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
 
     @property
@@ -192,7 +192,7 @@ class TwoFields:
         """
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
-        mine = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.own.start)
+        mine = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
         return RESIDUAL_ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
 
 
