@@ -9,6 +9,9 @@ both nodes' fluidities :math:`\rho/\eta` (and S): a node without film then does 
 thick neighbour. The viscosities stay the nodes': with the one at the mean pressure, the flow out of a node
 would fall again when its pressure exceeds its neighbour's by more than about 2/alpha: a fold, at which
 Newton's method cycles, and which asperities two nodes wide reach.
+
+In films with heat the fluidities of both nodes are those at the mean of their temperatures. At its own
+temperature a hot node can be the more fluid one although its pressure is higher, which is the same fold.
 """
 
 import numpy as np
@@ -26,8 +29,11 @@ H = 2  # film [m]
 M, M_Q, M_H = 3, 4, 5  # mass per area rho h (1 - theta) in a^2/R, and its derivatives by q and h
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
-LN_ETA_H = 10  # d ln(eta)/dh in R/a^2, through the film's temperature; 0 in isothermal films
-PROPERTIES = 11
+PROPERTIES = 10
+# In films with heat FLUIDITY and LN_ETA_P are those at the reference temperature. THERMAL is the square root
+# of the fluidity at the film's temperature over that one, followed by the derivatives of its logarithm.
+THERMAL, LN_THERMAL_P, LN_THERMAL_H = 10, 11, 12
+HEATED_PROPERTIES = 13
 
 _compression = compiled(compression)
 
@@ -72,12 +78,21 @@ def fill_mass(i, q, h, density, p0, film, unit, at):
 
 
 @compiled
+def fluidities(at, left, right):
+    """1/eta [1/(Pa s)] of two neighbours at the mean of their temperatures."""
+    if at.shape[0] == PROPERTIES:
+        return at[FLUIDITY, left], at[FLUIDITY, right]
+    thermal = at[THERMAL, left] * at[THERMAL, right]
+    return thermal * at[FLUIDITY, left], thermal * at[FLUIDITY, right]
+
+
+@compiled
 def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
     """Mass flux through the face right of node `left`, its derivatives by (q, h) behind, left and right.
 
     Parameters
     ----------
-    at : ndarray, shape (11, nodes)
+    at : ndarray, shape (10 or 13, nodes)
     left : int
     per_length, per_film : float
         p0 over the spacing [Pa/m]; a^2/R [m].
@@ -94,7 +109,7 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
-    mobility_l, mobility_r = mobilities(film, gradient, at[FLUIDITY, left], at[FLUIDITY, right], eyring, slip)
+    mobility_l, mobility_r = mobilities(film, gradient, *fluidities(at, left, right), eyring, slip)
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
     by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
@@ -102,8 +117,15 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
     by_state_l = at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
     by_state_r = at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
     by_p_l, by_p_r = half * by_state_l - by_difference, half * by_state_r + by_difference
-    by_film_l = by_film + half * at[LN_ETA_H, left] * rho_l * mobility_l[3]
-    by_film_r = by_film + half * at[LN_ETA_H, right] * rho_r * mobility_r[3]
+    by_film_l = by_film_r = by_film
+    if at.shape[0] > PROPERTIES:
+        by_thermal = -half * (rho_l * mobility_l[3] + rho_r * mobility_r[3])
+        by_p_l, by_p_r = (
+            by_p_l + by_thermal * at[LN_THERMAL_P, left],
+            by_p_r + by_thermal * at[LN_THERMAL_P, right],
+        )
+        by_film_l += by_thermal * at[LN_THERMAL_H, left]
+        by_film_r += by_thermal * at[LN_THERMAL_H, right]
     couette, by_left, by_behind = entrainment * couette, entrainment * by_left, entrainment * by_behind
     return (
         couette - mean * gradient,
@@ -122,7 +144,7 @@ def balance(at, first, law, then, extrapolated, k, rate, residual, derivatives):
 
     Parameters
     ----------
-    at : ndarray, shape (11, nodes)
+    at : ndarray, shape (10 or 13, nodes)
         One node at least on either side of the cells.
     first : int
         Node of the first cell.

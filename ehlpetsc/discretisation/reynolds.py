@@ -17,7 +17,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
-    LN_ETA_H,
+    HEATED_PROPERTIES,
     LN_ETA_P,
     OWN,
     PROPERTIES,
@@ -111,7 +111,8 @@ class Reynolds:
         """Properties of the nodes that the local rows need, rows as in :mod:`.finite_volumes`."""
         q, h, fluid = q[self.given], h[self.given], inputs.fluid
         s, density = self.scales, rheology.density_constants(fluid)
-        at, units = np.empty((PROPERTIES, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
+        rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
+        at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
             from ehlpetsc.discretisation.heat.film import heated_nodal
 
@@ -185,7 +186,7 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
         1/(u film) [s/m^2].
     fluidity : float
         1/eta0 [1/(Pa s)].
-    at : ndarray, shape (11, nodes)
+    at : ndarray, shape (10, nodes)
         One node more is beyond the outlet: same film, no pressure.
     """
     nodes = len(q)
@@ -194,4 +195,3 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
         p = fill_mass(i, here, gap, density, p0, film, unit, at)
         ln_eta, ln_eta_p = _power_law(p, *viscosity)
         at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
-        at[LN_ETA_H, i] = 0.0

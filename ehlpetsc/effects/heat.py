@@ -127,7 +127,7 @@ class Heat(Effect):
             found.film,
             *found.walls,
             *found.fluxes,
-            source,
+            source - film.rubbing,
             spread,
             film.couette,
             *found.responses,

@@ -57,6 +57,52 @@ def test_derivatives(law, p, h):
     assert by_h == pytest.approx(numeric_h, rel=1e-4)
 
 
+OIL = {"colder than both": -5.0, "colder than the mean": 5.0, "near the mean": 30.0}  # K over surface 1
+
+
+@pytest.mark.parametrize("over", OIL.values(), ids=OIL)
+def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over):
+    """Between surfaces far apart in temperature a parabola takes heat from the colder one into warmer oil."""
+    a, walls, h = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8), 1e-6
+    law = LAW._replace(sliding=0.0)
+
+    def found(h):
+        return film_temperature(370.0, 1e6, h, 1.0, a, a * (363.0 + over), 0.0, 0.0, walls, law)
+
+    t, _, by_h, q1, q2, _, _ = found(h)
+    t1, t2 = walls[0] + walls[2] * q1, walls[1] + walls[3] * q2
+    assert a * (t - 363.0 - over) == pytest.approx(-q1 - q2, rel=1e-9)
+    assert q1 + q2 == pytest.approx(12.0 * 0.14 / h * (t - 0.5 * (t1 + t2)), rel=1e-9)
+    if over < 0.0:
+        assert q1 == pytest.approx(6.0 * 0.14 / h * (t - t1), rel=1e-9)
+        assert t < t1
+    else:
+        assert q1 >= 0.0 and t1 >= 363.0
+        assert (q1 == 0.0) == (over < 20.0)
+    step = 1e-5
+    numeric = (found(h * (1 + step))[0] - found(h * (1 - step))[0]) / (2 * step * h)
+    assert by_h == pytest.approx(numeric, rel=1e-4)
+
+
+def test_exchange_is_continuous():
+    """From oil colder than both surfaces to oil warmer than both, the fluxes have no steps."""
+    a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8)
+    law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
+    fluxes = [film_temperature(370.0, 1e6, 1e-6, 1.0, a, a * t, 0.0, 0.0, walls, law)[3:5] for t in inlet]
+    steps = np.diff(np.array(fluxes), axis=0)
+    assert (steps > -1e-3).all()
+    assert steps.max() < 12.0 * 0.14 / 1e-6 * 0.05
+
+
+def test_heat_of_a_film_that_closes():
+    """Below the thinnest film the heat of shear no longer grows."""
+    law = LAW._replace(thinnest=1e-9)
+    thin, thinner, closed = (solved(h=h, law=law) for h in (1e-9, 1e-12, 0.0))
+    assert thinner[0] == pytest.approx(closed[0], abs=1e-3)
+    assert closed[5] == pytest.approx(thin[5], rel=0.01)
+    assert solved(h=0.0)[5] == 0.0
+
+
 @pytest.mark.parametrize("guess", [150.0, 363.0, 5000.0])
 def test_the_temperature_does_not_depend_on_the_guess(guess):
     for law in LAWS.values():

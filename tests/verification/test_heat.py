@@ -177,7 +177,7 @@ def surface_rise(simulation, fluxes, times, speed):
 
 @pytest.mark.parametrize("name", ["table1_damage.toml", "table1_mixed.toml"])
 def test_surface_temperatures_by_quadrature_of_the_fluxes(name):
-    keys = ["mesh.points_per_half_width=50", "mesh.inlet=-1.4", "mesh.outlet=1.3", "time.travel=2.4"]
+    keys = ["mesh.points_per_half_width=64", "mesh.inlet=-1.4", "mesh.outlet=1.3", "time.travel=2.0"]
     simulation, states = solved(name, HEAT, *keys)
     s, before = simulation.scales, 300  # steps of the steady flux at the start
     times = [state.time for state in states]

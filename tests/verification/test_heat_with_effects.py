@@ -1,4 +1,4 @@
-"""Heat in compliant layers, yielding solids and a gear pair; a body at rest and the parabola."""
+"""Heat in compliant layers, yielding solids and a gear pair; a body at rest."""
 
 import numpy as np
 import pytest
@@ -65,12 +65,8 @@ def test_in_a_gear_pair():
     assert share[int(np.argmax(rise))] > 5.0 * share[pitch]
 
 
-def test_a_surface_below_bulk_is_one_that_the_parabola_cools():
-    """One surface at rest and hot, oil that comes in cold: the parabola takes heat from the other surface.
-
-    Its slope at surface 1 is that of 4 (T - T1) + 2 (T - T2), negative where T2 is far above T, though the
-    film is warmer than surface 1. Conduction has no part in it: its temperatures are Jaeger's of this flux.
-    """
+def test_no_surface_below_bulk_beside_one_at_rest():
+    """One surface at rest and hot, oil that enters cold; the moving one has Jaeger's temperatures."""
     keys = (
         "mesh.points_per_half_width=50",
         "mesh.inlet=-2.0",
@@ -79,13 +75,6 @@ def test_a_surface_below_bulk_is_one_that_the_parabola_cools():
     )
     simulation, [state] = solved("table1_smooth.toml", HEAT, *keys)
     s, steel = simulation.scales, Solid(46.0, 7850.0, 470.0)
-    film, moving, resting = state.film_temperature, state.temperature_1, state.temperature_2
-    below = moving < BULK
-    assert BULK - 0.5 < moving.min() < BULK and below.sum() < 0.2 * s.nx
-    assert (s.x[below] < -1.0).all()
-    taken = state.heat_flux_1 < 0.0
-    assert (film[below] > moving[below]).all()
-    assert (film[taken] < (2.0 * moving[taken] + resting[taken]) / 3.0).all()
+    assert_balanced([state])
     rise = moving_band(s.x * s.a, state.heat_flux_1, steel.diffusivity, steel.conductivity, s.u1)
-    np.testing.assert_allclose(moving - BULK, rise, atol=0.01 * rise.max())
-    assert film.min() > BULK
+    np.testing.assert_allclose(state.temperature_1 - BULK, rise, atol=0.01 * rise.max())

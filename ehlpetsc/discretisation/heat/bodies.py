@@ -77,7 +77,7 @@ class Body:
 
     @property
     def _tail(self):
-        step = StepWeights.of(tuple(self.rates), tuple(self.weights), self.dt, self.solid.effusivity)
+        step = StepWeights.of(self.rates, self.weights, self.dt, self.solid.effusivity)
         return step.response - self.weights @ step.end / self.solid.effusivity
 
     def record(self, flux, terms):
@@ -128,7 +128,7 @@ class Body:
         return BodyStep(body, history, step.response, step.end, fraction)
 
     def _step_weights(self, body, dt):
-        return StepWeights.of(tuple(body.rates), tuple(body.weights), dt, self.solid.effusivity)
+        return StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
 
     def accept(self, step, flux):
         """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""

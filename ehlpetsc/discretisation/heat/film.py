@@ -17,13 +17,15 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
-    LN_ETA_H,
     LN_ETA_P,
-    RHO,
+    LN_THERMAL_H,
+    LN_THERMAL_P,
+    THERMAL,
     H,
     M,
     P,
     fill_mass,
+    fluidities,
     positive_extrapolation,
 )
 from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
@@ -50,35 +52,45 @@ def heated_nodal(q, h, density, p0, film, unit, heat, at):
         walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
         of_node = heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
         left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, (ln_eta, by_p, by_t) = film_temperature(
-            heat.guess[i], p, at[H, i], left, *of_node
-        )
+        t, t_p, t_h, _, _, _, viscosity = film_temperature(heat.guess[i], p, at[H, i], left, *of_node)
         heat.guess[i] = t
-        at[FLUIDITY, i] = np.exp(-ln_eta) / law.eta0
-        at[LN_ETA_P, i] = p0 * (by_p + by_t * t_p)
-        at[LN_ETA_H, i] = film * by_t * t_h
+        _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
-        ln_eta, by_p, _ = _log_viscosity(p, heat.guess[nodes - 1], law.pressure_law, law.thermal_law)
-        at[FLUIDITY, nodes], at[LN_ETA_P, nodes] = np.exp(-ln_eta) / law.eta0, p0 * by_p
-        at[LN_ETA_H, nodes] = 0.0
+        t = heat.guess[nodes - 1]
+        viscosity = _log_viscosity(p, t, law.pressure_law, law.thermal_law)
+        _fill_fluidity(nodes, p, t, viscosity, 0.0, 0.0, law, p0, film, at)
 
 
 @compiled
-def faces(at, law, oil, most, flow, couette, pressure_heat, spread, gradient):
-    r"""Mass flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
+def _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at):
+    """Fill in the fluidity of node i at the reference temperature, and the factor on it by the film's."""
+    ln_eta, by_p, by_t = viscosity
+    if law.thermal_law[0] < 2:  # linear in T: no second power of the pressure
+        ln_eta_0, by_p_0 = ln_eta - by_t * (t - law.thermal_law[3]), by_p
+    else:
+        ln_eta_0, by_p_0, _ = _log_viscosity(p, law.thermal_law[3], law.pressure_law, law.thermal_law)
+    at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta_0) / law.eta0, p0 * by_p_0
+    at[THERMAL, i] = np.exp(0.5 * (ln_eta_0 - ln_eta))
+    at[LN_THERMAL_P, i] = 0.5 * p0 * (by_p_0 - by_p - by_t * t_p)
+    at[LN_THERMAL_H, i] = -0.5 * film * by_t * t_h
+
+
+@compiled
+def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
+    r"""Couette flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
 
     Parameters
     ----------
-    at : ndarray, shape (11, nodes + 1)
+    at : ndarray, shape (10 or 13, nodes + 1)
     law : tuple
         Of :func:`.finite_volumes.flux_through`.
     oil : ndarray of bool, shape (nodes,)
         Nodes where the Reynolds equation holds: what flows beside others has no meaning.
     most : (float, float)
         Largest pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
-    flow, couette : ndarray, shape (nodes + 1,)
-        Filled in: mass flow through the faces i-1/2, and that of the surfaces' mean speed, in u a^2/R.
+    couette : ndarray, shape (nodes + 1,)
+        Filled in: mass flow of the surfaces' mean speed through the faces i-1/2, in u a^2/R.
     pressure_heat : ndarray, shape (nodes,)
         Filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node.
     spread : ndarray, shape (nodes,)
@@ -94,17 +106,14 @@ def faces(at, law, oil, most, flow, couette, pressure_heat, spread, gradient):
         behind = max(i - 1, 0)
         drawn = positive_extrapolation(at[M, i], at[M, behind], 0.5 if i > 0 else 0.0)[0]
         before, slope = slope, per_length * (at[P, i + 1] - at[P, i])
-        left, right = mobilities(
-            0.5 * (at[H, i] + at[H, i + 1]), slope, at[FLUIDITY, i], at[FLUIDITY, i + 1], eyring, slip
-        )
-        mean = 0.5 * (at[RHO, i] * left[0] + at[RHO, i + 1] * right[0])
+        film = 0.5 * (at[H, i] + at[H, i + 1])
+        left, right = mobilities(film, slope, *fluidities(at, i, i + 1), eyring, slip)
         couette[i + 1] = entrainment * drawn
-        flow[i + 1] = couette[i + 1] - mean * slope
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
         known = oil[i] and oil[min(i + 1, nodes - 1)]
         pressed = 0.5 * (left[0] + right[0]) * abs(slope) if known else 0.0
-        pressed = min(pressed, max(most[0] * 0.5 * (at[H, i] + at[H, i + 1]), most[1]))
+        pressed = min(pressed, max(most[0] * film, most[1]))
         heat = 0.5 * pressed * abs(slope)
         pressure_heat[i] += heat
         if i < nodes - 1:
@@ -117,7 +126,7 @@ def faces(at, law, oil, most, flow, couette, pressure_heat, spread, gradient):
             if small
             else sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)
         )
-    flow[0], couette[0] = flow[1], couette[1]
+    couette[0] = couette[1]
 
 
 @compiled

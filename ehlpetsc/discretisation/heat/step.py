@@ -13,6 +13,7 @@ from ehlpetsc.physics.heat.body_heat import Solid
 from ehlpetsc.physics.heat.film import FilmHeat
 from ehlpetsc.physics.heat.laws import film_law
 
+MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
 MOST_FLOW = 2.0  # times that of the mean speed: pressure flow beside direct contact
@@ -32,9 +33,10 @@ class Film(NamedTuple):
         Temperature at the begin of the step [K].
     stored
         Heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
-    couette, flow : ndarray, shape (nx + 1,)
-        Heat capacity that the mean speed of the surfaces, and all flow, move through the faces, per cell
-        [W/(m^2 K)].
+    couette : ndarray, shape (nx + 1,)
+        Heat capacity that the mean speed of the surfaces moves through the faces, per cell [W/(m^2 K)].
+    rubbing
+        Heat of solids in direct contact [W/m^2], for which the law of the next solve has that of a thin film.
     """
 
     pressure: np.ndarray
@@ -43,7 +45,7 @@ class Film(NamedTuple):
     old: np.ndarray
     stored: np.ndarray
     couette: np.ndarray
-    flow: np.ndarray
+    rubbing: np.ndarray
 
 
 class Temperatures(NamedTuple):
@@ -67,12 +69,14 @@ class HeatStep:
 
     def __init__(self, scene):
         case, self.scales = scene.case, scene.scales
-        self.heat, self.fluid, self.friction = case.heat, case.fluid, case.contact.boundary_friction
+        self.heat, self.fluid, self.contact = case.heat, case.fluid, case.contact
         s, self.bulk, self.inlet = self.scales, case.heat.bulk_temperature, case.heat.oil_inlet_temperature
         solids = map(Solid, self.heat.conductivity, self.heat.density, self.heat.heat_capacity)
         dt = s.dt or 0.5 * s.dx / s.u_max
         self.bodies = [Body(solid, u, s, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
         self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
+        # of films that close the shear would heat without limit, and not at all once they are closed
+        self.thinnest = MOLECULES if case.contact.model == "direct" else 0.0
         self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
         self._inputs = self._heat = self._stored = self._moved = None
 
@@ -100,7 +104,7 @@ class HeatStep:
         left, right = np.maximum(flow[:-1], 0.0), np.maximum(-flow[1:], 0.0)
         a = self._stored + left + right
         b = self._stored * t + left * np.append(self.inlet, t[:-1]) + right * np.append(t[1:], self.inlet)
-        law = film_law(self.fluid, self.heat, step.conditions.sliding)
+        law = film_law(self.fluid, self.heat, step.conditions.sliding, self.thinnest)
         self._heat = FilmHeat(law, a, b, record.source, record.spread, *walls, *responses, t.copy())
         if record.solved and self.fluid is not None:
             inputs = replace(inputs, heat=self._heat)
@@ -118,35 +122,34 @@ class HeatStep:
             See :class:`ehlpetsc.effects.heat.HeatRecord`.
         """
         s, loads = self.scales, solution.loads
-        source = self.friction * loads.friction_pressure * s.p0 * abs(step.conditions.sliding)
+        friction = self.contact.boundary_friction * abs(step.conditions.sliding)
+        source = rubbing = friction * loads.friction_pressure * s.p0
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            no_flow = np.zeros(s.nx + 1)
-            film = Film(blank, thickness, np.ones(s.nx), record.film, blank, no_flow, no_flow)
+            film = Film(blank, thickness, np.ones(s.nx), record.film, blank, np.zeros(s.nx + 1), blank)
             spread = blank
         else:
             q = solution.nodes.reynolds_unknown
-            couette, flow, pressure_heat, spread, gradient = self._flow(
-                q, solution.nodes.film, loads.oil_mask
-            )
+            couette, pressure_heat, spread, gradient = self._flow(q, solution.nodes.film, loads.oil_mask)
             unit = self.capacity * s.u * s.h / s.dx
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
             left = 1.0 + np.minimum(q, 0.0)
-            film = Film(pressure, thickness, left, record.film, self._stored, unit * couette, unit * flow)
+            part = rubbing if self.thinnest else blank
+            film = Film(pressure, thickness, left, record.film, self._stored, unit * couette, part)
             source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
-        heat = self._heat._replace(g=source, spread=spread)
+        heat = self._heat._replace(law=self._heat.law._replace(thinnest=0.0), g=source, spread=spread)
         found = self._steady(record, heat, film, step) if self._moved is None else self._moving(heat, film)
         return found, film, source, spread
 
     def _flow(self, q, h, oil):
-        """Mass flows, heat of the pressure flow, `spread` and pressure gradient, see `film.faces`."""
+        """Couette flow, heat of the pressure flow, `spread` and pressure gradient, see `film.faces`."""
         n, inputs = self.scales.nx, self._inputs
         backward = inputs.conditions.entrainment < 0.0
         if backward:  # the first node is the inlet
             inputs, q, h, oil = inputs.mirrored(), q[::-1], h[::-1], np.ascontiguousarray(oil[::-1])
-        flow, couette = np.zeros(n + 1), np.zeros(n + 1)
+        couette = np.zeros(n + 1)
         pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
         at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs)
         faces(
@@ -154,15 +157,14 @@ class HeatStep:
             self.reynolds.face_law(inputs),
             oil,
             self._most(h, oil, inputs),
-            flow,
             couette,
             pressure_heat,
             spread,
             gradient,
         )
         if backward:
-            return -couette[::-1], -flow[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
-        return couette, flow, pressure_heat, spread, gradient
+            return -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
+        return couette, pressure_heat, spread, gradient
 
     def _most(self, h, oil, inputs):
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
@@ -218,12 +220,10 @@ class HeatStep:
 
     def balance(self, found, film, source):
         """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it."""
-        rise, was = found.film - self.inlet, film.old - self.inlet
-        carried = film.couette
-        # oil that the pressure moves takes its heat along from where it turns
-        turned = (np.diff(film.flow - film.couette) * rise).sum()
-        out = max(carried[-1], 0.0) * rise[-1] + max(-carried[0], 0.0) * rise[0] + turned
-        storage = ((film.stored - np.diff(film.flow)) * rise - film.stored * was).sum()
+        # oil that the pressure moves takes its heat along from where it turns: the Couette flow alone carries
+        rise, carried = found.film - self.inlet, film.couette
+        out = max(carried[-1], 0.0) * rise[-1] + max(-carried[0], 0.0) * rise[0]
+        storage = film.stored @ (found.film - film.old) - np.diff(carried) @ rise
         total = (found.shear + source).sum()
         missing = total - sum(q.sum() for q in found.fluxes) - storage - out
         return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0

@@ -1,19 +1,11 @@
 r"""Temperature of the film at a node, with both surfaces, as a law of pressure and film.
 
-With one temperature T of the film, a parabola across it, and both surfaces' response :math:`R_i` to the
-present flux,
+With one temperature T of the film and both surfaces' response :math:`R_i` to the present flux,
 
-.. math:: aT-b=\Phi(T)+G-q_1-q_2,\qquad q_{1,2}=\frac{k_f}{h}\Big[6(T-T_w)\pm(T_2-T_1)\Big],\qquad
-   T_i=W_i+R_iq_i,
+.. math:: aT-b=\Phi(T)+G-q_1-q_2,\qquad T_i=W_i+R_iq_i,
 
-:math:`T_w=(T_1+T_2)/2`, :math:`\Phi=\tau_m|u_1-u_2|`. The fluxes are linear in T: with
-:math:`r=h/k_f`, :math:`T=\alpha+\kappa(q_1+q_2)`,
-
-.. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r+R_1+R_2}\Big],\qquad
-   \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r+R_1+R_2)},
-
-regular at r = 0. What is left is one equation for T, monotone because the shear stress falls with T; the
-derivatives follow from the implicit function theorem.
+:math:`\Phi=\tau_m|u_1-u_2|`, the fluxes by :mod:`.exchange`, linear in T. What is left is one equation for T,
+monotone because the shear stress falls with T; the derivatives follow from the implicit function theorem.
 """
 
 from typing import NamedTuple
@@ -22,6 +14,7 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.heat import thermal_viscosity
+from ehlpetsc.physics.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
 from ehlpetsc.physics.heat.shear import shear_stress
 
 LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
@@ -53,6 +46,8 @@ class FilmLaw(NamedTuple):
         Its relative increase with pressure [1/Pa].
     sliding : float
         |u1 - u2| [m/s].
+    thinnest : float
+        Film [m] below which the shear stress is that of this film; 0: films of no thickness are not sheared.
     """
 
     pressure_law: tuple
@@ -63,6 +58,65 @@ class FilmLaw(NamedTuple):
     conductivity: float
     conductivity_pressure: float
     sliding: float
+    thinnest: float = 0.0
+
+
+@compiled
+def _log_rate(h, spread, law):
+    """`ln_rate` of :func:`.shear.shear_stress`."""
+    if law.eyring == np.inf:
+        return np.log(law.sliding * law.eta0 / h)
+    return np.log(law.sliding * law.eta0 / (law.eyring * h)) - spread
+
+
+@compiled
+def _balanced(guess, slope, known, heat, ln_rate, p, law):
+    """Temperature of `slope` T = `known` + `heat` times the shear stress, by a safeguarded Halley's method.
+
+    Returns
+    -------
+    temperature : float
+    shear : tuple of 3 floats
+        Stress [Pa] and its derivatives with respect to ln(eta) and p.
+    viscosity : tuple of 3 floats
+        Of :func:`.thermal_viscosity.log_viscosity`.
+    """
+    pressure_law, thermal_law, eyring, limit = law.pressure_law, law.thermal_law, law.eyring, law.limit
+    low, high = known / slope, np.inf
+    t = low if heat == 0.0 else max(guess, low)
+    linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
+    ln_eta, eta_p, eta_t = 0.0, 0.0, 0.0
+    tau, by_ln_eta, twice, by_p = 0.0, 0.0, 0.0, 0.0
+    change, last = 0.0, heat == 0.0
+    for k in range(ITERATIONS):
+        if k == 0 or not linear:
+            ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+        else:
+            ln_eta += eta_t * change
+        if heat > 0.0:
+            tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
+        if last:
+            break
+        f, over_f_t = slope * t - known - heat * tau, 1.0 / (slope - heat * by_ln_eta * eta_t)
+        low, high = (low, min(high, t)) if f > 0.0 else (max(low, t), high)
+        change = -f * over_f_t
+        bend = -0.5 * heat * twice * eta_t * eta_t * over_f_t * change  # of f over a step of Newton's
+        if linear:
+            change *= 1.0 + min(max(-bend, -0.5), 1.0)
+        new = t + change
+        newton = low <= new <= high
+        if not newton:
+            new = 0.5 * (low + high) if high < np.inf else max(new, low)
+        change, t = new - t, new
+        step = eta_t * change
+        error = abs(bend * step * change) if linear and abs(step) < SMALL else np.inf
+        if newton and (error < ERROR or abs(change) < QUADRATIC):
+            ln_eta += step
+            tau += (by_ln_eta + 0.5 * twice * step) * step
+            by_ln_eta += twice * step
+            break
+        last = abs(change) < ACCURACY
+    return t, (tau, by_ln_eta, by_p), (ln_eta, eta_p, eta_t)
 
 
 @compiled
@@ -98,64 +152,28 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     viscosity : tuple of 3 floats
         Of :func:`.thermal_viscosity.log_viscosity` at that temperature.
     """
-    pressure_law, thermal_law, eta0, eyring, limit = law[0], law[1], law[2], law[3], law[4]
-    more = 1.0 + law[6] * p
-    over_conductivity = 1.0 / (law[5] * more * max(left, LEAST_OIL))
-    w1, w2, r1, r2 = walls
-    r, difference = h * over_conductivity, r1 - r2
-    over_total = 1.0 / (r + r1 + r2)
-    share = difference * over_total
-    exchange = 1.0 / (r * (1.0 / 12.0) + 0.25 * (r1 + r2 - difference * share))
-    alpha = 0.5 * (w1 + w2) - 0.5 * share * (w1 - w2)
-    slope, known = a + exchange, b + g + alpha * exchange
-    heat = left * law[7] if h > 0.0 else 0.0
-    over_h = 1.0 / h if h > 0.0 else 0.0
-    low, high = known / slope, np.inf
-    t = low if heat == 0.0 else max(guess, low)
-    linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
-    unit = eta0 if eyring == np.inf else eta0 / eyring
-    ln_rate = np.log(law[7] * unit * over_h) - (0.0 if eyring == np.inf else spread) if heat > 0.0 else 0.0
-    ln_eta, eta_p, eta_t = 0.0, 0.0, 0.0
-    tau, by_ln_eta, twice, by_p = 0.0, 0.0, 0.0, 0.0
-    change, last = 0.0, heat == 0.0
-    for k in range(ITERATIONS):
-        if k == 0 or not linear:
-            ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
-        else:
-            ln_eta += eta_t * change
-        if heat > 0.0:
-            tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
-        if last:
+    more = 1.0 + law.conductivity_pressure * p
+    over_conductivity = 1.0 / (law.conductivity * more * max(left, LEAST_OIL))
+    r = h * over_conductivity
+    sheared = max(h, law.thinnest)
+    heat = left * law.sliding if sheared > 0.0 else 0.0
+    ln_rate = _log_rate(sheared, spread, law) if heat > 0.0 else 0.0
+    for kind in (PARABOLA, INSULATED, APART):
+        exchange, alpha = exchange_law(kind, r, walls)
+        slope = a + exchange
+        t, shear, viscosity = _balanced(guess, slope, b + g + alpha * exchange, heat, ln_rate, p, law)
+        q1, q2, by_r = fluxes(kind, t, r, walls, exchange, alpha)
+        if kind == PARABOLA and (q1 if walls[0] < walls[1] else q2) >= -NO_FLUX * exchange:
             break
-        f, over_f_t = slope * t - known - heat * tau, 1.0 / (slope - heat * by_ln_eta * eta_t)
-        low, high = (low, min(high, t)) if f > 0.0 else (max(low, t), high)
-        change = -f * over_f_t
-        bend = -0.5 * heat * twice * eta_t * eta_t * over_f_t * change  # of f over a step of Newton's
-        if linear:
-            change *= 1.0 + min(max(-bend, -0.5), 1.0)
-        new = t + change
-        newton = low <= new <= high
-        if not newton:
-            new = 0.5 * (low + high) if high < np.inf else max(new, low)
-        change, t = new - t, new
-        step = eta_t * change
-        error = abs(bend * step * change) if linear and abs(step) < SMALL else np.inf
-        if newton and (error < ERROR or abs(change) < QUADRATIC):
-            ln_eta += step
-            tau += (by_ln_eta + 0.5 * twice * step) * step
-            by_ln_eta += twice * step
+        if kind == INSULATED and t >= min(walls[0], walls[1]):
             break
-        last = abs(change) < ACCURACY
-    over_f_t = 1.0 / (slope - heat * by_ln_eta * eta_t)
-    kappa_r = 1.0 / 12.0 + 0.25 * share * share
-    alpha_r = 0.5 * share * (w1 - w2) * over_total
-    flow = (t - alpha) * exchange
-    f_r = -(alpha_r + flow * kappa_r) * exchange
-    f_h = f_r * over_conductivity + heat * by_ln_eta * over_h
-    f_p = -f_r * r * law[6] / more - heat * (by_ln_eta * eta_p + by_p)
-    between = -2.0 * (w1 - w2) * over_total - share * flow
-    q1, q2 = 0.5 * (flow + between), 0.5 * (flow - between)
-    return t, -f_p * over_f_t, -f_h * over_f_t, q1, q2, heat * tau, (ln_eta, eta_p, eta_t)
+    tau, by_ln_eta, by_p = shear
+    over_f_t = 1.0 / (slope - heat * by_ln_eta * viscosity[2])
+    f_h = by_r * over_conductivity
+    if heat > 0.0 and h == sheared:
+        f_h += heat * by_ln_eta / h
+    f_p = -by_r * r * law.conductivity_pressure / more - heat * (by_ln_eta * viscosity[1] + by_p)
+    return t, -f_p * over_f_t, -f_h * over_f_t, q1, q2, heat * tau, viscosity
 
 
 class FilmHeat(NamedTuple):

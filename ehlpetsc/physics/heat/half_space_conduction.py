@@ -70,10 +70,17 @@ class StepWeights:
     response: float
 
     @classmethod
-    @lru_cache(maxsize=8)
     def of(cls, rates, weights, dt, effusivity):
         """Coefficients of a step of `dt` [s]; `rates` and `weights` as of :func:`exponentials`."""
-        rates, weights = np.array(rates), np.array(weights)
+        # equal steps of a run differ by rounding, which the cache must not see
+        return cls._of(
+            np.asarray(rates).tobytes(), np.asarray(weights).tobytes(), float(f"{dt:.12g}"), effusivity
+        )
+
+    @classmethod
+    @lru_cache(maxsize=8)
+    def _of(cls, rates, weights, dt, effusivity):
+        rates, weights = np.frombuffer(rates), np.frombuffer(weights)
         z = rates * dt
         decay = np.exp(-z)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -107,13 +114,14 @@ def diffuse(a, ratio, out):
         left = implicit if i > 0 else 0.0
         right = implicit if i < cells - 1 else 0.0
         pivot = 1.0 + left + right - (left * upper[i - 1] if i > 0 else 0.0)
-        upper[i] = right / pivot
+        over_pivot = 1.0 / pivot
+        upper[i] = right * over_pivot
         before, after = max(i - 1, 0), min(i + 1, cells - 1)
         for m in range(terms):
             value = a[i, m] + explicit * (a[before, m] - 2.0 * a[i, m] + a[after, m])
             if i > 0:
                 value += left * out[i - 1, m]
-            out[i, m] = value / pivot
+            out[i, m] = value * over_pivot
     for i in range(cells - 2, -1, -1):
         for m in range(terms):
             out[i, m] += upper[i] * out[i + 1, m]

@@ -21,8 +21,8 @@ def thermal_law(fluid, heat):
     return thermal.EXPONENTIAL, beta, 0.0, reference
 
 
-def film_law(fluid, heat, sliding):
-    """Constants of the oil in a step, :class:`.heat_film.FilmLaw`.
+def film_law(fluid, heat, sliding, thinnest=0.0):
+    """Constants of the oil in a step, :class:`.film.FilmLaw`.
 
     Parameters
     ----------
@@ -31,6 +31,8 @@ def film_law(fluid, heat, sliding):
     heat : case.tables.heat.Heat
     sliding : float
         u1 - u2 [m/s].
+    thinnest : float
+        See :class:`.film.FilmLaw`.
     """
     conduction = float(heat.oil_conductivity), float(heat.oil_conductivity_pressure)
     if fluid is None:
@@ -46,4 +48,5 @@ def film_law(fluid, heat, sliding):
         np.inf if limiting is None else float(limiting),
         *conduction,
         abs(float(sliding)),
+        thinnest,
     )
