@@ -5,7 +5,12 @@
 
 from importlib import import_module
 
-_HOMES = {"LifeHistory": "history", "read_life": "history", "run_life": "driver", "run_regimes": "regimes"}
+_HOMES = {
+    "LifeHistory": "history",
+    "read_life": "history",
+    "run_life": "driver",
+    "run_regimes": "regimes.lives",
+}
 __all__ = list(_HOMES)
 
 

@@ -51,20 +51,20 @@ def _run(chosen):
 
 def _draw(chosen, path):
     from ehlpetsc.life.history import read_life
-    from ehlpetsc.life.picture import draw
+    from ehlpetsc.life.pictures.life_picture import draw
 
     life, target = read_life(path), path.with_suffix(".png")
     draw(life, target)
     print(target)
     if chosen.movie:
-        from ehlpetsc.life.movie import save_movie
+        from ehlpetsc.life.pictures.movie import save_movie
 
         save_movie(life, Path(chosen.movie))
         print(chosen.movie)
 
 
 def _draw_regimes(chosen, path):
-    from ehlpetsc.life.regimes_picture import draw_regimes, read_index
+    from ehlpetsc.life.pictures.regimes_picture import draw_regimes, read_index
 
     target = path.with_suffix(".png")
     draw_regimes(read_index(path), target)
@@ -91,7 +91,7 @@ def _lived(chosen):
     from mpi4py import MPI
 
     from ehlpetsc.life.driver import run_life
-    from ehlpetsc.life.regimes import index_of, run_regimes
+    from ehlpetsc.life.regimes.lives import index_of, run_regimes
     from ehlpetsc.results.output_guard import inputs_of
     from ehlpetsc.run.on_root import on_root
     from ehlpetsc.run.stop import StopRequest

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.errors import NotConverged
+from ehlpetsc.life.ageing.jumps import Jumps
 from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
-from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.life_file import LifeFile
-from ehlpetsc.life.positions import Positions
+from ehlpetsc.life.passes.positions import Positions
 from ehlpetsc.life.progress import Progress, opening_line
 
 
@@ -67,7 +67,7 @@ def run_life(case, output=None, *, overwrite=False, after=None, comm=None, show=
 
 class _Life:
     def __init__(self, case, path, comm, history, show):
-        from ehlpetsc.life.rounds import Ranks
+        from ehlpetsc.life.passes.rounds import Ranks
         from ehlpetsc.physics.scales import Scales
         from ehlpetsc.physics.variable_operation import operation_of
         from ehlpetsc.run.scene import scene_of
@@ -115,7 +115,7 @@ class _Life:
 
     def _solve(self, stop):
         """The next round."""
-        from ehlpetsc.life.rounds import Round
+        from ehlpetsc.life.passes.rounds import Round
 
         solve = partial(self._solve_pass, self._plastic())
         return Round(self.ranks.solve(self._next_positions(), solve, stop), self.positions.passes_2)
@@ -129,7 +129,7 @@ class _Life:
         return list(range(count))
 
     def _solve_pass(self, plastic, position, comm, stop):
-        from ehlpetsc.life.one_pass import run_pass, start
+        from ehlpetsc.life.passes.one_pass import run_pass, start
 
         records = {}
         if self.history.rows:

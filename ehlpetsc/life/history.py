@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.ageing.body import LifeBody
 from ehlpetsc.life.life_file import CHANGING, FIXED, FORMAT, KIND, VOUCHING, LifeFile
 from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading

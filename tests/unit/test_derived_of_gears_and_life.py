@@ -18,7 +18,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError
 from ehlpetsc.gears.__main__ import main as gears
 from ehlpetsc.life.__main__ import main as life
-from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.ageing.body import LifeBody
 from ehlpetsc.life.driver import run_life
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.post import run as post_run

@@ -10,8 +10,8 @@ N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be
 
 import numpy as np
 
-from ehlpetsc.life import laws
-from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.ageing import laws
+from ehlpetsc.life.ageing.body import LifeBody
 from ehlpetsc.surfaces.roughness import directed_speeds
 
 CELL = 0.25  # of the combined Rq: thickness of the first cells

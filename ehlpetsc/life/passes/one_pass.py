@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import ExitStatus, OutputError, PostError, Stopped
-from ehlpetsc.life.pass_result import OfBody, Pass
+from ehlpetsc.life.passes.pass_result import OfBody, Pass
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.prepare import prepare

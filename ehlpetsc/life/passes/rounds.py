@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
-from ehlpetsc.life.rates import Rates
+from ehlpetsc.life.ageing.rates import Rates
 from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 

@@ -1,6 +1,6 @@
 """Jumps: both bodies after many passes like those of a solved round, and how many rounds are to come."""
 
-from ehlpetsc.life.rates import LONGER
+from ehlpetsc.life.ageing.rates import LONGER
 
 AWAITED = 1.1  # times what is allowed: a break-out so late still ends the jump
 MOST_EXPECTED = 200  # rounds looked ahead one by one

@@ -6,14 +6,18 @@ import json
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.life.regimes import FATIGUE, NEITHER, WEAR
+from ehlpetsc.life.regimes.outcome import FATIGUE, NEITHER, WEAR
 from ehlpetsc.results.atomic_write import replacing
 
-MARKS = {FATIGUE: ("v", "#cc3311"), WEAR: ("o", "#0077bb"), NEITHER: ("s", "#bbbbbb")}
-LABELS = {
-    "wear.coefficient": "specific wear rate k [m²/N]",
-    "contact.boundary_friction": "boundary friction",
-    "contact.asperity_height": "sigma [m]",
+MARKS = {  # shape, colour, label
+    FATIGUE: ("v", "#cc3311", "fatigue wins: pits"),
+    WEAR: ("o", "#0077bb", "wear wins: D stays below 1"),
+    NEITHER: ("s", "#bbbbbb", "neither yet: no pits, but D would reach 1"),
+}
+LABELS = {  # of a key: its name, unit, and the unit's size
+    "wear.coefficient": ("specific wear rate k", "m²/N", 1.0),
+    "contact.boundary_friction": ("boundary friction", "", 1.0),
+    "contact.asperity_height": ("sigma", "nm", 1e-9),
 }
 LEGEND = 0.08  # of the height, below the panels
 REACH = 2.0  # of the colours: powers of ten of the damage ahead on either side of 1
@@ -60,17 +64,17 @@ def draw_regimes(index, path):
     for axes, panel in zip(grid, panels, strict=True):
         chosen = [row for row in rows if tuple(row["value"][2:]) == panel]
         image = _panel(axes, keys, values, chosen)
-        named = (f"{_label(key)} {value:g}" for key, value in zip(keys[2:], panel, strict=True))
-        axes.set_title(", ".join(named), fontsize=9)
-    figure.colorbar(image, ax=list(grid), label="log10 of the damage of a cell\nwhen wear reaches it")
+        axes.set_title(", ".join(map(_setting, keys[2:], panel)), fontsize=9)
+    bar = figure.colorbar(image, ax=list(grid), label="D of a cell when wear reaches it", extend="both")
+    powers = np.arange(-REACH, REACH + 1.0)
+    bar.set_ticks(powers, labels=[f"{10.0**power:g}" for power in powers])
     handles = [
         pyplot.Line2D([], [], ls="", marker=mark, mfc="none", mec=colour, mew=2.0, ms=9.0, label=label)
-        for (mark, colour), label in zip(
-            MARKS.values(), ("fatigue wins: pits", "wear wins: D stays below 1", "neither yet"), strict=True
-        )
+        for mark, colour, label in MARKS.values()
     ]
     figure.legend(handles=handles, loc="lower center", ncols=3, fontsize=8)
-    figure.suptitle(index["title"], fontsize=10)
+    solved = max(row["solved"] for row in rows)
+    figure.suptitle(f"{index['title']}; {solved} solved passes of each life at most", fontsize=10)
     try:
         with replacing(path, keep_ending=True) as beside:
             figure.savefig(beside, dpi=130)
@@ -86,25 +90,36 @@ def _panel(axes, keys, values, rows):
         x = values[0].index(row["value"][0])
         y = values[1].index(row["value"][1]) if len(keys) > 1 else 0
         ahead[y, x] = REACH if row["damage_ahead"] is None else np.log10(max(row["damage_ahead"], 1e-99))
-        mark, colour = MARKS[row["winner"]]
+        mark, colour, _ = MARKS[row["winner"]]
         axes.plot(x, y + 0.14, mark, mfc="white", mec=colour, mew=2.0, ms=11.0)
-        note = f"D {row['damage']:.2g}"
+        note = "no wear" if row["damage_ahead"] is None else f"D {row['damage_ahead']:.2g}"
         if row["winner"] == FATIGUE:
-            note = f"{row['pitted_share']:.0%} pitted,\nfrom {row['first_failure']:.1g}"
+            note = f"first pit after\n{row['first_failure'] / 1e6:.2g} million"
         box = {"fc": "w", "ec": "none", "pad": 1}
         axes.text(x, y - 0.18, note, ha="center", va="center", fontsize=7, bbox=box)
     image = axes.imshow(
         ahead, origin="lower", aspect="auto", vmin=-REACH, vmax=REACH, cmap="RdBu_r", alpha=0.7
     )
-    axes.set_xticks(range(len(values[0])), [f"{value:g}" for value in values[0]])
+    axes.set_xticks(range(len(values[0])), _numbers(keys[0], values[0]))
     axes.set_xlabel(_label(keys[0]))
     if len(keys) > 1:
-        axes.set_yticks(range(count), [f"{value:g}" for value in values[1]])
-        axes.set_ylabel(_label(keys[1]))
+        axes.set_yticks(range(count), _numbers(keys[1], values[1]))
+        axes.set_ylabel(_label(keys[1]) if axes.get_subplotspec().is_first_col() else "")
     else:
         axes.set_yticks([])
     return image
 
 
 def _label(key):
-    return LABELS.get(key, key)
+    name, unit, _ = LABELS.get(key, (key, "", 1.0))
+    return f"{name} [{unit}]" if unit else name
+
+
+def _numbers(key, values):
+    return [f"{value / LABELS.get(key, (key, '', 1.0))[2]:g}" for value in values]
+
+
+def _setting(key, value):
+    """Title of a panel: a key and its value."""
+    name, unit, _ = LABELS.get(key, (key, "", 1.0))
+    return f"{name} {_numbers(key, [value])[0]} {unit}".rstrip()

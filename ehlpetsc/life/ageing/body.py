@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.life import laws
+from ehlpetsc.life.ageing import laws
 from ehlpetsc.surfaces.body_field import BodyField
 
 

@@ -28,7 +28,7 @@ def draw(life, path):
         for k in range(2):
             above.append(top.add_subplot(2, len(chosen), k * len(chosen) + column + 1))
             image = under_profile(above[-1], life.bodies[row][k])
-            above[-1].set_title(f"surface {k + 1}, {life.rows[row]['passes']:.3g} passes", fontsize="small")
+            above[-1].set_title(f"surface {k + 1}, {life.rows[row]['passes']:,} passes", fontsize="small")
     top.colorbar(image, ax=above, label="log10 D", shrink=0.6)
     passes = life("passes")
     panels = (
@@ -45,7 +45,7 @@ def draw(life, path):
             for k in (1, 2):
                 axes.plot(passes, unit * life(f"{name}_{k}"), ".-", label=f"surface {k}")
             axes.legend(fontsize="x-small")
-        axes.set(xscale="log", xlabel="passes", ylabel=label)
+        axes.set(xscale="log", xlim=(0.8 * passes[0], 1.25 * passes[-1]), xlabel="passes", ylabel=label)
     figure.suptitle(life.title)
     try:
         with replacing(path, keep_ending=True) as beside:

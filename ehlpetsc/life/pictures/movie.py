@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.life.picture import under_profile
+from ehlpetsc.life.pictures.life_picture import under_profile
 from ehlpetsc.plot.movies import recording
 
 HOLD = 3  # frames that a round is shown
@@ -56,7 +56,7 @@ def _draw(figure, grid, life, row):
     )
     grid[2].set(xscale="log", xlabel="passes", ylabel="D, share", ylim=(0.0, min(top, 2.0)))
     grid[2].legend(fontsize="x-small", loc="upper left")
-    figure.suptitle(f"{life.title}: {passes[row]:.3g} passes", fontsize=10)
+    figure.suptitle(f"{life.title}: {passes[row]:,} passes", fontsize=10)
     if row == 0:  # its layout holds for all: the axes stand still
         figure.draw_without_rendering()
         figure.set_layout_engine("none")

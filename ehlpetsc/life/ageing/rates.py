@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.life import laws
+from ehlpetsc.life.ageing import laws
 
 LONGER = 2.0  # times as many passes as in the jump before: so far lines are continued
 

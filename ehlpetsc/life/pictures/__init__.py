@@ -1,0 +1,1 @@
+"""Pictures and movies of lives and of their regimes."""

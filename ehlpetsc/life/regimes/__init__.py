@@ -1,0 +1,1 @@
+"""Lives of a case with [series], and which mechanism wins in each."""
