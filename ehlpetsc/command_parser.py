@@ -34,7 +34,7 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(prog=program(module), description=description, formatter_class=formatter)
 
     def error(self, message):
-        """End the command with the fault and the way to the list of options."""
+        """End the command with the fault and a hint at the list of options."""
         name = self.prog.removeprefix("python3 -m ")
         self.exit(2, f"{name}: {message}; {self.prog} -h lists the options\n")
 

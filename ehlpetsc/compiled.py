@@ -1,4 +1,4 @@
-"""numba's compiler as the package uses it: loops over nodes and samples, kept on disk between runs.
+"""Compilation of loops over nodes and samples by numba, cached on disk between runs.
 
 The solver needs numba. Post-processing does without it: the same functions then run as plain Python, slowly,
 to the same bit.

@@ -79,7 +79,7 @@ def _debians():
 
 
 def require_numerics():
-    """End a command (exit 2) that this Python cannot import, saying which one can."""
+    """End a command (exit 2) whose packages this Python lacks, with advice."""
     lacks = missing(NUMERICS)
     if lacks and "ehlpetsc" not in sys.orig_argv:  # a run itself says more: all that it needs
         command = shlex.join(sys.orig_argv[1:])

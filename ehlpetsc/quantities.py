@@ -93,7 +93,7 @@ STEP_SCALARS = {
     "load_error": StepScalar("1", "relative error of the load", over_run="max", summary=".2e"),
     "mass_error": StepScalar(
         "1",
-        "oil lost or made at all nodes over the oil that the contact carries through",
+        "mass defect summed over all nodes, relative to the mass that the contact carries",
         over_run="max",
         summary=".2e",
     ),

@@ -28,7 +28,7 @@ def combinations(series):
 
 
 def settings_of(series):
-    """For each member its settings, pairs of a key taken apart and its value."""
+    """Settings of each member: pairs of a split key and its value."""
     keys = [key.split(".") for key in keys_of(series)]
     return [list(zip(keys, values, strict=True)) for values in combinations(series)]
 

@@ -1,4 +1,4 @@
-"""Faults of a case file in words: file, key, value, what is allowed."""
+"""Faults of a case file in words: file, key, value, allowed values."""
 
 import json
 

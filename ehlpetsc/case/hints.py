@@ -43,7 +43,7 @@ NOT_MODELLED = {
 
 
 def not_modelled(where, name):
-    """Answer to a key that asks for physics of another table or for none of the program; "" otherwise."""
+    """Hint at a key of another table, or at physics that is not modelled; "" otherwise."""
     if name in ELSEWHERE:
         return ELSEWHERE[name]
     if name == "type" and where == "contact.":

@@ -77,7 +77,7 @@ def load(case, overrides=None):
 
 
 def stored_case(text, overrides=None):
-    """Case from the text in a result file; the profile files that it names are not looked for.
+    """Case from the text in a result file, without its profile files.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def stored_case(text, overrides=None):
 
 
 def _override(path, data, overrides):
-    """Set keys in the tables; returns the settings and one fault for each that is none."""
+    """Set keys in the tables; returns the settings and a fault for each invalid one."""
     settings, faults = [], []
     given = overrides.items() if isinstance(overrides, dict) else overrides or ()
     for override in [given] if isinstance(given, str | int | float) else list(given):

@@ -1,4 +1,4 @@
-"""Faults of the profile files that a case names: unreadable, or absurd beside its contact."""
+"""Faults of the profile files of a case: unreadable, or implausible for its contact."""
 
 from ehlpetsc.case.faults import show
 from ehlpetsc.case.schema.validation import ValidationError

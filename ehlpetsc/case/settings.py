@@ -1,4 +1,4 @@
-"""Keys of a case set from outside: -ehl_set and the values of a series, in its tables and in its text."""
+"""Overrides of the keys of a case, by -ehl_set and by series, in its tables and its text."""
 
 import tomllib
 
@@ -52,7 +52,7 @@ def put(tables, keys, value):
 
 
 def _as_spelled(tables, keys):
-    """A key of a surface under the name, today's or the former one, that the tables have."""
+    """Key of a surface under its name in the tables, the current or the former one."""
     surfaces = tables.get("surface") if len(keys) > 1 and keys[0] == "surface" else None
     if not isinstance(surfaces, dict):
         return keys

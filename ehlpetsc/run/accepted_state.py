@@ -7,17 +7,17 @@ from ehlpetsc.stepping.observables import diagnostics
 
 @dataclass(frozen=True)
 class AcceptedState:
-    """A time level that a simulation has come to; every scalar and field is also an attribute.
+    """Accepted time level of a simulation; every scalar and field is also an attribute.
 
-    Attributes
-    ----------
-    figures : dict of str to number
-        Of the step, as below ``steps/`` of a result file [SI units].
-    fields : dict of str to ndarray, shape (nx,)
-        In SI units.
-    in_contact : ndarray of bool, shape (nx,)
-    solution : stepping.state.State
-        Unknowns, and what the next step needs of the past.
+        Attributes
+        ----------
+    scalars : dict of str to number
+            Of the step, as below ``steps/`` of a result file [SI units].
+        fields : dict of str to ndarray, shape (nx,)
+            In SI units.
+        in_contact : ndarray of bool, shape (nx,)
+        solution : stepping.state.State
+            Unknowns, and what the next step needs of the past.
     """
 
     scalars: dict

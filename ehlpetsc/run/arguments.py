@@ -15,7 +15,7 @@ MIN_STEP_RATIO = 1e-9  # of the nominal time step
 
 
 def check_file(name, path):
-    """Refuse what cannot be the name of a file.
+    """Refuse an argument that is not a file name.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def check_file(name, path):
 
 
 def check_comm(comm):
-    """Refuse what is no communicator; UsageError."""
+    """Refuse an argument that is not a communicator; UsageError."""
     if comm is not None and not isinstance(comm, MPI.Comm):
         raise UsageError(f"comm = {comm!r}: allowed: a communicator of mpi4py, as mpi4py.MPI.COMM_WORLD")
 
@@ -102,7 +102,7 @@ def check_pass(case, scales, after, pass_number):
 
 
 def check_time_step(dt, simulation):
-    """Refuse a length that no time step of a simulation can have, and a step behind its end.
+    """Refuse an impossible length of a time step, and a step after the end of the simulation.
 
     Parameters
     ----------

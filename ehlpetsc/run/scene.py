@@ -1,4 +1,4 @@
-"""Scene of one pass of a case: what its effects are made from."""
+"""Scene of one pass of a case, for its effects."""
 
 from dataclasses import replace
 

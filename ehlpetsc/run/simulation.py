@@ -1,4 +1,4 @@
-"""One case on the ranks of one communicator, from accepted state to accepted state."""
+"""Simulation of one case on the ranks of a communicator."""
 
 import time as clock
 from dataclasses import replace
@@ -34,7 +34,7 @@ MONITOR_OPTIONS = (
 
 
 class Simulation:
-    """A case that is solved while one iterates over its accepted states.
+    """A case, solved while its accepted states are iterated.
 
     Iteration begins with the steady solution at time 0 and ends where the travel of the case does; broken
     off, it goes on where it was. A simulation given the state of a restart file (:meth:`resume`) goes on from
@@ -123,7 +123,7 @@ class Simulation:
 
     @property
     def end(self):
-        """Time at which the travel is over [s]."""
+        """Time at which the run ends [s]."""
         return self.solution.time + self._time_left()
 
     def level(self, time):
@@ -178,7 +178,7 @@ class Simulation:
         self.solution = replace(solution, records=records, m=m)
 
     def advance(self, dt=None, watch=None):
-        """Solve the steady contact, afterwards one time step.
+        """Solve the steady contact, at later calls one time step.
 
         Parameters
         ----------
@@ -230,7 +230,7 @@ class Simulation:
             return self.stepper.advance(self.solution, dt, watch)
 
     def _head(self, what):
-        """Head PETSc's own lines, where the user asked for some."""
+        """Print a heading above the lines of PETSc that the user has enabled."""
         if self._followed:
             PETSc.Sys.Print(what, comm=self.comm)
 

@@ -107,13 +107,13 @@ def mean_film(scales, h):
 
 
 def mass_error(problem, state):
-    r"""Oil that the solution loses or makes in a step, over what the contact carries through.
+    r"""Mass defect of a step over the mass that the contact carries.
 
     :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
-    is a balance that holds at every node. Where direct contact leaves the Reynolds equation out, F is the oil
-    that this makes; elsewhere, and everywhere in mixed contact, it is what Newton's tolerance leaves. (What
-    is drawn in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet node has
-    no balance, its pressure or its oil is given.
+    where mass is conserved at every node. Where direct contact leaves the Reynolds equation out, F is the
+    mass that this adds; elsewhere, and everywhere in mixed contact, it is the residual of Newton's method.
+    (The mass drawn in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet
+    node has no balance: its pressure or its oil is given.
     """
     if problem.fluid is None:
         return 0.0

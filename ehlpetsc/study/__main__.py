@@ -110,7 +110,7 @@ def random_cases(chosen):
 
 
 def contact(chosen):
-    """How much contact there is."""
+    """Amount of contact."""
     from ehlpetsc.case.loading import load
     from ehlpetsc.study.contact import COLUMNS, settings, table
     from ehlpetsc.study.runs import check_damage

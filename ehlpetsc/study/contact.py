@@ -1,6 +1,6 @@
 """Amount of contact against mesh, time step, boundary film and contact model.
 
-``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination asked for, a line each in
+``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination, a line each in
 table and CSV; means over the time both rough surfaces fill the contact. Where a sequence of meshes halves its
 spacing, the observed order and the extrapolated value of each figure follow. ``--damage`` stores every step
 and has `ehlpetsc.post` count the damage of surface 1 at z = 0 and 0.01 a.
@@ -41,7 +41,7 @@ OF_MIXED_CONTACT = ("boundary_film", "yield_pressure")  # keys of [contact] that
 
 @dataclass(frozen=True)
 class Measured:
-    """Figures of a run; lengths in half widths, pressures in GPa, shares of the load.
+    """Scalars of a run; lengths in half widths, pressures in GPa, shares of the load.
 
     Attributes
     ----------
@@ -149,7 +149,7 @@ def output_of(setting, damage=False):
 
 
 def for_direct_contact(case, overrides, folder):
-    """A case and its overrides as direct contact takes them: without the keys of mixed contact alone.
+    """A case and its overrides for direct contact: without the keys of mixed contact.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ def ground(ra, correlation, skewness, seed):
     r"""Random profile with autocorrelation :math:`\exp[-(X/l)^2]` before its heights are skewed.
 
     White noise under a Gaussian weight, then each height moved to where its rank lies in a gamma
-    (Pearson III) distribution, whose parameter is chosen so that the sample has the skewness asked for.
+    (Pearson III) distribution, whose parameter is chosen so that the sample has the required skewness.
 
     Parameters
     ----------

@@ -196,7 +196,7 @@ def test_a_series_that_was_killed_is_finished_by_the_same_command(tmp_path, fini
     "words, fault",
     [
         (["-ehl_ranks_per_member", "3"], "allowed: whole numbers 1 to 1"),
-        (["-ehl_restart", "x.h5"], "begun members are gone on with"),
+        (["-ehl_restart", "x.h5"], "unfinished members are continued"),
         (["-ehl_set", "series.values=[0.01,0.010]"], "two values have the same name"),
         (["-ehl_set", "series.values=[0.01,-1]"], "series.values: -1"),
     ],

@@ -52,8 +52,8 @@ def test_nothing_is_said_where_no_step_was_taken():
     [
         ({"p_max": 6.65e9}, "pressure: up to 6.65 GPa"),
         ({"oil_pressure": 9e9}, "viscosity: 5.0e+08"),
-        ({"mass_error": 0.44}, "oil balance: in one step 44 % of the oil"),
-        ({"mass_error": 101.3}, "oil balance: in one step 101 times the oil"),
+        ({"mass_error": 0.44}, "oil balance: the mass defect of one step is 44 % of"),
+        ({"mass_error": 101.3}, "oil balance: the mass defect of one step is 101 times"),
         ({"nodes_below_1nm": 7}, "film: 7 times a node"),
         ({"nodes_below_1nm": 1}, "film: 1 time a node"),
     ],

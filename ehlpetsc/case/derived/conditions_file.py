@@ -67,7 +67,7 @@ def _text(path):
 
 
 def _numbers(line, separator):
-    """Numbers of a line; empty where one of its words is none."""
+    """Numbers of a line; empty where a word is not a number."""
     words = [word.strip() for word in line.split(separator)]
     if separator == ";":
         words = [word.replace(",", ".") for word in words]

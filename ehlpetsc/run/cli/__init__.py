@@ -1,1 +1,1 @@
-"""From the command line to a run: options, the case file, signals, and the streams of the process."""
+"""Command line of a run: options, case file, streams of the process."""

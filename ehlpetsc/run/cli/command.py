@@ -1,4 +1,4 @@
-"""The command: one case on all ranks, or a series on groups of them. Rank 0 alone reads the case file."""
+"""Run command: one case on all ranks, or a series on groups of them. Rank 0 alone reads the case file."""
 
 import sys
 from pathlib import Path
@@ -31,7 +31,7 @@ def read_case(comm, path, overrides):
 
 
 def refuse(comm, lines):
-    """Say on rank 0 what is wrong with the input."""
+    """Print the faults of the input on rank 0."""
     table = PETSc.Options()
     for name in table.getAll():
         table.hasName(name)  # newer releases of PETSc would list unused options as well

@@ -108,7 +108,7 @@ def _check_name(word):
 
 
 def _is_value(words, at):
-    """Whether a word is the file that an option of this program's own names."""
+    """Whether a word is the file name after an option of the program."""
     return at > 0 and words[at - 1].lstrip("-") in ("ehl_output", "ehl_restart")
 
 

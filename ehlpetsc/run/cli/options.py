@@ -1,4 +1,4 @@
-"""The command line: the case file, own options (-ehl_*) and those handed on to PETSc."""
+"""Options of the program (-ehl_*): table, help text, values."""
 
 import difflib
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class Option:
 
     @property
     def shown(self):
-        """Its value as ``-help`` shows it."""
+        """Value as shown by ``-help``."""
         return self.value and f" <{self.value}>"
 
 
@@ -38,7 +38,7 @@ def usage():
 
 
 def faults(names):
-    """One line for each own option that there is none of, with the nearest there is.
+    """One line for each unknown option of the program, with the nearest known one.
 
     Parameters
     ----------

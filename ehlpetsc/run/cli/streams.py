@@ -24,7 +24,7 @@ def harden_std_streams():
 
 
 class FaultTolerantStream:
-    """A text stream that is quiet once it cannot be written.
+    """A text stream that drops output once it cannot be written.
 
     Parameters
     ----------

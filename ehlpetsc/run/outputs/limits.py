@@ -18,7 +18,7 @@ MAX_DECADES = 300  # of a viscosity that is printed
 
 
 def limits(case, scales, rough, totals):
-    """Limits that a run went beyond, one sentence each.
+    """Limits that a run exceeded, one sentence each.
 
     Parameters
     ----------
@@ -79,10 +79,10 @@ def _balance(case, totals):
     if error <= MAX_MASS_ERROR:
         return None
     figure = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
-    cure = "a finer mesh or smaller snes_atol loses less"
+    cure = "a finer mesh or smaller snes_atol reduces it"
     if not case.contact.has_contact_pressure:
-        cure = 'nodes in direct contact make oil, contact.model = "mixed" keeps it'
-    return f"oil balance: in one step {figure} the oil that the contact carries is lost or made; {cure}"
+        cure = 'nodes in direct contact do not conserve mass, contact.model = "mixed" does'
+    return f"oil balance: the mass defect of one step is {figure} the oil that the contact carries; {cure}"
 
 
 def _molecules(totals):

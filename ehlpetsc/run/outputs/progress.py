@@ -32,7 +32,7 @@ def on_terminal(stream):
 
 
 def in_notebook():
-    """Whether a notebook shows what is written."""
+    """Whether output is shown in a notebook."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     return type(shell).__name__ == "ZMQInteractiveShell"
 
@@ -58,7 +58,7 @@ class Progress:
         self._pending = None
 
     def step(self, scalars):
-        """Take note of an accepted step, and show it if it is the first or the last one was shown long ago.
+        """Show an accepted step if it is the first or enough time has passed.
 
         Parameters
         ----------
@@ -72,7 +72,7 @@ class Progress:
             self._show(now)
 
     def close(self):
-        """Show the last step, if it has not been."""
+        """Show the last step if it has not been shown."""
         if self._pending:
             self._show(clock.monotonic())
         if self._bar and self._shown is not None and not self._output:
@@ -139,7 +139,7 @@ class ProgressOutput:
         self._progress = None if simulation.solution is None else self._of(simulation.solution.time)
 
     def write(self, state):
-        """Show a step; the steady start is none."""
+        """Show a step, but not the steady start."""
         if self._progress is not None:
             self._progress.step(state.scalars)
         elif not self._simulation.finished:  # of a steady case nothing follows
@@ -155,7 +155,7 @@ class ProgressOutput:
 
 
 def _scaled(scalars):
-    """Columns and values of those figures that the step has."""
+    """Columns and scaled values of the scalars of a step."""
     for name, column in _COLUMNS.items():
         if name in scalars:
             whole = STEP_SCALARS[name].dtype[0] == "i"
@@ -185,7 +185,7 @@ def duration(seconds):
 
 
 def summary_line(status, totals, wall):
-    """The line every run ends with, for grep.
+    """Last line of a run, for grep.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ class Recorder:
                 self._lock.release()
 
     def lock_output(self, restart=None, overwrite=False):
-        """Check, before anything is computed, that the result may be written; lock it until the end.
+        """Check before the computation that the result may be written, and lock it until the end.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class Recorder:
         return restart_of_same(self.output, self.restart, case.text)
 
     def resume(self, path):
-        """Put the simulation where a restart file was written, and continue its result.
+        """Set the simulation to the state of a restart file, and continue its result.
 
         Returns
         -------
@@ -124,7 +124,7 @@ class Recorder:
             self._restart_file.write(state)
 
     def checkpoint(self):
-        """Write the restart file, where there is one."""
+        """Write the restart file, if any."""
         with self._guard_write():
             self._restart_file.save()
 
@@ -141,7 +141,7 @@ class Recorder:
 
     @contextlib.contextmanager
     def _guard_write(self):
-        """After a failed write save the last stored state, if possible; the error gets the way to resume."""
+        """Save the last stored state after a failed write, and add advice on resuming to the error."""
         try:
             yield
         except OutputError as error:

@@ -9,7 +9,7 @@ from ehlpetsc.run.restart import checkpoint
 
 
 class RestartFile:
-    """Restart file of a simulation; it is written for states only that the result file holds.
+    """Restart file of a simulation, written only for states that the result file holds.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class RestartFile:
 
     @property
     def stored_step(self):
-        """Last step that the result file holds with all before it, on rank 0; None: none is known."""
+        """Last step up to which the result file is complete, on rank 0; None: unknown."""
         return self._stored and self._stored.state.step
 
     def write(self, state):
@@ -39,7 +39,7 @@ class RestartFile:
             self._saved = clock.monotonic()
 
     def close(self, status):
-        """Write the file for a run that did not get to its end, and for a pass, for the next one."""
+        """Write the file of an unfinished run, and of a pass for the next one."""
         time = self.simulation.case.time
         needed = status is not ExitStatus.DONE or time is not None and time.passes > 1
         if needed and self.simulation.solution is not None and self.result.is_open:
@@ -57,7 +57,7 @@ class RestartFile:
                 self._write(self._stored)
 
     def note_stored(self):
-        """Remember a state to resume from that the result file on rank 0 holds with all before it."""
+        """Keep a state up to which the result file on rank 0 is complete."""
         state = self.simulation.solution
         if self.path and self.simulation.case.time and self.result.holds(state):
             self._stored = self._now()

@@ -52,16 +52,16 @@ class ResultFile:
             on_root(self.comm, self._append, state)
 
     def flush(self):
-        """Write what is buffered; on rank 0."""
+        """Write the buffered rows; on rank 0."""
         self._writer.flush()
 
     def close(self, status):
-        """Write what is left and how the run ended."""
+        """Write the remaining rows and the status of the run."""
         if self.is_open:
             on_root(self.comm, self._close, status)
 
     def abandon(self, status):
-        """Close on this rank alone: the other ranks may not have the error."""
+        """Close on this rank alone: the error may not occur on the others."""
         if self._writer:
             self._writer.close(status.words)
 

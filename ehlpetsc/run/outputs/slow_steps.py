@@ -1,4 +1,4 @@
-"""Warning of a run that has become several times slower than it began."""
+"""Warning when a run becomes several times slower than at its begin."""
 
 import statistics
 
@@ -8,7 +8,7 @@ SLOWDOWN = 3.0  # contact and finer films take up to twice the time of an iterat
 
 
 class SlowSteps:
-    """Warning where an iteration takes several times what the first ones took; an output.
+    """Output that warns when an iteration takes several times as long as the first ones.
 
     Ranks wait for each other some twenty times an iteration: where they share cores with other work, each
     wait lasts until the other rank has its turn.
@@ -41,7 +41,7 @@ class SlowSteps:
             self._compare()
 
     def close(self, status):
-        """Nothing is left to do."""
+        """Do nothing."""
 
     def _compare(self):
         now, begun = statistics.median(self._latest), statistics.median(self._first)

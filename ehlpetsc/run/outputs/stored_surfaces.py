@@ -1,4 +1,4 @@
-"""Both surfaces as a result stores them: heights, and depths that effects keep in the bodies, by body point.
+"""Surfaces of a result: heights, and depths kept in the bodies by effects, over body points.
 
 A body point s is at x = s + speed time; where a result begins after a change of speed an offset makes it so.
 """
@@ -9,7 +9,7 @@ OFFSET_TOLERANCE = 1e-6  # mesh spacings: ways nearer than this differ by roundi
 
 
 def profiles(simulation):
-    """Both surfaces as `ehlpetsc.results.hdf5.datasets.Layout` has them.
+    """Profiles of both surfaces for `ehlpetsc.results.hdf5.datasets.Layout`.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def profiles(simulation):
 
 
 def body_depths(simulation):
-    """Depths that effects keep in the bodies at the body points of :func:`profiles` [m].
+    """Depths kept in the bodies by effects, at the body points of :func:`profiles` [m].
 
     Returns
     -------
@@ -57,7 +57,7 @@ def body_depths(simulation):
 
 
 def _offsets(simulation):
-    """Offsets with which s = x - speed time holds for both surfaces [m]."""
+    """Offsets of s = x - speed time + offset for both surfaces [m]."""
     if simulation.solution is None:
         return 0.0, 0.0
     now = simulation.solution.travelled
@@ -67,7 +67,7 @@ def _offsets(simulation):
 
 
 def _smooth_side(simulation, side, offset, depths):
-    """The stretch of a smooth surface that passes, for depths in it; 0: surface 1."""
+    """Body points of a smooth surface that passes, for its depths; 0: surface 1."""
     scales = simulation.scales
     least, largest = simulation.operation.extent()[side]
     ends = scales.x[[0, -1]] * scales.a

@@ -40,7 +40,7 @@ def worthwhile_ranks(case):
 
 
 def idle_cores():
-    """Cores of this process that had nothing to do in the last minute, on average."""
+    """Idle cores of this process, mean over the last minute."""
     return round(len(os.sched_getaffinity(0)) - os.getloadavg()[0])
 
 

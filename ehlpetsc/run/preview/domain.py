@@ -19,7 +19,7 @@ MAX_INLET = 100.0  # half widths that mesh.inlet may be
 
 
 def domain_warnings(case, scales):
-    """An inlet too near, or nodes too far apart for the inlet sweep: with the figure and the cure.
+    """Warnings of an inlet too near, or a mesh too coarse for the inlet sweep, with the cure.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def domain_faults(case, scales):
 
 
 def _too_narrow(case, scales):
-    """A domain on which solids at their yield pressure everywhere do not bear the load."""
+    """Fault of a domain too narrow to bear the load at the yield pressure."""
     pressure = min(case.contact.yield_pressure)
     needed, there = scales.load / (pressure * scales.a), case.mesh.outlet - case.mesh.inlet
     if needed < there:
@@ -69,7 +69,7 @@ def _too_narrow(case, scales):
 
 
 def _thinnest(case, scales):
-    """The expected film or, where it is thicker, the film that solids in contact leave [a^2/R]."""
+    """Expected film or, where it is thicker, the film left by solids in contact [a^2/R]."""
     return max(expected_film(case, scales), smallest_film(case.contact, scales))
 
 

@@ -1,4 +1,4 @@
-"""The scene of a case in words."""
+"""Summary of a case in words."""
 
 import math
 import tomllib
@@ -23,7 +23,7 @@ from ehlpetsc.surfaces.roughness import Roughness
 
 
 def explain(case):
-    """The scene in words: figures, size, what is switched off.
+    """Summary in words: conditions, size, effects that are off.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def _contact(s):
 
 
 def _layer(contact, s):
-    """Films at which a compliant layer carries; [] without one."""
+    """Films at which a compliant layer carries load; [] without one."""
     if contact.asperity_height is None:
         return []
     law = GAMMA * contact.asperity_height, contact.asperity_stiffness * 0.5 * s.E
@@ -138,7 +138,7 @@ def _size(case, s, rough):
 
 
 def _series(case):
-    """The members of a series and what they take together."""
+    """Members of a series and their total cost."""
     series = tomllib.loads(case.text)["series"]
     shown = "; ".join(
         f"{key} = {', '.join(map(str, values))}"

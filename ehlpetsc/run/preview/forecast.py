@@ -34,12 +34,12 @@ def run_time(case, s, rough):
 
 
 def begin_time():
-    """Of it what comes before the first iteration; a series has it once [s]."""
+    """Wall clock time before the first iteration, once for a series [s]."""
     return START_PROBES * probe()
 
 
 def work_time(case, s, rough):
-    """Of it what the iterations take [s]."""
+    """Wall clock time of the iterations [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
     return passes * (iterations(case, s, rough) + solves) * (ITERATION + NODE * s.nx) * probe()
 
@@ -83,7 +83,7 @@ def steps(s):
 
 
 def file_size(case, s):
-    """Expected size of a pass's result file [bytes]: whole chunks; flags of contact pack to nothing."""
+    """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed."""
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
     frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.nx * value))

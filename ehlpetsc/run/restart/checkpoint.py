@@ -1,4 +1,4 @@
-"""A run's state into a restart file and back, checked against the case that it is to go on with."""
+"""State of a run in a restart file: saved, loaded and checked against the case."""
 
 import tomllib
 from dataclasses import dataclass
@@ -189,7 +189,7 @@ def _earlier(model, arrays):
 
 
 def _misfit(arrays, attributes, earlier, case, scales):
-    """Why a file does not fit the case; None: it does."""
+    """Reason why a file does not fit the case; None: it does."""
     x, now = arrays["x"] / attributes["a"], scales.x
     if len(x) != len(now):
         return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"

@@ -1,4 +1,4 @@
-r"""A state under another load, radius or elasticity: the half width a, p0 and a^2/R are others then.
+r"""A state under another load, radius or elasticity, whose scales a, p0 and a^2/R differ.
 
 Fields stay where they are in x/a, the same node of the mesh. There
 

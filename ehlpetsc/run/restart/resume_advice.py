@@ -5,7 +5,7 @@ from ehlpetsc.results.restart_file import load_restart
 
 
 def resume_advice(restart, case, step):
-    """How to go on, once what was in the way is mended.
+    """Advice on continuing once the cause is removed.
 
     Parameters
     ----------

@@ -90,13 +90,13 @@ class Member:
             return False  # none, or a damaged one: it is computed again
 
     def weight(self):
-        """For beginning with the longest: nodes times steps; of equals, the thinner film."""
+        """Sort key that puts the longest members first: nodes times steps, then the thinner film."""
         scales = Scales.of(self.case)
         film = smooth_films(self.case.fluid, scales.E, scales.conditions)[1] if self.case.fluid else 0.0
         return scales.nx * (steps(scales) if self.case.time else 1), -film
 
     def totals(self):
-        """Figures of its run, from the result file; none without one."""
+        """Totals of its run, from the result file; none without one."""
         try:
             with read_result(self.output) as result:
                 return Totals.of_result(result)

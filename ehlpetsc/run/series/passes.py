@@ -1,4 +1,4 @@
-"""Running in: repeated passes of the same stretches of both bodies, each on the surfaces of the last one.
+"""Running in: repeated passes of the same stretches of both bodies, each with the surfaces of the last one.
 
 Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` contains the
 surfaces after each pass, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
@@ -49,7 +49,7 @@ class Passes:
         return self.file(number).with_suffix(".restart.h5")
 
     def run(self, restart=None, overwrite=False):
-        """Run every pass that is not done; once all are, they are made again.
+        """Run every unfinished pass; a finished series of passes is run again.
 
         Parameters
         ----------
@@ -96,7 +96,7 @@ class Passes:
         return status
 
     def _unfinished(self):
-        """Restart file of the last pass that was begun; None: none was, or all are done."""
+        """Restart file of the last unfinished pass; None: there is none."""
         index, passes = self._read_index(), range(1, self.case.time.passes + 1)
         noted = {row["pass"] for row in index["passes"]} if index["case"] == self.case.text else ()
         begun = next((n for n in passes if n not in noted or not self._is_done(n)), None)
@@ -116,11 +116,11 @@ class Passes:
         return False
 
     def _rows_before(self, first):
-        """Index rows of the passes before one that is continued; none where there is no index."""
+        """Index rows of the passes before a continued one; none without an index."""
         return [row for row in self._read_index()["passes"] if row["pass"] < first]
 
     def _read_index(self):
-        """Case text and rows of the index; none where it is not there or damaged."""
+        """Case text and rows of the index; none where it is missing or damaged."""
         try:
             index = json.loads(self.index.read_text())
             return {"case": index["case"], "passes": [row for row in index["passes"] if row["pass"] > 0]}

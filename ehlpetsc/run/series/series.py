@@ -67,7 +67,7 @@ class Series:
 
     def __init__(self, world, case, options, stop, output):
         if options.hasName("ehl_restart"):
-            raise UsageError("-ehl_restart with a [series]: leave it out, begun members are gone on with")
+            raise UsageError("-ehl_restart with a [series]: leave it out: unfinished members are continued")
         self.world, self.case, self.stop = world, case, stop
         output = Path(output)
         self.index = output.parent / f"{output.stem}.series.json"
@@ -104,7 +104,7 @@ class Series:
         self._announce(ranks, len(missing))
 
     def run(self):
-        """Run what is missing. Returns the exit status."""
+        """Run the missing members; returns the exit status."""
         begun, report = clock.monotonic(), None
         on_root(self.world, self._write_index)
         while True:
@@ -118,7 +118,7 @@ class Series:
             self._lock.release()
 
     def _run_member(self, member):
-        """Run one member on this group; its exit status and why it failed."""
+        """Run one member on this group; returns exit status and failure."""
         group = self.queue.group
         out, err = PrefixedStream(member.name, sys.stdout), PrefixedStream(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
@@ -134,7 +134,7 @@ class Series:
             return ExitStatus.BAD_INPUT, str(error)
 
     def _note_end(self, report):
-        """Record on the first rank how a member ended."""
+        """Record the end of a member on the first rank."""
         number, status, failure = report
         self.states[number] = status.words
         if failure:
@@ -159,7 +159,7 @@ class Series:
         sys.stdout.flush()
 
     def _keep_index(self):
-        """Write the index in mid-run, where an error of the first rank alone would let the others wait."""
+        """Write the index in mid-run; an error of the first rank alone must not block the others."""
         try:
             self._write_index()
             self.unwritten = None

@@ -1,4 +1,4 @@
-"""Queue of pieces of work for groups of ranks: a free group gets the next one.
+"""Queue of work for groups of ranks: a free group gets the next item.
 
 The first rank deals and works at the same time: it looks for requests between its own time steps
 (:meth:`WorkQueue.serve`), so that no rank is spent on waiting and no shared memory is needed.
@@ -13,7 +13,7 @@ POLL_SECONDS = 0.01  # between two polls of a waiting rank
 
 
 class WorkQueue:
-    """Deals the numbers in `order` to groups of `ranks` ranks each.
+    """Distributes the numbers in `order` to groups of `ranks` ranks each.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class WorkQueue:
         self._others = -(-world.size // ranks) - 1  # groups that are yet to hear that nothing is left
 
     def next(self, report, ending):
-        """Report on the last piece and get the next one; collective over the group.
+        """Report on the last item and get the next one; collective over the group.
 
         Parameters
         ----------
@@ -64,7 +64,7 @@ class WorkQueue:
         return self.group.bcast(number)
 
     def serve(self):
-        """Answer the requests that have come; on the first rank, often."""
+        """Answer pending requests; on the first rank, often."""
         if self.world.rank != 0:
             return
         status = MPI.Status()
@@ -91,7 +91,7 @@ class WorkQueue:
 
 
 class PollingStop:
-    """A request to stop that serves the other groups whenever it is asked; as of run.stop.StopRequest.
+    """Stop request that serves the other groups at every query, as `run.stop.StopRequest`.
 
     Parameters
     ----------
