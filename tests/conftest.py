@@ -11,17 +11,17 @@ from ehlpetsc import environment
 environment.prepare()
 MPI_TESTS = Path(__file__).parent / "mpi"
 DEAREST = (  # files of two seconds and more by the time they take
+    "test_post_run",  # these three compile what others load: post-processing, the solver, and nothing
     "test_compliant",
-    "test_post_run",
+    "test_run_script",
     "test_wear_against_fatigue",
+    "test_passes",
     "test_fuzz",
     "test_options",
     "test_interruptions",
     "test_stops",
     "test_series",
     "test_extremes",
-    "test_run_script",
-    "test_passes",
     "test_batch",
     "test_cases",
     "test_figures",
@@ -67,6 +67,17 @@ def signals_as_before():
     for number, handler in before.items():
         if signal.getsignal(number) is not handler:
             signal.signal(number, handler)
+
+
+@pytest.fixture(scope="module")
+def coarse_pictures():
+    """Pictures of post-processing of few dots and in one format, but where a test asks for both."""
+    from ehlpetsc.post.pictures import gallery
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gallery, "DPI", 20)
+        patch.setattr(gallery, "FORMATS", ("png",))
+        yield
 
 
 def pytest_collection_modifyitems(items):

@@ -27,6 +27,7 @@ from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import PostResult
 
+pytestmark = pytest.mark.usefixtures("coarse_pictures")
 COMMAND = [sys.executable, "-m", "ehlpetsc.post"]
 
 

@@ -24,21 +24,13 @@ from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.results.post_result import PostResult
 
+pytestmark = pytest.mark.usefixtures("coarse_pictures")
 FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.run", "ehlpetsc.plot")
 
 
 @pytest.fixture(scope="module")
 def scene():
     return Scene(per_width=40, ratio=0.5, travel=9.0)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def coarse_pictures():
-    """Of one format, but where a test asks for both."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(gallery, "DPI", 20)
-        patch.setattr(gallery, "FORMATS", ("png",))
-        yield
 
 
 @pytest.fixture
