@@ -7,7 +7,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.names import SIDES, stored_name
 
 FLANKS = ("pinion", "wheel")  # surfaces 1 and 2
-SHOWN = 4  # depths in the picture
+MAX_DEPTHS = 4  # in the picture
 
 
 class FlankDamage:
@@ -77,7 +77,7 @@ class FlankDamage:
         from matplotlib.figure import Figure
 
         figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-        chosen = np.unique(np.linspace(0, len(self.depths) - 1, SHOWN).round().astype(int))
+        chosen = np.unique(np.linspace(0, len(self.depths) - 1, MAX_DEPTHS).round().astype(int))
         for k, axis in enumerate(figure.subplots(2, 1)):
             for number, depth in enumerate(chosen):
                 if self.damage[k] is not None:

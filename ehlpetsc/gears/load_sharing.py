@@ -5,7 +5,7 @@ and E with the one behind. With :math:`s=(\rho-\rho_A)/(\rho_B-\rho_A)` from A t
 
 ``thirds``
     :math:`(1+s)/3`: from a third to two thirds, as of teeth without relief (ISO/TR 13989-1). The rise from
-    two thirds to all takes `JUMP` of the path outside B and D: teeth bend, so that the load is continuous.
+    two thirds to all takes `JUMP_LENGTH` of the path outside B and D: teeth bend, so that load is continuous.
 ``tip-relief``
     Two pairs of equal stiffness c' in parallel, separated by the linear relief :math:`C_a(1-s)` of the pair
     that comes in and :math:`C_as` of the one that leaves, share by
@@ -17,7 +17,7 @@ and E with the one behind. With :math:`s=(\rho-\rho_A)/(\rho_B-\rho_A)` from A t
 import numpy as np
 
 RULES = ("thirds", "tip-relief")
-JUMP = 0.005  # of the path: the rise from two thirds to the whole load
+JUMP_LENGTH = 0.005  # of the path: rise from two thirds to the total load
 MIN_RELIEF_RATIO = 0.05  # kappa below which the load would come on over less than a twentieth of A to B
 
 
@@ -52,7 +52,7 @@ def relief_ratio(pair):
 def _rule(pair):
     """Share as a function of s, and the s at which it has a kink."""
     if pair.rule == "thirds":
-        edge = min(JUMP * pair.contact_ratio / (pair.contact_ratio - 1.0), 0.5)
+        edge = min(JUMP_LENGTH * pair.contact_ratio / (pair.contact_ratio - 1.0), 0.5)
         return lambda s: thirds(s, edge), (1.0 - edge,)
     ratio = max(relief_ratio(pair), MIN_RELIEF_RATIO)
     # where the load sets in, or where s/ratio meets the elastic line

@@ -32,7 +32,7 @@ HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
 DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess
-STIFF = 1.0  # p0 per a^2/R: slope of p_c from which pressure and void are the pair of a cavitated node
+STIFF_SLOPE = 1.0  # p0 per a^2/R: from this slope of p_c on, pressure and void are the pair of a cavity
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class CompliantContact(SeparatedContact):
     def _kinds(self, state):
         """Masks of nodes full of oil, and of cavitated ones whose asperities are stiff."""
         full = state.p_q > 0.0
-        return full, ~full & (state.p_w < -STIFF)
+        return full, ~full & (state.p_w < -STIFF_SLOPE)
 
     def from_band(self, state, local, solution):
         """See :class:`.model.ContactModel`."""

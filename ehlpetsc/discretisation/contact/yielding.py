@@ -20,7 +20,7 @@ from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch, swap_pairs
 from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL, PlasticState
 
-CARRIES = 0.1  # of the yield pressure
+MIN_CARRYING_PRESSURE = 0.1  # of the yield pressure: nodes above it carry
 ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method loses the load
 HARDENING = 1.0
 
@@ -66,7 +66,7 @@ class Yielding:
     def yielding_and_elastic(self, state, nodes):
         """Numbers of nodes that yield, and that carry without yielding."""
         yielding, pressure = state.plastic.yielding[nodes], state.pressure[nodes]
-        return yielding.sum(), (~yielding & (pressure > CARRIES * self.yield_pressure)).sum()
+        return yielding.sum(), (~yielding & (pressure > MIN_CARRYING_PRESSURE * self.yield_pressure)).sum()
 
     def is_all_yielding(self, yielding, elastic):
         """Whether next to no node that carries is elastic, by the numbers of nodes."""

@@ -16,7 +16,7 @@ from ehlpetsc.physics.heat.half_space_conduction import (
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
 RENUMBERED = 2.0  # cells between the distance travelled and the step by the speed
-SLOW = 1e-3  # m^2 over the diffusivity: history of a body that hardly moves, at most [s]
+MAX_DIFFUSION_AREA = 1e-3  # m^2: over the diffusivity the longest history of a body [s]
 
 
 class BodyStep(NamedTuple):
@@ -60,7 +60,7 @@ class Body:
         self.solid, self.n, self.dx = solid, scales.nx, scales.dx
         chi, speed = solid.diffusivity, abs(speed)
         length = self.n * self.dx
-        slow = SLOW / chi
+        slow = MAX_DIFFUSION_AREA / chi
         longest = min(length / speed + LONGEST * chi / speed**2, slow) if speed > 0.0 else slow
         self.rates, self.weights = map(np.array, exponentials(dt, max(longest, 2.0 * dt)))
         self.dt = dt

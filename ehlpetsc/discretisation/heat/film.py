@@ -32,7 +32,7 @@ from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
 from ehlpetsc.physics.rheology import mobilities
 
 SWEEPS = 50
-STILL = 1e-11  # of the temperatures: change in a sweep that ends it
+SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the sweeps
 
 
 @compiled
@@ -176,6 +176,6 @@ def transport(t, p, h, left, old, stored, flow, inlet, heat, t_new, q1, q2, shea
             )
             change = max(change, abs(value - t_new[i]))
             t_new[i] = value
-        if not back_flow or change < STILL * inlet:
+        if not back_flow or change < SWEEP_TOLERANCE * inlet:
             return sweep + 1
     return SWEEPS

@@ -16,7 +16,7 @@ from ehlpetsc.physics.heat.laws import film_law
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
-MOST_FLOW = 2.0  # times that of the mean speed: pressure flow beside direct contact
+MAX_FLOW_RATIO = 2.0  # pressure flow beside direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the largest one
 
 
@@ -170,7 +170,7 @@ class HeatStep:
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
         if oil.all():
             return np.inf, np.inf
-        speed, contact = MOST_FLOW * abs(inputs.conditions.entrainment), np.abs(self.scales.x) <= 1.0
+        speed, contact = MAX_FLOW_RATIO * abs(inputs.conditions.entrainment), np.abs(self.scales.x) <= 1.0
         return speed, speed * h[contact].mean() * self.scales.h
 
     def _compression(self, record, film, gradient, step):

@@ -17,7 +17,7 @@ from ehlpetsc.physics.heat import thermal_viscosity
 from ehlpetsc.physics.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
 from ehlpetsc.physics.heat.shear import shear_stress
 
-LEAST_OIL = 1e-6  # fraction of the gap: less conducts as this
+MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 200
 ACCURACY = 1e-10  # K: change in an iteration that ends it
 QUADRATIC = 1e-4  # K: the same of an iteration of Newton's method, after which it is accurate to 1e-9 K
@@ -153,7 +153,7 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
         Of :func:`.thermal_viscosity.log_viscosity` at that temperature.
     """
     more = 1.0 + law.conductivity_pressure * p
-    over_conductivity = 1.0 / (law.conductivity * more * max(left, LEAST_OIL))
+    over_conductivity = 1.0 / (law.conductivity * more * max(left, MIN_CONDUCTING_FRACTION))
     r = h * over_conductivity
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0

@@ -6,8 +6,8 @@ from ehlpetsc.physics.heat.body_heat import Solid
 from ehlpetsc.physics.rheology import viscosity, wall_shear
 
 STEEL = Solid(46.0, 7850.0, 470.0)
-WORTH_HEAT = 20.0  # K: flash temperature above which a case should not be isothermal
-MOST_FRICTION = 0.1  # coefficient of a film: isothermal Newtonian estimates may be anything
+MAX_ISOTHERMAL_FLASH = 20.0  # K: above it a case should not be isothermal
+MAX_FRICTION = 0.1  # coefficient: isothermal Newtonian estimates have no bound
 
 
 def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
@@ -51,7 +51,7 @@ def expected_friction(fluid, boundary_friction, scales, film):
     p = np.array([scales.load / (2.0 * scales.a)])
     with np.errstate(over="ignore"):
         stress, _ = wall_shear(film, 0.0, viscosity(p, fluid)[0], fluid, scales.u1 - scales.u2, p)
-    return float(min(abs(stress[0]) / p[0], MOST_FRICTION))
+    return float(min(abs(stress[0]) / p[0], MAX_FRICTION))
 
 
 def flash_temperature(friction, scales, solids=(STEEL, STEEL)):

@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.heat import thermal_viscosity
 
-LARGE = 20.0  # ln of the sinh of the stress: above it the stress is linear in ln(eta) to 1e-17
+MAX_LN_SINH = 20.0  # above it the stress is linear in ln(eta) to 1e-17
 
 _limited = compiled(thermal_viscosity.limited_shear)
 
@@ -34,7 +34,7 @@ def shear_stress(ln_rate, ln_eta, p, eyring, limit):
     argument = ln_rate + ln_eta
     if eyring == np.inf:
         tau = by_ln_eta = twice = np.exp(min(argument, 600.0))
-    elif argument > LARGE:
+    elif argument > MAX_LN_SINH:
         tau, by_ln_eta, twice = eyring * (argument + 0.6931471805599453), eyring, 0.0
     else:
         x = np.exp(argument)

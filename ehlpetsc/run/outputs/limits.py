@@ -5,7 +5,7 @@ They follow from the totals over all steps; the sentences are stored in the resu
 
 import numpy as np
 
-from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, flash_temperature
+from ehlpetsc.physics.heat.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
 from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
@@ -54,7 +54,7 @@ def _heat(case, scales, totals):
     if "friction_coefficient" not in totals or case.heat is not None or case.motion is None:
         return None
     flash = flash_temperature(abs(totals["friction_coefficient"]), scales)
-    if flash <= WORTH_HEAT:
+    if flash <= MAX_ISOTHERMAL_FLASH:
         return None
     return (
         f"heat: the run is isothermal, but the flash temperature of its friction is about {flash:.0f} K by "

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.heat.flash_temperature import WORTH_HEAT, expected_friction, flash_temperature
+from ehlpetsc.physics.heat.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
 from ehlpetsc.run.preview.domain import domain_warnings
 from ehlpetsc.surfaces.entry_times import entry_warnings
 from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
@@ -48,7 +48,7 @@ def heat_warnings(case, scales):
     friction = case.contact.boundary_friction
     friction = expected_friction(case.fluid, friction, scales, expected_film(case, scales) * scales.h)
     flash = flash_temperature(friction, scales)
-    if flash <= WORTH_HEAT:
+    if flash <= MAX_ISOTHERMAL_FLASH:
         return []
     return [
         f"the case is isothermal, but its flash temperature by Blok's formula is about {flash:.0f} K (steel, "
