@@ -17,19 +17,19 @@ def check_scheme(name):
 def solver_of(case, scales, film_scale, comm, options):
     """Solver of one scene on one communicator.
 
-        Parameters
-        ----------
-        case : case.loading.Case
-        scales : physics.scales.Scales
-        film_scale : float
-            Expected film in a^2/R.
-        comm : petsc4py.PETSc.Comm
-        options : defaults.RunOptions
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : physics.scales.Scales
+    film_scale : float
+        Expected film in a^2/R.
+    comm : petsc4py.PETSc.Comm
+    options : defaults.RunOptions
 
-        Raises
-        ------
-        UsageError
-    Sweeps with a dry or mixed contact.
+    Raises
+    ------
+    UsageError
+        Sweeps with a dry or mixed contact.
     """
     name = options.value("ehl_scheme")
     check_scheme(name)

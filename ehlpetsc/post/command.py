@@ -186,11 +186,11 @@ def _status(work, path, output):
 def main(argv=None, call=lambda name, work: work()):
     """Process each file, draw what could be processed; returns the exit status.
 
-        Parameters
-        ----------
-        argv : list of str, optional
-        call : callable(name, work), optional
-    Runs a piece of work of a given name and returns its exit status.
+    Parameters
+    ----------
+    argv : list of str, optional
+    call : callable(name, work), optional
+        Runs a piece of work of a given name and returns its exit status.
     """
     chosen = arguments(argv)
     if not COMPILED:

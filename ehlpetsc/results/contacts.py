@@ -40,22 +40,22 @@ def layer_film(contact):
 def in_contact(result, frames, nodes=slice(None)):
     """Whether surfaces touch, as stored, or else by the film being at its bound.
 
-        Parameters
-        ----------
-        result : ehlpetsc.results.reader.Result
-        frames : int or slice
-            Stored frames.
-        nodes : int or slice, optional
+    Parameters
+    ----------
+    result : ehlpetsc.results.reader.Result
+    frames : int or slice
+        Stored frames.
+    nodes : int or slice, optional
 
-        Returns
-        -------
-        ndarray of bool
-    Of the shape of the frames and nodes.
+    Returns
+    -------
+    ndarray of bool
+        Of the shape of the frames and nodes.
 
-        Raises
-        ------
-        OutputError
-            The result holds neither contacts nor films.
+    Raises
+    ------
+    OutputError
+        The result holds neither contacts nor films.
     """
     if "in_contact" in result:
         return np.asarray(result["in_contact"][frames, nodes], dtype=bool)

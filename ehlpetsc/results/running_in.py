@@ -13,16 +13,16 @@ MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient"
 def pass_figures(result, begin):
     """Roughness and depths at the end of a pass, and means over the time that both surfaces fill the contact.
 
-        Parameters
-        ----------
-        result : results.reader.Result
-        begin : float
-            Time from which both surfaces fill the contact [s].
+    Parameters
+    ----------
+    result : results.reader.Result
+    begin : float
+        Time from which both surfaces fill the contact [s].
 
-        Returns
-        -------
-        dict
-    SI units; a surface is None where it is not stored.
+    Returns
+    -------
+    dict
+        SI units; a surface is None where it is not stored.
     """
     steps = result.steps
     dt = np.where(steps("time") >= begin, steps("dt"), 0.0)

@@ -9,15 +9,15 @@ from ehlpetsc.stepping.observables import diagnostics
 class AcceptedState:
     """Accepted time level of a simulation; every scalar and field is also an attribute.
 
-        Attributes
-        ----------
+    Attributes
+    ----------
     scalars : dict of str to number
-            Of the step, as below ``steps/`` of a result file [SI units].
-        fields : dict of str to ndarray, shape (nx,)
-            In SI units.
-        in_contact : ndarray of bool, shape (nx,)
-        solution : stepping.state.State
-            Unknowns, and what the next step needs of the past.
+        Of the step, as below ``steps/`` of a result file [SI units].
+    fields : dict of str to ndarray, shape (nx,)
+        In SI units.
+    in_contact : ndarray of bool, shape (nx,)
+    solution : stepping.state.State
+        Unknowns, and what the next step needs of the past.
     """
 
     scalars: dict

@@ -47,13 +47,13 @@ def absurd(given, a, dx, approach, film):
 def likely_unit(given, layout, scale):
     """Keys that would make a profile one as they are measured, e.g. ``unit = "um"``; None if none would.
 
-        Parameters
-        ----------
-        given : ehlpetsc.surfaces.samples.Samples
-        layout : ehlpetsc.surfaces.measured.profile_files.Layout
-            As it was read.
-        scale : float
-    Factor on the heights given by the user.
+    Parameters
+    ----------
+    given : ehlpetsc.surfaces.samples.Samples
+    layout : ehlpetsc.surfaces.measured.profile_files.Layout
+        As it was read.
+    scale : float
+        Factor on the heights given by the user.
     """
     now = (layout.unit or "m", layout.x_unit or layout.unit or "m")
     rq, step = given.z.std() / (abs(scale) or 1.0) / UNITS[now[0]], given.spacing / UNITS[now[1]]
