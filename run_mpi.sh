@@ -227,7 +227,7 @@ worthwhile_ranks() {
 # mpirun ends a run whose reader has gone, as `head -1` does
 outliving_its_reader() {
     trap '' INT TERM HUP USR1 PIPE
-    cat 2>/dev/null || { say "standard output is lost (Broken pipe); going on without it"; exec cat >/dev/null; }
+    cat 2>/dev/null || { say "standard output is lost (Broken pipe); continuing without it"; exec cat >/dev/null; }
 }
 
 # mpirun loses what comes before its ranks are there; the run takes the same request twice as one
@@ -238,7 +238,7 @@ ask_until_heard() {
 }
 
 stopped_early() {
-    say "stopped before the run had begun; nothing to go on with"
+    say "stopped before the run had begun; nothing to continue from"
     exit 4
 }
 

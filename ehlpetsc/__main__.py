@@ -116,7 +116,7 @@ def _after_error(error, stop):
     """Report an error, or the stop that it comes from; returns the exit status."""
     if stop.asked:  # an import may have made another error of it
         if environment.first_rank():
-            print("ehlpetsc: stopped before the run had begun; nothing to go on with", file=sys.stderr)
+            print("ehlpetsc: stopped before the run had begun; nothing to continue from", file=sys.stderr)
         return ExitStatus.STOPPED
     traceback.print_exception(error)
     sys.stdout.flush()

@@ -115,7 +115,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
         The ranks that share the work, each of which calls this and gets the result; by default this process
         alone.
     restart : path-like, optional
-        Restart file to go on from.
+        Restart file to continue from.
     overwrite : bool
         Whether to replace any existing file `output`; else only the complete result of the
         very same case is made again, and an unfinished run of it continued from its restart file.

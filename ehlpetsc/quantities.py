@@ -3,7 +3,7 @@
 A new quantity is a line here and a value in `ehlpetsc.stepping.observables`, or belongs to an effect
 (`ehlpetsc.effects`), which has both; the case file's list of fields,
 writer and reader, progress, the summary line, totals of runs and series, the forecast of file sizes and
-`ehlpetsc.analysis.compare` know it from this table.
+`ehlpetsc.analysis.compare` use this table.
 """
 
 from dataclasses import replace
@@ -152,7 +152,7 @@ STEP_SCALARS = {
     ),
     "wall": StepScalar("s", "wall clock time of the step", over_run="sum"),
 }
-"""Scalars of every time step, below ``steps/``, in the order in which progress and summary tell them."""
+"""Scalars of every time step, below ``steps/``, in the order of progress and summary."""
 
 OTHERS = {
     "x": Field("m", "distance along the entrainment direction", ("x",)),

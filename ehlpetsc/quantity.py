@@ -36,7 +36,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Column:
-    """How progress shows a figure: heading, factor from SI units, format, words in the bar."""
+    """Column of progress: heading, factor from SI units, format, words in the bar."""
 
     heading: str
     factor: float
@@ -51,8 +51,8 @@ class StepScalar(Field):
     Attributes
     ----------
     over_run, over_series : str
-        What tells of all its values, a key of `REDUCTIONS`, "" if nothing does; of a series by default that
-        of its runs.
+        Reduction to one value, a key of `REDUCTIONS`, "" for none; over a series by default that over
+        its runs.
     summary : str
         Format in the last line of a run; "" leaves it out.
     label : str
@@ -60,7 +60,7 @@ class StepScalar(Field):
     progress : Column, optional
         Its column in the lines of progress.
     compared : bool
-        Whether two runs of one case must agree in it: what only tells how a solution was reached need not.
+        Whether two runs of one case must agree in it, unlike a scalar of the solution process.
     """
 
     dims: tuple = _STEP

@@ -21,7 +21,7 @@ def profile_faults(folder, surface, case):
     surface : object
         Table `surface` of the case file.
     case : Case or None
-        None where other tables are at fault: the profiles are then not held against the contact.
+        None where other tables have faults: the profiles are then not compared with the contact.
 
     Returns
     -------

@@ -45,7 +45,7 @@ class Job(NamedTuple):
     settings: tuple = ()
 
     def overrides(self):
-        """Keys of the case set anew, as of `ehlpetsc.load`."""
+        """Overrides of the case, as of `ehlpetsc.load`."""
         depths = () if self.depths is None else (("post.depths", list(self.depths)),)
         return [*self.settings, *depths]
 

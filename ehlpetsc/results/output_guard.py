@@ -82,7 +82,7 @@ def check_derived(path, inputs, kinds, option="-o"):
             with open(path, "rb") as file:
                 head = file.read(SIGNATURE_BYTES)
         except OSError as error:
-            raise OutputError(f"{path}: cannot be looked at, {error.strerror}") from error
+            raise OutputError(f"{path}: cannot be read, {error.strerror}") from error
         if head and signature not in head:
             raise OutputError(f"{path}: exists and is not of that kind; remove it or give another {option}")
 
@@ -94,7 +94,7 @@ def exists(path):
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         name = str(path) if str(path).isprintable() else repr(str(path))
-        raise OutputError(f"{name}: cannot be looked at, {reason}") from error
+        raise OutputError(f"{name}: cannot be read, {reason}") from error
 
 
 def check_index(path, rows, files=()):

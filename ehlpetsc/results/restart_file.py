@@ -1,7 +1,7 @@
 """Restart files: arrays and numbers in HDF5, behind a head that holds a checksum over all of it.
 
-The head is the file's user block, 512 bytes that HDF5 leaves alone. It is looked at before HDF5 is: a file
-that is not byte for byte what was written is refused, and HDF5 never meets one that could make it crash.
+The head is the file's user block, 512 bytes that HDF5 leaves alone. It is checked before HDF5 reads the file:
+a file that differs from what was written in any byte is refused, as it might crash HDF5.
 """
 
 import hashlib
@@ -93,10 +93,10 @@ def _check(path, whole):
 
 
 def restart_of_same(path, restart, case_text):
-    """Restart file from which the same command continues an unfinished run; None: it begins anew.
+    """Restart file from which the same command continues an unfinished run; None: it begins at time 0.
 
-    Begun anew are the complete result of the very same case, and a run of it that was killed before its first
-    restart file. Anything else in the place of the result is refused.
+    A run begins at time 0 where the result of the very same case is complete, or where it was killed before
+    its first restart file. Any other file at the path of the result is refused.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def restart_of_same(path, restart, case_text):
         raise OutputError(f"{error}; remove it, {OVERWRITE_ADVICE}") from None
     if not same or status is None:
         which = "whose result is gone" if same else "of another case, or of other -ehl_set"
-        way = f"go on with -ehl_restart {restart}, {OVERWRITE_ADVICE}"
+        way = f"continue with -ehl_restart {restart}, {OVERWRITE_ADVICE}"
         raise OutputError(f"{restart}: a restart file waits there, {which}; {way}")
     return restart
 

@@ -51,7 +51,7 @@ class Simulation:
     after : Simulation, optional
         The pass before, of the same case, that is over: both bodies meet again as it has left them.
     pass_number : int, optional
-        Of a pass that goes on from a restart file; else it follows from `after`.
+        Of a pass continued from a restart file; else it follows from `after`.
 
     Attributes
     ----------

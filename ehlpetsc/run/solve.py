@@ -155,9 +155,9 @@ class Run:
             saved = f". Last good state: {recorder.restart}" if state else ""
             print(f"ehlpetsc: not converged: {outcome.failure}{saved}", file=self.err, flush=True)
         elif outcome.status is ExitStatus.STOPPED and state is None:
-            self._print("ehlpetsc: stopped during the steady start; nothing to go on with")
+            self._print("ehlpetsc: stopped during the steady start; nothing to continue from")
         elif outcome.status is ExitStatus.STOPPED:
-            way = f"go on with -ehl_restart {recorder.restart} or the same command"
+            way = f"continue with -ehl_restart {recorder.restart} or the same command"
             self._print(f"ehlpetsc: stopped at step {state.step}; {way}")
         for line in recorder.result.limits:
             self._print(f"limit: {line}")

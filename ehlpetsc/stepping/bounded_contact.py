@@ -3,7 +3,7 @@ r"""Dry contact of solids that yield, as a convex problem: a start for Newton's 
 .. math:: \min_p\ \tfrac12\,p\cdot Ap+p\cdot g,\qquad 0\le p\le p_y,\quad \sum p\,\Delta x=W,
 
 A the deflection, g the gap of the undeformed shapes: the gradient is the deformed gap, but for the approach.
-Projected gradients with Nesterov's momentum, begun anew wherever a step turns back, reach it from anywhere;
+Projected gradients with Nesterov's momentum, restarted wherever a step turns back, converge from any start;
 where nearly all that touches yields, Newton's method alone wanders from one set of elastic nodes to the next.
 """
 

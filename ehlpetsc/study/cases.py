@@ -74,7 +74,7 @@ class StudyCase:
     short : bool
         Whether the case belongs to the short form.
     before : tuple of str or None
-        Overrides of an earlier run from whose restart file this one goes on.
+        Overrides of an earlier run from whose restart file this one continues.
     """
 
     axis: str

@@ -54,7 +54,7 @@ class Measured:
     iterations, halved, mass_error, seconds
         Newton's a step, steps that had to be halved, largest oil imbalance, processor time of the run.
     damage_at_surface, damage_below
-        Largest fatigue damage of surface 1 in a passage, at the depths of `DEPTHS`; nan: not asked.
+        Largest fatigue damage of surface 1 in a passage, at the depths of `DEPTHS`; nan: not computed.
     """
 
     length: float

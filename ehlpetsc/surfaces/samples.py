@@ -49,7 +49,7 @@ class Samples:
 
 
 def samples(folder, spec, cell=None):
-    """Samples of one surface: read or made, thinned, levelled, both filters, mean taken off, flipped, scaled.
+    """Samples of one surface: read or generated, thinned, levelled, filtered, without mean, flipped, scaled.
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ def samples(folder, spec, cell=None):
             X, z = thinned(X, z, cell)
     source = None
     if z.size < before[1].size:
-        notes.append(f"{before[1].size} points, thinned to {z.size}: means around each go on")
+        notes.append(f"{before[1].size} points, thinned to {z.size} local means")
         source = Samples(*_turned(*before, spec), True, True)
     mean = float(z.mean())
     if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would come in as a step and thin the film
         z = z - mean
-        notes.append(f"mean height of {1e6 * mean:.4g} um taken off")
+        notes.append(f"mean height of {1e6 * mean:.4g} um subtracted")
     return Samples(*_turned(X, z, spec), True, True, tuple(notes), source)
 
 

@@ -46,7 +46,7 @@ def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path):
     process.send_signal(signal.SIGTERM)
     _, output, errors = ended(process)
     assert process.returncode in (1, 4)
-    assert "go on with -ehl_restart r.restart.h5" in output or "(Open MPI) 5." in version
+    assert "continue with -ehl_restart r.restart.h5" in output or "(Open MPI) 5." in version
     assert "Traceback" not in errors and "PETSC ERROR" not in errors
     assert_stopped_whole(tmp_path)
 

@@ -49,7 +49,7 @@ def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(
 ):
     stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), step))
     assert stopped.returncode == 4, stopped.stderr
-    assert f"stopped at step {step}; go on with -ehl_restart table1_rough.restart.h5" in stopped.stdout
+    assert f"stopped at step {step}; continue with -ehl_restart table1_rough.restart.h5" in stopped.stdout
     assert last_step(tmp_path / "table1_rough.h5") == (step, "stopped")
     going_on = [*CASE, "-ehl_restart", "table1_rough.restart.h5"]
     done = run(*going_on, cwd=tmp_path, ranks=others)

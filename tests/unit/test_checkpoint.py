@@ -256,8 +256,8 @@ def test_only_a_restart_file_that_fits_the_result_is_named_as_the_way_on(tmp_pat
     scene = Scene()
     scene.save(path, *state_of(scene))
     told = resume_advice(path, Scene(*other).case, stored)
-    assert told.endswith(f"go on with -ehl_restart {path} (step 3)") == there
+    assert told.endswith(f"continue with -ehl_restart {path} (step 3)") == there
     assert told.startswith("there is no restart file of it") != there
-    assert there or told.endswith("run it anew with -ehl_overwrite"), "what lies there would be refused"
+    assert there or told.endswith("repeat it with -ehl_overwrite"), "what lies there would be refused"
     path.unlink()
-    assert resume_advice(path, scene.case, stored).endswith("the same command begins anew")
+    assert resume_advice(path, scene.case, stored).endswith("the same command begins at time 0")

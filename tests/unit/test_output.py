@@ -403,8 +403,8 @@ def without_rows(path):
 @pytest.mark.parametrize(
     "act, told",
     [
-        (lambda path: check_output_path(path, []), "cannot be looked at"),
-        (lambda path: check_index(path, "members"), "cannot be looked at"),
+        (lambda path: check_output_path(path, []), "cannot be read"),
+        (lambda path: check_index(path, "members"), "cannot be read"),
         (read_result, "not read"),
         (load_restart, "not read"),
     ],

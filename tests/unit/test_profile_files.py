@@ -245,7 +245,7 @@ def test_other_formats_come_through_surface_topography(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("said", "told"),
-    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of the formats it knows")],
+    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of its formats")],
 )
 def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeypatch, said, told):
     def read_topography(path):

@@ -313,7 +313,7 @@ def test_a_constant_offset_is_taken_off_and_told(tmp_path):
     np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
     spec = SurfaceProfile(file="p.csv", scale=0.5)
     given = samples(tmp_path, spec)
-    assert given.notes == ("mean height of 1 um taken off",)
+    assert given.notes == ("mean height of 1 um subtracted",)
     np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
     assert samples(ALICONA.parent, SurfaceProfile(file=ALICONA.name)).notes == ()
 

@@ -115,7 +115,7 @@ def test_a_signal_is_handed_on_to_every_rank_and_the_status_is_theirs(script, tm
     assert done.stderr == ""
 
 
-NOT_BEGUN = "run_mpi.sh: stopped before the run had begun; nothing to go on with\n"
+NOT_BEGUN = "run_mpi.sh: stopped before the run had begun; nothing to continue from\n"
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])

@@ -91,7 +91,7 @@ class Case(Table):
 
     @property
     def text(self):
-        if isinstance(self._text, partial):  # of a member of a series: worked out where it is wanted
+        if isinstance(self._text, partial):  # of a member of a series: made at first use
             self._text = self._text()
         return self._text
 

@@ -1,7 +1,7 @@
 """Interface of the contact models: everything in which one law of contact differs from another.
 
 A model maps the unknowns (q, w) of a node to pressures, film and separation. Solver, time stepping and
-outputs call the methods below and know no model by name; a new law of contact is one module with one
+outputs call the methods below and depend on no single model; a new law of contact is one module with one
 subclass, and a line in :func:`ehlpetsc.discretisation.contact.contact_model`.
 
 Lengths in x are in half widths, films in a^2/R, pressures in p0.

@@ -32,7 +32,7 @@ def input_digest(loads, surfaces):
         last = min(first + FRAMES, loads.time.size)
         for name in loads.needed(surfaces):
             rows = loads.rows(name, first, last)
-            with np.errstate(all="ignore"):  # of damaged numbers; they are looked for next
+            with np.errstate(all="ignore"):  # of damaged numbers, which are detected below
                 sums = rows @ weights
             _check_finite(loads, name, first, rows, sums)
             _check_rows(balance, name, first, rows, sums[:, 0])

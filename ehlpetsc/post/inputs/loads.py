@@ -27,7 +27,7 @@ class Loads:
     ----------
     path : path-like
     overrides : dict, optional
-        Keys of its case set anew, as of `ehlpetsc.load`.
+        Overrides of its case, as of `ehlpetsc.load`.
 
     Attributes
     ----------

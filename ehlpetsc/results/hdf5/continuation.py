@@ -80,7 +80,7 @@ def _misfit(file, old, step, count_from_file):
     if last is not None and last < step:  # None: stopped before its first step
         return f"it ends at step {last}, before step {step} of the restart file"
     if count_from_file and last is not None and last > step:
-        return f"it goes on to step {last} and the contacts up to step {step} are not known"
+        return f"it continues to step {last} and the contacts up to step {step} are unknown"
     for name, what in (("p0", "largest pressure of Hertz"), ("u1", "speed"), ("u2", "speed")):
         if name in file.attrs and not np.isclose(
             old.attrs[name], file.attrs[name], rtol=SCALE_TOLERANCE, atol=0.0

@@ -25,7 +25,9 @@ OWN = {
     "ehl_output": Option("FILE.h5", "CASE.h5 in this folder", "result file, the restart file beside it"),
     "ehl_overwrite": Option("", "no", "replace any file at the path of the result"),
     "ehl_ranks_per_member": Option("RANKS", "1", "of a [series], how many ranks compute one member"),
-    "ehl_restart": Option("FILE.restart.h5", "begin at time 0", "go on from there and append to the result"),
+    "ehl_restart": Option(
+        "FILE.restart.h5", "begin at time 0", "continue from there and append to the result"
+    ),
     "ehl_scheme": Option("newton|sweep", "newton", "iteration; sweep is the paper's own, slower"),
     "ehl_set": Option("TABLE.KEY=VALUE", "the case as it is", "set a key of the case; may be repeated"),
     "ehl_time_limit": Option("MINUTES", "none", "stop after this wall clock time, restart file written"),

@@ -65,5 +65,7 @@ class FaultTolerantStream:
         with contextlib.suppress(OSError):
             self._stream.flush()
         if self.lost is None and self._name:
-            print(f"ehlpetsc: {self._name} is lost ({error.strerror}); going on without it", file=sys.stderr)
+            print(
+                f"ehlpetsc: {self._name} is lost ({error.strerror}); continuing without it", file=sys.stderr
+            )
         self.lost = error

@@ -28,7 +28,7 @@ def warnings(case, scales):
     if case.contact.yield_pressure and min(case.contact.yield_pressure) < MIN_YIELD_PRESSURE * scales.p0:
         notes.append(
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
-            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, which no half space tells"
+            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
         )
     if rough and case.time is None and case.motion is not None:
         notes.append(

@@ -106,7 +106,7 @@ def load(path, case, scales, model):
         Not a restart file, a damaged one, or one that does not fit the case.
     """
     if case.time is None:
-        raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to go on with")
+        raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to continue")
     arrays, attributes = load_restart(path)
     damage = fault(arrays, attributes)
     if damage:
@@ -198,7 +198,7 @@ def _misfit(arrays, attributes, earlier, case, scales):
         return f"its nodes lie from {was}, those of the case from {is_now}; [mesh] must be as it was"
     if ("fluid" in earlier) != (case.fluid is not None):
         one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
-        return f"a run {one} [fluid] cannot go on {other} it"
+        return f"a run {one} [fluid] cannot continue {other} it"
     if case.fluid is not None and attributes["dt"] and not {"m", "m_older"} <= arrays.keys():
         return "damaged restart file: its masses per area m, m_older are missing"
     for side, name, speed in (("1", "u1", scales.u1), ("2", "u2", scales.u2)):

@@ -10,7 +10,7 @@ def resume_advice(restart, case, step):
     Parameters
     ----------
     restart : Path
-        Restart file of the run; whether it is there, and whose, is looked at.
+        Restart file of the run; it may be missing or of another case.
     case : case.loading.Case
     step : int or None
         The last step that the result file holds whole; None: it holds none.
@@ -23,8 +23,8 @@ def resume_advice(restart, case, step):
     try:
         attributes = load_restart(restart)[1]
         if step is not None and attributes["case"] == case.text and attributes["step"] <= step:
-            return f"once this is mended, go on with -ehl_restart {restart} (step {attributes['step']})"
+            return f"once this is mended, continue with -ehl_restart {restart} (step {attributes['step']})"
     except (OutputError, KeyError):
         pass  # none, an older one that is damaged, or another program's
-    again = "run it anew with -ehl_overwrite" if restart.exists() else "the same command begins anew"
+    again = "repeat it with -ehl_overwrite" if restart.exists() else "the same command begins at time 0"
     return f"there is no restart file of it: once this is mended, {again}"

@@ -126,7 +126,7 @@ class Series:
             one = Run(
                 Simulation(member.case, group), member.output, PollingStop(self.queue, self.stop), out, err
             )
-            outcome = one.run(member.restart if begun else None, overwrite=True)  # looked at before: ours
+            outcome = one.run(member.restart if begun else None, overwrite=True)  # checked before: it is ours
             return outcome.status, str(outcome.failure or "")
         except (CaseError, OutputError, UsageError) as error:
             if group.rank == 0:

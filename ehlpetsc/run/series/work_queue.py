@@ -25,7 +25,7 @@ class WorkQueue:
     take : callable
         Called on the first rank of the world with each report.
     group : mpi4py communicator, optional
-        The group of this rank, of a queue before; by default the ranks are split anew.
+        Group of this rank in an earlier queue; by default the ranks are split.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-r"""Error against run time: one setting of a case varied at a time, held against a reference finer than all.
+r"""Error against run time: one setting of a case varied at a time, compared with a finer reference.
 
 The reference has twice the finest mesh, half the least Courant number and the tightest tolerances of those
 tried. Its own error is estimated by Richardson extrapolation from two runs with 2 and 4 times its mesh and

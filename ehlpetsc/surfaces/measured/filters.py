@@ -62,7 +62,10 @@ def mean_line(x, z, cutoff, key):
             f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {least:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
-    size, beyond = x.size, int(2.0 * cutoff / step) + MIN_PADDING  # where the filter's weights are gone
+    size, beyond = (
+        x.size,
+        int(2.0 * cutoff / step) + MIN_PADDING,
+    )  # beyond it the weights of the filter vanish
     if (
         size > MAX_EXACT_LENGTH and beyond < size
     ):  # lengths with a large prime factor cost six times the memory

@@ -136,7 +136,7 @@ def _from_surface_topography(path, layout):
         raise ProfileError(f"{path.suffix!r} is no profile file; allowed: two columns of text, x and z")
     given = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
     if given:
-        raise ProfileError(f"{given[0]}: for text alone, the format {path.suffix!r} tells it; leave it out")
+        raise ProfileError(f"{given[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
     try:
         from SurfaceTopography import read_topography
     except ModuleNotFoundError:
@@ -154,7 +154,7 @@ def _from_surface_topography(path, layout):
         x, _, z = topography.positions_and_heights()
     except Exception as error:  # its readers raise what they like on a damaged file
         lines = str(error).strip().splitlines()  # many: what each of its readers says to an unknown format
-        reason = lines[0] if len(lines) == 1 else "in none of the formats it knows"
+        reason = lines[0] if len(lines) == 1 else "in none of its formats"
         raise ProfileError(f"SurfaceTopography cannot read it: {reason}") from None
     middle = z.shape[1] // 2  # of an areal map the central trace
     return x[:, middle], z[:, middle]
