@@ -14,6 +14,8 @@ import numpy as np
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output
 try:
     import numba
+    from llvmlite import ir
+    from numba.extending import intrinsic
 
     COMPILED = True
 except ImportError:
@@ -68,3 +70,19 @@ def compiled(function=None, **options):
         return numba.njit(**options)(function)
     except RuntimeError:  # neither the package's directory nor the user's can be written to
         return numba.njit(**(options | {"cache": False}))(function)
+
+
+if COMPILED:
+
+    @intrinsic
+    def call_allgather(typing, function, send, number, received, count, communicator):
+        """``function(send, count, number, received, count, number, communicator)`` of C in compiled loops."""
+
+        def code(context, builder, signature, arguments):
+            function, send, number, received, count, communicator = arguments
+            word, integer = ir.IntType(64), ir.IntType(32)
+            kind = ir.FunctionType(integer, [word, integer, word, word, integer, word, word])
+            call, count = builder.inttoptr(function, kind.as_pointer()), builder.trunc(count, integer)
+            return builder.call(call, [send, count, number, received, count, number, communicator])
+
+        return numba.types.int32(*[numba.types.int64] * 6), code

@@ -19,6 +19,7 @@ the same rank: the sums over the neighbour's outer block, and moments.
 """
 
 import itertools
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,94 +68,102 @@ def exponentials(kernel, nearest, tolerance=TOLERANCE):
             return t, weights
 
 
-class CurvatureProduct:
-    r"""Sums :math:`\sum_kf_kp_{i+k}` over the nodes of the mesh, at the nodes of one rank.
-
-    Parameters
-    ----------
-    kernel : ndarray, shape (n,)
-        f at distances of 0 .. n-1 nodes.
-    cuts : sequence of int, optional
-        First nodes of all ranks, multiples of `BLOCK`, and n; by default one rank has the mesh.
-    rank : int
-    tolerance : float
-        Relative error of f beyond `BLOCK` nodes.
+class Blocks(NamedTuple):
+    r"""Product :math:`\sum_kf_kp_{i+k}` over the nodes of the mesh, at the blocks of one rank.
 
     Attributes
     ----------
-    message_size : int
-        Numbers that a rank sends: one half for ranks on its right, one for those on its left. Each has the
-        sums over the outer block at the block beyond (`BLOCK`), the moments of all other blocks, and those of
-        the outer one.
+    rank : int
+    matrices : tuple of ndarray
+        Sums at a block, its right and its left neighbour and moments to both sides, by its pressures, shape
+        (BLOCK, 3 BLOCK + 2 terms); sums by the moments that arrive, (2 terms, BLOCK); factor of a moment a
+        block further, (terms,); factors of every rank's moments (inner blocks, outer block) at the outer
+        block of this rank, (ranks, 2, terms).
+    room : tuple of ndarray
+        Pressures of the blocks; sums and moments by them; the others as of :func:`scan_moments`.
     """
 
-    def __init__(self, kernel, cuts=None, rank=0, tolerance=TOLERANCE):
+    rank: int
+    matrices: tuple
+    room: tuple
+
+    @classmethod
+    def of(cls, kernel, cuts=None, rank=0, tolerance=TOLERANCE):
+        """Blocks of a rank.
+
+        Parameters
+        ----------
+        kernel : ndarray, shape (n,)
+            f at distances of 0 .. n-1 nodes.
+        cuts : sequence of int, optional
+            First nodes of all ranks, multiples of `BLOCK`, and n; by default one rank has the mesh.
+        rank : int
+        tolerance : float
+            Relative error of f beyond `BLOCK` nodes.
+        """
         cuts = (0, len(kernel)) if cuts is None else cuts
-        self._local, self._rank = cuts[rank + 1] - cuts[rank], rank
         rates, weights = exponentials(kernel, BLOCK + 1, tolerance)
-        blocks, terms, self._decay = -(-self._local // BLOCK), len(rates), np.exp(-BLOCK * rates)
-        self.message_size = 2 * (BLOCK + 2 * terms)
-        self._translation = self._translation_factors(cuts, rates)
-        moments = self._moments(rates)
-        self._of_pressures = np.hstack([*self._near(kernel), *moments])
-        self._of_moments = np.concatenate([(weights * part).T for part in moments[::-1]])
-        self._pressures = np.zeros((blocks, BLOCK))
-        self._near_and_moments = np.empty((blocks, 3 * BLOCK + 2 * terms))
-        self._incoming, self._arriving = np.zeros((2, 2, terms)), np.empty((blocks + 2, 2 * terms))
-
-    @staticmethod
-    def _near(kernel):
-        """Matrices of the sums over a block at itself, at the block on its right and at that on its left."""
-        known = np.zeros(2 * BLOCK)
-        known[: len(kernel)] = kernel[: 2 * BLOCK]
-        apart = np.arange(BLOCK) - np.arange(BLOCK)[:, None]
-        return [known[np.abs(apart + shift)] for shift in (0, BLOCK, -BLOCK)]
-
-    @staticmethod
-    def _moments(rates):
-        """Matrices of the moments that a block sends to the right and to the left."""
+        blocks, terms = -((cuts[rank] - cuts[rank + 1]) // BLOCK), len(rates)
         to_the_end = np.arange(BLOCK)[::-1, None]
-        return [np.exp(-rates * to_the_end), np.exp(-rates * to_the_end[::-1])]
+        moments = [np.exp(-rates * to_the_end), np.exp(-rates * to_the_end[::-1])]
+        matrices = (
+            np.hstack([*_near(kernel), *moments]),
+            np.concatenate([(weights * part).T for part in moments[::-1]]),
+            np.exp(-BLOCK * rates),
+            _translation(cuts, rank, rates),
+        )
+        sent, incoming = np.empty((blocks, 3 * BLOCK + 2 * terms)), np.zeros((2, 2, terms))
+        return cls(
+            rank, matrices, (np.zeros((blocks, BLOCK)), sent, incoming, np.empty((blocks + 2, 2 * terms)))
+        )
 
-    def _translation_factors(self, cuts, rates):
-        """Factors of every rank's moments (inner blocks, outer block) at the outer block of this rank."""
-        factors = np.zeros((len(cuts) - 1, 2, len(rates)))
-        for other in range(len(factors)):
-            if abs(other - self._rank) == 1:  # its outer block reaches this one by the kernel
-                factors[other, 0] = 1.0
-            elif other != self._rank:
-                left, right = sorted((other, self._rank))
-                factors[other, 1] = np.exp(-rates * (cuts[right] - cuts[left + 1] - BLOCK))
-                factors[other, 0] = self._decay * factors[other, 1]
-        return factors
+    @property
+    def message_size(self):
+        """Numbers that a rank sends: one half for ranks on its right, one for those on its left.
 
-    def pack(self, pressure, message):
-        """Begin the product with the pressures of this rank, and fill in the message to the others."""
-        self._incoming[:] = 0.0
-        buffers = self._pressures, self._near_and_moments, self._arriving
-        pack(pressure, self._of_pressures, self._decay, self._incoming, *buffers, message)
+        Each has the sums over the outer block at the block beyond, the moments of all other blocks, and those
+        of the outer one.
+        """
+        return 2 * (BLOCK + 2 * len(self.matrices[2]))
 
-    def sums(self, messages):
-        """Sums at the nodes of this rank, from the messages of all ranks, one in each row."""
-        sums = np.empty_like(self._pressures)
-        buffers = self._incoming, self._near_and_moments, self._arriving
-        unpack(messages, self._rank, self._translation, self._of_moments, self._decay, *buffers, sums)
-        return sums.ravel()[: self._local]
 
-    def __call__(self, pressure):
-        """Sums on one rank."""
-        message = np.empty((1, self.message_size))
-        self.pack(pressure, message[0])
-        return self.sums(message)
+def _near(kernel):
+    """Matrices of the sums over a block at itself, at the block on its right and at that on its left."""
+    known = np.zeros(2 * BLOCK)
+    known[: len(kernel)] = kernel[: 2 * BLOCK]
+    apart = np.arange(BLOCK) - np.arange(BLOCK)[:, None]
+    return [known[np.abs(apart + shift)] for shift in (0, BLOCK, -BLOCK)]
+
+
+def _translation(cuts, rank, rates):
+    factors = np.zeros((len(cuts) - 1, 2, len(rates)))
+    for other in range(len(factors)):
+        if abs(other - rank) == 1:  # its outer block reaches this one by the kernel
+            factors[other, 0] = 1.0
+        elif other != rank:
+            left, right = sorted((other, rank))
+            factors[other, 1] = np.exp(-rates * (cuts[right] - cuts[left + 1] - BLOCK))
+            factors[other, 0] = np.exp(-BLOCK * rates) * factors[other, 1]
+    return factors
+
+
+def product(blocks, pressure):
+    """Sums on one rank, from the pressures (n,) of the mesh."""
+    messages = np.empty((1, blocks.message_size))
+    pack(*blocks, pressure, messages[0])
+    return unpack(*blocks, messages)[: len(pressure)]
 
 
 @compiled
-def pack(pressure, of_pressures, decay, none, pressures, near_and_moments, arriving, message):
-    """Multiply the blocks' pressures, and fill in the message; see :class:`CurvatureProduct`."""
+def pack(rank, matrices, room, pressure, message):
+    """Begin the product with the pressures of this rank, and fill in its message to the others."""
+    of_pressures, _, decay, _ = matrices
+    pressures, near_and_moments, incoming, arriving = room
     pressures.ravel()[: len(pressure)] = pressure
     np.dot(pressures, of_pressures, near_and_moments)
-    scan_moments(near_and_moments, decay, none, arriving)
-    last, terms = len(pressures) - 1, len(decay)
+    incoming[:] = 0.0
+    scan_moments(near_and_moments, decay, incoming, arriving)
+    last, terms = len(near_and_moments) - 1, len(decay)
     left = BLOCK + 2 * terms
     for i in range(BLOCK):
         message[i] = near_and_moments[last, BLOCK + i]
@@ -167,23 +176,16 @@ def pack(pressure, of_pressures, decay, none, pressures, near_and_moments, arriv
 
 
 @compiled
-def unpack(messages, rank, translation, of_moments, decay, incoming, near_and_moments, arriving, sums):
-    """Complete the sums with what arrives from all other ranks; see :class:`CurvatureProduct`."""
-    ranks, last, terms = len(messages), len(sums) - 1, len(decay)
-    half = BLOCK + 2 * terms
-    for other in range(ranks):
-        if other != rank:
-            side = 0 if other < rank else 1  # on which this rank receives it
-            inner = side * half + BLOCK
-            for m in range(terms):
-                moments = messages[other, inner + m], messages[other, inner + terms + m]
-                incoming[side, 0, m] += translation[other, 0, m] * moments[0]
-                incoming[side, 0, m] += translation[other, 1, m] * moments[1]
-                if abs(other - rank) == 1:
-                    incoming[side, 1, m] = moments[1]
+def unpack(rank, matrices, room, messages):
+    """Sums at the nodes of all blocks of this rank, from the messages of all ranks, one in each row."""
+    _, of_moments, decay, translation = matrices
+    _, near_and_moments, incoming, arriving = room
+    ranks, last = len(messages), len(near_and_moments) - 1
+    half = messages.shape[1] // 2
     if ranks > 1:
+        receive_moments(messages, rank, translation, incoming)
         scan_moments(near_and_moments, decay, incoming, arriving)
-    np.dot(arriving[1:-1], of_moments, sums)
+    sums = np.dot(arriving[1:-1], of_moments)
     for b in range(last + 1):
         for i in range(BLOCK):
             sums[b, i] += near_and_moments[b, i]
@@ -196,6 +198,23 @@ def unpack(messages, rank, translation, of_moments, decay, incoming, near_and_mo
             sums[0, i] += messages[rank - 1, i]
         if rank < ranks - 1:
             sums[last, i] += messages[rank + 1, half + i]
+    return sums.ravel()
+
+
+@compiled
+def receive_moments(messages, rank, translation, incoming):
+    """Sum up the moments that arrive from all other ranks."""
+    terms = translation.shape[2]
+    for other in range(len(messages)):
+        if other != rank:
+            side = 0 if other < rank else 1  # on which this rank receives it
+            inner = side * (BLOCK + 2 * terms) + BLOCK
+            for m in range(terms):
+                moments = messages[other, inner + m], messages[other, inner + terms + m]
+                incoming[side, 0, m] += translation[other, 0, m] * moments[0]
+                incoming[side, 0, m] += translation[other, 1, m] * moments[1]
+                if abs(other - rank) == 1:
+                    incoming[side, 1, m] = moments[1]
 
 
 @compiled

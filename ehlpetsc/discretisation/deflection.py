@@ -22,7 +22,7 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation import elasticity
-from ehlpetsc.discretisation.curvature_product import CurvatureProduct
+from ehlpetsc.discretisation.curvature_product import Blocks, product
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 HALO = 8  # nodes on either side of its own that a rank is given; the widest stencil of the preconditioner
@@ -85,8 +85,8 @@ class Deflection:
         self.load_weights = np.stack([*mine, np.full(last - first, dx)])
 
     @cached_property
-    def _curvature_product(self):
-        return CurvatureProduct(self.curvature)
+    def _blocks(self):
+        return Blocks.of(self.curvature)
 
     def _logarithm(self):
         return elasticity.deflection_kernel(self.n) - np.log(self.dx)
@@ -98,7 +98,7 @@ class Deflection:
 
     def sums(self, pressure):
         """`PressureSums` of the pressures (n,) of the mesh, on one rank."""
-        return PressureSums(self._curvature_product(pressure), self.load_weights @ pressure)
+        return PressureSums(product(self._blocks, pressure), self.load_weights @ pressure)
 
     def residual(self, separation, approach, sums):
         """Linear form in the local rows.

@@ -128,7 +128,6 @@ class EHLProblem:
         self.model = contact_model(case, scales, film_scale, bound_tolerance)
         self.deflection = Deflection(self.n, self.dx, first, last)
         self.window, self.owned = self.deflection.window, self.deflection.owned
-        self._changes = np.empty((3, self.window.stop - self.window.start))
         self._parabola = 0.5 * self.x[self.window] ** 2
         self.inlet_film = None
         if self.fluid is None:
@@ -191,25 +190,6 @@ class EHLProblem:
             )
         return Evaluation(model, state, residual, derivatives)
 
-    def jacobian_vector_product(self, by, derivatives, nodes, v_h00, sums, rows):
-        """The whole Jacobian times a vector, in the local rows.
-
-        Parameters
-        ----------
-        by : ndarray, shape (4, 2, window)
-            :meth:`.contact.node_state.NodeState.derivatives`.
-        derivatives
-            As in :class:`Evaluation`.
-        nodes : ndarray, shape (window, 2)
-            q and w of the vector at the nodes of the window.
-        v_h00 : float
-        sums : deflection.PressureSums
-            Of the change of pressure.
-        rows : ndarray
-            To be filled in; interleaved, shape of the local part of the vector.
-        """
-        jacobian_rows(by, derivatives, nodes, v_h00, *sums, *self.deflection.form, self._changes, rows)
-
 
 @compiled
 def jacobian_rows(
@@ -226,10 +206,25 @@ def jacobian_rows(
     change,
     rows,
 ):
-    """Fill in rows of the Jacobian times a vector.
+    """Fill in rows of the whole Jacobian times a vector.
 
-    Parameters as of :meth:`EHLProblem.jacobian_vector_product` and :func:`.deflection.deflection_rows`;
-    `change` (3, window) is room for the changes of Reynolds unknown, film and separation.
+    Parameters
+    ----------
+    by : ndarray, shape (4, 2, window)
+        :meth:`.contact.node_state.NodeState.derivatives`.
+    derivatives
+        As in :class:`Evaluation`.
+    nodes : ndarray, shape (window, 2)
+        q and w of the vector at the nodes of the window.
+    v_h00 : float
+    curvature, load
+        `PressureSums` of the change of pressure.
+    start, coefficient, end_coefficient, has_last
+        As of :func:`.deflection.deflection_rows`.
+    change : ndarray, shape (3, window)
+        Room for the changes of Reynolds unknown, film and separation.
+    rows : ndarray
+        To be filled in; interleaved, shape of the local part of the vector.
     """
     for k in range(3):
         directional_derivative(by[k + 1], nodes, 0, change[k])

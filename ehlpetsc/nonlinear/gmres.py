@@ -10,74 +10,142 @@ so that one sum over the ranks gives the products with all vectors and the norm 
 takes two. Vectors are those of the whole system; entries that an active set leaves out are zero. Tolerances,
 convergence test and monitors are PETSc's. There is no restart: at most `MOST` iterations.
 
+All iterations of a solve are one compiled call.
+
 Use: ``-ksp_type python -ksp_python_type ehlpetsc.nonlinear.gmres.FlexibleGMRES`` (the default), on matrices
 and with the preconditioner of this program.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.nonlinear.collectives import exchange
+from ehlpetsc.nonlinear.operators.jacobian_product import jacobian_product
+from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
 
 MOST = 100  # iterations of a solve
+
+
+class Basis(NamedTuple):
+    """Vectors and numbers of a solve.
+
+    Attributes
+    ----------
+    vectors : tuple of ndarray
+        v, shape (MOST + 1, size); z, (MOST, size); products of the vectors, local parts of each rank,
+        (ranks, MOST + 2); norms of the residuals, (MOST + 1,).
+    numbers : tuple of ndarray
+        Columns of the triangular matrix, shape (MOST, MOST + 1); cosines and sines, (MOST, 2); rotated
+        right-hand side, (MOST + 1,), whose last number is the residual.
+    """
+
+    vectors: tuple
+    numbers: tuple
+
+    @classmethod
+    def of(cls, size, ranks):
+        """Room for vectors of a local size on so many ranks."""
+        sums, norms = np.zeros((ranks, MOST + 2)), np.zeros(MOST + 1)
+        vectors = np.empty((MOST + 1, size)), np.empty((MOST, size)), sums, norms
+        return cls(vectors, (np.zeros((MOST, MOST + 1)), np.zeros((MOST, 2)), np.zeros(MOST + 1)))
 
 
 class FlexibleGMRES:
     """Context of PETSc's Python Krylov method."""
 
     def __init__(self):
-        self._v = self._z = np.empty((0, 0))
-        self._hessenberg, self._rotations = np.zeros((MOST, MOST + 1)), np.zeros((MOST, 2))
-        self._right = np.zeros(MOST + 1)
+        self._size = self._basis = None
 
     def solve(self, ksp, b, x):
         """Solve from zero."""
-        operator, max_it = ksp.getOperators()[0].getPythonContext(), ksp.getTolerances()[-1]
-        ranks, size = operator.factors.lu.ranks, operator.size
-        if self._v.shape[1] != size:
-            self._v, self._z = np.empty((MOST + 1, size)), np.empty((MOST, size))
-            self._sums = np.zeros((ranks.size, MOST + 2))
-        v, z, mine = self._v, self._z, self._sums[ranks.rank]
+        operator, (*tolerances, max_it) = ksp.getOperators()[0].getPythonContext(), ksp.getTolerances()
+        factors, halo = operator.factors, operator.halo
+        if self._size != operator.size:
+            self._size, self._basis = operator.size, Basis.of(operator.size, len(halo.messages))
+        basis = self._basis
+        v, _, _, norms = basis.vectors
         v[0] = 0.0
         v[0, operator.active] = b.array_r
-        for k in range(-1, min(max_it, MOST)):
-            if k >= 0:
-                operator.precondition(v[k], z[k])
-                operator.times(z[k], v[k + 1])
-            np.dot(v[: k + 2], v[k + 1], out=mine[: k + 2])
-            exchange(ranks, self._sums)
-            norm = extend(v, k + 1, self._sums, self._hessenberg, self._rotations, self._right)
-            reason = ksp.callConvergenceTest(k + 1, norm)
-            ksp.setIterationNumber(k + 1)
+        given = *operator.linearisation, *halo, *factors.lu.factors, factors.units
+        number = iterations(*basis, *given, min(max_it, MOST), *tolerances)
+        for k, norm in enumerate(norms[: number + 1]):
+            reason = ksp.callConvergenceTest(k, norm)
+            ksp.setIterationNumber(k)
             ksp.setResidualNorm(norm)
             ksp.logConvergenceHistory(norm)
-            ksp.monitor(k + 1, norm)
-            if reason:
-                break
+            ksp.monitor(k, norm)
         ksp.setConvergedReason(reason or PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
-        if k >= 0:
-            x.array[:] = combined(z, k + 1, self._hessenberg, self._right)[operator.active]
+        if number > 0:
+            x.array[:] = combined(*basis, number)[operator.active]
 
 
 @compiled
-def extend(v, new, sums, hessenberg, rotations, right):
-    """Make the vector `new` orthonormal to those before, and return the norm of the residual.
+def iterations(
+    vectors,
+    numbers,
+    state,
+    changes,
+    collective,
+    load_weights,
+    messages,
+    window,
+    rank,
+    matrices,
+    pressures,
+    place,
+    lu,
+    cuts,
+    border,
+    room,
+    units,
+    most,
+    rtol,
+    atol,
+    divtol,
+):
+    """Iterate from the right-hand side, the first v, to PETSc's tolerances; collective.
 
     Parameters
     ----------
-    v : ndarray, shape (MOST + 1, size)
-    new : int
-        0: v holds the right-hand side.
-    sums : ndarray, shape (ranks, MOST + 2)
-        Products of the vectors, local parts of each rank.
-    hessenberg : ndarray, shape (MOST, MOST + 1)
-        Columns of the triangular matrix.
-    rotations : ndarray, shape (MOST, 2)
-        Cosines and sines.
-    right : ndarray, shape (MOST + 1,)
-        Rotated right-hand side; the last number is the residual.
+    vectors, numbers : tuple
+        Of a `Basis`.
+    state, changes : tuple
+        Of a `Linearisation`.
+    collective, load_weights, messages, window, rank, matrices, pressures
+        Of a `Halo`.
+    place, lu, cuts, border, room : tuple
+        Of `RankFactors`.
+    units : ndarray
+        As of :func:`.distributed_solve.solve`.
+    most : int
+    rtol, atol, divtol : float
+
+    Returns
+    -------
+    int
+        Number of iterations.
     """
+    v, z, sums, norms = vectors
+    halo, mine = (collective, load_weights, messages, window, rank, matrices, pressures), sums[rank]
+    for new in range(most + 1):
+        if new > 0:
+            solve(place, lu, cuts, border, room, v[new - 1], units, z[new - 1])
+            jacobian_product(state, changes, halo, z[new - 1], v[new])
+        np.dot(v[: new + 1], v[new], out=mine[: new + 1])
+        exchange(collective, sums)
+        norms[new] = extend(v, sums, numbers, new)
+        if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0]:
+            return new
+    return most
+
+
+@compiled
+def extend(v, sums, numbers, new):
+    """Make the vector `new` orthonormal to those before, and return the norm of the residual."""
+    hessenberg, rotations, right = numbers
     w, column = v[new], hessenberg[max(new - 1, 0)]
     square = sums[:, new].sum()
     for i in range(new):
@@ -104,8 +172,9 @@ def extend(v, new, sums, hessenberg, rotations, right):
 
 
 @compiled
-def combined(z, number, hessenberg, right):
+def combined(vectors, numbers, number):
     """Sum of the first vectors z that leaves the least residual."""
+    (_, z, _, _), (hessenberg, _, right) = vectors, numbers
     factors = right[:number].copy()
     for k in range(number - 1, -1, -1):
         factors[k] /= hessenberg[k, k]

@@ -4,82 +4,122 @@ Every rank sends the unknowns of its outer nodes, which the stencils of its neig
 pressures what :mod:`ehlpetsc.discretisation.curvature_product` sends and the sums over its nodes.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ehlpetsc.discretisation.curvature_product import TOLERANCE, CurvatureProduct
-from ehlpetsc.discretisation.deflection import HALO, PressureSums
-from ehlpetsc.discretisation.interleaving import n_dofs, pairs
-from ehlpetsc.nonlinear.collectives import exchange
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, pack, unpack
+from ehlpetsc.discretisation.deflection import HALO
+from ehlpetsc.discretisation.interleaving import n_dofs
+from ehlpetsc.nonlinear.collectives import collective, exchange
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
+EDGE = n_dofs(HALO)
+LOAD = 2 * EDGE + 1  # place in a message of three sums and a flag, behind the outer unknowns and h00
+BEHIND_LOAD = LOAD + 4
 
 
-class HaloExchange:
-    """Exchange of one scene on one communicator; on one rank nothing is sent.
-
-    Parameters
-    ----------
-    problem : ehl_problem.EHLProblem
-        Of the nodes of this rank.
-    cuts : sequence of int
-        First nodes of all ranks, and the number of nodes.
-    ranks : mpi4py communicator
-    tolerance : float
-        Of the far kernel in the pressure sums.
+class Halo(NamedTuple):
+    """What a rank exchanges with others.
 
     Attributes
     ----------
-    flagged : bool
-        Whether a rank has set the flag of the last exchange.
+    collective : tuple
+        As of :func:`.collectives.collective`.
+    load_weights : ndarray, shape (3, local nodes)
+        As of `deflection.Deflection`.
+    messages : ndarray, shape (ranks, size)
+    window : ndarray, shape (window, 2)
+        Room for the unknowns of the window.
+    rank, matrices, room
+        Of a `curvature_product.Blocks`.
     """
 
-    def __init__(self, problem, cuts, ranks, tolerance=TOLERANCE):
-        self.problem, self.ranks = problem, ranks
-        self._product = CurvatureProduct(problem.deflection.curvature, cuts, ranks.rank, tolerance)
-        self._edge = n_dofs(HALO)
-        self._load = 2 * self._edge + 1  # behind the outer unknowns and h00: three sums and the flag
-        size = self._load + 4 + self._product.message_size
-        self.flagged, self._window = False, np.empty((problem.window.stop - problem.window.start, 2))
-        self._all = np.zeros((ranks.size, size))
-        self._mine = self._all[ranks.rank]
+    collective: tuple
+    load_weights: np.ndarray
+    messages: np.ndarray
+    window: np.ndarray
+    rank: int
+    matrices: tuple
+    room: tuple
 
-    def __call__(self, vector, pressure, flag=False):
-        """Unknowns at the nodes of the window, and sums over all pressures.
+    @classmethod
+    def of(cls, problem, cuts, ranks, tolerance=TOLERANCE):
+        """Halo of one scene on one communicator.
 
         Parameters
         ----------
-        vector : ndarray
-            Local unknowns, interleaved; h00 last on the last rank.
-        pressure : ndarray
-            Of the local nodes.
-        flag : bool
-            Whatever `flagged` is to be for all ranks, where it is true on any.
-
-        Returns
-        -------
-        nodes : ndarray, shape (window, 2)
-            Until the next exchange.
-        h00 : float
-        sums : deflection.PressureSums
+        problem : ehl_problem.EHLProblem
+            Of the nodes of this rank.
+        cuts : sequence of int
+            First nodes of all ranks, and the number of nodes.
+        ranks : mpi4py communicator
+            To outlive it.
+        tolerance : float
+            Of the far kernel in the pressure sums.
         """
-        problem, rank, edge, mine = self.problem, self.ranks.rank, self._edge, self._mine
-        nodes, behind_load = pairs(vector, problem.local), self._load + 4
-        self._product.pack(pressure, mine[behind_load:])
-        load = problem.deflection.load_weights @ pressure
-        self.flagged = flag
-        if self.ranks.size == 1:
-            return nodes, vector[-1], PressureSums(self._product.sums(self._all[:, behind_load:]), load)
-        mine[:edge], mine[edge : 2 * edge] = nodes[:HALO].ravel(), nodes[-HALO:].ravel()
-        mine[2 * edge] = vector[-1]  # h00 on the last rank
-        mine[self._load : behind_load - 1], mine[behind_load - 1] = load, flag
-        exchange(self.ranks, self._all)
-        window, owned = self._window, problem.owned
-        window[owned] = nodes
+        blocks = Blocks.of(problem.deflection.curvature, cuts, ranks.rank, tolerance)
+        messages = np.zeros((ranks.size, BEHIND_LOAD + blocks.message_size))
+        window = np.empty((problem.window.stop - problem.window.start, 2))
+        return cls(collective(ranks), problem.deflection.load_weights, messages, window, *blocks)
+
+
+@compiled
+def exchange_unknowns(
+    collective, load_weights, messages, window, rank, matrices, room, vector, pressure, flag
+):
+    """Unknowns at the nodes of the window, and sums over all pressures.
+
+    Parameters
+    ----------
+    collective, load_weights, messages, window, rank, matrices, room
+        Of a `Halo`.
+    vector : ndarray
+        Local unknowns, interleaved; h00 last on the last rank.
+    pressure : ndarray
+        Of the local nodes.
+    flag : bool
+
+    Returns
+    -------
+    nodes : ndarray, shape (window, 2)
+        Until the next exchange.
+    h00 : float
+    curvature : ndarray
+        As of `deflection.PressureSums`; on the last rank some more.
+    load : ndarray, shape (4,)
+        As of `deflection.PressureSums`, and the number of ranks with the flag.
+    """
+    mine, last, nodes = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)].reshape(-1, 2)
+    load = np.zeros(4)
+    np.dot(load_weights, pressure, out=load[:3])
+    for k in range(3):
+        mine[LOAD + k] = load[k]
+    mine[LOAD + 3] = flag
+    mine[LOAD - 1] = vector[-1]  # h00 on the last rank
+    pack(rank, matrices, room, pressure, mine[BEHIND_LOAD:])
+    if last > 0:
+        for i in range(EDGE):
+            mine[i], mine[EDGE + i] = vector[i], vector[2 * len(nodes) - EDGE + i]
+        exchange(collective, messages)
+        nodes = window
+        fill_window(messages, rank, vector[: 2 * len(pressure)], window.ravel())
+    for k in range(4):
+        load[k] = messages[0, LOAD + k]
+        for other in range(last):
+            load[k] += messages[other + 1, LOAD + k]
+    return nodes, messages[last, LOAD - 1], unpack(rank, matrices, room, messages[:, BEHIND_LOAD:]), load
+
+
+@compiled
+def fill_window(messages, rank, vector, window):
+    """Fill in the local unknowns between those that the neighbours have sent."""
+    first = EDGE if rank > 0 else 0
+    for i in range(len(vector)):
+        window[first + i] = vector[i]
+    for i in range(EDGE):
         if rank > 0:
-            window[: owned.start] = pairs(self._all[rank - 1, edge:], HALO)
-        if rank < self.ranks.size - 1:
-            window[owned.stop :] = pairs(self._all[rank + 1], HALO)
-        loads = self._all[:, self._load : behind_load].sum(axis=0)
-        self.flagged = loads[3] > 0.0
-        sums = PressureSums(self._product.sums(self._all[:, behind_load:]), loads)
-        return window, self._all[-1, 2 * edge], sums
+            window[i] = messages[rank - 1, EDGE + i]
+        if rank < len(messages) - 1:
+            window[first + len(vector) + i] = messages[rank + 1, i]

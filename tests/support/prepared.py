@@ -66,7 +66,7 @@ def load_compiled():
     """Have the compiled loops ready: to load them takes as long as all else that a short run does."""
     from ehlpetsc.case.loading import load
     from ehlpetsc.discretisation.contact.node_state import directional_derivative
-    from ehlpetsc.discretisation.ehl_problem import EHLProblem
+    from ehlpetsc.discretisation.ehl_problem import EHLProblem, jacobian_rows
     from ehlpetsc.discretisation.finite_volumes import extrapolated, reynolds_rounding
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.stepping.predictor import advected
@@ -80,7 +80,8 @@ def load_compiled():
     by, rows = found.state.derivatives(), np.empty(2 * scales.nx + 1)
     directional_derivative(by[0], step, problem.owned.start, one)
     sums = problem.deflection.sums(one)
-    problem.jacobian_vector_product(by, found.reynolds_derivatives, step, 0.0, sums, rows)
+    form, room = problem.deflection.form, np.empty((3, scales.nx))
+    jacobian_rows(by, found.reynolds_derivatives, step, 0.0, *sums, *form, room, rows)
     reynolds_rounding(found.reynolds_derivatives, one, one, problem.owned.start)
     extrapolated(one, one, 1.0)
     advected(one, 1.0)

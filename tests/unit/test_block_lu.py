@@ -13,6 +13,7 @@ from ehlpetsc.nonlinear.preconditioner.block_lu import (
     SIZE,
     WIDTH,
     BlockLU,
+    forward,
 )
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS
 
@@ -68,9 +69,9 @@ def test_it_solves(groups, sparse):
         found = solved(lu, b, first)
         solution, coefficients = np.zeros((2, groups, LINE))
         solution[:, :SIZE], coefficients[:, :SIZE] = b, rng.standard_normal(b.shape)
-        lu.forward(solution.ravel(), first)
+        forward(lu.factors, solution.ravel(), first)
         product = (coefficients[:, :SIZE] * found).sum()
-        lu.backward_transposed(coefficients.ravel())  # the same sum over what is not substituted yet
+        lu.backward_transposed(coefficients.reshape(1, -1))  # the same sum over what is not substituted yet
         assert (coefficients * solution).sum() == pytest.approx(product, rel=1e-6, abs=1e-6)
         np.testing.assert_allclose(found.ravel(), expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 

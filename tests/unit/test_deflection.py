@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.curvature_product import CurvatureProduct
+from ehlpetsc.discretisation.curvature_product import Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.interleaving import q_of
@@ -49,14 +49,14 @@ def test_ranks_have_the_rows_of_the_whole_mesh(cuts):
     whole = Deflection(N, DX, 0, N)
     rows, load = whole.residual(g, 0.3, whole.sums(p)), whole.sums(p).load
     parts = [Deflection(N, DX, *ends) for ends in itertools.pairwise(cuts)]
-    products = [CurvatureProduct(whole.curvature, cuts, rank) for rank in range(len(parts))]
-    messages = np.full((len(parts), products[0].message_size), np.nan)  # all of it is filled in
-    for product, d, message in zip(products, parts, messages, strict=True):
-        product.pack(p[d.first : d.last], message)
+    blocks = [Blocks.of(whole.curvature, cuts, rank) for rank in range(len(parts))]
+    messages = np.full((len(parts), blocks[0].message_size), np.nan)  # all of it is filled in
+    for its, d, message in zip(blocks, parts, messages, strict=True):
+        pack(*its, p[d.first : d.last], message)
     loads = sum(d.load_weights @ p[d.first : d.last] for d in parts)
     np.testing.assert_allclose(loads, load, rtol=1e-12)
-    for product, d in zip(products, parts, strict=True):
-        mine = d.residual(g[d.window], 0.3, PressureSums(product.sums(messages), loads))
+    for its, d in zip(blocks, parts, strict=True):
+        mine = d.residual(g[d.window], 0.3, PressureSums(unpack(*its, messages), loads))
         np.testing.assert_allclose(mine, rows[d.first : d.last], rtol=0, atol=1e-11)
 
 

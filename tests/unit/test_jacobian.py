@@ -136,7 +136,7 @@ def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
     at = scene(name)
     system, size = linearised(at), len(at.state)
     problem, jacobian = system.problem, system.jacobian
-    exact = JacobianOperator(problem, system.exchange, None)
+    exact = JacobianOperator(problem, system.halo, system.ranks, None)
     exact.linearise(system.evaluation(system.x))
     exact = python_matrix(exact, system.x.getSizes(), PETSc.COMM_SELF)
     matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)

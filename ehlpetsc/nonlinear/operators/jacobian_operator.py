@@ -7,13 +7,11 @@ the default preconditioner takes its coefficients (``pc.getOperators()``). Other
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact.node_state import directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.interleaving import (
     n_dofs,
     nodes_of_w,
-    pairs,
     q_columns,
     q_index,
     q_of,
@@ -22,6 +20,7 @@ from ehlpetsc.discretisation.interleaving import (
     w_of,
 )
 from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.operators.jacobian_product import Linearisation, jacobian_product
 from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 
 PIVOT_REGULARISATION = 1e-3  # of dp/dq: at cavitated nodes, in preconditioners alone
@@ -45,7 +44,8 @@ class JacobianOperator:
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    exchange : halo_exchange.HaloExchange
+    halo : halo_exchange.Halo
+    ranks : mpi4py communicator
     factors : preconditioner.far_field_band.Factors or None
         Of the default preconditioner, kept between solves.
 
@@ -61,37 +61,35 @@ class JacobianOperator:
         Local nodes whose second unknown is not in the system.
     """
 
-    def __init__(self, problem, exchange, factors):
-        self.problem, self.exchange, self.factors = problem, exchange, factors
+    def __init__(self, problem, halo, ranks, factors):
+        self.problem, self.halo, self.ranks, self.factors = problem, halo, ranks, factors
         self.active, self.inactive_nodes = slice(None), np.arange(0)
-        self.model = self.state = self.reynolds_derivatives = self._by = None
-        self.size, self._pressure = n_dofs(problem.local) + problem.load_is_local, np.empty(problem.local)
+        self.model = self.state = self.reynolds_derivatives = None
+        self.size = n_dofs(problem.local) + problem.load_is_local
+        self._room = np.empty(problem.local), np.empty((3, len(halo.window)))
 
     def linearise(self, evaluation):
         """Set the state whose derivatives the products have."""
         self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
         self.state = self.model.linearised(evaluation.state, self.problem.owned, self._ranks_sum)
-        self._by = self.state.derivatives()
+        self._derivatives = self.state.derivatives(), self.reynolds_derivatives
+
+    def linearised(self, inactive_nodes):
+        """`Linearisation` at that state."""
+        return Linearisation((*self._derivatives, inactive_nodes, self.problem.deflection.form), self._room)
+
+    @property
+    def linearisation(self):
+        """`Linearisation` of all unknowns."""
+        return self.linearised(self.inactive_nodes)
 
     def _ranks_sum(self, numbers):
-        return np.sum(self.exchange.ranks.allgather(numbers), axis=0)
-
-    def times(self, v, out):
-        """Fill in the product with the local part of a vector; collective."""
-        problem = self.problem
-        with events.PRODUCT:
-            directional_derivative(self._by[0], pairs(v, problem.local), problem.owned.start, self._pressure)
-            at_nodes = self.exchange(v, self._pressure)
-            problem.jacobian_vector_product(self._by, self.reynolds_derivatives, *at_nodes, out)
-
-    def precondition(self, v, out):
-        """Fill in the solution of the preconditioner for the local part of a vector; collective."""
-        with events.BACK_SOLVE:
-            self.factors.lu.solve(v, self.factors.unknowns, out)
+        return np.sum(self.ranks.allgather(numbers), axis=0)
 
     def mult(self, mat, v, out):
         """PETSc's product."""
-        self.times(v.array_r, out.array)
+        with events.PRODUCT:
+            jacobian_product(*self.linearisation, tuple(self.halo), v.array_r.copy(), out.array)
 
     def createSubMatrix(self, mat, rows, columns, out=None):
         """Matrix of the unknowns that SNESVI keeps; rows and columns are the same."""
@@ -102,7 +100,7 @@ class RestrictedOperator:
     """Jacobian of the unknowns that SNESVI keeps, context of a Python matrix."""
 
     def __init__(self, whole, rows, mat):
-        self.whole, self.size = whole, whole.size
+        self.whole, self.size, self.halo, self.factors = whole, whole.size, whole.halo, whole.factors
         self.active, self.inactive_nodes = slice(None), whole.inactive_nodes
         indices = rows.indices
         if len(indices) < self.size:
@@ -124,23 +122,15 @@ class RestrictedOperator:
         return self.whole.reynolds_derivatives
 
     @property
-    def factors(self):
-        return self.whole.factors
-
-    def times(self, v, out):
-        """Fill in the product with a vector of the whole system, zero outside of this one; collective."""
-        self.whole.times(v, out)
-        w_of(out, self.size // 2)[self.inactive_nodes] = 0.0
-
-    def precondition(self, v, out):
-        """As of :class:`JacobianOperator`."""
-        self.whole.precondition(v, out)
+    def linearisation(self):
+        """`Linearisation` of the unknowns in the system."""
+        return self.whole.linearised(self.inactive_nodes)
 
     def mult(self, mat, v, out):
         """PETSc's product."""
         full, rows = np.zeros(self.size), np.empty(self.size)
         full[self.active] = v.array_r
-        self.whole.times(full, rows)
+        jacobian_product(*self.linearisation, tuple(self.halo), full, rows)
         out.array[:] = rows[self.active]
 
 

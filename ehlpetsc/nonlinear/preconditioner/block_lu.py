@@ -41,6 +41,8 @@ class BlockLU:
         Columns of the inverse of S.
     upper : ndarray, shape (groups, RIGHT, LINE)
         Columns of W, of the last group too.
+    factors : tuple of ndarray
+        For :func:`forward` and :func:`backward`: the matrix, both of these and room, in one dimension.
     """
 
     def __init__(self, groups):
@@ -58,25 +60,17 @@ class BlockLU:
             columns; to be left as it is while solves follow. What the first group has of one before is not
             looked at, and what the last one has of one behind enters W alone.
         """
-        self._columns = columns.ravel()
         room = self._work, self._column, self._free, self._pivots
-        factor(self._columns, self.inverses.ravel(), self.upper.ravel(), *room)
+        self.factors = columns.ravel(), self.inverses.ravel(), self.upper.ravel(), self._column
+        factor(*self.factors[:3], *room)
 
     def solve(self, b, first=0):
         """Solve in place for `b` (groups * LINE,), whose groups before `first` are zero."""
-        self.forward(b, first)
-        self.backward(b)
-
-    def forward(self, b, first=0):
-        """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
-        forward(self._columns, self.inverses.ravel(), b, first, self._column)
-
-    def backward(self, b):
-        """Replace y by x, in place: the last group is left as it is."""
-        backward(self.upper.ravel(), b)
+        forward(self.factors, b, first)
+        backward(self.factors, b)
 
     def backward_transposed(self, b):
-        """Coefficients of y that give what the coefficients `b` of x do, in place."""
+        """Coefficients of y that give what the coefficients `b` (rows, groups * LINE) of x do, in place."""
         backward_transposed(self.upper.ravel(), b)
 
 
@@ -151,8 +145,9 @@ def eliminate(a, column, free, pivots):
 
 
 @compiled(fastmath=FAST)
-def forward(columns, inverses, b, first, known):
-    """Eliminate in place; see :class:`BlockLU`."""
+def forward(factors, b, first):
+    """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
+    columns, inverses, _, known = factors
     line = unsigned(LINE)
     groups, first = unsigned(len(b) // LINE), unsigned(first)
     for i in range(first, groups):
@@ -168,9 +163,9 @@ def forward(columns, inverses, b, first, known):
 
 
 @compiled(fastmath=FAST)
-def backward(upper, b):
-    """Substitute in place; see :class:`BlockLU`."""
-    line = unsigned(LINE)
+def backward(factors, b):
+    """Replace y by x, in place: the last group is left as it is."""
+    upper, line = factors[2], unsigned(LINE)
     groups = unsigned(len(b) // LINE)
     for done in range(ONE, groups):
         i = groups - ONE - done
@@ -183,9 +178,11 @@ def backward(upper, b):
 def backward_transposed(upper, b):
     """Substitute in place; see :class:`BlockLU`."""
     line = unsigned(LINE)
-    for i in range(unsigned(len(b) // LINE) - ONE):
+    for i in range(unsigned(b.shape[1] // LINE) - ONE):
         for c in range(unsigned(RIGHT)):
-            total, column = 0.0, (i * unsigned(RIGHT) + c) * line
-            for k in range(line):
-                total += upper[column + k] * b[i * line + k]
-            b[(i + ONE) * line + unsigned(FROM_RIGHT) + c] -= total
+            column, behind = (i * unsigned(RIGHT) + c) * line, (i + ONE) * line + unsigned(FROM_RIGHT) + c
+            for row in range(unsigned(len(b))):
+                total = 0.0
+                for k in range(line):
+                    total += upper[column + k] * b[row, i * line + k]
+                b[row, behind] -= total

@@ -27,7 +27,7 @@ class Factors:
     def __init__(self, problem, ranks):
         self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh, self._owned = False, problem.owned
-        self._units = np.empty((2, problem.local, 2))
+        self.units = np.empty((2, problem.local, 2))
 
     def invalidate(self):
         """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
@@ -40,9 +40,8 @@ class Factors:
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
         for k in range(2):
-            self._units[k, :, k], self._units[k, :, 1 - k] = 1.0, 0.0
-            operator.model.from_band(state, self._owned, self._units[k])
-        self.unknowns = self._units.transpose(1, 2, 0)
+            self.units[k, :, k], self.units[k, :, 1 - k] = 1.0, 0.0
+            operator.model.from_band(state, self._owned, self.units[k])
 
 
 class FarFieldBand:
@@ -59,5 +58,6 @@ class FarFieldBand:
         operator = self.operator
         b, solution = np.zeros(operator.size), np.empty(operator.size)
         b[operator.active] = x.array_r
-        operator.precondition(b, solution)
+        with events.BACK_SOLVE:
+            operator.factors.lu.solve(b, operator.factors.units, solution)
         y.array[:] = solution[operator.active]

@@ -44,9 +44,8 @@ class ReducedSystem:
 
         Parameters
         ----------
-        values : ndarray, shape (ranks, left + right + BORDER, left + right)
-            Of every rank: by each unknown taken of others, the rank's own unknowns at its cuts; then its sums
-            by each unknown taken.
+        values : ndarray, shape (ranks, left + right, left + right + BORDER)
+            Of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its sums.
 
         Returns
         -------
@@ -70,7 +69,7 @@ class ReducedSystem:
         wanted[self._taken, np.arange(len(self._taken))] = 1.0
         for (taken, own), of_rank in zip(self._of_rank, values, strict=True):
             band[diagonal + own - taken[:, None], taken[:, None]] += of_rank[: len(taken), : len(own)]
-            wanted[taken, -BORDER:] = -of_rank[self._cut :, : len(taken)].T
+            wanted[taken, -BORDER:] = -of_rank[: len(taken), self._cut :]
         lu, pivots, singular = dgbtrf(band, self._below, self._above, overwrite_ab=True)
         if singular:
             regularise_pivots(lu[diagonal])

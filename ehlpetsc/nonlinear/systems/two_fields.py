@@ -11,13 +11,14 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.curvature_product import BLOCK
+from ehlpetsc.discretisation.deflection import PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.collectives import all_ranks, gathered, global_max
-from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, HaloExchange
+from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, Halo, exchange_unknowns
 from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
@@ -46,6 +47,8 @@ class TwoFields:
         Unknowns and rows.
     lower, upper : petsc4py.PETSc.Vec
         Bounds of the unknowns.
+    bound_reached : bool
+        Whether the last step evaluated takes a film to its bound, on any rank.
     operator, preconditioned : petsc4py.PETSc.Mat
         The Jacobian, and what preconditioners get of it; there from :meth:`create_matrices` on.
 
@@ -63,10 +66,12 @@ class TwoFields:
         self.near_field = case.mesh.near_field
         self.problem = EHLProblem(case, scales, film_scale, first, last, bound_tolerance)
         self.model = self.problem.model
-        self.exchange = HaloExchange(self.problem, cuts, comm.tompi4py())
-        self.linear_exchange = HaloExchange(self.problem, cuts, comm.tompi4py(), LINEAR_TOLERANCE)
+        self.ranks = comm.tompi4py()
+        self.halo = Halo.of(self.problem, cuts, self.ranks)
+        self.linear_halo = Halo.of(self.problem, cuts, self.ranks, LINEAR_TOLERANCE)
         self._create_vectors()
         self.inputs = self.x_evaluated = self.rows = self.operator = None
+        self.bound_reached = False
 
     def _create_vectors(self):
         sizes = (n_dofs(self.local) + self.problem.load_is_local, n_dofs(self.n) + 1)
@@ -89,8 +94,8 @@ class TwoFields:
             :mod:`ehlpetsc.nonlinear.preconditioner` needs; else it is an assembled near field.
         """
         sizes = self.x.getSizes()
-        self.factors = Factors(self.problem, self.comm.tompi4py()) if with_band else None
-        self.jacobian = JacobianOperator(self.problem, self.linear_exchange, self.factors)
+        self.factors = Factors(self.problem, self.ranks) if with_band else None
+        self.jacobian = JacobianOperator(self.problem, self.linear_halo, self.ranks, self.factors)
         self.operator = python_matrix(self.jacobian, sizes, self.comm)
         self.assembled, self.preconditioned = None, self.operator
         self._made.append(self.operator)
@@ -132,7 +137,7 @@ class TwoFields:
 
     def evaluation(self, x):
         """Residual and derivatives at x, which is the point last evaluated more often than not."""
-        if not all_ranks(self.exchange.ranks, np.array_equal(x.array_r, self.x_evaluated)):
+        if not all_ranks(self.ranks, np.array_equal(x.array_r, self.x_evaluated)):
             self.evaluate(x)
         return self._evaluation
 
@@ -144,22 +149,19 @@ class TwoFields:
         self.x_evaluated = x.array_r.copy()
         with events.RESIDUAL:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
-            nodes, h00, sums = self.exchange(self.x_evaluated, pressure, reaches_bound)
-            q, w = np.ascontiguousarray(nodes.T)
+            given = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
+            nodes, h00, curvature, load = exchange_unknowns(*self.halo, *given)
+            (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
             self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, sums)
+            self.bound_reached = load[3] > 0.0
         return self._evaluation
-
-    @property
-    def bound_reached(self):
-        """Whether the last step takes a film to its bound, on any rank."""
-        return self.exchange.flagged
 
     def linearise(self, x, is_evaluated=False):
         """Set the matrices for x, on every rank the point last evaluated where that is said."""
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                whole = gathered(self.exchange.ranks, self.jacobian.state, self.problem.owned)
+                whole = gathered(self.ranks, self.jacobian.state, self.problem.owned)
                 self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
 
     @property
@@ -174,7 +176,7 @@ class TwoFields:
         because the viscosity is exponential in p; single entries are limited by the contact model.
         """
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
-        change = global_max(self.exchange.ranks, self.contact.pressure_change(now, step))
+        change = global_max(self.ranks, self.contact.pressure_change(now, step))
         if change > STEP_LIMIT:
             y.scale(STEP_LIMIT / change)
         step = pairs(y.array, self.local)
@@ -193,7 +195,7 @@ class TwoFields:
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
         mine = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
-        return RESIDUAL_ROUNDING * np.sqrt(self.comm.tompi4py().allreduce(mine))
+        return RESIDUAL_ROUNDING * np.sqrt(self.ranks.allreduce(mine))
 
 
 def first_nodes(n, ranks):
