@@ -134,6 +134,6 @@ def series_legend(axes, colours, labels, title, more=(), dashed=False):
 def legend_beside(axes, handles=None, title=None):
     """Legend right of the axes; by default of all labelled artists."""
     handles = axes.get_legend_handles_labels()[0] if handles is None else handles
-    place = dict(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    position = dict(loc="center left", bbox_to_anchor=(1.0, 0.5))
     small = dict(fontsize="small", title_fontsize="small", frameon=False)
-    axes.legend(handles=handles, title=title, **small, **place)
+    axes.legend(handles=handles, title=title, **small, **position)

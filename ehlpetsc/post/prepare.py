@@ -167,8 +167,8 @@ def _report_gaps(loads, gaps, motions, whole, report):
         return
     frame = gaps.after[0]
     where = f"after step {loads.step[frame]}"
-    places = f"{gaps.after.size} places, first" if gaps.after.size > 1 else "one place,"
-    what = f"{gaps.missing.sum()} frames are missing in {places} {where}"
+    positions = f"{gaps.after.size} places, first" if gaps.after.size > 1 else "one place,"
+    what = f"{gaps.missing.sum()} frames are missing in {positions} {where}"
     if not any(motion.complete.any() for motion in whole.values()):
         raise PostError(
             f"{what}, while every point that passed was in the contact: peaks are lost, so no damage is given"

@@ -39,10 +39,10 @@ def point_temperatures(loads, surface, motion, points):
             first = motion.shift[frame]  # node of point 0
             node = slice(max(first, 0), min(values.size, points + first))
             point = slice(node.start - first, node.stop - first)
-            share = lasts[frame] * (np.abs(x[node]) <= loads.a)
+            duration = lasts[frame] * (np.abs(x[node]) <= loads.a)
             np.maximum(highest[point], values[node], out=highest[point])
-            sums[point] += share * values[node]
-            times[point] += share
+            sums[point] += duration * values[node]
+            times[point] += duration
     highest[~motion.complete] = np.nan
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(motion.complete, sums / times, np.nan)

@@ -101,9 +101,9 @@ class PostResult:
             for name, values in self.damage.items()
         }
         self.profiles = {
-            name: tuple(file[f"{place}/{axis}"][:] for axis in "sz")
+            name: tuple(file[f"{group}/{axis}"][:] for axis in "sz")
             for name in self.surfaces
-            if (place := stored_name(file, f"profile/{name}")) in file
+            if (group := stored_name(file, f"profile/{name}")) in file
         }
         none = np.empty((len(self.z), 0))
         self.height = _array(file, "asperities/height", none[0])

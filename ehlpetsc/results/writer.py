@@ -69,13 +69,13 @@ class ResultWriter:
         if contact_count is not None:
             self.contact_count[:] = contact_count
         beside = contextlib.nullcontext() if path is None else replacing(self.path)
-        with self._plain_faults("not created"), beside as place:
-            self._file = create(place)
+        with self._plain_faults("not created"), beside as target:
+            self._file = create(target)
             with room(self._file, sum(8 * len(p[0]) * 3 for p in layout.profiles.values() if p)):
                 self._root_attributes(attributes)
                 lay_out(self._file, layout)
                 put(self._file, {"contents": " ".join(dataset_names(self._file))})
-            if place:
+            if target:
                 if resume_step is not None and self.path.exists():
                     self.contact_count[:] = copy_up_to(self._file, self.path, resume_step, contact_count)
                 self._file.swmr_mode = True

@@ -83,9 +83,9 @@ def draw_entrapment(axes, result, found, width):
     """
     a, highest = result.attrs["a"], 0.0
     x = result.x / a
-    for column, (frame, place) in enumerate(entrapment.instants(result, found, count=axes.shape[1])):
+    for column, (frame, centre) in enumerate(entrapment.instants(result, found, count=axes.shape[1])):
         upper, lower = axes[:, column]
-        in_view = np.abs(result.x - place) <= 0.5 * width * a
+        in_view = np.abs(result.x - centre) <= 0.5 * width * a
         pressure, touching = 1e-9 * result.frame("pressure", frame), in_contact(result, frame) & in_view
         surface_2, surface_1 = (1e6 * height for height in entrapment.surfaces(result, frame))
         upper.plot(x[in_view], pressure[in_view], color=SINGLE_COLOUR, lw=1.1)
@@ -103,7 +103,7 @@ def draw_entrapment(axes, result, found, width):
         )
         lower.set_xlabel(ACROSS)
         lower.locator_params(axis="x", nbins=4)
-        lower.set_xlim(place / a - width / 2.0, place / a + width / 2.0)
+        lower.set_xlim(centre / a - width / 2.0, centre / a + width / 2.0)
         highest = max(highest, pressure[in_view].max())
     for upper in axes[0]:
         upper.set_ylim(0.0, 1.05 * highest)

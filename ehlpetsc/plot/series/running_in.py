@@ -93,9 +93,9 @@ def draw_pressure(axes, results):
 def legend_above(axes, *others, title=None):
     """Draw the legend of the axes and of others in a row above the axes."""
     handles = [handle for one in (axes, *others) for handle in one.get_legend_handles_labels()[0]]
-    place = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
+    position = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
     if handles:
-        axes.legend(handles=handles, title=title, fontsize="small", title_fontsize="small", **place)
+        axes.legend(handles=handles, title=title, fontsize="small", title_fontsize="small", **position)
 
 
 def draw_plastic_area(axes, rows, is_shifted):

@@ -131,8 +131,8 @@ def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
         e, p = elastic + b * y, plastic + c * y
         high = max(e, p)
         total = high + log(exp(e - high) + exp(p - high))
-        share = exp(e - total)
-        step = (total - log_amplitude) / (b * share + c * (1 - share))
+        weight = exp(e - total)
+        step = (total - log_amplitude) / (b * weight + c * (1 - weight))
         y -= step
         if abs(step) <= 1e-13 * (1 + abs(y)):
             break

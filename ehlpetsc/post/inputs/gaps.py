@@ -49,9 +49,9 @@ def frames_missed(gaps, motion, nodes):
     """
     points = motion.complete.size
     change = np.zeros(points + 1, int)
-    place = motion.shift + motion.offset  # of body point 0
+    position = motion.shift + motion.offset  # of body point 0
     for frame, missing in zip(gaps.after, gaps.missing, strict=True):
-        low, high = sorted(place[frame : frame + 2])
+        low, high = sorted(position[frame : frame + 2])
         first = int(np.clip(np.floor(-high) + 1, 0, points))  # first point with high + j > 0
         last = int(np.clip(np.ceil(nodes - 1 - low), first, points))  # first with low + j >= nodes - 1
         change[first] += missing

@@ -48,12 +48,12 @@ class Contents:
             f"damage/{other}cycles": values[..., 1],
             f"damage/{other}peak_range": values[..., 2],
         }
-        for place, (criterion, column) in enumerate(self.columns, start=3):
+        for index, (criterion, column) in enumerate(self.columns, start=3):
             group = f"criteria/{criterion.replace('-', '_')}"
-            self.datasets[f"{group}/{surface}_{column}"] = values[..., place]
+            self.datasets[f"{group}/{surface}_{column}"] = values[..., index]
             if column in ("damage", "utilisation"):
                 complete = passage.complete
-                pairs = zip(values[:, complete, 0], values[:, complete, place], strict=True)
+                pairs = zip(values[:, complete, 0], values[:, complete, index], strict=True)
                 ranks = np.array([rank_correlation(paper, other) for paper, other in pairs])
                 self.datasets[f"{group}/{surface}_rank_correlation"] = ranks
         self._add_asperities(surface, values[..., 0])

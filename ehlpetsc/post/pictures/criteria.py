@@ -33,8 +33,8 @@ def criteria_picture(result, surface):
         fontsize=9,
         loc="left",
     )
-    for place in (axes[0, 1], axes[1, 1]):
-        place.axis("off")
+    for axis in (axes[0, 1], axes[1, 1]):
+        axis.axis("off")
     contours = _map(axes[1, 0], result, surface, paper, ends, levels, "von Mises ranges")
     for row, name in zip(axes[2:], names, strict=True):
         values = result.criteria[name][surface]
@@ -42,7 +42,7 @@ def criteria_picture(result, surface):
     if contours is not None:
         maps = [axes[1, 0], *(axes[k + 2, 0] for k, name in enumerate(names) if name != "dang-van")]
         bar = figure.colorbar(contours, ax=maps, label="damage D of one pass", pad=0.01, aspect=40)
-        bar.ax.yaxis.set_major_formatter(lambda power, place: f"$10^{{{power:.0f}}}$")
+        bar.ax.yaxis.set_major_formatter(lambda power, axis: f"$10^{{{power:.0f}}}$")
     axes[-1, 0].set_xlabel(plots.body_label(surface))
     axes[-1, 1].set_xlabel("D of von Mises ranges")
     _depth_colours(figure, axes[1, 1], result)

@@ -106,7 +106,7 @@ def _compared(results, folder):
 def _bar(figure, contours, axes):
     if contours is not None:
         bar = figure.colorbar(contours, ax=axes, label="damage D of one pass", pad=0.02)
-        bar.ax.yaxis.set_major_formatter(lambda power, place: f"$10^{{{power:.0f}}}$")
+        bar.ax.yaxis.set_major_formatter(lambda power, position: f"$10^{{{power:.0f}}}$")
 
 
 def damage_picture(result, surface):
@@ -194,8 +194,8 @@ def field_picture(path, result, frame):
 def _check_passed(result, surface, s):
     """Refuse a body point whose history is incomplete; the message names the range of complete ones."""
     passed, spacing = result.complete[surface], (result.s[-1] - result.s[0]) / (result.s.size - 1)
-    place = (s - result.s[0]) / spacing
-    around = np.clip(np.array([np.floor(place + 1e-6), np.ceil(place - 1e-6)]), -1, passed.size).astype(int)
+    node = (s - result.s[0]) / spacing
+    around = np.clip(np.array([np.floor(node + 1e-6), np.ceil(node - 1e-6)]), -1, passed.size).astype(int)
     if not all(0 <= j < passed.size and passed[j] for j in around):
         first, last = result.s[passed][[0, -1]] / result.a
         raise PostError(

@@ -122,8 +122,8 @@ def _depth_axis(z, gap):
     depth = np.sqrt(z)
     gap *= depth[-1] - depth[0] or 1.0
     ticks = []
-    for k, place in enumerate(depth):
-        if not ticks or place - depth[ticks[-1]] >= gap:
+    for k, root in enumerate(depth):
+        if not ticks or root - depth[ticks[-1]] >= gap:
             ticks.append(k)
     return depth, ticks
 

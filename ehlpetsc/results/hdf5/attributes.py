@@ -33,8 +33,8 @@ def _put_text(item, name, raw):
     kind.set_cset(h5py.h5t.CSET_UTF8)
     if name in item.attrs:
         del item.attrs[name]
-    place = h5py.h5s.create(h5py.h5s.SCALAR)
-    attribute = h5py.h5a.create(item.id, name.encode(), kind, place)
+    space = h5py.h5s.create(h5py.h5s.SCALAR)
+    attribute = h5py.h5a.create(item.id, name.encode(), kind, space)
     attribute.write(_padded(raw, attribute), mtype=kind)
 
 
