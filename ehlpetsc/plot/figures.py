@@ -100,13 +100,13 @@ def draw_contacts(results, options):
     colours, names, key = labels.series_colours(results)
     figure, axes = two_panels()
     means = over_time.contact_rates(axes, results, colours, options.polynomial)
-    about = "mean in\n|x| < a [1/ms]"
+    about = "mean in |x| < a [1/ms]"
     names = [f"{n}: {mean:.3g}" for n, mean in zip(names, means, strict=True)]
     if len(results) > 1:
-        about += " (ratio\nto the first)"
+        about += "\n(ratio to the first)"
         parts = [mean / means[0] if means[0] else np.nan for mean in means]
         names = [f"{name} ({part:.2f})" for name, part in zip(names, parts, strict=True)]
-    labels.series_legend(axes[1], colours, names, f"{key or 'result'}: {about}")
+    labels.series_legend(axes[1], colours, names, f"{labels.UNITS.get(key, key) or 'result'}:\n{about}")
     title = "\n".join(filter(None, [panel_title(results), labels.conditions(results)]))
     axes[0].set_title(title, fontsize="medium")
     return figure
