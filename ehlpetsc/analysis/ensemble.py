@@ -103,7 +103,8 @@ def run_figures(result):
             continue
         reduce = EXTREMES.get(name)
         found[name] = float(reduce(values) if reduce else np.average(values, weights=weights))
-    return found | _damage(damage_beside(result))
+    beside = damage_beside(result)
+    return found | _damage(beside) | _flash_temperatures(beside)
 
 
 def _damage(found):
@@ -115,6 +116,24 @@ def _damage(found):
                 name = f"damage_{surface} z/a={depth:g} q={quantile:g}"
                 quantiles[name] = float(np.quantile(row, quantile))
     return quantiles
+
+
+def _flash_temperatures(found):
+    """Largest and median flash temperature [K] over the points of each surface; none without heat."""
+    known = found.temperatures if found else {}
+    values = {side: one.flash[np.isfinite(one.flash)] for side, one in known.items()}
+    figures = {}
+    for side, flash in values.items():
+        if flash.size:
+            figures[f"flash_temperature_{side} largest"] = float(flash.max())
+            figures[f"flash_temperature_{side} q=0.5"] = float(np.median(flash))
+    return figures
+
+
+def _units(name):
+    if name.startswith("flash_temperature"):
+        return "K"
+    return STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
 
 
 def ensembles(results):
@@ -150,9 +169,18 @@ def table(found, resamples=RESAMPLES, seed=1):
     rows = []
     for one in found:
         for name, values in one.scalars.items():
-            units = STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
             low, high = bootstrap(values, resamples, seed)
-            row = (one.name, name, units, values.size, values.mean(), low, high, values.min(), values.max())
+            row = (
+                one.name,
+                name,
+                _units(name),
+                values.size,
+                values.mean(),
+                low,
+                high,
+                values.min(),
+                values.max(),
+            )
             rows.append(dict(zip(COLUMNS, row, strict=True)))
     return rows
 

@@ -146,9 +146,17 @@ def _note_damage(index):
     """Add the damage of every pass to the index of a run, and print one line for each pass."""
     found = note_damage(index)
     for number, known in found:
-        largest = (f"{side} D_max={max(known[side]['largest']):.3e}" for side in ("1", "2") if side in known)
-        print(f"pass {number}: {' '.join(largest)}")
+        print(f"pass {number}: {' '.join(_pass_figures(known))}")
     print(f"ehlpetsc.post: done {index} passes={len(found)}")
+
+
+def _pass_figures(known):
+    """Largest damage of each surface, and with [heat] its largest flash temperature."""
+    for side in ("1", "2"):
+        if side in known:
+            yield f"{side} D_max={max(known[side]['largest']):.3e}"
+            if "flash_temperature" in known[side]:
+                yield f"flash_max={known[side]['flash_temperature']:.4g} K"
 
 
 def _draw(paths, chosen):

@@ -111,11 +111,17 @@ def test_damage_gives_its_quantiles(tmp_path):
         file.attrs.update(a=1e-3, case=result.attrs["case"])
         file["damage/s"], file["damage/z_over_a"] = np.arange(102.0), [0.01]
         file["damage/2"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
+        for name in ("highest", "mean", "flash"):
+            file[f"temperature/2_{name}"] = [*np.linspace(20.0, 120.0, 101), np.nan]
     with read_result(path) as result:
         figures = ensemble.run_figures(result)
     assert [figures[f"damage_2 z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
         [0.5, 0.9, 0.99]
     )
+    assert figures["flash_temperature_2 largest"] == pytest.approx(120.0)
+    assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
+    one = ensemble.Ensemble("", {}, {name: np.array([value]) for name, value in figures.items()})
+    assert {row["units"] for row in ensemble.table([one]) if "flash" in row["figure"]} == {"K"}
 
 
 def test_results_of_several_keys_are_told_by_what_differs(tmp_path):

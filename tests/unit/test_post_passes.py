@@ -7,7 +7,7 @@ import pytest
 from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus, PostError
-from ehlpetsc.post import fold, largest_near, pass_statistics
+from ehlpetsc.post import command, fold, largest_near, pass_statistics
 from ehlpetsc.post.command import main
 from ehlpetsc.post.outputs.passes_file import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
@@ -140,3 +140,8 @@ def test_passes_that_are_shifted_against_each_other(shift, tmp_path):
         write(paths[1], scenes[1], depths=(0.1,), edit=edit)
         assert main([paths[1]]) == ExitStatus.DONE
         same_points([results[0], PostResult(tmp_path / "1.post.h5")], "1")
+
+
+def test_the_line_of_a_pass_with_heat_has_flash_temperatures():
+    known = {"2": {"largest": [0.1, 0.3], "median": [0.0, 0.0], "flash_temperature": 123.44}}
+    assert " ".join(command._pass_figures(known)) == "2 D_max=3.000e-01 flash_max=123.4 K"

@@ -16,12 +16,14 @@ def test_film_in_pure_rolling(point):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("point", published.POINTS)
-def test_friction(point):
+def test_friction_and_least_film(point):
     """At 25 m/s the film's own heating and what its inlet carries in, left out by theory, count most."""
     cold, warm = (published.solve(*point, heated, 50) for heated in (False, True))
     theory = published.friction_by_theory(cold, False), published.friction_by_theory(warm, True)
     assert cold.friction == pytest.approx(theory[0], rel=0.1)
     assert warm.friction == pytest.approx(theory[1], rel=0.1)
+    least = published.hsu_lee(published.thermal_load(*point[:2]), point[2], cold.simulation)
+    assert warm.least / cold.least == pytest.approx(least, rel=0.08)
 
 
 def test_stress_of_a_heated_film_solves_the_heat_equation_across_it():

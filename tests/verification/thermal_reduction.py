@@ -5,7 +5,9 @@ Film over the isothermal one, :math:`L=\beta\eta_0u^2/k_f`, slide/roll ratio S:
 * Murch & Wilson (1975), J. Lubr. Technol. 97, 212, pure rolling: :math:`3.94/(3.94+L^{0.62})`;
 * Wilson & Sheu (1983), J. Lubr. Technol. 105, 187: :math:`1/(1+0.1(1+14.8(S/2)^{0.83})(4L)^{0.64})`;
 * Gupta, Cheng, Zhu, Forster & Schrand (1992), Tribol. Trans. 35, 149:
-  :math:`(1-13.2(p_0/E')L^{0.42})/(1+0.213(1+2.23S^{0.83})L^{0.64})`.
+  :math:`(1-13.2(p_0/E')L^{0.42})/(1+0.213(1+2.23S^{0.83})L^{0.64})`;
+* Hsu & Lee (1994), J. Vib. Acoust. 116, 568, for rolling and sliding:
+  :math:`1/(1+0.0766\,G^{0.687}W^{0.447}L^{0.527}e^{0.875S})`, :math:`G=\alpha E'`, :math:`W=w'/(E'R)`.
 
 Friction, at the central film and Hertz's pressure:
 
@@ -90,6 +92,13 @@ def gupta(load, ratio, pressure):
     return (1.0 - 13.2 * pressure * load**0.42) / (1.0 + 0.213 * (1.0 + 2.23 * ratio**0.83) * load**0.64)
 
 
+def hsu_lee(load, ratio, simulation):
+    """Thermal over isothermal film."""
+    scales, fluid = simulation.scales, simulation.case.fluid
+    g, w = fluid.pressure_viscosity * MODULUS, scales.load / (MODULUS * RADIUS)
+    return 1.0 / (1.0 + 0.0766 * g**0.687 * w**0.447 * load**0.527 * np.exp(0.875 * ratio))
+
+
 def film_stress(viscosity, film, sliding):
     r"""Shear stress [Pa] of a film heated by its shear, its walls at the temperature of `viscosity`.
 
@@ -154,11 +163,14 @@ def main():
     pairs = {
         point: [solve(*point, heated) for heated in (False, True)] for point in ROLLING + POINTS + GEAR_OIL
     }
-    print("| eta0, u, slide/roll | L | central, least film | Murch, Wilson | Wilson, Sheu | Gupta |")
+    print(
+        "| eta0, u, slide/roll | L | central, least film | Murch, Wilson | Wilson, Sheu | Gupta | Hsu, Lee |"
+    )
     for (viscosity, speed, ratio), (cold, warm) in pairs.items():
         load, p0 = thermal_load(viscosity, speed), cold.simulation.scales.p0
         found = warm.film / cold.film, warm.least / cold.least
         formulas = murch_wilson(load), wilson_sheu(load, ratio), gupta(load, ratio, p0 / MODULUS)
+        formulas += (hsu_lee(load, ratio, cold.simulation),)
         row = f"{load:.2f} | {found[0]:.3f}, {found[1]:.3f} | " + " | ".join(
             f"{value:.3f}" for value in formulas
         )
