@@ -2,7 +2,7 @@
 
 ``python3 -m ehlpetsc.analysis.ensemble OUTPUT.series.json [-o OUTPUT.ensemble.csv]``
 
-A figure of a run is the mean over the time in which the roughness of both surfaces fills the contact (of a
+A scalar of a run is the mean over the time in which the roughness of both surfaces fills the contact (of a
 run that ends before, over all of it) or, of least films and largest pressures, the extreme. Members whose
 cases are the same but for seeds make one ensemble; several, as of a grid over seeds and speeds, are listed
 one by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
@@ -34,7 +34,7 @@ MAX_RESAMPLES = 100_000
 CONFIDENCE = 0.95
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
-NO_FIGURES = ("step", "time", "dt", "wall", "load", "approach")
+EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "load", "approach")
 TABLES = {".csv": b"ensemble,figure,units,runs,", ".json": b'"ensemble":'}  # endings, and how they begin
 COLUMNS = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
 
@@ -49,7 +49,7 @@ class Ensemble:
         Keys and values in which it differs from the other ensembles, "" where there is one only.
     values : dict
         The keys in which ensembles differ, with this one's values.
-    figures : dict of str to ndarray, shape (runs,)
+    scalars : dict of str to ndarray, shape (runs,)
         Of every run, by name.
     """
 
@@ -82,8 +82,8 @@ def bootstrap(values, resamples=RESAMPLES, seed=1, confidence=CONFIDENCE):
     return float(low), float(high)
 
 
-def run_figures(result):
-    """Figures of one run, by name.
+def run_scalars(result):
+    """Scalars of one run, by name.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def run_figures(result):
     found = {}
     for name in result.scalars:
         values = result.steps(name)[kept].astype(float)
-        if name in NO_FIGURES or not np.isfinite(values).all():
+        if name in EXCLUDED_SCALARS or not np.isfinite(values).all():
             continue
         reduce = EXTREMES.get(name)
         found[name] = float(reduce(values) if reduce else np.average(values, weights=weights))
@@ -155,7 +155,7 @@ def ensembles(results):
     for number, result in enumerate(results):
         conditions = {key: values[number] for key, values in differing.items()}
         key = json.dumps(conditions, default=str)
-        groups.setdefault(key, (conditions, []))[1].append(run_figures(result))
+        groups.setdefault(key, (conditions, []))[1].append(run_scalars(result))
     made = []
     for conditions, runs in groups.values():
         shared = [name for name in runs[0] if all(name in run for run in runs)]
@@ -165,7 +165,7 @@ def ensembles(results):
 
 
 def table(found, resamples=RESAMPLES, seed=1):
-    """Rows by the names of `COLUMNS`, one for each figure of each ensemble."""
+    """Rows by the names of `COLUMNS`, one for each scalar of each ensemble."""
     rows = []
     for one in found:
         for name, values in one.scalars.items():

@@ -17,7 +17,7 @@ from ehlpetsc.post.outputs.depth_cache import DepthCache
 from ehlpetsc.post.outputs.result_file import check_output, fingerprint, stored_fingerprint, write_result
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM
-from ehlpetsc.post.stresses.histories import Sweep, runs_of_points, workers
+from ehlpetsc.post.stresses.histories import HistoryCollector, runs_of_points, workers
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import SURFACES
 
@@ -181,9 +181,9 @@ def solve(job, prepared, task, map_=map, progress=None):
     make = partial(Counters, prepared.settings, task.surface, job.counting, job.criteria)
     counters = list(map_(make, [motion.samples() + 2] * job.jobs))
     depths, quantum = np.array(task.depths) * loads.a / loads.dx, QUANTUM * loads.p0
-    sweep = Sweep(loads, task.surface, motion, depths, quantum, map_, advance)
+    collect = HistoryCollector(loads, task.surface, motion, depths, quantum, map_, advance)
     for points in runs:
-        sweep(points, [partial(finish, counter) for counter in counters])
+        collect(points, [partial(finish, counter) for counter in counters])
     return out
 
 

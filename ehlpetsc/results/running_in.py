@@ -10,7 +10,7 @@ RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
 
-def pass_figures(result, begin):
+def pass_summary(result, begin):
     """Roughness and depths at the end of a pass, and means over the time that both surfaces fill the contact.
 
     Parameters

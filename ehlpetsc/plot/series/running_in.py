@@ -9,7 +9,7 @@ from ehlpetsc.plot import labels
 from ehlpetsc.plot.panels.frames import frame_to_show
 from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.post_result import damage_beside
-from ehlpetsc.results.running_in import heights, pass_figures
+from ehlpetsc.results.running_in import heights, pass_summary
 
 SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
 STRETCH = 0.6  # half widths of profile shown, around the deepest indentation
@@ -37,7 +37,7 @@ def draw_running_in(results, _options):
         raise OutputError("one pass alone; allowed: --running-in of two passes or more")
     if any("set_volume" not in result.scalars for result in results):
         raise OutputError("solids that do not yield: no plastic deformation; needs contact.yield_pressure")
-    rows = [pass_figures(result, filled_from(result)) for result in results]
+    rows = [pass_summary(result, filled_from(result)) for result in results]
     found = [damage_beside(result) for result in results]
     known = all(found)
     damages = [one.summary() for one in found] if known else []

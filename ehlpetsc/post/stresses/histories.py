@@ -52,7 +52,7 @@ def workers(count):
         yield pool.map
 
 
-class Sweep:
+class HistoryCollector:
     """Collects the histories of consecutive points and distributes them to the workers.
 
     A worker is a thread: the expensive parts release Python's lock.

@@ -14,7 +14,7 @@ from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.output_guard import Lock, check_index, check_output_path, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
-from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_figures, passes_to_run_in
+from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
@@ -129,7 +129,7 @@ class Passes:
 
     def _note(self, number, simulation):
         with read_result(self.file(number)) as result:
-            found = pass_figures(result, filled_from(result))
+            found = pass_summary(result, filled_from(result))
         row = {"pass": number, "file": self.file(number).name} | found
         before = self.rows[-1]["set_volume"] if self.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
