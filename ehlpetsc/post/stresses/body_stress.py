@@ -60,6 +60,7 @@ def low_pass(nx, depth):
     return t**5 * (126 - 420 * t + 540 * t**2 - 315 * t**3 + 70 * t**4)  # four flat derivatives
 
 
+@lru_cache(maxsize=8)  # both surfaces, and the passes of a life, have their depths in common
 def kernel_table(nx, depth):
     r"""Kernel spectra at the three lower OFFSETS, as real numbers (f, 2, 3, 8); depth in elements.
 
@@ -136,17 +137,11 @@ class BodyStress:
         return fft.irfft(out, self.n, overwrite_x=True)
 
 
-@lru_cache(maxsize=8)
-def _at_depth(nx, depth):
-    """Stresses of one depth: to prepare them takes longer than a history."""
-    return BodyStress(nx, np.array([depth]))
-
-
 def history_at(loads, surface, s, depth, quantum=0.0):
     """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
     motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
     enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1
-    stress = _at_depth(loads.x.size, depth / loads.dx)
+    stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
     values = np.zeros((3, max(leave - enter, 0) + 2))
     for begin in range(enter, leave, BATCH):
         frames = np.arange(begin, min(begin + BATCH, leave))
