@@ -11,7 +11,7 @@ import numpy as np
 FINE_CELLS = 12  # cells of equal thickness below the surface as made
 GROWTH = 1.25  # of the thickness of the cells below them
 
-WEAKENED = 0.9  # damage from which cells break out with a failed one
+WEAKENED = 0.95  # damage from which cells break out with a failed one
 
 
 def sum_over(passes, rate, slope):
