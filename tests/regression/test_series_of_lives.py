@@ -23,7 +23,7 @@ def test_lives_on_two_ranks_end(tmp_path):
         env=BARE | SCRIPT,
         capture_output=True,
         text=True,
-        timeout=100,
+        timeout=300,
     )
     assert done.returncode == 0, done.stderr
     members = json.loads((tmp_path / "life.life.series.json").read_text())["members"]
