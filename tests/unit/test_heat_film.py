@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation import finite_volumes as volumes
 from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.physics.heat.film import FilmHeat, FilmLaw, film_temperature
@@ -150,3 +151,22 @@ def test_derivatives_of_reynolds_rows(ends):
                 exact = values[row, column[0]] if len(column) else 0.0
                 scale = np.abs(values[row]).max()
                 assert numeric[row] == pytest.approx(exact, abs=2e-5 * scale)
+
+
+def test_neighbours_flow_at_the_mean_of_their_temperatures():
+    """A hot node of higher pressure must not be the more fluid one: its outflow fell as its pressure rose."""
+    case = load(CASE, ["mesh.points_per_half_width=16", "heat.bulk_temperature=363.0"])
+    scales = Scales.of(case)
+    n, reynolds = scales.nx, Reynolds(scales, 5e-4, 0, scales.nx)
+    q, h, b = np.full(n, 0.5), np.full(n, 5e-4), np.full(n, 363e6)
+    q[20], b[20] = 1.0, 563e6
+    rest = np.zeros(n), np.zeros(n), b / 1e6, b / 1e6, np.full(n, 1e-8), np.full(n, 1e-8), np.full(n, 370.0)
+    heat = FilmHeat(film_law(case.fluid, case.heat, 0.0), np.full(n, 1e6), b, *rest)
+    inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
+    cold, hot = (reynolds.properties(q, h, one) for one in (inputs, replace(inputs, heat=heat)))
+    assert heat.guess[20] == pytest.approx(563.0)
+    factor = np.exp(0.04 * 0.5 * (heat.guess[19] + heat.guess[20] - 2.0 * 363.0))
+    found = np.array(volumes.fluidities(hot, 19, 20))
+    np.testing.assert_allclose(found, factor * cold[volumes.FLUIDITY, 19:21], rtol=1e-9)
+    own = hot[volumes.THERMAL, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
+    assert own[1] > own[0] and found[1] < found[0]

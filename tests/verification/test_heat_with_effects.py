@@ -14,7 +14,7 @@ HEAT = f"heat.bulk_temperature={BULK}"
 SHORT = ("mesh.inlet=-1.5", "mesh.outlet=1.3", "mesh.points_per_half_width=50", "time.travel=1.6")
 FAST = ("motion.entrainment_speed=25.0", "motion.slide_roll_ratio=0.5", "fluid.viscosity=0.001")
 MODELS = {
-    "compliant": ("compliant_mixed.toml", *SHORT),
+    "compliant": ("compliant_mixed.toml", *SHORT, *FAST),
     "yielding": ("table1_mixed.toml", *SHORT, *FAST, "contact.yield_pressure=1.5e9"),
 }
 
