@@ -7,8 +7,9 @@ Arnoldi's process by classical Gram and Schmidt (Saad 1993),
    h_{k+1}^2=w\cdot w-\sum_ih_i^2,
 
 so that one sum over the ranks gives the products with all vectors and the norm of the next one, where PETSc
-takes two. Vectors are those of the whole system; entries that an active set leaves out are zero. Tolerances,
-convergence test and monitors are PETSc's. There is no restart: at most `MOST` iterations.
+takes two; it is taken again where the norm cancels. Vectors are those of the whole system; entries that an
+active set leaves out are zero. Tolerances, convergence test and monitors are PETSc's. There is no restart: at
+most `MOST` iterations.
 
 All iterations of a solve are one compiled call.
 
@@ -27,6 +28,7 @@ from ehlpetsc.nonlinear.operators.jacobian_product import jacobian_product
 from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
 
 MOST = 100  # iterations of a solve
+CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences is right to as many digits
 
 
 class Basis(NamedTuple):
@@ -129,32 +131,49 @@ def iterations(
         Number of iterations.
     """
     v, z, sums, norms = vectors
-    halo, mine = (collective, load_weights, messages, window, rank, matrices, pressures), sums[rank]
+    halo = collective, load_weights, messages, window, rank, matrices, pressures
     for new in range(most + 1):
         if new > 0:
             solve(place, lu, cuts, border, room, v[new - 1], units, z[new - 1])
             jacobian_product(state, changes, halo, z[new - 1], v[new])
-        np.dot(v[: new + 1], v[new], out=mine[: new + 1])
-        exchange(collective, sums)
-        norms[new] = extend(v, sums, numbers, new)
+        norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
+        norms[new] = least_residual(numbers, new, norm)
         if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0]:
             return new
     return most
 
 
 @compiled
-def extend(v, sums, numbers, new):
-    """Make the vector `new` orthonormal to those before, and return the norm of the residual."""
-    hessenberg, rotations, right = numbers
-    w, column = v[new], hessenberg[max(new - 1, 0)]
-    square = sums[:, new].sum()
-    for i in range(new):
-        column[i] = sums[:, i].sum()
-        square -= column[i] * column[i]
+def orthonormalise(v, new, column, sums, rank, collective):
+    """Make the vector `new` orthonormal to those before, fill in their products with it, return its norm.
+
+    The norm is a difference. Of a vector of which little is left it would be rounding, and so would be the
+    direction: such a vector is taken once more.
+    """
+    w, mine = v[new], sums[rank]
+    column[:new] = 0.0
+    for _ in range(2):
+        np.dot(v[: new + 1], w, out=mine[: new + 1])
+        exchange(collective, sums)
+        whole = square = sums[:, new].sum()
+        for i in range(new):
+            mine[i] = sums[:, i].sum()
+            column[i] += mine[i]
+            square -= mine[i] * mine[i]
+        w -= np.dot(mine[:new], v[:new])
+        if square > CANCELLED * whole:
+            break
     norm = np.sqrt(max(square, 0.0)) if square == square else square
-    w -= np.dot(column[:new], v[:new])
     if norm > 0.0:
         w *= 1.0 / norm
+    return norm
+
+
+@compiled
+def least_residual(numbers, new, norm):
+    """Norm of the residual with a vector more, of this norm before it was made one."""
+    hessenberg, rotations, right = numbers
+    column = hessenberg[max(new - 1, 0)]
     if new == 0:
         right[0] = norm
         return norm
