@@ -159,20 +159,25 @@ cores() {
     lscpu --parse=CORE | grep -v '^#' | sort -u | wc -l
 }
 
+# nproc would count the threads of BLAS
+processors() {
+    env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc
+}
+
 # A rank that waits yields its core to the rank it waits for where there are more ranks than cores, and else before
 # Linux 6.6 alone: since then it comes back after a whole turn of the others, so that two ranks beside one busy process
 # take ten times as long as without
 settings_of_ranks() {
-    local yields=1
+    local yields=1 policy=none processors
     [ "$(nodes)" = 1 ] || return 0
-    if [ "$1" -le "$(nproc)" ] && printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; fi
+    processors=$(processors)
+    if [ "$1" -le "$processors" ] && printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; fi
     : "${users_yield=${OMPI_MCA_mpi_yield_when_idle-}}" # as it was before the first call
     export OMPI_MCA_mpi_yield_when_idle=${users_yield:-$yields}
     # a rank on every core: each keeps its own, as beside a busy process they would be moved onto one in turns
-    if [ "$1" -gt 1 ] && [ "$1" = "$(nproc)" ] && [ "$1" = "$(cores)" ]; then
-        export OMPI_MCA_hwloc_base_binding_policy=core PRTE_MCA_hwloc_default_binding_policy=core
-    fi
-    if [ "$1" -gt "$(nproc)" ]; then
+    if [ "$1" -gt 1 ] && [ "$1" = "$processors" ] && [ "$1" = "$(cores)" ]; then policy=core; fi
+    export OMPI_MCA_hwloc_base_binding_policy=$policy PRTE_MCA_hwloc_default_binding_policy=$policy
+    if [ "$1" -gt "$processors" ]; then
         export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
     fi
 }
