@@ -1,6 +1,7 @@
 """PETSc's table of options as a run needs it, and as it was before."""
 
 import ctypes
+import threading
 
 from petsc4py import PETSc
 
@@ -35,12 +36,16 @@ OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzer
 
 READ_AT_THE_END = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
+TABLE = (
+    threading.RLock()
+)  # one table serves the process: with two threads in it, each would take the other's options
 
 
 class RunOptions:
     """The options of a run in PETSc's table, for a ``with`` statement; afterwards the table is as it was.
 
     ``program's defaults < of_case < what the table holds < given``. May be entered again inside itself.
+    Threads enter one after the other.
 
     Parameters
     ----------
@@ -94,15 +99,23 @@ class RunOptions:
             raise UsageError(f"-{name} {value}: allowed: a number") from None
 
     def __enter__(self):
-        if self._depth == 0:
-            self._enter(PETSc.Options())
+        TABLE.acquire()
+        try:
+            if self._depth == 0:
+                self._enter(PETSc.Options())
+        except BaseException:
+            TABLE.release()
+            raise
         self._depth += 1
         return self
 
     def __exit__(self, *exception):
         self._depth -= 1
-        if self._depth == 0:
-            self._leave(PETSc.Options())
+        try:
+            if self._depth == 0:
+                self._leave(PETSc.Options())
+        finally:
+            TABLE.release()
 
     def loose_tolerances(self):
         """One line for every tolerance of the user that is looser than the program's own."""
