@@ -1,4 +1,4 @@
-"""The command ``python3 -m ehlpetsc.compare A.h5 B.h5``: see :mod:`ehlpetsc.analysis.compare`."""
+"""The command ``ehlpetsc compare A.h5 B.h5``: see :mod:`ehlpetsc.analysis.compare`."""
 
 import sys
 

@@ -5,7 +5,7 @@ is in the same relative position in all of them at the same time. Nodes in conta
 put into one map of place and time; what hangs together there is one collision. Times, not step numbers, are
 compared.
 
-``python3 -m ehlpetsc.analysis.collisions OUTPUT.series.json`` lists them and says how film and
+``ehlpetsc collisions OUTPUT.series.json`` lists them and says how film and
 pressure go with the swept value (Holmes et al. 2005, figure 4).
 """
 

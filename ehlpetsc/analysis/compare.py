@@ -1,4 +1,4 @@
-"""Compare two result files field by field: ``python3 -m ehlpetsc.compare A.h5 B.h5 [--rtol R] [--atol A]``.
+"""Compare two result files field by field: ``ehlpetsc compare A.h5 B.h5 [--rtol R] [--atol A]``.
 
 Where meshes or stored times differ, the finer is interpolated linearly at the nodes and times of the
 coarser, on what both cover. A quantity is the same if its greatest difference is within

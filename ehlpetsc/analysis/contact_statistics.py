@@ -1,6 +1,6 @@
 """Amount of contact in result files or the index of a series.
 
-``python3 -m ehlpetsc.analysis.contact_statistics RESULT.h5 [...]``
+``ehlpetsc contacts RESULT.h5 [...]``
 
 A line each: contacts per millisecond and node (Q of Holmes et al. 2005, figure 7) in the Hertz contact, in
 its inlet quarter and in its exit half, and in proportion to the first result; and what does not grow with the

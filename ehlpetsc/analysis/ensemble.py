@@ -1,6 +1,6 @@
 """Ensembles of runs that differ in seeds alone: means with bootstrap intervals.
 
-``python3 -m ehlpetsc.analysis.ensemble OUTPUT.series.json [-o OUTPUT.ensemble.csv]``
+``ehlpetsc ensemble OUTPUT.series.json [-o OUTPUT.ensemble.csv]``
 
 A scalar of a run is the mean over the time in which the roughness of both surfaces fills the contact (of a
 run that ends before, over all of it) or, of least films and largest pressures, the extreme. Members whose

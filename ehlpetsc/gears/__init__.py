@@ -1,6 +1,6 @@
 """Spur gear pairs: path of contact, load sharing, losses, hunting teeth.
 
-Geometry alone: no solver, no PETSc. ``python3 -m ehlpetsc.gears CASE.toml`` prints the table of a ``[gears]``
+Geometry alone: no solver, no PETSc. ``ehlpetsc gears CASE.toml`` prints the table of a ``[gears]``
 case and draws it.
 """
 

@@ -1,4 +1,4 @@
-"""Path of contact of a spur gear pair: ``python3 -m ehlpetsc.gears CASE.toml``, or of a run, ``RESULT.h5``.
+"""Path of contact of a spur gear pair: ``ehlpetsc gears CASE.toml``, or of a run, ``RESULT.h5``.
 
 Of a case, prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table and
 draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. Of a result, prints

@@ -1,4 +1,4 @@
-"""Surfaces over their life: ``python3 -m ehlpetsc.life CASE.toml``; of ``OUT.life.h5``, the picture.
+"""Surfaces over their life: ``ehlpetsc life CASE.toml``; of ``OUT.life.h5``, the picture.
 
 Wear and fatigue damage of a pass are multiplied over as many passes as leave the surfaces nearly the same,
 see the table [life] of the case; the next pass meets the changed surfaces. The same command continues a life.

@@ -1,4 +1,4 @@
-"""Draw results: ``python3 -m ehlpetsc.plot RESULT.h5 [...]``, or the index of a series or of passes,
+"""Draw results: ``ehlpetsc plot RESULT.h5 [...]``, or the index of a series or of passes,
 OUTPUT.series.json, OUTPUT.passes.json.
 
 Pressure and film of one frame, by default that with the largest share of the load on the solids or, without
@@ -69,7 +69,7 @@ def _parser():
     kind.add_argument("--map", action="store_true", help="pressure over x and time, contacts marked")
     kind.add_argument("--contacts", action="store_true", help="contacts per millisecond along the contact")
     parser.add_argument("--polynomial", action="store_true", help="of --contacts, order 8")
-    numbers = "by their number in the list of python3 -m ehlpetsc.analysis.collisions [two best]"
+    numbers = "by their number in the list of ehlpetsc collisions [two best]"
     kind.add_argument("--collision", type=int, nargs="*", metavar="NUMBER", help=numbers)
     kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")
     kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")

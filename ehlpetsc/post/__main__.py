@@ -1,4 +1,4 @@
-"""``python3 -m ehlpetsc.post RESULT.h5 [...]``: damage, statistics and pictures."""
+"""``ehlpetsc post RESULT.h5 [...]``: damage, statistics and pictures."""
 
 import os
 import signal

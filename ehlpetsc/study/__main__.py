@@ -1,4 +1,4 @@
-"""Studies of accuracy, speed and robustness: ``python3 -m ehlpetsc.study``.
+"""Studies of accuracy, speed and robustness: ``ehlpetsc study``.
 
 ``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
 at the edge of the ranges; with ``--far`` of forty far beyond them; with ``--models mixed`` in mixed contact.

@@ -1,6 +1,6 @@
 """Amount of contact against mesh, time step, boundary film and contact model.
 
-``python3 -m ehlpetsc.study --contact CASE.toml``: one run for each combination, a line each in
+``ehlpetsc study --contact CASE.toml``: one run for each combination, a line each in
 table and CSV; means over the time both rough surfaces fill the contact. Where a sequence of meshes halves its
 spacing, the observed order and the extrapolated value of each figure follow. ``--damage`` stores every step
 and has `ehlpetsc.post` count the damage of surface 1 at z = 0 and 0.01 a.

@@ -1,7 +1,7 @@
 """Running in: repeated passes of the same stretches of both bodies, each with the surfaces of the last one.
 
 Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` contains the
-surfaces after each pass, for ``python3 -m ehlpetsc.plot OUTPUT.passes.json --running-in``.
+surfaces after each pass, for ``ehlpetsc plot OUTPUT.passes.json --running-in``.
 """
 
 import contextlib
