@@ -328,7 +328,7 @@ def test_resuming_twice_keeps_the_history(tmp_path):
         ({"fields": ["pressure"], "resume_step": 9}, "stores other fields"),
         ({"resume_step": 12}, "ends at step 9, before step 12"),
         ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, "for another speed .u1 = 5.6"),
-        ({"resume_step": 5}, "contacts up to step 5 are not known"),
+        ({"resume_step": 5}, "contacts up to step 5 are unknown"),
     ],
 )
 def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
