@@ -1,4 +1,4 @@
-"""Faults of a case file in words: file, key, value, allowed values."""
+"""Error messages for a case file: file, key, value, allowed values."""
 
 import json
 

@@ -60,7 +60,7 @@ def solve_step(solver, q, w, h00, inputs, watch=None):
 
 
 def find_fault(problem, q, w, h00, rows, tolerance):
-    """Fault of a solution, in words; None: there is none.
+    """Reason for which a solution is rejected; None where it is accepted.
 
     Parameters
     ----------

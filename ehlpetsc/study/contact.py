@@ -167,7 +167,7 @@ def for_direct_contact(case, overrides, folder):
     kept = [override for override in overrides if override.partition("=")[0].strip() not in names]
     try:
         tables = tomllib.loads(Path(case).read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError):  # the run refuses it in words
+    except (OSError, ValueError):  # the run reports it
         return case, kept
     of_contact = tables.get("contact", {})
     if not any(key in of_contact for key in OF_MIXED_CONTACT):

@@ -221,9 +221,9 @@ def test_what_cannot_be_is_told_in_one_sentence(tmp_path, damage, message):
     arrays, numbers = load_restart(path)
     damage(arrays, numbers)
     save_restart(path, arrays, numbers)
-    with pytest.raises(OutputError, match=message) as told:
+    with pytest.raises(OutputError, match=message) as refused:
         scene.load(path)
-    assert "\n" not in str(told.value) and str(told.value).startswith(str(path))
+    assert "\n" not in str(refused.value) and str(refused.value).startswith(str(path))
 
 
 def test_every_byte_is_looked_at(tmp_path):
@@ -255,9 +255,9 @@ def test_only_a_restart_file_that_fits_the_result_is_named_as_the_way_on(tmp_pat
     path = tmp_path / "f.restart.h5"
     scene = Scene()
     scene.save(path, *state_of(scene))
-    told = resume_advice(path, Scene(*other).case, stored)
-    assert told.endswith(f"continue with -ehl_restart {path} (step 3)") == there
-    assert told.startswith("there is no restart file of it") != there
-    assert there or told.endswith("repeat it with -ehl_overwrite"), "what lies there would be refused"
+    advice = resume_advice(path, Scene(*other).case, stored)
+    assert advice.endswith(f"continue with -ehl_restart {path} (step 3)") == there
+    assert advice.startswith("there is no restart file of it") != there
+    assert there or advice.endswith("repeat it with -ehl_overwrite"), "an existing file would be refused"
     path.unlink()
     assert resume_advice(path, scene.case, stored).endswith("the same command begins at time 0")

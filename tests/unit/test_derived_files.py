@@ -43,8 +43,8 @@ def test_an_ensemble_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, n
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
     assert ensemble.main([str(result), "-o", str(other)]) == 2
-    (told,) = capsys.readouterr().err.splitlines()
-    assert f"{other}: " in told and "-o" in told
+    (message,) = capsys.readouterr().err.splitlines()
+    assert f"{other}: " in message and "-o" in message
     assert other.read_bytes() == before
 
 
@@ -73,8 +73,8 @@ def test_a_picture_replaces_nothing_but_a_picture(tmp_path, capsys, words, name)
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
     assert plot([str(result), *words, "-o", str(other)]) == 2
-    (told,) = capsys.readouterr().err.splitlines()
-    assert f"{other}: " in told
+    (message,) = capsys.readouterr().err.splitlines()
+    assert f"{other}: " in message
     assert other.read_bytes() == before
 
 
@@ -107,8 +107,8 @@ def test_a_full_disk_leaves_the_older_picture(tmp_path, capsys, words, name):
     capsys.readouterr()
     with file_size_limit(4096):
         assert plot([str(result), *words]) == 2
-    (told,) = capsys.readouterr().err.splitlines()
-    assert is_line_with(told, f"{tmp_path / name}: ", "File too large")
+    (message,) = capsys.readouterr().err.splitlines()
+    assert is_line_with(message, f"{tmp_path / name}: ", "File too large")
     assert (tmp_path / name).read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["one.h5", name])
 

@@ -11,8 +11,10 @@ from matplotlib.image import imread
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
+from ehlpetsc.analysis.run_scalars import run_scalars
 from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.plot.series.ensemble import draw_ensemble
+from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import distinguishing_names
 
@@ -57,8 +59,8 @@ def test_members_that_differ_in_seeds_alone_are_one_ensemble(tmp_path):
 def test_figures_of_a_run_are_means_over_its_time_and_extremes(tmp_path):
     (path, *_) = made(tmp_path, [50.0])
     with read_result(path) as result:
-        figures = ensemble.run_scalars(result)
-        filled = ensemble.both_fill(result, result.steps("time"))
+        figures = run_scalars(result)
+        filled = both_fill(result, result.steps("time"))
         share = result.steps("contact_share")[filled]
         assert 5 < filled.sum() < 41
         assert figures["contact_share"] == pytest.approx(share.mean())
@@ -114,7 +116,7 @@ def test_damage_gives_its_quantiles(tmp_path):
         for name in ("highest", "mean", "flash"):
             file[f"temperature/2_{name}"] = [*np.linspace(20.0, 120.0, 101), np.nan]
     with read_result(path) as result:
-        figures = ensemble.run_scalars(result)
+        figures = run_scalars(result)
     assert [figures[f"damage_2 z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
         [0.5, 0.9, 0.99]
     )

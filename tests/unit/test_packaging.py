@@ -140,12 +140,12 @@ def test_help_names_the_command_as_it_was_called(monkeypatch, capsys, name, by_n
         commands.BY_NAME[name]()
     except SystemExit as end:
         assert end.code == 0
-        told = capsys.readouterr().out
-        assert told.startswith(f"usage: {called} [-h]")
-        assert not (by_name and f"-m {module} " in told)
+        printed = capsys.readouterr().out
+        assert printed.startswith(f"usage: {called} [-h]")
+        assert not (by_name and f"-m {module} " in printed)
     else:  # without a case
-        told = capsys.readouterr().err
-        assert is_line_with(told, f"{called} CASE.toml", f"{called} -help")
+        printed = capsys.readouterr().err
+        assert is_line_with(printed, f"{called} CASE.toml", f"{called} -help")
 
 
 def test_the_names_of_the_commands_are_those_that_pip_makes():
@@ -173,6 +173,6 @@ def test_a_command_says_what_it_lacks(environment, tmp_path, name, lacks):
         text=True,
     )
     assert done.returncode == 2
-    told, typed = done.stderr.splitlines()
-    assert lacks in told
+    message, typed = done.stderr.splitlines()
+    assert lacks in message
     assert "-m pip install" in typed

@@ -80,6 +80,6 @@ def _touch(path):
 def test_orders_are_told_for_meshes_that_double():
     lengths = {50: 0.07, 100: 0.06, 200: 0.055}
     rows = [(Setting(CHOSEN.values | {MESH: mesh}), replace(FOUND, length=v)) for mesh, v in lengths.items()]
-    told = list(orders(rows))
-    assert len(told) == len(contact.REPORTED_ORDERS)
-    assert "length order 1.00, limit 0.05" in told[0]
+    lines = list(orders(rows))
+    assert len(lines) == len(contact.REPORTED_ORDERS)
+    assert "length order 1.00, limit 0.05" in lines[0]

@@ -68,7 +68,7 @@ def help_text():
     ]
     lines += [f"  -{name}{o.shown}: {o.text} (default: {o.default})" for name, o in OWN.items()]
     lines += [
-        "  --explain: print the case in words, with expected film, run time and file size; nothing is run",
+        "  --explain: print a summary of the case: expected film, run time, file size; nothing is run",
         "  --ranks: print the default number of ranks of the case, one or two; nothing is run",
         "  --keys [TABLE or TABLE.KEY]: print the keys of a case file with units, bounds, defaults",
         "  --template: print a commented case to begin from",

@@ -1,4 +1,4 @@
-"""Summary of a case in words."""
+"""Text summary of a case."""
 
 import math
 import tomllib
@@ -23,7 +23,7 @@ from ehlpetsc.surfaces.roughness import Roughness
 
 
 def explain(case):
-    """Summary in words: conditions, size, effects that are off.
+    """Text summary: conditions, mesh size, effects that are off.
 
     Parameters
     ----------
