@@ -125,8 +125,7 @@ def test_a_full_disk_leaves_the_older_table(tmp_path, capsys, name):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.h5", name]
 
 
-def test_a_movie_whose_encoder_fails_is_told_in_one_line(tmp_path):
-    pytest.importorskip("matplotlib.animation")
+def test_a_movie_whose_encoder_fails_is_reported_in_one_line(tmp_path):
     result = make_result(tmp_path / "one.h5", steps=3)
     (tmp_path / "bin").mkdir()
     encoder = tmp_path / "bin" / "ffmpeg"

@@ -15,8 +15,10 @@ from ehlpetsc.plot import __main__ as plot
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(BROWSER is None, reason="no chromium to open the report in"),
-    pytest.mark.skipif(not has("plotly"), reason="no plotly to draw the report with"),
+    pytest.mark.skipif(
+        BROWSER is None, reason="no browser here; test_report holds the text and the data of the page"
+    ),
+    pytest.mark.skipif(not has("plotly"), reason="Plotly draws the report only, and is not installed here"),
 ]
 FLAGS = """headless no-sandbox disable-gpu disable-quic no-first-run disable-background-networking
 disable-component-update disable-sync window-size=1200,2400 virtual-time-budget=9000 dump-dom""".split()
