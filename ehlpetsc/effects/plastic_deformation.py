@@ -14,7 +14,7 @@ from ehlpetsc.surfaces.body_field import BodyFields
 
 
 class PlasticRecord(NamedTuple):
-    """Plastic deformation of both bodies and its hidden part; what the last step added at the nodes [m]."""
+    """Plastic deformation of both bodies, its hidden part; increment of the last step at the nodes [m]."""
 
     depth: BodyFields
     added: np.ndarray

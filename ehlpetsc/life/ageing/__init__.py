@@ -1,1 +1,1 @@
-"""Bodies over a life: their cells and columns, what wear and damage do to them, and how far a jump goes."""
+"""Bodies over a life: cells and columns, wear, damage and break-outs, length of a jump."""

@@ -25,7 +25,7 @@ class Jumps:
         return yielded > self.wear_allowed
 
     def take(self, bodies, one, done, before=0):
-        """Jump with a solved round, until what is allowed is worn or damaged or a cell breaks out.
+        """Jump with a solved round, until the allowed wear or damage is reached or a cell breaks out.
 
         Parameters
         ----------
@@ -59,7 +59,7 @@ class Jumps:
         )
 
     def _allowed(self, bodies, rates, one, left):
-        """Passes until what is allowed is worn or damaged or a cell breaks out, `left` at most."""
+        """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
         most = 1 if self.is_yielding(one.yielded) else left
         for body, rate in zip(bodies, rates, strict=True):
             most = min(most, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))

@@ -70,7 +70,7 @@ class BlockLU:
         backward(self.factors, b)
 
     def backward_transposed(self, b):
-        """Coefficients of y that give what the coefficients `b` (rows, groups * LINE) of x do, in place."""
+        """Replace the coefficients `b` of x (rows, groups * LINE) by the equivalent ones of y, in place."""
         backward_transposed(self.upper.ravel(), b)
 
 
