@@ -1,6 +1,7 @@
 """``mpirun -n N python3 -m ehlpetsc CASE.toml [options]``: run a case; ``-help`` lists the options."""
 
 import errno
+import os
 import signal
 import sys
 import traceback
@@ -11,7 +12,7 @@ from ehlpetsc.errors import CaseError, ExitStatus, UsageError
 from ehlpetsc.run.cli.streams import harden_std_streams
 from ehlpetsc.run.stop import EarlyStop
 
-QUIET = "-no_signal_handler"  # PETSc would end the process with a report of its own
+NO_SIGNAL_HANDLER = "-no_signal_handler"  # PETSc's handler would end the process with its own report
 
 
 def main(argv):
@@ -28,8 +29,10 @@ def main(argv):
         command = parse_command_line(argv[1:])
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
-    if command.case is None and command.petsc == ["-help"]:  # nothing of PETSc's: it need not be there
-        return print_once(help_text())
+    if "-help" in [*command.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
+        status = print_once(help_text())
+        if command.case is None and command.petsc == ["-help"]:  # works without PETSc
+            return status
     if command.explain or command.ranks:
         return explain(command)
     problem = environment.startup_problem()
@@ -38,23 +41,24 @@ def main(argv):
     import petsc4py
 
     try:
-        petsc4py.init([argv[0], QUIET, *command.petsc])
-    except RuntimeError as error:  # PETSc's own kind, which cannot be imported before it has begun
+        petsc4py.init([argv[0], NO_SIGNAL_HANDLER, *command.petsc])
+    except RuntimeError as error:  # PETSc.Error, which cannot be imported before initialisation
         return refuse(f"ehlpetsc: PETSc cannot begin with {' '.join(command.petsc)}: {error}")
     from petsc4py import PETSc
 
-    PETSc.Options().delValue(QUIET)  # it is no option of the run
+    PETSc.Options().delValue(NO_SIGNAL_HANDLER)  # not an option of the run
     from ehlpetsc.run.cli.command import run
 
     return run(command.case, command.overrides)
 
 
-def print_keys(words):
-    """Print every key of a case file, of one table, or a commented case; returns the exit status."""
+def print_keys(arguments):
+    """Print the keys of a case file or of one table, or a commented case; returns the exit status."""
     from ehlpetsc.case import key_page
 
     try:
-        text = key_page.template() if words[0] == "--template" else key_page.keys(*words[1:2]) + "\n"
+        is_template = arguments[0] == "--template"
+        text = key_page.template() if is_template else key_page.keys(*arguments[1:2]) + "\n"
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
     return print_once(text, end="")
@@ -75,7 +79,7 @@ def explain(command):
 
 
 def print_once(text, end="\n"):
-    """Print on one rank; the status is bad input where standard output has no room for the text."""
+    """Print on one rank; returns the exit status, bad input if standard output cannot be written."""
     if environment.first_rank():
         print(text, end=end)
     sys.stdout.flush()
@@ -84,15 +88,15 @@ def print_once(text, end="\n"):
 
 
 def refuse(text):
-    """Print a fault on one rank; returns the status of bad input."""
+    """Print a fault on one rank; returns the exit status of bad input."""
     if environment.first_rank():
         print(text, file=sys.stderr, flush=True)
     return ExitStatus.BAD_INPUT
 
 
 def run_guarded(argv):
-    """Run `main`; an unexpected error on one rank ends all of them, with its traceback."""
-    if not sys.warnoptions:  # those of numpy are for developers: python3 -W default shows them
+    """Run `main`; an unexpected error on one rank ends all ranks, with its traceback."""
+    if not sys.warnoptions:  # warnings of numpy are for developers: python3 -W default shows them
         warnings.simplefilter("ignore")
     harden_std_streams()
     stop = EarlyStop()
@@ -100,21 +104,21 @@ def run_guarded(argv):
         status = main(argv)
     except SystemExit:
         raise
-    except BaseException as error:  # any other way out would leave the other ranks waiting for ever
+    except BaseException as error:  # otherwise the other ranks would wait for ever
         status = _after_error(error, stop)
         if "mpi4py.MPI" in sys.modules:
             mpi = sys.modules["mpi4py.MPI"]
             if mpi.COMM_WORLD.size > 1:
                 mpi.COMM_WORLD.Abort(status)
-    signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # repeated by run_mpi.sh, it would end Python as it ends
+    signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # run_mpi.sh may repeat it while Python ends
     sys.stdout.flush()
     sys.stderr.flush()
     return status
 
 
 def _after_error(error, stop):
-    """Report an error, or the stop that it comes from; returns the exit status."""
-    if stop.asked:  # an import may have made another error of it
+    """Report an error, or the stop that caused it; returns the exit status."""
+    if stop.is_requested:  # an import may have raised another error instead
         if environment.first_rank():
             print("ehlpetsc: stopped before the run had begun; nothing to continue from", file=sys.stderr)
         return ExitStatus.STOPPED

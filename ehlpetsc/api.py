@@ -20,7 +20,7 @@ __all__ = ["Result", "load", "members", "read_result", "solve"]
 
 
 class Result(reader.Result):
-    """A result, of a file or in memory: see :class:`ehlpetsc.results.reader.Result`."""
+    """Result from a file or in memory, see :class:`ehlpetsc.results.reader.Result`."""
 
     def plot(self, step=None, time=None, window=None):
         """Pressure and film over x/a at one stored frame, contacts marked.
@@ -29,7 +29,7 @@ class Result(reader.Result):
         ----------
         step : int, optional
         time : float, optional
-            [s]; the frame nearest to either, by default that with most contacts.
+            [s]; the nearest frame is drawn, by default that of :func:`.plot.panels.frames.frame_to_show`.
         window : (float, float), optional
             Limits of x/a.
 
@@ -59,7 +59,7 @@ class Result(reader.Result):
         return figure
 
     def _window(self, window):
-        """Limits of x/a, checked to hold nodes."""
+        """Limits of x/a that contain nodes."""
         if window is None:
             return None
         ends = self.x[[0, -1]] / self.attrs["a"]
@@ -75,14 +75,14 @@ class Result(reader.Result):
 
 
 def refuse_passes(case):
-    """Several passes have as many results: they are not one for `solve`."""
+    """Refuse a case of several passes, which has several results."""
     if case.time is not None and case.time.passes > 1:
         passes = f"{case.path}: time.passes = {case.time.passes}: solve one after the other"
         raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
 
 
 def read_result(path):
-    """Open a result file; it may be one that is still being written.
+    """Open a result file, also one that is being written.
 
     Parameters
     ----------
@@ -105,20 +105,20 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
 
     Parameters
     ----------
-    case : case.loading.Case, or what `load` takes
+    case : case.loading.Case, or an argument of `load`
     output : path-like, optional
-        Result file; by default the result is in memory alone.
+        Result file; by default the result is only in memory.
     options : dict, optional
-        PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``; before those of
-        the case and of PETSC_OPTIONS, and only for this call.
+        PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, for this call; they
+        override those of the case and of PETSC_OPTIONS.
     comm : mpi4py communicator, optional
-        The ranks that share the work, each of which calls this and gets the result; by default this process
+        Ranks of the solution, each of which calls this function and gets the result; by default this process
         alone.
     restart : path-like, optional
         Restart file to continue from.
     overwrite : bool
-        Whether to replace any existing file `output`; else only the complete result of the
-        very same case is made again, and an unfinished run of it continued from its restart file.
+        Whether to replace any existing file `output`; otherwise only a complete result of the same case is
+        replaced, and an unfinished run of it is continued from its restart file.
     progress : bool, optional
         Whether to show progress; by default on a terminal and in a notebook.
 
@@ -131,9 +131,9 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     CaseError
         The case is faulty; the message lists all faults.
     NotConverged
-        Its `state` is the last good one; with `output` that is also in the restart file.
+        Its `state` is the last accepted state, which with `output` is also in the restart file.
     UsageError, OutputError
-        An option that cannot be, a file that cannot be read or written.
+        An impossible option, a file that cannot be read or written.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
 
 
 def need_solver():
-    """Find Debian's PETSc; ImportError with what to do where something is missing."""
+    """Find Debian's PETSc; ImportError with advice if a package is missing."""
     missing = environment.prepare()
     if missing:
         raise ImportError(environment.advice(missing, []))

@@ -1,4 +1,4 @@
-"""Parser, name in help texts and exit status that the commands beside the run share."""
+"""Common parser, name in help texts and exit status of all commands except the run."""
 
 import argparse
 import re
@@ -18,14 +18,14 @@ from ehlpetsc.errors import (
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Parser whose errors are one sentence, status 2, without the usage.
+    """Argument parser whose errors are one line without the usage, with exit status 2.
 
     Parameters
     ----------
     module : str
-        As of :func:`program`.
+        See :func:`program`.
     description : str
-        Of the command; one of several lines keeps them.
+        Description of the command; line breaks are kept.
     """
 
     def __init__(self, module, description):
@@ -34,13 +34,13 @@ class CommandParser(argparse.ArgumentParser):
         super().__init__(prog=program(module), description=description, formatter_class=formatter)
 
     def error(self, message):
-        """End the command with the fault and a hint at the list of options."""
+        """End the command with the fault and a hint to the list of options."""
         name = self.prog.removeprefix("python3 -m ")
         self.exit(2, f"{name}: {message}; {self.prog} -h lists the options\n")
 
 
 def program(module):
-    """Name of a command in its help: as it was called, by pip's name for it or as a module.
+    """Name of a command in its help, as it was called: a subcommand, the name of pip, or a module.
 
     Parameters
     ----------
@@ -64,13 +64,13 @@ def exit_status(name, action, faults=(), output=None):
     Parameters
     ----------
     name : str
-        As in ``ehlpetsc.post``; begins the message.
+        Name of the command's module, as ``ehlpetsc.post``, for the message.
     action : callable
-        The command; its result is the status, None: done.
+        Function of the command, which returns the status; None: done.
     faults : tuple of type
         Further exceptions that mean bad input.
     output : path-like, optional
-        File that the command writes, for a failed write that names none.
+        Output file, for errors of writing without a file name.
     """
     try:
         status = action()

@@ -1,8 +1,8 @@
 """The program ``ehlpetsc`` and its subcommands, and the commands of earlier releases that pip installs.
 
 ``ehlpetsc CASE.toml`` runs a case, ``ehlpetsc plot RESULT.h5`` draws, and so on: `SUBCOMMANDS`. The names
-``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study`` and ``python3 -m ehlpetsc.post`` ... stay.
-``python3 -m ehlpetsc.commands NAME ...`` is the one of that name: so ``run_mpi.sh`` starts them.
+``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study`` and ``python3 -m ehlpetsc.post`` ... remain.
+``run_mpi.sh`` starts a command by ``python3 -m ehlpetsc.commands NAME ...``.
 """
 
 import importlib
@@ -13,15 +13,20 @@ from functools import partial
 
 from ehlpetsc.environment import NUMERICS, missing
 
-DRAWING = (*NUMERICS, "matplotlib")
+PLOTTING = (*NUMERICS, "matplotlib")
 SUBCOMMANDS = {  # name: module, function, packages needed, description
-    "plot": ("ehlpetsc.plot.__main__", "main", DRAWING, "pictures of results, of a series or of a case"),
+    "plot": ("ehlpetsc.plot.__main__", "main", PLOTTING, "pictures of results, of a series or of a case"),
     "post": ("ehlpetsc.post.command", "command", NUMERICS, "subsurface stresses, fatigue damage, statistics"),
     "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.compare", "main", NUMERICS, "two results field by field"),
-    "gears": ("ehlpetsc.gears.__main__", "main", DRAWING, "path of contact of spur gears, and runs along it"),
-    "life": ("ehlpetsc.life.__main__", "main", DRAWING, "wear against fatigue over many passes"),
-    "study": ("ehlpetsc.study.__main__", "main", DRAWING, "accuracy, speed, robustness"),
+    "gears": (
+        "ehlpetsc.gears.__main__",
+        "main",
+        PLOTTING,
+        "path of contact of spur gears, and runs along it",
+    ),
+    "life": ("ehlpetsc.life.__main__", "main", PLOTTING, "wear against fatigue over many passes"),
+    "study": ("ehlpetsc.study.__main__", "main", PLOTTING, "accuracy, speed, robustness"),
     "ensemble": ("ehlpetsc.analysis.ensemble", "main", NUMERICS, "means over runs of several seeds"),
     "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),
     "docs": ("ehlpetsc.docs.__main__", "main", (), "these pages as one site, opened in a browser"),
@@ -44,7 +49,7 @@ def solver():
 
 
 def dispatch(run):
-    """Start the subcommand named by the first word, else run a case; returns the exit status."""
+    """Start the subcommand in the first argument, otherwise run a case; returns the exit status."""
     first = sys.argv[1] if len(sys.argv) > 1 else ""
     if first in OF_A_CASE:
         sys.argv[1] = OF_A_CASE[first]
@@ -63,7 +68,7 @@ def dispatch(run):
 
 
 def _python(words):
-    """Run a script, or Python itself, where ``import ehlpetsc`` works."""
+    """Run a script, or Python itself, with ehlpetsc on the path."""
     from ehlpetsc.environment import prepare
 
     prepare()

@@ -1,7 +1,7 @@
 """Compilation of loops over nodes and samples by numba, cached on disk between runs.
 
-The solver needs numba. Post-processing does without it: the same functions then run as plain Python, slowly,
-to the same bit.
+The solver requires numba. Post-processing works without numba: the functions then run as Python code, slowly,
+with bitwise equal results.
 """
 
 import contextlib
@@ -11,7 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colour codes would end every output
+os.environ.setdefault(
+    "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1"
+)  # no colour codes at the end of the output
 try:
     import numba
     from llvmlite import ir
@@ -20,13 +22,13 @@ try:
     COMPILED = True
 except ImportError:
     COMPILED = False
-# what indices are that cannot be negative, over which numba takes half the time
+# type of indices that are not negative, with which loops take half the time
 unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
-ZERO = np.int64(0)  # to hand to compiled functions, which numba would compile once more for a literal 0
+ZERO = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
 def drop_stale_code(package):
-    """Remove code that numba has kept of other sources of a package.
+    """Remove numba's cached code of other versions of a package.
 
     numba notices a change of the file of a function, not of the files of functions that it calls, nor that a
     module has moved.
@@ -39,26 +41,26 @@ def drop_stale_code(package):
     found = sorted((str(path.relative_to(package)), path.stat()) for path in package.rglob("*.py"))
     text = repr([(name, about.st_size, about.st_mtime_ns) for name, about in found])
     digest = hashlib.sha256(text.encode()).hexdigest()
-    with contextlib.suppress(OSError):  # of others, or read-only: then numba keeps its code elsewhere
+    with contextlib.suppress(OSError):  # read-only: numba then has its cache elsewhere
         if stamp.exists() and stamp.read_text() == digest:
             return
         for path in package.rglob("__pycache__/*.nb[ic]"):
             path.unlink(missing_ok=True)
-        beside = stamp.with_suffix(f".{os.getpid()}")
-        beside.parent.mkdir(exist_ok=True)
-        beside.write_text(digest)
-        beside.replace(stamp)
+        temporary = stamp.with_suffix(f".{os.getpid()}")
+        temporary.parent.mkdir(exist_ok=True)
+        temporary.write_text(digest)
+        temporary.replace(stamp)
 
 
 if COMPILED:
-    with contextlib.suppress(OSError):  # a module is removed meanwhile
+    with contextlib.suppress(OSError):  # a module is removed at the same time
         drop_stale_code(Path(__file__).parent)
 
 
 def compiled(function=None, **options):
-    """Compile `function` at its first call, once for all runs where the outcome can be kept.
+    """Compile `function` at its first call, once for all runs if the code can be cached.
 
-    Division by zero gives infinity as in numpy; ``error_model="python"`` makes it an error as in Python.
+    Division by zero is infinity as in numpy; with ``error_model="python"`` it is an error as in Python.
     Other options are numba's.
     """
     if function is None:

@@ -1,10 +1,10 @@
-"""Environment of a run, before anything is imported: PETSc on the path, one thread a rank, packages.
+"""Environment of a run, set before imports: PETSc on the path, one thread per rank, required packages.
 
-``run_mpi.sh`` runs this file by itself, in a Python that may have none of them and may be too old::
+``run_mpi.sh`` runs this file as a script, also in a Python that is too old or has no packages::
 
-    environment.py own MODULE ...      status 0: this Python, not Debian's, has all and can load PETSc
-    environment.py missing MODULE ...  prints those that it does not have
-    environment.py found MODULE ...    prints what it is and what it lacks
+    environment.py own MODULE ...      status 0: this Python, not Debian's, has all modules and can load PETSc
+    environment.py missing MODULE ...  prints the missing modules
+    environment.py found MODULE ...    prints the version of Python and the missing modules
 """
 
 import importlib
@@ -19,21 +19,22 @@ DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
 SOLVER = ("mpi4py", "petsc4py")
 NEEDED = (*NUMERICS, "numba", "pydantic", "tomlkit", *SOLVER)
-RANK = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
+RANK_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
 OLDEST_PYTHON = (3, 11)
 
 
 def prepare():
-    """Make ready for the imports of a run.
+    """Prepare the imports of a run.
 
-    Debian keeps petsc4py beside its PETSc and not on Python's path, and so does a PETSc built by hand: that
-    of ``PETSC_DIR`` is taken, without it Debian's newest real one. Threads of BLAS would fight the ranks for
-    the cores: one, unless the user says otherwise. UCX, which Open MPI 5 starts, would take SIGHUP.
+    The petsc4py of Debian or of a PETSc built from source is not on Python's path: that of ``PETSC_DIR`` is
+    added, by default Debian's newest one with real scalars. BLAS uses one thread unless the user sets another
+    number, because ranks and threads would compete for the cores. UCX, which Open MPI 5 starts, must not
+    handle SIGHUP.
 
     Returns
     -------
     list of str
-        Packages that this Python does not have.
+        Missing packages.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
@@ -43,13 +44,13 @@ def prepare():
 
 
 def has(name):
-    """Whether a package can be imported; a folder of its name without a package in it cannot."""
+    """Whether a package can be imported; a folder of its name without a package does not count."""
     spec = importlib.util.find_spec(name)
     return spec is not None and spec.origin is not None
 
 
 def missing(names):
-    """Packages among the given ones that this Python does not have.
+    """Missing packages of a list.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def missing(names):
 
 
 def _of_petsc_dir():
-    """Folders of the petsc4py that the PETSc of the environment was built with."""
+    """Folders of the petsc4py of ``PETSC_DIR``."""
     if "PETSC_DIR" not in os.environ:
         return []
     home, arch = Path(os.environ["PETSC_DIR"]), os.environ.get("PETSC_ARCH", "")
@@ -72,16 +73,16 @@ def _of_petsc_dir():
 
 
 def _debians():
-    """Folders of Debian's petsc4py of this release of Python, newest first."""
+    """Folders of Debian's petsc4py for this release of Python, newest first."""
     built = f"petsc4py/lib/PETSc.{sys.implementation.cache_tag}-*.so"
-    found = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
-    return sorted(found, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
+    folders = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
+    return sorted(folders, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
 
 
 def require_numerics():
-    """End a command (exit 2) whose packages this Python lacks, with advice."""
+    """End a command (exit 2) with advice if packages are missing."""
     lacks = missing(NUMERICS)
-    if lacks and "ehlpetsc" not in sys.orig_argv:  # a run itself says more: all that it needs
+    if lacks and "ehlpetsc" not in sys.orig_argv:  # a run reports all missing packages itself
         command = shlex.join(sys.orig_argv[1:])
         print(
             f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
@@ -93,35 +94,35 @@ def require_numerics():
 
 
 def advice(lacks, arguments):
-    """Advice on missing packages: one line with the reason and one to type.
+    """Advice on missing packages: one line with the reason and one with a command.
 
     Parameters
     ----------
     lacks : list of str
     arguments : list of str
-        Of the command as it was typed.
+        Arguments of the command.
     """
-    words = " ".join(arguments) or "CASE.toml"
-    said = f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
+    command = " ".join(arguments) or "CASE.toml"
+    reason = f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
     if Path(__file__).parents[1].joinpath("run_mpi.sh").exists():
         return (
-            f"{said}type: ./run_mpi.sh {words}   (installs what is missing on Debian 12 and newer and runs "
-            f"Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {words}"
+            f"{reason}type: ./run_mpi.sh {command}   (installs what is missing on Debian 12 and newer and "
+            f"runs Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {command}"
         )
     return (
-        f"{said}type: {sys.executable} -m pip install {' '.join(lacks)}   (builds PETSc from source if "
+        f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}   (builds PETSc from source if "
         "that is missing), or take Debian's packages and a virtual environment with --system-site-packages"
     )
 
 
 def startup_problem():
-    """Reason why a run cannot be started here; None: there is none."""
+    """Reason why a run cannot be started; None if it can."""
     try:
         os.getcwd()
     except OSError:
         return "the working folder has been removed; change to one that is there"
-    if any(name in os.environ for name in RANK):
-        return None  # mpirun has found its own
+    if any(name in os.environ for name in RANK_VARIABLES):
+        return None  # under mpirun
     names = ("OMPI_MCA_orte_tmpdir_base", "TMPDIR", "TEMP", "TMP")
     folder = next((os.environ[name] for name in names if os.environ.get(name)), "/tmp")
     if not os.access(folder, os.W_OK | os.X_OK):
@@ -130,18 +131,18 @@ def startup_problem():
 
 
 def first_rank():
-    """Whether this process is rank 0 of mpirun, or alone; known before MPI is."""
-    return next((os.environ[name] for name in RANK if name in os.environ), "0") == "0"
+    """Whether this process is rank 0 of mpirun, or alone; also before MPI is initialised."""
+    return next((os.environ[name] for name in RANK_VARIABLES if name in os.environ), "0") == "0"
 
 
 def _own(names):
-    """Whether this Python is complete without Debian's PETSc, whose environment run_mpi.sh sets itself."""
+    """Whether this Python has all packages without Debian's PETSc, whose environment run_mpi.sh sets."""
     if sys.version_info < OLDEST_PYTHON:
         return False
     prepare()
     if missing(names) or DEBIAN in Path(importlib.util.find_spec("petsc4py").origin).parents:
         return False
-    # loaded, not started: where a batch system starts the ranks, there can be none here
+    # loaded, not initialised: under a batch system MPI cannot be initialised here
     importlib.import_module("mpi4py").rc.initialize = False
     importlib.import_module("mpi4py.MPI")
     petsc = importlib.import_module("petsc4py.lib").ImportPETSc()

@@ -1,6 +1,6 @@
 """Exceptions of the package, exit statuses of its commands, and the message of a failed write.
 
-The text of an error that a user can correct names the fault, its place, and allowed values or a cure.
+The message of an error that a user can correct states the fault, its place, and allowed values or a cure.
 """
 
 from enum import IntEnum
@@ -28,7 +28,7 @@ def not_written(error, path=None):
     ----------
     error : OSError
     path : path-like, optional
-        The file; by default that which the error names, if it does.
+        File; by default that of the error, if any.
 
     Returns
     -------
@@ -44,7 +44,7 @@ class CaseError(Exception):
     Attributes
     ----------
     faults : list of str
-        One line a fault, all of them at once.
+        All faults, one message each.
     """
 
     def __init__(self, faults):
@@ -61,23 +61,23 @@ class UsageError(Exception):
 
 
 class OutputError(Exception):
-    """A result or restart file cannot be read or written; the text names the reason."""
+    """A result or restart file cannot be read or written; the message states the reason."""
 
 
 class PostError(Exception):
-    """A result cannot be post-processed; the text names the reason."""
+    """A result cannot be post-processed; the message states the reason."""
 
 
 class SolveFailed(Exception):
-    """One solve of the discrete equations failed.
+    """A solve of the discrete equations failed.
 
     Attributes
     ----------
     method : str
-        That failed: SNES, the sweeps, or the check of the solution.
+        Method that failed: SNES, Gauss-Seidel sweeps, or the check of the solution.
     reason : str
     iterations : int
-        Spent on it.
+        Iterations of the solve.
     """
 
     def __init__(self, method, reason, iterations):
@@ -85,7 +85,7 @@ class SolveFailed(Exception):
         self.method, self.reason, self.iterations = method, reason, iterations
 
     def after(self, iterations):
-        """The same failure, after iterations of an attempt before."""
+        """The same failure with the iterations of a previous attempt added."""
         return SolveFailed(self.method, self.reason, self.iterations + iterations)
 
 
@@ -94,16 +94,16 @@ class Stopped(Exception):
 
 
 class NoSteadyStart(Exception):
-    """No steady solution was found; the text gives the reason."""
+    """No steady solution was found; the message states the reason."""
 
 
 class NotConverged(Exception):
-    """A time step or steady start did not converge; the text names step, time, reason and a cure.
+    """A time step or steady start did not converge; the message states step, time, reason and a cure.
 
     Attributes
     ----------
     state : run.accepted_state.AcceptedState or None
-        The last good one, None if there is none.
+        Last accepted state; None if there is none.
     """
 
     def __init__(self, message, state=None):

@@ -16,7 +16,8 @@ the Roessle-Fatemi method); the original article itself was not available.
 Hardnesses are nominal, of the condition that the `source` of a steel names, and from data sheets that quote
 the standards, not from these: EN 10084 for 16MnCr5 (Akrostal: at least 60 HRC carburised, quenched and
 tempered), EN ISO 683-17 for 100Cr6 (Lucefin: 62 HRC tempered at 250 C, 59 HRC at 300 C), DIN 50150 for
-42CrMo4 (995 MPa: 310 HV, 295 HB, 31 HRC). For 18CrNiMo7-6 the hardness is assumed to be that of 16MnCr5.
+42CrMo4 (995 MPa: 310 HV, 295 HB, 31 HRC). SAE4340 has none: the paper that gives its constants does not give
+its hardness, and no formula here needs it. Steels without tests and hardness are left out.
 """
 
 from dataclasses import dataclass
@@ -26,7 +27,6 @@ PLASTIC_STRAIN = 0.002  # at which the cyclic yield stress is read
 FLOW_FACTOR = (2 + pi) / sqrt(3)  # 2.97
 HRC_60 = 654  # HB of 60 HRC, ASTM E140
 ISO_MODULUS = 206e9  # Pa, ISO 6336-2
-CASE_HARDENED = "case-hardened surface, nominally 60 HRC (EN 10084); constants from hardness"
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,8 @@ def steel_of_hardness(hardness, youngs_modulus, source, poisson_ratio=0.3):
 
 
 STEELS = {
-    "16MnCr5": steel_of_hardness(HRC_60, ISO_MODULUS, CASE_HARDENED),
-    "18CrNiMo7-6": steel_of_hardness(
-        HRC_60, ISO_MODULUS, "case-hardened surface, 60 HRC assumed as of 16MnCr5; constants from hardness"
+    "16MnCr5": steel_of_hardness(
+        HRC_60, ISO_MODULUS, "case-hardened surface, nominally 60 HRC (EN 10084); constants from hardness"
     ),
     "100Cr6": steel_of_hardness(
         HRC_60, 207e9, "hardened, tempered at 250 to 300 C, nominally 60 HRC; constants from hardness"

@@ -1,4 +1,4 @@
-"""Every dataset of a result file in one table: unit, long name, type, where it exists, how it is summed up.
+"""Table of all datasets of a result file: unit, long name, type, cases that have it, reduction over a run.
 
 A new quantity is a line here and a value in `ehlpetsc.stepping.observables`, or belongs to an effect
 (`ehlpetsc.effects`), which has both; the case file's list of fields,
@@ -177,10 +177,10 @@ GROUPS = {
 
 
 def of_case(table, case):
-    """Names of those quantities of a table that a case has."""
+    """Names of the quantities of a table in a case."""
     return [name for name, field in table.items() if SCENES[field.only](case)]
 
 
 def of_every_case(table):
-    """Names of those quantities of a table that all cases have."""
+    """Names of the quantities of a table in all cases."""
     return [name for name, field in table.items() if not field.only]

@@ -19,11 +19,11 @@ class Field:
     dims : tuple of str
         Names of the dimension scales, each beside the dataset or in a group above it.
     dtype : str
-        Type on disk; the stored fields may be narrowed to float32 on request.
+        Type on disk; fields may be stored as float32 on request.
     only : str
-        Scenes that have it, a key of `SCENES`; "": all.
+        Cases with the quantity, a key of `SCENES`; "": all.
     on_request : bool
-        Whether a case must ask for it.
+        Whether it is stored only on request of the case.
     """
 
     units: str
@@ -36,7 +36,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Column:
-    """Column of progress: heading, factor from SI units, format, words in the bar."""
+    """Column of progress: heading, factor from SI units, format, text of the bar."""
 
     heading: str
     factor: float
@@ -46,21 +46,20 @@ class Column:
 
 @dataclass(frozen=True)
 class StepScalar(Field):
-    """A scalar of every time step.
+    """Scalar of every time step.
 
     Attributes
     ----------
     over_run, over_series : str
-        Reduction to one value, a key of `REDUCTIONS`, "" for none; over a series by default that over
-        its runs.
+        Reduction to one value, a key of `REDUCTIONS`, "": none; `over_series` by default as `over_run`.
     summary : str
-        Format in the last line of a run; "" leaves it out.
+        Format in the last line of a run; "": not printed.
     label : str
-        Name in that line; its own by default.
+        Name in this line; default: name of the scalar.
     progress : Column, optional
-        Its column in the lines of progress.
+        Column in the lines of progress.
     compared : bool
-        Whether two runs of one case must agree in it, unlike a scalar of the solution process.
+        Whether it is compared between runs, unlike scalars of the solution process.
     """
 
     dims: tuple = _STEP

@@ -1,4 +1,4 @@
-"""Case files: read as text, parsed as TOML, with validation messages."""
+"""Case files: reading as text, parsing as TOML, messages on faults."""
 
 import contextlib
 import difflib
@@ -9,9 +9,9 @@ from pathlib import Path
 
 from ehlpetsc.errors import CaseError
 
-MAX_PARTS = 50  # of a dotted key: more than any case has
-MAX_BYTES = 2**26  # of a case file: far more than any profile written out in it
-LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MAX_PARTS}}}""")
+MAX_KEY_PARTS = 50  # of a dotted key
+MAX_BYTES = 2**26  # of a case file
+LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MAX_KEY_PARTS}}}""")
 
 
 def read_text(path):
@@ -21,12 +21,12 @@ def read_text(path):
     ------
     CaseError
     """
-    if not isinstance(path, str | os.PathLike):  # open takes a number for a file that is open already
+    if not isinstance(path, str | os.PathLike):  # for open a number is a file descriptor
         raise CaseError([f"{path!r}: allowed: the name of a TOML file, or a dict of its tables"])
     try:
         if not str(path):
             raise CaseError(["'': no name of a case file; allowed: a TOML file"])
-        with open(path, "rb") as file:  # a device has no size, and no end
+        with open(path, "rb") as file:  # a device has no size and no end
             whole = file.read(MAX_BYTES + 1)
         if len(whole) > MAX_BYTES:
             raise CaseError([f"{path}: larger than {MAX_BYTES >> 20} MB; allowed: a TOML file of a case"])
@@ -39,7 +39,7 @@ def read_text(path):
 
 
 def _meant(path):
-    """Hint at a case file of nearly that name in the same folder."""
+    """Hint to a case file with a similar name in the same folder."""
     with contextlib.suppress(OSError, ValueError):
         beside = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
         close = difflib.get_close_matches(Path(path).stem, beside, n=1)
@@ -49,24 +49,26 @@ def _meant(path):
 
 
 def parse_toml(path, text):
-    """Tables of a TOML text; `path` names it in faults.
+    """Tables of a TOML text; `path` is its name in messages.
 
     Raises
     ------
     CaseError
     """
     found = LONG_KEY.search(text)
-    if found:  # tomllib takes the square of their number in time
+    if found:  # the time of tomllib grows as the square of their number
         line = text.count("\n", 0, found.start()) + 1
-        raise CaseError([f"{path}: line {line}: a key of more than {MAX_PARTS} parts; allowed: table.key"])
+        raise CaseError(
+            [f"{path}: line {line}: a key of more than {MAX_KEY_PARTS} parts; allowed: table.key"]
+        )
     try:
         return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # tomllib lets some of its number conversions through
+    except (ValueError, RecursionError) as error:  # some errors of number conversions pass tomllib
         raise CaseError([f"{path}: not valid TOML: {error}{_comma(text, str(error))}"]) from None
 
 
 def _comma(text, error):
-    """Hint at a decimal comma in the line that TOML refuses."""
+    """Hint to a decimal comma in the line of an error."""
     line = re.search(r"at line (\d+)", error)
     typed = text.splitlines()[int(line[1]) - 1] if line else ""
     found = re.search(r"=\s*([+-]?\d+),(\d+)", typed)

@@ -10,59 +10,60 @@ from ehlpetsc import environment
 
 environment.prepare()
 MPI_TESTS = Path(__file__).parent / "mpi"
-DEAREST = (  # files of two seconds and more by the processor time they take
-    "test_post_run",  # these three compile what others load: post-processing, the solver, and nothing
+DEAREST = (  # files of two seconds of processor time and more, longest first
+    "test_post_run",  # the first three compile post-processing, the solver, and nothing
     "test_compliant",
     "test_run_script",
     "test_wear_against_fatigue",
-    "test_passes",
-    "test_fuzz",
-    "test_options",
-    "test_interruptions",
-    "test_stops",
-    "test_series",
     "test_post_outputs",
-    "test_cases",
+    "test_series",
+    "test_options",
+    "test_passes",
     "test_extremes",
-    "test_batch",
     "test_operation",
-    "test_packaging",
-    "test_lives_with_effects",
-    "test_derived_of_gears_and_life",
     "test_plot",
-    "test_figures",
-    "test_outputs",
+    "test_interruptions",
+    "test_batch",
+    "test_derived_of_gears_and_life",
+    "test_fuzz",
+    "test_cases",
+    "test_lives_with_effects",
+    "test_stops",
     "test_heat",
     "test_yielding",
     "test_lives_killed",
+    "test_packaging",
     "test_asperities",
     "test_sweep",
-    "test_output",
-    "test_body_point_temperatures",
-    "test_waviness",
-    "test_heat_with_effects",
+    "test_figures",
     "test_derived_files",
+    "test_waviness",
+    "test_output",
     "test_starts",
-    "test_case_fuzz",
-    "test_post_histories",
-    "test_docs",
-    "test_notebook",
-    "test_post_inputs",
-    "test_life_regimes",
-    "test_rough",
-    "test_case_text",
-    "test_ensemble",
-    "test_collisions",
-    "test_stored_figures",
-    "test_study",
-    "test_wear",
-    "test_python",
-    "test_order",
-    "test_bad_input",
-    "test_ridge",
-    "test_compliant_runs",
     "test_mixed",
+    "test_heat_with_effects",
     "test_dense_profiles",
+    "test_body_point_temperatures",
+    "test_outputs",
+    "test_series_of_lives",
+    "test_heat_runs",
+    "test_post_criteria",
+    "test_notebook",
+    "test_case_fuzz",
+    "test_docs",
+    "test_study",
+    "test_life_regimes",
+    "test_python",
+    "test_case_text",
+    "test_stored_figures",
+    "test_rough",
+    "test_wear",
+    "test_ensemble",
+    "test_post_histories",
+    "test_collisions",
+    "test_bad_input",
+    "test_compliant_runs",
+    "test_order",
 )
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -72,7 +73,7 @@ TAKEN = signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIG
 
 @pytest.fixture(autouse=True)
 def signals_as_before():
-    """A command called in a test keeps its hold on signals; processes of later tests would inherit it."""
+    """Restore signal handlers that a command called in a test has set; later processes would inherit them."""
     before = {number: signal.getsignal(number) for number in TAKEN}
     yield
     for number, handler in before.items():
@@ -106,7 +107,7 @@ def pytest_collection_finish():
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Files go whole to the processes of ``--dist loadfile``, dearest first: all end at about one time."""
+    """Give the longest files to the processes of ``--dist loadfile`` first, so that all end together."""
     if config.getvalue("dist") != "loadfile":
         return None
     from xdist.scheduler import LoadFileScheduling
@@ -121,6 +122,6 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def rank(path):
-    """Place of a file in `DEAREST`; all others, in their order, come after."""
+    """Index of a file in `DEAREST`; other files come after, in their order."""
     name = Path(path).stem
     return DEAREST.index(name) if name in DEAREST else len(DEAREST)

@@ -1,12 +1,12 @@
-"""Collisions of asperities in the members of a series: found and listed.
+"""Collisions of asperities in the members of a series.
 
-Members of a series share roughness, kinematics and, but for halved steps, time levels: an asperity pair
-is in the same relative position in all of them at the same time. Nodes in contact of all members are
-put into one map of place and time; what hangs together there is one collision. Times, not step numbers, are
+Members of a series have the same roughness, kinematics and, except for halved steps, time levels: an asperity
+pair is in the same relative position in all of them at the same time. The contact nodes of all members are
+entered in one map over x and time, whose connected regions are the collisions. Times, not step numbers, are
 compared.
 
-``ehlpetsc collisions OUTPUT.series.json`` lists them and says how film and
-pressure go with the swept value (Holmes et al. 2005, figure 4).
+``ehlpetsc collisions OUTPUT.series.json`` lists the collisions and the dependence of film and pressure on the
+varied value (Holmes et al. 2005, figure 4).
 """
 
 import sys
@@ -19,26 +19,26 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.series_index import WITH_FILM, command, from_thick_to_thin
 
-BRIDGED = 2  # cells of the map over which a contact that flickers is still the same
-TIME_TOLERANCE = 1e-3  # of the interval between frames: times nearer than this are the same
-BLOCK = 256  # frames read at a time
+MAX_INTERRUPTION = 2  # cells of the map: contacts with longer interruptions are different collisions
+TIME_TOLERANCE = 1e-3  # of the interval between frames: times nearer than this are equal
+FRAMES_PER_BLOCK = 256  # read at once
 
 
 @dataclass(frozen=True)
 class Collision:
-    """One collision.
+    """Collision of two asperities in the members of a series.
 
     Attributes
     ----------
     x, time : float
-        A point of contact of the member that touches first of all [m, s]: of those at times that most members
-        have stored the one at which most touch, and of these the one with the highest pressure in any.
+        Representative point, a contact of the first member in contact [m, s]: at a time stored by most
+        members, then with most members in contact, then with the highest pressure of any member.
     begin, end : float
         Times of the first and last contact in any member [s].
     touching : tuple of bool
-        For each member whether its surfaces touch anywhere in the collision.
+        For each member whether the surfaces are in contact anywhere in the collision.
     film, pressure : tuple of float
-        At the point, for each member [m, Pa]; the film is 0 in contact, whatever its bound.
+        Values of each member at the point [m, Pa]; the film is 0 in contact, also with a bound above 0.
     """
 
     x: float
@@ -56,13 +56,14 @@ def points_in_contact(result):
     Raises
     ------
     OutputError
-        The result holds no frame, or neither contacts nor films.
+        The result has no frame, or neither contacts nor films.
     """
     if not len(result.time):
         raise OutputError(f"{result.path}: no frame in it")
     frames, nodes = [], []
-    for begin in range(0, len(result.time), BLOCK):
-        frame, node = np.nonzero(in_contact(result, slice(begin, min(begin + BLOCK, len(result.time)))))
+    for begin in range(0, len(result.time), FRAMES_PER_BLOCK):
+        end = min(begin + FRAMES_PER_BLOCK, len(result.time))
+        frame, node = np.nonzero(in_contact(result, slice(begin, end)))
         frames.append(frame + begin)
         nodes.append(node)
     return np.concatenate(frames), np.concatenate(nodes)
@@ -74,7 +75,7 @@ def find(results):
     Parameters
     ----------
     results : list of ehlpetsc.results.reader.Result
-        In the order in which members are to touch: the one that touches last first, as the thickest film.
+        Members in the order of falling films.
 
     Returns
     -------
@@ -83,7 +84,7 @@ def find(results):
     Raises
     ------
     OutputError
-        A result holds fewer than two frames, or no contacts.
+        A result has fewer than two frames, or no contacts.
     """
     if any(len(result.time) < 2 for result in results):
         raise OutputError("collisions need more than one stored frame")
@@ -92,11 +93,13 @@ def find(results):
     points = [_points(result) for result in results]
     labels = _label(points, spacing, interval)
     at = [_Reader(result) for result in results]
-    found = []
+    collisions = []
     for label in range(1, 1 + max((int(part.max(initial=0)) for part in labels), default=0)):
-        parts = [(t[own == label], x[own == label]) for (t, x), own in zip(points, labels, strict=True)]
-        found.append(_collision(parts, at))
-    return sorted(found, key=lambda collision: collision.time)
+        points_of_collision = [
+            (t[own == label], x[own == label]) for (t, x), own in zip(points, labels, strict=True)
+        ]
+        collisions.append(_collision(points_of_collision, at))
+    return sorted(collisions, key=lambda collision: collision.time)
 
 
 def _points(result):
@@ -116,7 +119,7 @@ def _label(points, spacing, interval):
     grid = np.zeros([part.max() - least + 1 for part, least in zip(every, low, strict=True)], bool)
     for row, column in cells:
         grid[row - low[0], column - low[1]] = True
-    numbers, _ = label(binary_dilation(grid, np.ones((2 * BRIDGED - 1, 3))), np.ones((3, 3)))
+    numbers, _ = label(binary_dilation(grid, np.ones((2 * MAX_INTERRUPTION - 1, 3))), np.ones((3, 3)))
     return [numbers[row - low[0], column - low[1]] for row, column in cells]
 
 
@@ -127,7 +130,7 @@ class _Reader:
         self.result = result
 
     def has(self, time):
-        """Whether a frame at this very time is stored: meshes share only some of their levels."""
+        """Whether a frame at this time is stored: meshes have only some time levels in common."""
         stored = self.result.time
         return bool(np.abs(stored - time).min() < TIME_TOLERANCE * np.diff(stored).max())
 
@@ -155,18 +158,18 @@ def _collision(parts, at):
 def report(results):
     """Report on the collisions of a series, as lines of text."""
     results, values, key = from_thick_to_thin(results)
-    found = find(results)
+    collisions = find(results)
     a = results[0].attrs["a"]
     swept = ", ".join(f"{v:g}" for v in values)
     lines = [
-        f"{len(found)} collisions in {len(results)} members, {key} = {swept}",
+        f"{len(collisions)} collisions in {len(results)} members, {key} = {swept}",
         "number     x/a    time/us  touching  film/um, pressure/GPa at that point in each member",
     ]
-    for number, c in enumerate(found):
-        marks = "".join("x" if touches else "." for touches in c.touching)
+    for number, c in enumerate(collisions):
+        flags = "".join("x" if touches else "." for touches in c.touching)
         pairs = " ".join(f"{1e6 * h:.4f},{1e-9 * p:.2f}" for h, p in zip(c.film, c.pressure, strict=True))
-        lines.append(f"{number:6d} {c.x / a:8.4f} {1e6 * c.time:10.3f}  {marks}  {pairs}")
-    return lines + (breakdown(found, values, smooth_films(results)) if key in WITH_FILM else [])
+        lines.append(f"{number:6d} {c.x / a:8.4f} {1e6 * c.time:10.3f}  {flags}  {pairs}")
+    return lines + (breakdown(collisions, values, smooth_films(results)) if key in WITH_FILM else [])
 
 
 def main(arguments=None):

@@ -1,12 +1,12 @@
 """Compare two result files field by field: ``ehlpetsc compare A.h5 B.h5 [--rtol R] [--atol A]``.
 
-Where meshes or stored times differ, the finer is interpolated linearly at the nodes and times of the
-coarser, on what both cover. A quantity is the same if its greatest difference is within
-``atol + rtol scale``, its scale the greatest magnitude in either file. Numbers of nodes and steps are taken
-out of the contacts: they are compared as shares of nodes and of steps. Scalars of how a solution was
-reached (iterations, time steps, wall clock) is not compared.
+If meshes or stored times differ, the finer result is interpolated linearly at the nodes and times of the
+coarser one, in their common range. A quantity is equal if its maximum difference is within
+``atol + rtol scale``, where the scale is the maximum magnitude in either file. Contacts are compared as
+fractions of nodes and of steps. Scalars of the solution process (iterations, time steps, wall clock) are not
+compared.
 
-Exit status: 0 the same, 1 different, 2 the files cannot be compared.
+Exit status: 0 equal, 1 different, 2 the files cannot be compared.
 """
 
 import argparse
@@ -19,9 +19,9 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import read_result
 
-RTOL = 1e-6
-BLOCK_BYTES = 2**24
-ABSCISSA_TOLERANCE = 1e-9  # of the extent: what computed coordinates may differ by and still be equal
+RTOL = 1e-6  # default of --rtol
+BLOCK_BYTES = 2**24  # of a field, read at once
+ABSCISSA_TOLERANCE = 1e-9  # of the extent: computed coordinates nearer than this are equal
 
 
 @dataclass
@@ -52,12 +52,12 @@ class Difference:
         return bool(self.greatest <= atol + rtol * self.scale)
 
     def relative(self, value):
-        """A norm over the scale of the quantity."""
+        """Norm over the scale of the quantity."""
         return value / self.scale if self.scale else value
 
 
-class Line:
-    """Linear interpolation from one set of points to another."""
+class LinearInterpolation:
+    """Linear interpolation from a grid to points."""
 
     def __init__(self, grid, points):
         at = np.clip(np.searchsorted(grid, points, side="right") - 1, 0, max(len(grid) - 2, 0))
@@ -72,13 +72,13 @@ class Line:
         return np.where(weight == 0.0, low, (1.0 - weight) * low + weight * high)
 
 
-def common_points(one, other, what):
-    """Points of the coarser of two increasing sets in the range of both.
+def common_points(one, other, name):
+    """Points of the coarser of two increasing grids in their common range.
 
     Raises
     ------
     OutputError
-        There are none.
+        The common range is empty.
     """
     if len(one) == len(other) == 1:  # two steady solutions, whatever their times
         return one
@@ -87,7 +87,7 @@ def common_points(one, other, what):
     inside = [grid[(grid >= low) & (grid <= high)] for grid in (one, other)]
     points = min(inside, key=len)
     if not len(points):
-        raise OutputError(f"the files have no {what} in common")
+        raise OutputError(f"the files have no {name} in common")
     return points
 
 
@@ -105,7 +105,7 @@ def compare(one, other):
     Raises
     ------
     OutputError
-        They have no nodes or no times in common, or one has no frame.
+        The results have no nodes or no times in common, or one has no frame.
     """
     for result in (one, other):
         if not len(result.time) or not len(result.steps("time")):
@@ -116,8 +116,8 @@ def compare(one, other):
     for name in FIELDS:
         if name in one.fields and name in other.fields:
             yield _field(one, other, name, x, times, same_mesh or name != "in_contact")
-    contact_shares = [Line(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
-    yield _curves(Difference("contact_count", "share"), contact_shares, x=x)
+    fractions = [LinearInterpolation(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
+    yield _curves(Difference("contact_count", "share"), fractions, x=x)
     both = set(one.scalars) & set(other.scalars)
     step_times = common_points(one.steps("time"), other.steps("time"), "time steps")
     for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in both]:
@@ -128,7 +128,8 @@ def compare(one, other):
 
 def _scalar(result, name, times):
     values = result.steps(name).astype(float)
-    return Line(result.steps("time"), times)(values / len(result.x) if name == "contacts" else values)
+    at_times = LinearInterpolation(result.steps("time"), times)
+    return at_times(values / len(result.x) if name == "contacts" else values)
 
 
 def _curves(difference, values, x=None, time=None):
@@ -147,7 +148,7 @@ def _curves(difference, values, x=None, time=None):
 
 
 def _field(one, other, name, x, times, by_node):
-    """Difference of a field, read in blocks of frames; without `by_node` of its mean along x."""
+    """Difference of a field, or without `by_node` of its mean over x, read in blocks of frames."""
     difference = Difference(name, FIELDS[name].units if by_node else "share")
     readers = [_Reader(result, name, x, times) for result in (one, other)]
     block = max(1, BLOCK_BYTES // (8 * max(len(one.x), len(other.x))))
@@ -170,11 +171,14 @@ def _field(one, other, name, x, times, by_node):
 
 
 class _Reader:
-    """A field at common nodes and times, a block of frames at once."""
+    """Field at common nodes and times, by blocks of frames."""
 
     def __init__(self, result, name, x, times):
         self._dataset = result[name]
-        self._in_time, self._in_x = Line(result.time, times), Line(result.x, x)
+        self._in_time, self._in_x = (
+            LinearInterpolation(result.time, times),
+            LinearInterpolation(result.x, x),
+        )
 
     def __call__(self, part):
         first, last = self._in_time.left[part].min(), self._in_time.right[part].max()
@@ -206,7 +210,7 @@ def _about(result):
 
 
 def _only_in_one(one, other):
-    """Differences that are not numbers: fields of one file alone, different ends of the runs."""
+    """Messages on fields that only one file has, and on different status of the runs."""
     for result, lacking in ((one, other), (other, one)):
         for name in sorted(set(result.fields) - set(lacking.fields)):
             yield f"{name} is stored in {result.path} alone"

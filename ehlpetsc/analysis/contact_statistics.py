@@ -2,9 +2,9 @@
 
 ``ehlpetsc contacts RESULT.h5 [...]``
 
-A line each: contacts per millisecond and node (Q of Holmes et al. 2005, figure 7) in the Hertz contact, in
-its inlet quarter and in its exit half, and in proportion to the first result; and what does not grow with the
-number of nodes and steps: the length in contact and the load carried there, both means over time.
+One line for each result: contacts per millisecond and node (Q of Holmes et al. 2005, figure 7) in the Hertz
+contact, in its inlet quarter and in its exit half, and relative to the first result; mean length in contact
+and mean fraction of the load carried there, which do not depend on the number of nodes and steps.
 """
 
 import sys
@@ -34,7 +34,7 @@ def contact_length(result):
 
 
 def load_share(result):
-    """Share of the load carried where the surfaces touch, mean over the stored frames."""
+    """Fraction of the load carried by contact nodes, mean over the stored frames."""
     frames, nodes = points_in_contact(result)
     force = np.zeros(len(result.time))
     for frame in np.unique(frames):
@@ -43,7 +43,7 @@ def load_share(result):
 
 
 def report(results):
-    """A line for each result, and the proportions of their counts."""
+    """Table of the results, one line each."""
     key, values = series_values(results)
     stems = [result.path.stem for result in results]
     names = [f"{value:g}" for value in values] if key else distinguishing_names(results) or stems

@@ -2,10 +2,10 @@
 
 ``ehlpetsc ensemble OUTPUT.series.json [-o OUTPUT.ensemble.csv]``
 
-A scalar of a run is the mean over the time in which the roughness of both surfaces fills the contact (of a
-run that ends before, over all of it) or, of least films and largest pressures, the extreme. Members whose
-cases are the same but for seeds make one ensemble; several, as of a grid over seeds and speeds, are listed
-one by one. Beside a result its RESULT.post.h5, where there is one, gives quantiles of damage.
+A scalar of a run is the mean over the time in which the roughness of both surfaces fills the contact (over
+the whole run if it ends before) or, for minimum films and maximum pressures, the extreme. Members whose cases
+differ only in seeds form one ensemble; several ensembles, as of a grid over seeds and speeds, are listed one
+by one. If RESULT.post.h5 exists, quantiles of damage are included.
 """
 
 import argparse
@@ -28,10 +28,10 @@ from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.series_index import differences, open_all
 
-RESAMPLES = 2000
+RESAMPLES = 2000  # default of the bootstrap
 MAX_RESAMPLES = 100_000
-CONFIDENCE = 0.95
-TABLES = {".csv": b"ensemble,figure,units,runs,", ".json": b'"ensemble":'}  # endings, and how they begin
+CONFIDENCE = 0.95  # of the intervals
+TABLES = {".csv": b"ensemble,figure,units,runs,", ".json": b'"ensemble":'}  # suffixes and signatures
 COLUMNS = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
 
 
@@ -42,11 +42,11 @@ class Ensemble:
     Attributes
     ----------
     name : str
-        Keys and values in which it differs from the other ensembles, "" where there is one only.
+        Keys and values in which it differs from the other ensembles; "" for a single ensemble.
     values : dict
-        The keys in which ensembles differ, with this one's values.
+        Values of the keys in which ensembles differ.
     scalars : dict of str to ndarray, shape (runs,)
-        Of every run, by name.
+        Scalars of every run, by name.
     """
 
     name: str
@@ -55,13 +55,13 @@ class Ensemble:
 
 
 def bootstrap(values, resamples=RESAMPLES, seed=1, confidence=CONFIDENCE):
-    """Interval of a mean: percentiles of the means of samples drawn with replacement (Efron 1979).
+    """Confidence interval of a mean: percentiles of the means of samples with replacement (Efron 1979).
 
     Parameters
     ----------
     values : array_like, shape (n,)
     resamples, seed : int
-        How many, and of the random numbers.
+        Number of samples; seed of the random numbers.
     confidence : float
 
     Returns
@@ -85,7 +85,7 @@ def _units(name):
 
 
 def ensembles(results):
-    """Ensembles among results: those that differ in nothing but keys named seed.
+    """Ensembles of results whose cases differ only in keys named seed.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def ensembles(results):
     Returns
     -------
     list of Ensemble
-        In the order in which they first come.
+        In the order of their first results.
     """
     differing = {
         key: values for key, values in differences(results).items() if key.rpartition(".")[2] != "seed"
@@ -113,7 +113,7 @@ def ensembles(results):
 
 
 def table(found, resamples=RESAMPLES, seed=1):
-    """Rows by the names of `COLUMNS`, one for each scalar of each ensemble."""
+    """Rows of the table, one for each scalar of each ensemble, with the keys `COLUMNS`."""
     rows = []
     for one in found:
         for name, values in one.scalars.items():
@@ -134,7 +134,7 @@ def table(found, resamples=RESAMPLES, seed=1):
 
 
 def write(rows, path):
-    """The table as CSV, or as JSON where the name ends in .json.
+    """Write the table as CSV, or as JSON if the name ends in .json.
 
     Raises
     ------
@@ -167,7 +167,7 @@ def text(rows):
 
 
 def arguments(argv):
-    """The command line."""
+    """Parse the command line."""
     parser = CommandParser("ehlpetsc.analysis.ensemble", __doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
@@ -178,7 +178,7 @@ def arguments(argv):
 
 
 def _within(least, most):
-    """Type of an argument: a whole number in a range."""
+    """Argument type: integer in a range."""
 
     def number(text):
         if not text.isascii() or not text.isdigit() or not least <= int(text[:20]) <= most:

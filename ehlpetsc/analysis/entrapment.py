@@ -8,7 +8,7 @@ from ehlpetsc.analysis.collisions import points_in_contact
 from ehlpetsc.errors import OutputError
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
-MAX_GAP = 0.05  # half widths between them
+MAX_GAP = 0.05  # half widths between the contacts
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Entrapment:
     left, right, peak : int
         Nodes of the contacts and of the pressure maximum between them.
     excess : float
-        Pressure there over that at the higher of both contacts, minus 1.
+        Pressure maximum over the higher pressure of both contacts, minus 1.
     """
 
     frame: int
@@ -32,30 +32,30 @@ class Entrapment:
 
 
 def find(result):
-    """Entrapments of all stored frames, that of the greatest pressure over its contacts first.
+    """Entrapments of all stored frames, in the order of falling excess pressure.
 
     Raises
     ------
     OutputError
-        There is none.
+        No entrapment.
     """
     frames, nodes = points_in_contact(result)
     widest = MAX_GAP * result.attrs["a"] / float(np.diff(result.x).min())
     apart = np.diff(nodes)
     pairs = np.flatnonzero((np.diff(frames) == 0) & (apart >= MIN_GAP_NODES) & (apart <= widest))
-    found = []
+    entrapments = []
     for frame, left, right in zip(frames[pairs], nodes[pairs], nodes[pairs + 1], strict=True):
         pressure = result["pressure"][frame, left : right + 1].astype(float)
         peak = int(np.argmax(pressure))
         highest = max(pressure[0], pressure[-1])
         if 0.0 < highest < pressure[peak] and _is_single(pressure, peak):
             excess = float(pressure[peak] / highest - 1.0)
-            found.append(Entrapment(int(frame), int(left), int(right), int(left) + peak, excess))
-    if not found:
+            entrapments.append(Entrapment(int(frame), int(left), int(right), int(left) + peak, excess))
+    if not entrapments:
         raise OutputError(
             f"{result.path}: no pressure maximum between two contacts {MAX_GAP} a apart or less"
         )
-    return sorted(found, key=lambda e: e.excess * result["pressure"][e.frame, e.peak], reverse=True)
+    return sorted(entrapments, key=lambda e: e.excess * result["pressure"][e.frame, e.peak], reverse=True)
 
 
 def _is_single(pressure, peak):
@@ -65,25 +65,24 @@ def _is_single(pressure, peak):
 
 
 def instants(result, entrapment, interval=30, count=4):
-    """Frames about `interval` nominal time steps apart, the last but one that of the entrapment.
+    """Frames about `interval` nominal time steps apart; the last but one shows the entrapment.
 
     Returns
     -------
     list of (int, float)
-        Frame and place [m] of the oil in it, which moves with the mean speed.
+        Frame and position [m] of the oil in it, which moves with the entrainment speed.
     """
-    at, place = result.time[entrapment.frame], result.x[entrapment.peak]
+    at, x = result.time[entrapment.frame], result.x[entrapment.peak]
     speed, step = 0.5 * (result.attrs["u1"] + result.attrs["u2"]), float(np.nanmax(result.steps("dt")))
     times = at + interval * step * (np.arange(count) - (count - 2))
     frames = [result.nearest_frame(time=time) for time in times]
-    return [(frame, float(place + speed * (result.time[frame] - at))) for frame in frames]
+    return [(frame, float(x + speed * (result.time[frame] - at))) for frame in frames]
 
 
 def surfaces(result, frame):
     """Deformed heights [m] of the lower (2) and upper (1) surface about their mean plane, shape (nx,).
 
-    Both solids are taken to give way alike, so that the middle of the gap is where both rough surfaces, laid
-    onto each other undeformed, have theirs.
+    Both solids are assumed to deform equally: the middle of the gap is that of the undeformed rough surfaces.
     """
     time, middle = result.time[frame], np.zeros(len(result.x))
     for side, sign in (("2", 1.0), ("1", -1.0)):

@@ -4,7 +4,7 @@ import numpy as np
 
 
 def selected(points, count):
-    """At most `count` contact points, taken in turn from the groups that break down at each member."""
+    """At most `count` contact points, in turn from the groups with breakdown at the same member."""
     groups = {}
     for point in points:
         groups.setdefault(int(np.argmax(np.asarray(point.film) <= 0.0)), []).append(point)
@@ -15,30 +15,31 @@ def selected(points, count):
 def ranked(collisions):
     """Numbers of the collisions in the order in which they are drawn.
 
-    `contact_points` in their order, then those in which most members touch, of these the highest pressure.
+    First `contact_points` in their order, then collisions by falling number of members in contact and
+    falling pressure.
     """
     first = [id(c) for c in contact_points(collisions)]
 
     def rank(number):
         c = collisions[number]
-        shown = first.index(id(c)) if id(c) in first else len(first)
-        return shown, -sum(c.touching), -max(c.pressure)
+        position = first.index(id(c)) if id(c) in first else len(first)
+        return position, -sum(c.touching), -max(c.pressure)
 
     return sorted(range(len(collisions)), key=rank)
 
 
 def slope_jumps(values, film):
-    r"""Relative growth of the slope of a film against a value, from interval to interval, on its way to zero.
+    r"""Relative change of the slope of a film over a value, from interval to interval, as it falls to zero.
 
-    Slopes :math:`s_k=(h_k-h_{k+1})/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last one, cut
-    off at h = 0, is a lower bound. A last jump of 0 or less means that the straight line through the last two
-    films reaches zero before the first member in contact: contact comes where extrapolation puts it.
+    Slopes :math:`s_k=(h_k-h_{k+1})/|v_k-v_{k+1}|` of the intervals down to the first h = 0; the last slope,
+    cut off at h = 0, is a lower bound. If the last change is 0 or less, the straight line through the last
+    two films reaches zero before the first member in contact, that is, contact occurs as extrapolated.
 
     Parameters
     ----------
     values, film : sequence of float
-        From the thickest film on. Against the viscosity even smooth films steepen, being as eta0^0.7; against
-        the smooth film of each member they do not.
+        From the thickest film on. Over the viscosity even smooth films become steeper, as eta0^0.7; over the
+        smooth film of each member they do not.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def slope_jumps(values, film):
 
 
 def pressure_steps(film, pressure):
-    """Relative changes of the pressure from member to member once the film is gone, shape (n,)."""
+    """Relative changes of the pressure from member to member after film breakdown, shape (n,)."""
     film, pressure = np.asarray(film), np.asarray(pressure)
     if film.min() > 0.0:
         return np.empty(0)
@@ -68,22 +69,24 @@ def pressure_steps(film, pressure):
 
 
 def contact_points(collisions, films=2):
-    """The collisions that show film breakdown: `films` members or more in full film, the others in contact.
+    """Collisions with film breakdown: the first `films` members or more in full film, the others in contact.
 
-    The first ones are those that break down in the middle of the series, of these those of highest pressure.
+    In the order of the distance of the breakdown from the middle of the series, then of falling pressure.
     """
 
-    def shown(c):
+    def full_films(c):
         film = np.asarray(c.film)
         full = int(np.argmax(film <= 0.0)) if film.min() <= 0.0 else 0
         return full if full >= films and (film[full:] <= 0.0).all() and full < len(film) - 1 else 0
 
-    good = [c for c in collisions if shown(c)]
-    return sorted(good, key=lambda c: (-abs(shown(c) - len(c.film) // 2), c.pressure[-1]), reverse=True)
+    points = [c for c in collisions if full_films(c)]
+    return sorted(
+        points, key=lambda c: (-abs(full_films(c) - len(c.film) // 2), c.pressure[-1]), reverse=True
+    )
 
 
 def smooth_films(results):
-    """Least film [m] of each member before roughness comes in."""
+    """Minimum film [m] of each member before roughness enters."""
     return [float(result.steps("h_min")[0]) for result in results]
 
 
@@ -99,10 +102,10 @@ def breakdown(found, values, smooth):
         f"contact where the last two films extrapolate to: {count_of([j[-1] <= 0.0 for j in jumps])}",
         "growth of the film's slope from interval to interval before, median and largest:",
     ]
-    for what, abscissa in (("swept value", values), ("smooth film", smooth)):
+    for name, abscissa in (("swept value", values), ("smooth film", smooth)):
         before = np.concatenate([slope_jumps(abscissa, c.film)[:-1] for c in points])
         if len(before):
-            lines.append(f"  against the {what} {100 * np.median(before):.1f} %, {100 * before.max():.1f} %")
+            lines.append(f"  against the {name} {100 * np.median(before):.1f} %, {100 * before.max():.1f} %")
     every = np.concatenate(steps)
     return [
         *lines,

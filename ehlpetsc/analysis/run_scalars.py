@@ -3,7 +3,7 @@
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.filling import both_fill
+from ehlpetsc.results.filling import filled_weights
 from ehlpetsc.results.post_result import damage_beside
 
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
@@ -22,50 +22,46 @@ def run_scalars(result):
     -------
     dict of str to float
         Means over the time in which the roughness of both surfaces fills the contact, or over the whole run
-        where it never does; extremes of the scalars in `EXTREMES`. With a RESULT.post.h5 beside the result
-        also quantiles of damage and flash temperatures [K].
+        if it never does; extremes of the scalars in `EXTREMES`. If RESULT.post.h5 exists, also quantiles of
+        damage and flash temperatures [K].
 
     Raises
     ------
     OutputError
-        The result holds no time step.
+        The result has no time step.
     """
-    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
-    if not len(time):
+    if not len(result.steps("time")):
         raise OutputError(f"{result.path}: no time step in it")
-    kept = both_fill(result, time) & (dt > 0.0)
-    if not kept.any():
-        kept = dt > 0.0 if dt.any() else np.ones(len(time), bool)
-    weights = dt[kept] if dt.any() else np.ones(1)
-    found = {}
+    weights = filled_weights(result)
+    selected = weights > 0.0
+    scalars = {}
     for name in result.scalars:
-        values = result.steps(name)[kept].astype(float)
+        values = result.steps(name)[selected].astype(float)
         if name in EXCLUDED_SCALARS or not np.isfinite(values).all():
             continue
         reduce = EXTREMES.get(name)
-        found[name] = float(reduce(values) if reduce else np.average(values, weights=weights))
-    beside = damage_beside(result)
-    return found | _damage(beside) | _flash_temperatures(beside)
+        scalars[name] = float(reduce(values) if reduce else np.average(values, weights=weights[selected]))
+    post = damage_beside(result)
+    return scalars | _damage(post) | _flash_temperatures(post)
 
 
-def _damage(found):
-    """Quantiles of damage over the points of each surface, at every depth; none without a result."""
+def _damage(post):
+    """Quantiles of damage over the points of each surface, at every depth; {} without a post result."""
     quantiles = {}
-    for surface in found.surfaces if found else ():
-        for depth, row in zip(found.z, found.passed(surface), strict=True):
-            for quantile in QUANTILES if row.size else ():
+    for surface in post.surfaces if post else ():
+        for depth, values in zip(post.z, post.passed(surface), strict=True):
+            for quantile in QUANTILES if values.size else ():
                 name = f"damage_{surface} z/a={depth:g} q={quantile:g}"
-                quantiles[name] = float(np.quantile(row, quantile))
+                quantiles[name] = float(np.quantile(values, quantile))
     return quantiles
 
 
-def _flash_temperatures(found):
-    """Largest and median flash temperature [K] over the points of each surface; none without heat."""
-    known = found.temperatures if found else {}
-    values = {side: one.flash[np.isfinite(one.flash)] for side, one in known.items()}
-    figures = {}
-    for side, flash in values.items():
+def _flash_temperatures(post):
+    """Maximum and median flash temperature [K] over the points of each surface; {} without heat."""
+    scalars = {}
+    for side, temperatures in (post.temperatures if post else {}).items():
+        flash = temperatures.flash[np.isfinite(temperatures.flash)]
         if flash.size:
-            figures[f"flash_temperature_{side} largest"] = float(flash.max())
-            figures[f"flash_temperature_{side} q=0.5"] = float(np.median(flash))
-    return figures
+            scalars[f"flash_temperature_{side} largest"] = float(flash.max())
+            scalars[f"flash_temperature_{side} q=0.5"] = float(np.median(flash))
+    return scalars

@@ -2,8 +2,8 @@
 
 ``ehlpetsc summary RESULT.h5 [...]``, or the index of a series or of passes
 
-One line for each result and scalar, over the time in which both surfaces fill the contact; of a run that ends
-before, over all of it (column ``from_s``). SI units. Means and percentiles weigh each step by its length.
+One line for each result and scalar, over the time in which both surfaces fill the contact, or over the whole
+run if it ends before (column ``from_s``). SI units. Means and percentiles are weighted by the time step.
 """
 
 import contextlib
@@ -17,17 +17,17 @@ import numpy as np
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
-from ehlpetsc.results.filling import both_fill
+from ehlpetsc.results.filling import filled_weights
 from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.series_index import distinguishing_names, in_order, open_all, series_values
 
-LEFT_OUT = ("step", "time", "dt", "wall", "approach")
+EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)
 COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
 
 
 def weighted_percentiles(values, weights, percentiles):
-    """Percentiles of values, each of which counts by its weight.
+    """Weighted percentiles of values.
 
     Parameters
     ----------
@@ -49,28 +49,26 @@ def statistics(result):
     Returns
     -------
     list of tuple
-        As `COLUMNS` from "scalar" on.
+        Values of `COLUMNS` from "scalar" on.
     """
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
-    filled = both_fill(result, time)
-    filled = filled if filled.any() else np.ones(len(time), bool)
-    weights = np.ones(len(time)) if len(time) == 1 else dt
+    weights = filled_weights(result)
     rows = []
-    for name in [name for name in STEP_SCALARS if name in result.scalars and name not in LEFT_OUT]:
+    for name in [name for name in STEP_SCALARS if name in result.scalars and name not in EXCLUDED_SCALARS]:
         values = result.steps(name).astype(float)
-        known = filled & np.isfinite(values) & (weights > 0.0)
+        known = np.isfinite(values) & (weights > 0.0)
         if known.any():
             v, w = values[known], weights[known]
             percentiles = weighted_percentiles(v, w, PERCENTILES)
-            found = (np.average(v, weights=w), *percentiles, v.min(), v.max(), v[-1])
+            reduced = (np.average(v, weights=w), *percentiles, v.min(), v.max(), v[-1])
             unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
             begin = (time - dt)[known][0]
-            rows.append((name, unit, *(f"{x:.6g}" for x in found), f"{begin:.6g}", int(known.sum())))
+            rows.append((name, unit, *(f"{x:.6g}" for x in reduced), f"{begin:.6g}", int(known.sum())))
     return rows
 
 
 def table(results):
-    """Rows of all results, preceded by the names of the columns."""
+    """Names of the columns, then the rows of all results."""
     key, values = series_values(results)
     cases = [f"{key} = {v:g}" for v in values] if key else distinguishing_names(results)
     cases = cases or [str(result.attrs["title"]) for result in results]

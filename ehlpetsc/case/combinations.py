@@ -1,4 +1,4 @@
-"""Members of a series: the same case with one key, or several, set to one value after the other."""
+"""Members of a series: the same case with different values of one or several keys."""
 
 import copy
 import itertools
@@ -8,18 +8,18 @@ from ehlpetsc.case.settings import put
 
 
 def keys_of(series):
-    """Keys that are swept, dotted.
+    """Dotted keys that vary over the series.
 
     Parameters
     ----------
     series : dict
-        The table as written in the file.
+        Table `[series]` of the case file.
     """
     return [series["key"]] if "key" in series else list(series["keys"])
 
 
 def combinations(series):
-    """Values of the keys for each member, a tuple each: all of the one key, a grid of several, or in step."""
+    """Tuples of the values of the keys for each member: of one key, a grid of several, or in parallel."""
     if "key" in series:
         return [(value,) for value in series["values"]]
     if series.get("combine", "grid") == "step":
@@ -34,12 +34,12 @@ def settings_of(series):
 
 
 def member_tables(data, settings):
-    """Tables of one member: those of the case without its series.
+    """Tables of one member: tables of the case without `[series]`.
 
     Raises
     ------
     ValueError
-        A key is none of this case.
+        A key does not exist in this case.
     """
     member = copy.deepcopy(data)
     del member["series"]
@@ -49,7 +49,7 @@ def member_tables(data, settings):
 
 
 def series_faults(path, data, faults_of):
-    """Faults that only a member of the series has.
+    """Faults of members that the base case does not have.
 
     Parameters
     ----------

@@ -52,10 +52,10 @@ def _bounds(type_):
 
 
 def show(value):
-    """A value nearly as the user typed it; long ones shortened."""
+    """Value as in the case file, shortened."""
     try:
         text = json.dumps(value, ensure_ascii=False, default=str)
-    except ValueError:  # Python will not print an integer of thousands of digits
+    except ValueError:  # Python does not print an integer of thousands of digits
         text = "a number of thousands of digits"
     except RecursionError:
         text = "tables in tables without end"
@@ -64,20 +64,20 @@ def show(value):
 
 
 def shortened(text):
-    """At most 60 characters of a text."""
+    """Text shortened to 60 characters."""
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 def describe(error, model, data, where=""):
-    """Faults of one table and all tables in it.
+    """Faults of a table and of all tables in it.
 
     Parameters
     ----------
     error : pydantic.ValidationError
     model : type
-        The model that was refused.
+        Model of the table.
     data : dict
-        What it was made of.
+        Content of the table.
     where : str
         Dotted name of the table, with a dot at its end, or "".
 

@@ -1,4 +1,4 @@
-"""Hints beside faults of a case: the key that was meant, a power of ten left out, physics not modelled."""
+"""Hints in error messages on a case: similar key, missing power of ten, physics not modelled."""
 
 import difflib
 import math
@@ -6,7 +6,7 @@ import math
 from ehlpetsc.case.schema.table import item_type
 
 MAX_NUMBER = 1e100
-POWERS = {"Pa": (9, 6), "1/Pa": (-9,), "m": (-3, -6, -9)}  # of units that values are often written in
+USUAL_POWERS = {"Pa": (9, 6), "1/Pa": (-9,), "m": (-3, -6, -9)}  # of ten, of usual units
 SYNONYMS = {
     "movement": "motion",
     "velocity": "motion",
@@ -43,7 +43,7 @@ NOT_MODELLED = {
 
 
 def not_modelled(where, name):
-    """Hint at a key of another table, or at physics that is not modelled; "" otherwise."""
+    """Hint to a key of another table, or that the physics is not modelled; "" otherwise."""
     if name in ELSEWHERE:
         return ELSEWHERE[name]
     if name == "type" and where == "contact.":
@@ -52,23 +52,23 @@ def not_modelled(where, name):
 
 
 def slip(field, value):
-    """Hint at a power of ten that was left out, as in 206 for 206e9."""
+    """Hint to a missing power of ten, as in 206 for 206e9."""
     type_ = item_type(field)
     low, high = (getattr(type_, name, None) for name in ("ge", "le"))
     number = value[0] if isinstance(value, (list, tuple)) and value else value
     if isinstance(number, bool) or not isinstance(number, int | float) or low is None:
         return ""
-    if not 0.0 < abs(number) < MAX_NUMBER:  # a whole number of thousands of digits is no float
+    if not 0.0 < abs(number) < MAX_NUMBER:  # an integer of thousands of digits is no float
         return ""
     unit = field.field_info.extra.get("unit", "")
-    for power in POWERS.get(unit, ()):
+    for power in USUAL_POWERS.get(unit, ()):
         if low <= number * 10.0**power <= (high or math.inf) and not low <= number <= (high or math.inf):
             return f"; {number:g}e{power:d}?"
     return ""
 
 
 def nearest(name, model):
-    """Hint at the key that was probably meant."""
+    """Hint to the most similar key."""
     keys = [f.alias for f in model.__fields__.values()]
     close = difflib.get_close_matches(name, keys, n=1)
     if SYNONYMS.get(name.lower()) in keys:

@@ -1,4 +1,4 @@
-"""Every key of a case file as text, made from the schema: a list, a page, a commented case to begin from."""
+"""Text of every key of a case file, generated from the schema: list, page, commented example case."""
 
 import json
 
@@ -9,7 +9,7 @@ from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.tables.surface import SYNTHETIC
 from ehlpetsc.errors import UsageError
 
-# what a case cannot do without, or would hardly be written without: Table 1 of Holmes et al. 2005
+# keys that are required or set in almost every case: Table 1 of Holmes et al. 2005
 EXAMPLE = {
     "title": '"My contact"',
     "contact.radius": "0.0191",
@@ -85,12 +85,12 @@ def _equation(model, field):
 
 
 def keys(table=None):
-    """Every key with its allowed values and default, a line each; below it the equation in which it appears.
+    """Keys with allowed values and default, a line each, followed by the equation in which they appear.
 
     Parameters
     ----------
     table : str, optional
-        Only that one, as in "fluid" or "surface.1"; or one key, as in "contact.load".
+        Single table, as in "fluid" or "surface.1", or single key, as in "contact.load".
 
     Raises
     ------
@@ -121,7 +121,7 @@ def _lines(model, fields):
 
 
 def page():
-    """Page of Markdown with every key."""
+    """Markdown page of all keys."""
     parts = [PAGE, SYMBOLS]
     for name, model in tables().items():
         heading = f"`[{name}]`" if name else "Above all tables"
@@ -140,7 +140,7 @@ def _row(cells):
 
 
 def template():
-    """A case that runs, with every other key in a comment."""
+    """Text of a complete case with all other keys in comments."""
     lines = []
     for name, model in tables().items():
         written = [EXAMPLE.get(f"{name}.{f.alias}" if name else f.alias) for f in _keys(model)]

@@ -1,4 +1,4 @@
-"""The case file: read, overridden, checked; all faults are reported at once."""
+"""Reading of case files: overrides and checks; all faults are reported at once."""
 
 import tomllib
 from functools import partial
@@ -25,7 +25,7 @@ from ehlpetsc.case.units import in_si
 from ehlpetsc.errors import CaseError
 from ehlpetsc.toml_file import parse_toml, read_text
 
-DICT = "case"  # what faults call a case that is no file
+DICT_NAME = "case"  # name of a case without a file in messages
 __all__ = ["Case", "CaseError", "load", "members"]
 
 
@@ -35,11 +35,11 @@ def load(case, overrides=None):
     Parameters
     ----------
     case : str, path-like or dict
-        The TOML file, or its tables; profile files of a dict are sought in the present folder, and heights of
+        TOML file or its tables; profile files of a dict are in the current folder, and heights of
         a surface may be arrays, ``{"surface": {"1": {"x": x, "z": z}}}`` [m].
     overrides : dict, str or iterable of str, optional
-        ``{"fluid.viscosity": 0.003}``, None leaving the key out; or ``table.key=value``, the value in TOML
-        syntax, else taken as text.
+        ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
+        syntax, otherwise text.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def load(case, overrides=None):
     Raises
     ------
     CaseError
-        With all faults, one line each.
+        Contains all faults, one message each.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def load(case, overrides=None):
     >>> case.fluid.viscosity, case.contact.radius  # Pa s, m
     (0.003, 0.0191)
     """
-    path, text = (DICT, None) if isinstance(case, dict) else (case, read_text(case))
+    path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
     from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
     settings, faults = _override(path, data, overrides)
@@ -83,23 +83,23 @@ def stored_case(text, overrides=None):
     ----------
     text : str
     overrides : dict or iterable of str, optional
-        As of `load`.
+        See `load`.
 
     Returns
     -------
     Case
-        With the text as it is stored.
+        Case with the stored text.
 
     Raises
     ------
     CaseError
     """
-    data = parse_toml(DICT, text)
-    _, faults = _override(DICT, data, overrides)
-    faults += _table_faults(DICT, data, stored=True)[1]
+    data = parse_toml(DICT_NAME, text)
+    _, faults = _override(DICT_NAME, data, overrides)
+    faults += _table_faults(DICT_NAME, data, stored=True)[1]
     if faults:
         raise CaseError(faults)
-    return _made(DICT, data, text, stored=True)
+    return _made(DICT_NAME, data, text, stored=True)
 
 
 def _override(path, data, overrides):
@@ -111,22 +111,24 @@ def _override(path, data, overrides):
             settings.append(parsed(override))
             put(data, *settings[-1])
         except ValueError:
-            typed = shortened(" ".join(str(override).split()))  # a fault is one line
-            faults.append(f"{path}: {typed}: allowed: table.key=value, as in fluid.viscosity=0.003")
+            text_of_override = shortened(" ".join(str(override).split()))  # a fault is one line
+            faults.append(
+                f"{path}: {text_of_override}: allowed: table.key=value, as in fluid.viscosity=0.003"
+            )
     return settings, faults
 
 
 def members(case):
-    """Members of a series: the same case without `[series]`, its key, or keys, set to one value each.
+    """Members of a series: the same case without `[series]`, with one value of each varied key.
 
     Parameters
     ----------
-    case : Case, or what `load` takes
+    case : Case, or an argument of `load`
 
     Returns
     -------
     list of (value, Case)
-        Of several keys the value is the tuple of theirs.
+        For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
     data, result = tomllib.loads(case.text), []
@@ -148,7 +150,7 @@ def _made(path, data, text, stored=False):
 
 
 def _conditions(path, data, stored=False):
-    """Conditions over time, or None, and the faults of their table; that of a stored case is not sought."""
+    """Conditions over time, or None, and the faults of their table, which is not read for a stored case."""
     try:
         return conditions_of(data, Path(path).parent), []
     except TableFault as error:
@@ -157,7 +159,7 @@ def _conditions(path, data, stored=False):
 
 
 def _faults(path, data):
-    """Faults of the tables and of the profile files they name."""
+    """Faults of the tables and of their profile files."""
     case, faults = _table_faults(path, data)
     in_files = profile_faults(Path(path).parent, data.get("surface"), case if not faults else None)
     return faults + [f"{path}: {fault}" for fault in in_files]

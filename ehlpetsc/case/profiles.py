@@ -17,11 +17,11 @@ def profile_faults(folder, surface, case):
     Parameters
     ----------
     folder : pathlib.Path
-        Of the case file.
+        Folder of the case file.
     surface : object
         Table `surface` of the case file.
     case : Case or None
-        None where other tables have faults: the profiles are then not compared with the contact.
+        None if other tables have faults; the profiles are then not compared with the contact.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def profile_faults(folder, surface, case):
 def _try(folder, table, case):
     try:
         spec = SurfaceProfile(**table)
-    except ValidationError:  # reported with its keys; without them the file can only be sought
+    except ValidationError:  # reported with its keys; only the existence of the file can be checked
         spec = None
     if spec is None:
         if "file" not in table:
@@ -67,6 +67,6 @@ def _sought(path):
     try:
         if path.is_file():
             return
-    except (OSError, ValueError):  # a name no file system takes
+    except (OSError, ValueError):  # an impossible file name
         pass
     raise ProfileError(f"no such file: {path}")

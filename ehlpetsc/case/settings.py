@@ -1,4 +1,4 @@
-"""Overrides of the keys of a case, by -ehl_set and by series, in its tables and its text."""
+"""Overrides of keys of a case, by -ehl_set and by series, in its tables and its text."""
 
 import tomllib
 
@@ -6,7 +6,7 @@ import tomlkit
 
 from ehlpetsc.case.toml_text import plain, toml_text
 from ehlpetsc.names import stored_name
-from ehlpetsc.toml_file import MAX_PARTS
+from ehlpetsc.toml_file import MAX_KEY_PARTS
 
 
 def parsed(override):
@@ -15,7 +15,7 @@ def parsed(override):
     Raises
     ------
     ValueError
-        It is no setting of a key.
+        The text is not a setting of a key.
     """
     if isinstance(override, tuple) and len(override) == 2 and isinstance(override[0], str):
         return override[0].split("."), plain(override[1])
@@ -23,22 +23,22 @@ def parsed(override):
         raise ValueError(override)
     name, equals, raw = override.partition("=")
     keys = name.strip().split(".")
-    if not equals or not all(keys) or len(keys) > MAX_PARTS:
+    if not equals or not all(keys) or len(keys) > MAX_KEY_PARTS:
         raise ValueError(override)
     try:
-        found = tomllib.loads(f"value = {raw}")
+        table = tomllib.loads(f"value = {raw}")
     except (ValueError, RecursionError):
-        found = {}
-    return keys, found["value"] if list(found) == ["value"] else raw
+        table = {}
+    return keys, table["value"] if list(table) == ["value"] else raw
 
 
 def put(tables, keys, value):
-    """Set a key in nested tables; None takes it out.
+    """Set a key in nested tables; None removes it.
 
     Raises
     ------
     ValueError
-        The parent of the key is no table.
+        The parent of the key is not a table.
     """
     keys = _as_spelled(tables, keys)
     for key in keys[:-1]:
@@ -52,7 +52,7 @@ def put(tables, keys, value):
 
 
 def _as_spelled(tables, keys):
-    """Key of a surface under its name in the tables, the current or the former one."""
+    """Key of a surface with the name used in the tables, current or former."""
     surfaces = tables.get("surface") if len(keys) > 1 and keys[0] == "surface" else None
     if not isinstance(surfaces, dict):
         return keys
@@ -60,16 +60,16 @@ def _as_spelled(tables, keys):
 
 
 def text_with(text, settings, data, without=None):
-    """The TOML text with keys set and a table left out, comments kept where that can be.
+    """TOML text with keys set and a table removed, with comments if possible.
 
     Parameters
     ----------
     text : str
     settings : list of (list of str, value)
     data : dict
-        The tables as they are to be: what the text must say in the end.
+        Tables to which the new text must be equal.
     without : str, optional
-        Table to be left out.
+        Table to remove.
     """
     if not settings and without is None:
         return text
@@ -82,6 +82,6 @@ def text_with(text, settings, data, without=None):
         edited = tomlkit.dumps(document)
         if tomllib.loads(edited) == data:
             return edited
-    except Exception:  # dotted tables, tables out of order: tomlkit edits some of them wrong, each in its way
+    except Exception:  # tomlkit fails on some dotted tables and tables out of order
         pass
     return toml_text(data)

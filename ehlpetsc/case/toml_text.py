@@ -1,11 +1,11 @@
-"""A case made of dicts and arrays as TOML text."""
+"""TOML text of a case of dicts and arrays."""
 
 import json
 import re
 
 
 def plain(value):
-    """Tables, lists and numbers as TOML has them, of dicts, arrays and numpy's numbers; without None."""
+    """Dicts, arrays and numpy numbers converted to types of TOML; without None."""
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items() if item is not None}
     if isinstance(value, list | tuple):
@@ -14,7 +14,7 @@ def plain(value):
 
 
 def toml_text(tables):
-    """TOML of plain tables, a heading for each of the first level."""
+    """TOML text of plain tables, with a heading for each table of the first level."""
     simple = [f"{_key(k)} = {_value(v)}\n" for k, v in tables.items() if not isinstance(v, dict)]
     headed = [(k, v) for k, v in tables.items() if isinstance(v, dict)]
     sections = ["".join(f"{_key(k)} = {_value(v)}\n" for k, v in table.items()) for _, table in headed]

@@ -1,6 +1,6 @@
-"""Values with a unit, as in ``load = "350 N/mm"``: turned into SI numbers before a case is checked.
+"""Values with a unit, as in ``load = "350 N/mm"``, converted to SI numbers before a case is checked.
 
-Only keys with a unit take them. The package pint converts; it is imported when a case has such a value.
+Allowed for keys with a unit. The package pint converts; it is imported when a case has such a value.
 """
 
 import importlib
@@ -13,29 +13,29 @@ from ehlpetsc.errors import CaseError
 
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
 TEXT_UNITS = {"half widths": None, "half-widths": None, "boundary films": None, "1": None}  # not convertible
-DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
+MAX_DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
 
 
 class UnitFault(ValueError):
-    """A value with a unit that cannot be converted; the text names the reason."""
+    """A value with a unit cannot be converted; the message states the reason."""
 
 
 def in_si(path, data, model):
-    """Values with a unit in the tables of a case, in SI units.
+    """Convert the values with a unit in the tables of a case to SI units.
 
     Parameters
     ----------
     path : path-like
-        Of the case, for faults.
+        Path of the case, for messages.
     data : dict
-        Tables; these values are replaced in them.
+        Tables; their values are replaced.
     model : type
-        Of the case.
+        Model of the case.
 
     Returns
     -------
     settings : list of (list of str, value)
-        What was replaced: keys taken apart and the number.
+        Replaced settings: split keys and numbers.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def in_si(path, data, model):
 
 
 def converted(value, unit, depth=2):
-    """A text with a unit, or a list with such texts, in `unit`; anything else as it is.
+    """Number in `unit` of a text with a unit, also in lists; other values do not change.
 
     Raises
     ------
@@ -70,13 +70,13 @@ def converted(value, unit, depth=2):
     wanted = re.sub(r"(?<=[a-zA-Z])(\d)", r"**\1", unit)
     try:
         try:
-            quantity = registry.Quantity(number, given)  # offsets, as of degC
+            quantity = registry.Quantity(number, given)  # units with offset, as degC
         except Exception:
             quantity = number * registry.parse_expression(given)  # 1/GPa
-        return float(f"{quantity.to(wanted).magnitude:.{DIGITS}g}")
+        return float(f"{quantity.to(wanted).magnitude:.{MAX_DIGITS}g}")
     except errors.DimensionalityError:
         raise UnitFault(f'"{value}": not a unit of this key; allowed: one of {unit}') from None
-    except Exception:  # pint raises what it likes on texts that are no units
+    except Exception:  # pint raises various exceptions on texts that are not units
         raise UnitFault(f'"{value}": unknown unit; allowed: a number in {unit}, or with a unit') from None
 
 
@@ -92,7 +92,7 @@ def _registry():
 
 
 def _texts(data, model, above=()):
-    """Values that hold text where a number with a unit is expected: keys, their table, name and unit."""
+    """Texts in place of numbers with a unit: keys, their table, name and unit."""
     for field in model.__fields__.values():
         name, value = field.alias, data.get(field.alias) if isinstance(data, dict) else None
         keys, unit = [*above, name], field.field_info.extra.get("unit")

@@ -163,16 +163,11 @@ def pack(rank, matrices, room, pressure, message):
     np.dot(pressures, of_pressures, near_and_moments)
     incoming[:] = 0.0
     scan_moments(near_and_moments, decay, incoming, arriving)
-    last, terms = len(near_and_moments) - 1, len(decay)
-    left = BLOCK + 2 * terms
-    for i in range(BLOCK):
-        message[i] = near_and_moments[last, BLOCK + i]
-        message[left + i] = near_and_moments[0, 2 * BLOCK + i]
-    for m in range(terms):
-        message[BLOCK + m] = arriving[last + 2, m]
-        message[BLOCK + terms + m] = near_and_moments[last, 3 * BLOCK + m]
-        message[left + BLOCK + m] = arriving[0, terms + m]
-        message[left + BLOCK + terms + m] = near_and_moments[0, 3 * BLOCK + terms + m]
+    terms, half, inner = len(decay), len(message) // 2, BLOCK + len(decay)
+    right, left, first, last = message[:half], message[half:], near_and_moments[0], near_and_moments[-1]
+    right[:BLOCK], left[:BLOCK] = last[BLOCK : 2 * BLOCK], first[2 * BLOCK : 3 * BLOCK]
+    right[BLOCK:inner], left[BLOCK:inner] = arriving[-1, :terms], arriving[0, terms:]
+    right[inner:], left[inner:] = last[3 * BLOCK : 3 * BLOCK + terms], first[3 * BLOCK + terms :]
 
 
 @compiled
@@ -193,11 +188,10 @@ def unpack(rank, matrices, room, messages):
         for i in range(BLOCK):
             sums[b, i] += near_and_moments[b - 1, BLOCK + i]
             sums[b - 1, i] += near_and_moments[b, 2 * BLOCK + i]
-    for i in range(BLOCK):
-        if rank > 0:
-            sums[0, i] += messages[rank - 1, i]
-        if rank < ranks - 1:
-            sums[last, i] += messages[rank + 1, half + i]
+    if rank > 0:
+        sums[0] += messages[rank - 1, :BLOCK]
+    if rank < ranks - 1:
+        sums[last] += messages[rank + 1, half : half + BLOCK]
     return sums.ravel()
 
 

@@ -9,10 +9,10 @@ at the two end nodes the whole integral with the approach h00,
 .. math:: \frac{1}{\Delta x}\Big(g-h_{00}+\frac1\pi\int p\ln|x-s|\,ds\Big),
 
 where g is the separation of the solids less what their undeformed shape gives it. Residual, matrix-free
-product, assembled matrices and sweeps all take these coefficients.
+product, assembled matrices and Gauss-Seidel sweeps use the same coefficients.
 
-A rank is given its window of the mesh alone: its own nodes and `HALO` on either side. Of all pressures it is
-given sums, as `PressureSums`.
+A rank stores a window of the mesh, its own nodes and `HALO` nodes on either side; the pressures of the whole
+mesh enter as sums (`PressureSums`).
 """
 
 from functools import cached_property
@@ -25,7 +25,7 @@ from ehlpetsc.discretisation import elasticity
 from ehlpetsc.discretisation.curvature_product import Blocks, product
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
-HALO = 8  # nodes on either side of its own that a rank is given; the widest stencil of the preconditioner
+HALO = 8  # nodes on either side of a rank's own: the widest stencil of the preconditioner
 
 
 class PressureSums(NamedTuple):
@@ -36,7 +36,7 @@ class PressureSums(NamedTuple):
     curvature : ndarray, shape (last - first,)
         :math:`\sum_kf_kp_{i+k}` at the local nodes.
     load : ndarray, shape (3,)
-        In the rows of the first and of the last node, and :math:`\sum p\,\Delta x`.
+        Pressure terms of the rows of the first and of the last node, and :math:`\sum p\,\Delta x`.
     """
 
     curvature: np.ndarray
@@ -44,12 +44,12 @@ class PressureSums(NamedTuple):
 
 
 class Deflection:
-    """Rows of the nodes first .. last-1.
+    """Deflection rows of the nodes first .. last-1.
 
     Parameters
     ----------
     n : int
-        Nodes.
+        Number of nodes of the mesh.
     dx : float
         Spacing in half widths.
     first, last : int
@@ -57,7 +57,7 @@ class Deflection:
     Attributes
     ----------
     window : slice
-        Nodes that the rows are given, first .. last-1 among them.
+        Nodes on which the rows depend, first .. last-1 among them.
     curvature : ndarray, shape (n,)
         Kernel f_k.
     curvature_coefficient : float
@@ -65,7 +65,7 @@ class Deflection:
     end_row_coefficient : float
         Coefficient of the separation in the row of an end node; that of h00 is its negative.
     ends : list of int
-        Local ones of the two end nodes.
+        End nodes of the mesh among the local nodes.
     form : tuple
         Constants of :func:`deflection_rows`.
     load_weights : ndarray, shape (3, last - first)
@@ -81,8 +81,8 @@ class Deflection:
         self.ends = [end for end in (0, n - 1) if first <= end < last]
         self.form = self.owned.start, self.curvature_coefficient, self.end_row_coefficient, last == n
         logarithm = self._logarithm()
-        mine = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
-        self.load_weights = np.stack([*mine, np.full(last - first, dx)])
+        end_rows = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
+        self.load_weights = np.stack([*end_rows, np.full(last - first, dx)])
 
     @cached_property
     def _blocks(self):
@@ -133,13 +133,13 @@ def deflection_rows(g, approach, curvature, load, start, coefficient, end_coeffi
         Separation.
     approach : float
     curvature, load
-        As of `PressureSums`.
+        See `PressureSums`.
     start : int
-        Index in g of the first row's node; 0: that of the mesh.
+        Index in g of the first row's node; 0: the first node of the mesh.
     coefficient, end_coefficient : float
-        Of `Deflection`.
+        `curvature_coefficient` and `end_row_coefficient` of `Deflection`.
     has_last : bool
-        Whether the last row is that of the last node.
+        Whether the last row belongs to the last node of the mesh.
     rows : ndarray, shape (rows,)
     """
     inner = len(rows) - has_last

@@ -1,16 +1,15 @@
 r"""The discrete contact problem: one interleaved system for q, w and the approach h00.
 
-Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same
-places, as SNESVI pairs row with unknown:
+Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same order,
+because SNESVI pairs row with unknown:
 
-* in q's place the deflection, :mod:`ehlpetsc.discretisation.deflection`;
-* in w's place Reynolds, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact complementary
-  to the bound of the film; without oil :class:`ehlpetsc.discretisation.no_oil.NoOil`;
-* last the load, :math:`\sum p\,\Delta x=\pi/2`.
+* row of q: deflection, :mod:`ehlpetsc.discretisation.deflection`;
+* row of w: Reynolds equation, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact
+  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.no_oil.NoOil`;
+* last row: load, :math:`\sum p\,\Delta x=\pi/2`.
 
-Nothing here keeps a state: a step's inputs go in as one frozen record, residual and derivatives come out
-as another. A part of the mesh takes the unknowns of its window, see :mod:`.deflection`, and gives its own
-rows.
+The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from
+the unknowns of its window, see :mod:`.deflection`.
 """
 
 from dataclasses import dataclass, replace
@@ -31,7 +30,7 @@ from ehlpetsc.physics.operation import Conditions
 
 @dataclass(frozen=True)
 class StepInputs:
-    """Data of a solve beside its first guess.
+    """Data of a solve, without its initial guess.
 
     Attributes
     ----------
@@ -42,11 +41,11 @@ class StepInputs:
     fluid : case.tables.fluid.Fluid or None
         None: dry.
     inlet_film : float or None
-        Oil given at the inlet in a^2/R; None: flooded.
+        Oil film at the inlet in a^2/R; None: flooded.
     conditions : physics.operation.Conditions
         At the end of the step.
     load_share : float
-        Fraction of their load that is applied.
+        Applied fraction of the load of `conditions`.
     dt : float or None
         Length of the step [s]; None: steady.
     contact : contact.model.ContactModel or None
@@ -111,12 +110,12 @@ class EHLProblem:
     first, last : int
         Local nodes; the rank that owns the last one owns the load row.
     bound_tolerance : float
-        Of the active set: films this close to their bound count as on it, in a^2/R.
+        Tolerance of the active set in a^2/R: films this close to their bound count as on it.
 
     Attributes
     ----------
     window, owned : slice
-        Nodes whose unknowns the local rows are given; the local ones among them.
+        Nodes on which the local rows depend; indices of the local nodes in the window.
     """
 
     def __init__(self, case, scales, film_scale, first, last, bound_tolerance=0.0):
@@ -140,7 +139,7 @@ class EHLProblem:
 
     @property
     def load_is_local(self):
-        """Whether this rank has the load's row."""
+        """Whether this rank owns the load row."""
         return self.last == self.n
 
     def inputs(self, phi=None, history=None, conditions=None, dt=None):
@@ -164,11 +163,11 @@ class EHLProblem:
         Parameters
         ----------
         q, w : ndarray
-            At the nodes of the window.
+            Unknowns at the nodes of the window.
         h00 : float
         inputs : StepInputs
         sums : deflection.PressureSums, optional
-            Of the pressures at that state; needed unless the window is the whole mesh.
+            Sums of the pressures at that state; required unless the window is the whole mesh.
 
         Returns
         -------
@@ -206,7 +205,7 @@ def jacobian_rows(
     change,
     rows,
 ):
-    """Fill in rows of the whole Jacobian times a vector.
+    """Fill in the local rows of the Jacobian times a vector.
 
     Parameters
     ----------
@@ -220,11 +219,11 @@ def jacobian_rows(
     curvature, load
         `PressureSums` of the change of pressure.
     start, coefficient, end_coefficient, has_last
-        As of :func:`.deflection.deflection_rows`.
+        See :func:`.deflection.deflection_rows`.
     change : ndarray, shape (3, window)
-        Room for the changes of Reynolds unknown, film and separation.
+        Work array for the changes of Reynolds unknown, film and separation.
     rows : ndarray
-        To be filled in; interleaved, shape of the local part of the vector.
+        Result, interleaved; shape of the local part of the vector.
     """
     for k in range(3):
         directional_derivative(by[k + 1], nodes, 0, change[k])

@@ -11,12 +11,12 @@ in second differences equal the integral form exactly.
 import numpy as np
 from numpy.fft import irfft, rfft
 
-ASYMPTOTIC = 40  # from here on the series are exact to 1e-14
+ASYMPTOTIC_DISTANCE = 40  # nodes: from here on the asymptotic series are exact to 1e-14
 
 
 def deflection_kernel(n):
     r"""Hat-function kernel :math:`g_k+\ln\Delta x`, k = 0 .. n-1 (dimensionless)."""
-    near = np.arange(min(n, ASYMPTOTIC), dtype=np.longdouble)  # differences of the primitive cancel
+    near = np.arange(min(n, ASYMPTOTIC_DISTANCE), dtype=np.longdouble)  # differences of the primitive cancel
 
     def primitive(x):  # its second derivative is ln|x|
         x = np.abs(x)
@@ -31,20 +31,20 @@ def deflection_kernel(n):
 def curvature_kernel(n):
     r"""Second-difference kernel :math:`f_k`, k = 0 .. n-1: -4 ln 2, 0.601422, 0.366900, 0.126091 ..."""
     k = np.arange(n, dtype=float)
-    g = deflection_kernel(min(n, ASYMPTOTIC) + 1)
+    g = deflection_kernel(min(n, ASYMPTOTIC_DISTANCE) + 1)
     near = np.empty(len(g) - 1)
     near[0] = 2 * (g[1] - g[0])
     near[1:] = g[:-2] - 2 * g[1:-1] + g[2:]
-    far = np.where(k < ASYMPTOTIC, np.inf, k)
+    far = np.where(k < ASYMPTOTIC_DISTANCE, np.inf, k)
     f = 1 / far**2 + 1 / far**4 + 1.5 / far**6 + 17 / (6 * far**8)
     f[: len(near)] = near
     return f
 
 
 def fast_length(n):
-    """Smallest number from n on without a prime factor above 5, as transforms like it.
+    """Smallest length from n on without a prime factor above 5, for fast Fourier transforms.
 
-    (scipy.fft has it, but loads 4 MB more than numpy.fft, which is as quick.)
+    `scipy.fft.next_fast_len` would load 4 MB more than `numpy.fft`, which is as quick.
     """
     while True:
         rest = n

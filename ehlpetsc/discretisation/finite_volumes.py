@@ -1,4 +1,4 @@
-r"""Compiled loops of the finite volumes: what flows through faces, what cells gain, and the derivatives.
+r"""Finite volumes of the Reynolds equation: mass fluxes, mass balance of the cells, derivatives (compiled).
 
 The Couette flux and the storage are second-order upwind (BDF2 in time), both by
 :func:`positive_extrapolation`: second order where the film is resolved, and never
@@ -22,16 +22,17 @@ from ehlpetsc.physics.rheology import compression, mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
 ONE = unsigned(1)
-OWN = 4  # place of q_i in a row, before h_i
-# What faces need of the nodes on both sides, rows of one array (a tuple of arrays costs ten times the loop):
+OWN = 4  # index of q_i among the coefficients of row i, followed by h_i
+# Nodal properties, rows of one array (a tuple of arrays costs ten times the loop):
 P, DP = 0, 1  # pressure in p0, dp/dq
 H = 2  # film [m]
 M, M_Q, M_H = 3, 4, 5  # mass per area rho h (1 - theta) in a^2/R, and its derivatives by q and h
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 PROPERTIES = 10
-# In films with heat FLUIDITY and LN_ETA_P are those at the reference temperature. THERMAL is the square root
-# of the fluidity at the film's temperature over that one, followed by the derivatives of its logarithm.
+# In films with heat FLUIDITY and LN_ETA_P hold at the reference temperature. THERMAL is the square root of
+# fluidity at the film's temperature / fluidity at the reference temperature, LN_THERMAL_* the derivatives of
+# its logarithm.
 THERMAL, LN_THERMAL_P, LN_THERMAL_H = 10, 11, 12
 HEATED_PROPERTIES = 13
 
@@ -67,11 +68,11 @@ def extrapolated(m, behind, k):
 
 @compiled
 def fill_mass(i, q, h, density, p0, film, unit, at):
-    """Fill in all of node i but its viscosity, as in :func:`.reynolds.nodal`; return its pressure [Pa]."""
-    p, left, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
+    """Fill in the properties of node i except its viscosity, as :func:`.reynolds.nodal`; return p [Pa]."""
+    p, oil_fraction, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
     rho, rho_p = _compression(p0 * p, *density)
     at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * h
-    at[M, i], at[M_H, i] = rho * left * h, rho * left
+    at[M, i], at[M_H, i] = rho * oil_fraction * h, rho * oil_fraction
     at[M_Q, i] = (rho_p * p0 if full else 1.0) * h
     at[RHO, i], at[RHO_P, i] = unit * rho, unit * p0 * rho_p
     return p0 * p
@@ -88,7 +89,9 @@ def fluidities(at, left, right):
 
 @compiled
 def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
-    """Mass flux through the face right of node `left`, its derivatives by (q, h) behind, left and right.
+    """Mass flux through the face right of node `left`, and its derivatives.
+
+    Derivatives are with respect to (q, h) of the nodes `left` - 1, `left` and `left` + 1.
 
     Parameters
     ----------
@@ -97,9 +100,9 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
     per_length, per_film : float
         p0 over the spacing [Pa/m]; a^2/R [m].
     eyring, slip : float
-        As of :func:`ehlpetsc.physics.rheology.mobilities`.
+        See :func:`ehlpetsc.physics.rheology.mobilities`.
     entrainment : float
-        Mean speed over that of the scales.
+        Entrainment speed over that of the scales.
 
     Returns
     -------
@@ -139,21 +142,21 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
 
 
 @compiled
-def balance(at, first, law, then, extrapolated, k, rate, residual, derivatives):
-    """Fill in the cells' mass balance, outflow less inflow and what is stored, and its derivatives.
+def balance(at, first, law, m_old, extrapolated, k, rate, residual, derivatives):
+    """Fill in the mass balance of the cells, outflow - inflow + rate of storage, and its derivatives.
 
     Parameters
     ----------
     at : ndarray, shape (10 or 13, nodes)
-        One node at least on either side of the cells.
+        Nodal properties, with one node at least on either side of the cells.
     first : int
-        Node of the first cell.
+        Index of the first cell's node.
     law : tuple of 5 floats
         `per_length`, `per_film`, `eyring`, `slip` and `entrainment` of :func:`flux_through`.
-    then, extrapolated : ndarray, shape (cells,)
-        m and what is extrapolated over, of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
+    m_old, extrapolated : ndarray, shape (cells,)
+        `m` and `extrapolated` of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
     k, rate : float
-        Of the same, and the spacing over its step; 0: steady.
+        `k` of the same history; spacing / time step, 0: steady.
     residual : ndarray, shape (cells,)
     derivatives : ndarray, shape (cells, 8)
         With respect to q and h of the nodes i-2 .. i+1.
@@ -163,7 +166,7 @@ def balance(at, first, law, then, extrapolated, k, rate, residual, derivatives):
     for i in range(unsigned(len(residual))):
         node, row = first + i, derivatives[i]
         outflow = flux_through(at, node, *law)
-        stored, by_m, _ = positive_extrapolation(at[M, node], then[i], k)
+        stored, by_m, _ = positive_extrapolation(at[M, node], m_old[i], k)
         residual[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]
         row[2], row[3] = outflow[1] - inflow[3], outflow[2] - inflow[4]
@@ -175,12 +178,12 @@ def balance(at, first, law, then, extrapolated, k, rate, residual, derivatives):
 
 @compiled
 def reynolds_product(derivatives, v_q, v_h, first, out):
-    """Derivatives of Reynolds' rows times a vector.
+    """Fill in the derivatives of the Reynolds rows times a vector.
 
     Parameters
     ----------
     derivatives : ndarray, shape (rows, 8)
-        By q and h of the nodes i-2 .. i+1; zero where there is no such node.
+        With respect to q and h of the nodes i-2 .. i+1; zero where there is no such node.
     v_q, v_h : ndarray, shape (nx,)
     first : int
         Node of the first row.
@@ -206,9 +209,9 @@ def reynolds_product(derivatives, v_q, v_h, first, out):
 
 @compiled
 def reynolds_rounding(derivatives, q, h, first):
-    """Sum of squares of what a rounding of all q and h may change in Reynolds' rows.
+    """Sum of squares of the errors of the Reynolds rows from rounding of all q and h.
 
-    Parameters as of :func:`reynolds_product`.
+    Parameters as in :func:`reynolds_product`.
     """
     last, total = len(q) - 1, 0.0
     for row in range(len(derivatives)):

@@ -17,7 +17,7 @@ def w_index(nodes):
 
 
 def n_dofs(nodes):
-    """Number of unknowns of so many nodes without h00, which has this index."""
+    """Number of unknowns q and w of `nodes` nodes, which is also the index of h00."""
     return 2 * nodes
 
 
@@ -37,7 +37,7 @@ def w_of(vector, nodes):
 
 
 def pairs(vector, nodes):
-    """View of both, shape (nodes, 2)."""
+    """View of q and w, or of both rows, of the first nodes; shape (nodes, 2)."""
     return vector[: 2 * nodes].reshape(nodes, 2)
 
 

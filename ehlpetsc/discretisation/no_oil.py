@@ -28,7 +28,7 @@ class NoOil:
         self._derivatives[:, OWN] = 1.0
 
     def mass_per_area(self, q, h, fluid):
-        """There is none."""
+        """Return None: there is no oil."""
         return None
 
     def evaluate(self, q, h, inputs):

@@ -44,14 +44,14 @@ class FilmHistory:
     m, m_older : ndarray, shape (nx,)
         :math:`\rho h(1-\theta)` one and two steps ago.
     dt, dt_older : float
-        Step in hand and last step, in units of a/u; `dt_older` None starts with backward Euler.
+        Current and previous time step, in units of a/u; `dt_older` None starts with backward Euler.
 
     Attributes
     ----------
     k : float
-        How far the extrapolation of the two levels of a step goes.
+        Factor of the extrapolation from the two levels of the current step.
     extrapolated : ndarray, shape (nx,)
-        The extrapolation of the two older levels.
+        Extrapolation from the two older levels.
     """
 
     def __init__(self, m, m_older, dt, dt_older=None):
@@ -72,16 +72,16 @@ class Reynolds:
     ----------
     scales : scales.Scales
     film_scale : float
-        What F is divided by, in a^2/R.
+        Divisor of F, in a^2/R.
     first, last : int
-        Nodes whose rows are evaluated here.
+        Range of the evaluated rows.
     start : int
-        Node that what it is given begins with.
+        First node of the arrays that are passed in.
 
     Attributes
     ----------
     columns : ndarray of int, shape (local nodes, 8)
-        Places of the unknowns in the rows: q and h of the nodes i-2 .. i+1; -1: none.
+        Indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown.
     """
 
     def __init__(self, scales, film_scale, first, last, start=0):
@@ -107,8 +107,11 @@ class Reynolds:
         rho = rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
-    def properties(self, q, h, inputs):
-        """Properties of the nodes that the local rows need, rows as in :mod:`.finite_volumes`."""
+    def properties(self, q, h, inputs, again=False):
+        """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
+
+        `again` as of :func:`.heat.film.heated_nodal`.
+        """
         q, h, fluid = q[self.given], h[self.given], inputs.fluid
         s, density = self.scales, rheology.density_constants(fluid)
         rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
@@ -116,7 +119,7 @@ class Reynolds:
         if inputs.heat is not None:
             from ehlpetsc.discretisation.heat.film import heated_nodal
 
-            heated_nodal(q, h, density, *units, inputs.heat.part(self.nodes), at)
+            heated_nodal(q, h, density, *units, inputs.heat.part(self.nodes), again, at)
             return at
         nodal(q, h, rheology.viscosity_constants(fluid), density, *units, 1.0 / fluid.viscosity, at)
         return at
@@ -133,24 +136,24 @@ class Reynolds:
         Parameters
         ----------
         q, h : ndarray
-            From the node `start` on.
+            Unknowns from the node `start` on.
         inputs : ehl_problem.StepInputs
 
         Returns
         -------
         residual : ndarray, shape (local nodes,)
         derivatives : ndarray, shape (local nodes, 8)
-            With respect to the unknowns of `columns`, h the second one of a node.
+            With respect to q and h of the nodes of `columns`.
         """
         rows, history, law = self.rows, inputs.history, self.face_law(inputs)
         at, first = self.properties(q, h, inputs), self.row_in_given
-        then = at[M, first:], at[M, first:], 0.0, 0.0
+        storage = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
-            then = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
+            storage = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
         residual = np.empty(self.local.stop - self.local.start)
         derivatives = np.zeros((len(residual), n_dofs(STENCIL)))
         inner = slice(int(self.has_inlet), None)
-        balance(at, first, law, *then, residual[inner], derivatives[inner])
+        balance(at, first, law, *storage, residual[inner], derivatives[inner])
         if self.has_outlet:
             derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
             derivatives[-1, OWN + 2 :] = 0.0
@@ -173,7 +176,7 @@ _power_law = compiled(rheology.power_law)
 
 @compiled
 def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
-    """Fill in what faces need of nodes, see :mod:`.finite_volumes`.
+    """Fill in the nodal properties, see :mod:`.finite_volumes`.
 
     Parameters
     ----------
@@ -187,7 +190,7 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     fluidity : float
         1/eta0 [1/(Pa s)].
     at : ndarray, shape (10, nodes)
-        One node more is beyond the outlet: same film, no pressure.
+        An additional node is beyond the outlet, with the film of the last node and no pressure.
     """
     nodes = len(q)
     for i in range(at.shape[1]):

@@ -1,1 +1,1 @@
-"""The pages of the project as one site: which they are, and the command that builds it."""
+"""Site of the project's pages: list of the pages and build command."""

@@ -16,23 +16,23 @@ from ehlpetsc.docs.pages import FRONT, PAGES, ROOT
 from ehlpetsc.environment import has
 from ehlpetsc.errors import OutputError
 
-PACKAGES = {"sphinx": "python3-sphinx", "myst_parser": "python3-myst-parser", "furo": "furo"}  # Debian's
-MARK = "objects.inv"  # in every site of this generator
+DEBIAN_PACKAGES = {"sphinx": "python3-sphinx", "myst_parser": "python3-myst-parser", "furo": "furo"}
+SITE_FILE = "objects.inv"  # in every site built by Sphinx
 
 
 def lacking():
-    """Debian packages of the generator that this machine does not have.
+    """Missing Debian packages of the generator.
 
     Returns
     -------
     list of str
     """
-    found = [package for module, package in PACKAGES.items() if not has(module)]
+    found = [package for module, package in DEBIAN_PACKAGES.items() if not has(module)]
     return found if mathjax_folder() else [*found, "libjs-mathjax"]
 
 
 def cache_folder():
-    """Folder of the site that is built to be read on this machine.
+    """Folder of the site for reading on this machine.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def cache_folder():
 
 
 def check(folder):
-    """Refuse to build without the pages or the generator, or into a folder that holds anything else.
+    """Refuse to build without the pages or the generator, or into a folder with other files.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ def check(folder):
         raise OutputError(f"packages are missing; type: sudo apt-get install {' '.join(packages)}")
     if folder.exists() and not folder.is_dir():
         raise OutputError(f"{folder}: a file, not a folder for the site")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / MARK).exists():
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / SITE_FILE).exists():
         raise OutputError(f"{folder}: holds other files; give a folder that is new or empty")
 
 
 def build(folder):
-    """Build the site; a link that leads nowhere is an error.
+    """Build the site; a broken link is an error.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def build(folder):
     Returns
     -------
     pathlib.Path
-        Its first page.
+        First page of the site.
 
     Raises
     ------

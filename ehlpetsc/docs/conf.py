@@ -1,4 +1,4 @@
-"""Configuration of Sphinx: Markdown pages where they are, equations by the machine's MathJax, no network."""
+"""Configuration of Sphinx: Markdown pages, equations by the installed MathJax, no network."""
 
 import shutil
 from pathlib import Path
@@ -14,7 +14,7 @@ extensions = ["myst_parser", "sphinx.ext.mathjax"]
 root_doc = FRONT
 include_patterns = [f"{page}.md" for page in PAGES]
 myst_enable_extensions = ["dollarmath"]
-myst_heading_anchors = 4  # levels that can be linked to, by the names that Git hosts give them
+myst_heading_anchors = 4  # levels with anchors, which have the names of Git hosts
 myst_update_mathjax = False  # for MathJax 3
 mathjax_path = "mathjax/MathJax.js"
 mathjax2_config = SETTINGS
@@ -28,7 +28,7 @@ def _with_contents(_app, page, source):
 
 
 def _complete(app, failure):
-    """MathJax beside the pages, and the front page under the name that a server looks for."""
+    """Copy MathJax, and the front page to index.html."""
     if failure is None:
         shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
         folder = mathjax_folder()
@@ -44,6 +44,6 @@ def _made(path):
 
 
 def setup(app):
-    """Connect to Sphinx: the contents of the site, and what it needs beside its pages."""
+    """Connect the table of contents and further files of the site to Sphinx."""
     app.connect("source-read", _with_contents)
     app.connect("build-finished", _complete)

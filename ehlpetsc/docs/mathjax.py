@@ -1,8 +1,8 @@
-"""MathJax 2 of the machine, which draws the equations: where it is, what of it a site needs, its settings."""
+"""Installed MathJax 2 for equations: folder, files required by the site, settings."""
 
 from pathlib import Path
 
-DEBIANS = Path("/usr/share/javascript/mathjax")
+DEBIAN_FOLDER = Path("/usr/share/javascript/mathjax")
 MATHJAX_FILES = (
     "MathJax.js",
     "extensions",
@@ -25,10 +25,10 @@ SETTINGS = {
     },
     "showMathMenu": False,
     "messageStyle": "none",
-    "SVG": {"font": "TeX"},  # at its own size: numbers are placed by the width of that
+    "SVG": {"font": "TeX"},  # at its own size, by which equation numbers are placed
 }
 
 
 def mathjax_folder():
-    """Folder of Debian's MathJax; None where it is not installed."""
-    return DEBIANS if (DEBIANS / "MathJax.js").exists() else None
+    """Folder of Debian's MathJax; None if it is not installed."""
+    return DEBIAN_FOLDER if (DEBIAN_FOLDER / "MathJax.js").exists() else None

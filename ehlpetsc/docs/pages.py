@@ -1,8 +1,8 @@
-"""The pages of the site, by their readers, and where they are."""
+"""Pages of the site, by readers, and their paths."""
 
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]  # the clone
+ROOT = Path(__file__).parents[2]  # of the checkout
 FRONT = "README"
 SECTIONS = {
     "User guide": (
@@ -30,12 +30,12 @@ PAGES = (FRONT, *sum(SECTIONS.values(), ()))
 
 
 def contents():
-    """Table of contents of the site, in the words of its generator.
+    """Table of contents of the site, in the syntax of Sphinx.
 
     Returns
     -------
     str
-        A Markdown text to be appended to the front page.
+        Markdown text that is appended to the front page.
     """
     trees = []
     for caption, pages in SECTIONS.items():

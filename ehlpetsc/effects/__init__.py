@@ -1,4 +1,4 @@
-"""Effects: physics beside the film that changes from time level to time level.
+"""Effects: physics, other than the film, whose state changes from time level to time level.
 
 An effect is one module with a class derived from :class:`.effect.Effect` and one entry in `EFFECTS`.
 """
@@ -12,7 +12,7 @@ EFFECTS = (RoughSurfaces, PlasticDeformation, Wear, Heat)
 
 
 def effects_of(scene, records=()):
-    """The effects of a scene: those of its case and those that have a record already.
+    """Effects of a scene: the effects of its case, and effects with a record of an earlier pass.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Interface of an effect: physics beside the film that changes from time level to time level.
+"""Interface of an effect: physics, other than the film, whose state changes from time level to time level.
 
-An effect keeps a record of its own, a NamedTuple of arrays, numbers and other NamedTuples, in the state
-of the run. The record is saved in restart files by its field names; nothing but the effect reads it.
+The state of a run contains one record of each effect, a NamedTuple of arrays, numbers and other NamedTuples.
+The record is saved in restart files by its field names; only the effect reads it.
 """
 
 from dataclasses import dataclass
@@ -21,9 +21,9 @@ class Scene:
     scales : physics.scales.Scales
     operation : physics.operation.ConstantOperation
     positions : surfaces.roughness.SurfacePositions
-        Of both surfaces at the begin of the run.
+        Positions of both surfaces at the beginning of the run.
     heat_transfer : callable or None
-        Of the scene: its `discretisation.heat.step.HeatStep`; None where nothing is solved.
+        Returns the `discretisation.heat.step.HeatStep` of a scene; None if no solution is computed.
     """
 
     case: object
@@ -93,11 +93,11 @@ class Solution(NamedTuple):
 
 
 class NoRecord(NamedTuple):
-    """Record of an effect that keeps nothing."""
+    """Empty record of an effect without a state."""
 
 
 class Effect:
-    """An effect without any influence; subclasses override what they have.
+    """Base class of effects: no influence, no quantities.
 
     Parameters
     ----------
@@ -106,14 +106,14 @@ class Effect:
     Attributes
     ----------
     name : str
-        Of the record in the state and in restart files.
+        Name of the record in the state and in restart files.
     record : type
-        NamedTuple of the record.
+        Type of the record, a NamedTuple.
     moves_with_surfaces : bool
         Whether its contribution to the gap moves with the surfaces from the first step on.
     fields, scalars, surface : dict
-        Its quantities, see :mod:`ehlpetsc.quantities`: fields over the nodes, scalars of every time step,
-        depths along each surface at the end of the run.
+        Quantities of the effect, see :mod:`ehlpetsc.quantities`: fields over the nodes, scalars of every time
+        step, depths along each surface at the end of the run.
     """
 
     name = ""
@@ -137,7 +137,7 @@ class Effect:
         Parameters
         ----------
         before : NamedTuple, optional
-            Record at the end of the pass before.
+            Record at the end of the previous pass.
         """
         return self.record()
 
@@ -147,7 +147,7 @@ class Effect:
         Parameters
         ----------
         record : NamedTuple
-            At the begin of the step.
+            Record at the beginning of the step.
         inputs : discretisation.ehl_problem.StepInputs
         step : Step
 
@@ -163,22 +163,22 @@ class Effect:
         Parameters
         ----------
         record : NamedTuple
-            At its begin.
+            Record at the beginning of the step.
         solution : Solution
         step : Step
         """
         return record
 
     def is_settled(self, before, after):
-        """Whether a steady solution is one with the record after it too; else it is solved again."""
+        """Whether a steady solution is consistent with the record after it; otherwise it is solved again."""
         return True
 
     def log_viscosity(self, record, pressure):
-        """ln(eta/eta0) of the oil under a pressure [Pa], shape (nx,); None: that of the isothermal law."""
+        """ln(eta/eta0) of the oil under a pressure [Pa], shape (nx,); None: isothermal law."""
         return None
 
     def observe(self, record, solution, step):
-        """Fields and scalars in SI units, by the names of `fields` and `scalars`."""
+        """Values of `fields` and `scalars` by name, in SI units."""
         return {}, {}
 
     def on_surfaces(self, record, points):
@@ -198,16 +198,16 @@ class Effect:
 
 
 def flat(record, name):
-    """Fields of a record by dotted names, those of records inside it included."""
-    found = {}
+    """Fields of a record, and of records in it, by dotted names."""
+    values = {}
     for key, value in record._asdict().items():
         inner = f"{name}.{key}"
-        found |= flat(value, inner) if hasattr(value, "_asdict") else {inner: value}
-    return found
+        values |= flat(value, inner) if hasattr(value, "_asdict") else {inner: value}
+    return values
 
 
 def unflat(kind, values, name):
-    """The record of a type from :func:`flat` values.
+    """Record of type `kind` from the values of :func:`flat`.
 
     Raises
     ------

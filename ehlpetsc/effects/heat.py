@@ -40,6 +40,10 @@ class HeatRecord(NamedTuple):
         Of the surfaces to their flux, in a steady solve [m^2 K/W].
     pressure
         Of the oil [Pa].
+    rate
+        Change of the film's temperature over the last step [K/s]; 0: steady.
+    extrapolated
+        Heat of the film beyond that at its temperature, see :mod:`.discretisation.heat.transport` [J/m^2].
     body_1, body_2 : BodyHeat
     heat : float
         Dissipated [W/m].
@@ -60,6 +64,8 @@ class HeatRecord(NamedTuple):
     response_1: np.ndarray
     response_2: np.ndarray
     pressure: np.ndarray
+    rate: np.ndarray
+    extrapolated: np.ndarray
     body_1: BodyHeat
     body_2: BodyHeat
     heat: float
@@ -108,12 +114,18 @@ class Heat(Effect):
     def _steps(self):
         return self.scene.heat_transfer(self.scene)
 
+    @cached_property
+    def _contact(self):
+        """Slice of the nodes in the Hertz contact."""
+        inside = np.flatnonzero(np.abs(self.scene.scales.x) <= 1.0)
+        return slice(inside[0], inside[-1] + 1)
+
     def start(self, before=None):
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
         n, steps = self.scene.scales.nx, self._steps
         zero, one = np.zeros(n), np.ones(n)
         walls = [bulk * one for bulk in steps.bulk]
-        state = (steps.inlet * one, *walls, zero, zero, zero, zero, np.zeros(n + 1), zero, zero, zero)
+        state = (steps.inlet * one, *walls, zero, zero, zero, zero, np.zeros(n + 1), *[zero] * 5)
         return HeatRecord(*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0)
 
     def inputs(self, record, inputs, step):
@@ -132,6 +144,8 @@ class Heat(Effect):
             film.couette,
             *found.responses,
             film.pressure,
+            (found.film - film.old) / (step.dt or np.inf),
+            found.extrapolated * (step.dt or 0.0),
             *found.bodies,
             *self._steps.balance(found, film, source),
             record.solved + 1,
@@ -157,8 +171,7 @@ class Heat(Effect):
         """Temperatures and heat fluxes; their largest and mean values."""
         values = record.film, record.wall_1, record.wall_2, record.flux_1, record.flux_2
         fields = dict(zip(self.fields, values, strict=True))
-        contact = np.abs(self.scene.scales.x) <= 1.0
         scalars = {"heat": record.heat, "heat_error": record.error}
         for name in ("film_temperature", "temperature_1", "temperature_2"):
-            scalars |= {f"{name}_max": fields[name].max(), f"{name}_mean": fields[name][contact].mean()}
+            scalars |= {f"{name}_max": fields[name].max(), f"{name}_mean": fields[name][self._contact].mean()}
         return fields, scalars

@@ -1,7 +1,7 @@
-r"""Plastic deformation of both surfaces: where solids yield they keep an indentation.
+r"""Plastic deformation of both surfaces, left where the solids have yielded.
 
-A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.contact.yielding` to the surfaces at the
-points that face each other: to the softer one, or half to each where both yield at the same pressure.
+A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.contact.yielding` at opposite points of
+the surfaces: to the softer surface, or half to each if both have the same yield pressure.
 """
 
 from typing import NamedTuple
@@ -46,8 +46,9 @@ class PlasticDeformation(BodyDepth):
 
     def __init__(self, scene):
         super().__init__(scene)
-        one, other = scene.case.contact.yield_pressure or (0.0, 0.0)
-        self._shares = (0.5, 0.5) if one == other else (float(one < other), float(other < one))
+        yield_1, yield_2 = scene.case.contact.yield_pressure or (0.0, 0.0)
+        is_equal = yield_1 == yield_2
+        self._fractions = (0.5, 0.5) if is_equal else (float(yield_1 < yield_2), float(yield_2 < yield_1))
 
     @classmethod
     def is_in(cls, case):
@@ -55,11 +56,8 @@ class PlasticDeformation(BodyDepth):
         return case.contact.yield_pressure is not None
 
     def start(self, before=None):
-        """No deformation, or that of the pass before."""
-        zero = BodyFields.zero(self.scene.scales.dx)
-        if before is None:
-            return PlasticRecord(zero, np.zeros(self.scene.scales.nx), zero)
-        return before._replace(hidden=self.ahead_of_profiles(before.depth))
+        """No deformation, or the deformation of the previous pass."""
+        return super().start(before, added=np.zeros(self.scene.scales.nx))
 
     def accept(self, record, solution, step):
         """Add the depth of the step to both bodies."""
@@ -67,11 +65,11 @@ class PlasticDeformation(BodyDepth):
         if plastic is None:
             return record
         total = self.scene.scales.h * plastic.depth
-        depths = [share * total for share in self._shares]
+        depths = [fraction * total for fraction in self._fractions]
         depth = self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths)
         return PlasticRecord(depth, total, record.hidden)
 
     def observe(self, record, solution, step):
         """Indentations at the nodes, number of yielding nodes, volume."""
-        fields = dict(zip(self.fields, self.in_gap(record, step), strict=True))
+        fields, _ = super().observe(record, solution, step)
         return fields, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}

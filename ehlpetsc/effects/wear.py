@@ -63,13 +63,6 @@ class Wear(BodyDepth):
         """Whether the case has a table [wear]."""
         return case.wear is not None
 
-    def start(self, before=None):
-        """No wear, or that of the pass before."""
-        zero = BodyFields.zero(self.scene.scales.dx)
-        if before is None:
-            return WearRecord(zero, zero)
-        return before._replace(hidden=self.ahead_of_profiles(before.depth))
-
     def accept(self, record, solution, step):
         """Wear both surfaces where the solids carry."""
         if step.dt is None or self.scene.case.wear is None:
@@ -80,5 +73,5 @@ class Wear(BodyDepth):
 
     def observe(self, record, solution, step):
         """Wear depths at the nodes and worn volume."""
-        fields = dict(zip(self.fields, self.in_gap(record, step), strict=True))
+        fields, _ = super().observe(record, solution, step)
         return fields, {"wear_volume": record.depth.volume}

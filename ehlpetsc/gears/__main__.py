@@ -1,9 +1,9 @@
-"""Path of contact of a spur gear pair: ``ehlpetsc gears CASE.toml``, or of a run, ``RESULT.h5``.
+"""Path of contact of a spur gear pair: ``ehlpetsc gears CASE.toml`` or ``ehlpetsc gears RESULT.h5``.
 
-Of a case, prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table and
-draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. Of a result, prints
-friction and losses of the mesh and draws pressure, films and friction along the path; where it has been
-post-processed, RESULT.post.h5, also the damage along both flanks.
+With a case, prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table
+and draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. With a result,
+prints friction and losses of the mesh and draws pressure, films and friction along the path and, if
+RESULT.post.h5 exists, the damage along both flanks.
 """
 
 import sys
@@ -17,7 +17,7 @@ from ehlpetsc.toml_file import parse_toml, read_text
 
 
 def arguments():
-    """The command line."""
+    """Parse the command line."""
     parser = CommandParser("ehlpetsc.gears", __doc__)
     parser.add_argument("case", help="case file with a [gears] table, or a result of one")
     parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
@@ -59,8 +59,8 @@ def run(chosen):
     if target:
         from ehlpetsc.gears.picture import draw
 
-        with replacing(target, keep_ending=True) as beside:
-            draw(path, stresses, beside, str(case.get("title", chosen.case)))
+        with replacing(target, keep_ending=True) as temporary:
+            draw(path, stresses, temporary, str(case.get("title", chosen.case)))
         print(target)
 
 
@@ -79,20 +79,20 @@ def _run_of(chosen):
         check_derived(flanks, [Path(chosen.case), post], PICTURE_SIGNATURES)
     print("\n".join(found.lines()))
     if target:
-        with replacing(target, keep_ending=True) as beside:
-            found.draw(beside)
+        with replacing(target, keep_ending=True) as temporary:
+            found.draw(temporary)
         print(target)
     if post.exists():
         damage = FlankDamage(post, found.profile_offsets)
         print("\n".join(damage.lines()))
         if flanks:
-            with replacing(flanks, keep_ending=True) as beside:
-                damage.draw(found.path.pair, beside, found.title)
+            with replacing(flanks, keep_ending=True) as temporary:
+                damage.draw(found.path.pair, temporary, found.title)
             print(flanks)
 
 
 def _picture(chosen):
-    """Where the picture goes, checked; None: it is not wanted."""
+    """Checked path of the picture; None: no picture."""
     if chosen.no_picture:
         return None
     target = Path(f"{Path(chosen.case).stem}.gears.png" if chosen.output is None else chosen.output)

@@ -1,4 +1,4 @@
-"""A gear run along its path of contact: pressure, film, friction and losses, as text and as a picture."""
+"""Gear run along the path of contact: pressure, film, friction and losses, as text and as a picture."""
 
 import tomllib
 
@@ -9,7 +9,7 @@ from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction
 from ehlpetsc.gears.path import path_of_contact
 from ehlpetsc.results.reader import read_result
 
-ROWS = (  # name among the scalars of the steps, factor, label
+PANELS = (  # scalar of the steps, factor, label
     ("p_max", 1e-9, "largest pressure\n[GPa]"),
     ("film_central", 1e6, "mean film of the\ncontact [um]"),
     ("h_min", 1e6, "least film [um]"),
@@ -20,7 +20,7 @@ ROWS = (  # name among the scalars of the steps, factor, label
     ("temperature_1_max", 1.0, "highest temperature\nof the pinion [K]"),
     ("temperature_2_max", 1.0, "highest temperature\nof the wheel [K]"),
 )
-WINDOW = 0.02  # of the path, over which the thick line averages
+AVERAGING_LENGTH = 0.02  # of the path, for the thick line
 COLOUR = "#1f4e79"
 
 
@@ -36,16 +36,16 @@ class GearRun:
     ----------
     path : ehlpetsc.gears.path.Path
     position : ndarray, shape (nsteps,)
-        Of each step on the line of action from the pitch point [m].
+        Position of each step on the line of action from the pitch point [m].
     friction : ndarray, shape (nsteps,)
         Magnitude of the friction coefficient, mean of both walls.
     scalars : dict of str to ndarray
-        Rows of the picture that the result has.
+        Scalars of the picture in the result.
 
     Raises
     ------
     CaseError
-        The result is none of a gear pair.
+        The result is not that of a gear pair.
     """
 
     def __init__(self, file):
@@ -55,18 +55,18 @@ class GearRun:
                 raise CaseError([f"{file}: its case has no [gears] table; allowed: a gear run"])
             self.path, self.title = path_of_contact(tables["gears"]), str(result.attrs["title"])
             rolling = result.steps("speed_1")[:]
-            self.scalars = {name: result.steps(name)[:] for name, _, _ in ROWS if name in result.scalars}
+            self.scalars = {name: result.steps(name)[:] for name, _, _ in PANELS if name in result.scalars}
             self.friction = np.abs(result.steps("friction_coefficient")[:])
         self.rho = rolling / self.path.pair.angular_speeds[0]
         self.position = self.rho - self.path.pair.points["C"]
 
     @property
     def profile_offsets(self):
-        """Arc lengths of both flanks at the begin of the run, from A [m]."""
+        """Arc lengths of both flanks at the beginning of the run, from A [m]."""
         return tuple(float(arc) for arc in self.path.pair.flank_arcs(self.rho[0]))
 
     def friction_on_path(self):
-        """Friction coefficient at the samples of the path; beyond the ends of the run that of its ends."""
+        """Friction coefficient at the samples of the path; constant beyond the ends of the run."""
         return np.interp(self.path.rho, self.rho, self.friction)
 
     def lines(self):
@@ -77,7 +77,7 @@ class GearRun:
             f"mean friction coefficient {mean_friction(self.path, friction):.4f}",
             f"power lost over power transmitted {1e2 * loss(self.path, friction):.3f} %",
         ]
-        for name, factor, label in ROWS:
+        for name, factor, label in PANELS:
             values = self.scalars.get(name)
             if values is not None and np.isfinite(values).any():
                 low, high = (factor * f(values) for f in (np.nanmin, np.nanmax))
@@ -85,8 +85,8 @@ class GearRun:
         return found
 
     def averaged(self, values):
-        """Means over `WINDOW` of the path around each step."""
-        reach = 0.5 * WINDOW * (self.rho[-1] - self.rho[0])
+        """Means over `AVERAGING_LENGTH` of the path around each step."""
+        reach = 0.5 * AVERAGING_LENGTH * (self.rho[-1] - self.rho[0])
         total = np.append(0.0, np.cumsum(np.nan_to_num(values)))
         first = np.searchsorted(self.rho, self.rho - reach)
         last = np.searchsorted(self.rho, self.rho + reach, side="right")
@@ -96,7 +96,7 @@ class GearRun:
         """Draw the scalars along the line of action into a file."""
         from matplotlib.figure import Figure
 
-        rows = [row for row in ROWS if row[0] in self.scalars and np.isfinite(self.scalars[row[0]]).any()]
+        rows = [row for row in PANELS if row[0] in self.scalars and np.isfinite(self.scalars[row[0]]).any()]
         figure = Figure(figsize=(7.0, 1.0 + 1.2 * len(rows)), layout="constrained")
         axes = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
         points, c = self.path.pair.points, self.path.pair.points["C"]

@@ -27,7 +27,7 @@ class FlankDamage:
     arcs : pair of ndarray
         Arc lengths from A along the flanks of pinion and wheel [m], increasing.
     damage : pair of ndarray or None, shape (nz, ns)
-        nan where a point did not pass the whole contact; None of a flank that was left out.
+        nan for points that did not pass the whole contact; None for a flank without damage.
 
     Raises
     ------
@@ -52,7 +52,7 @@ class FlankDamage:
             raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
 
     def lines(self):
-        """Lines of text: largest damage of each flank, where and how deep."""
+        """Lines of text: maximum damage of each flank with its position and depth."""
         found = []
         for flank, damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
             if damage is None or not np.isfinite(damage).any():

@@ -1,7 +1,7 @@
 r"""Involute geometry of an external spur gear pair (Niemann & Winter, Maschinenelemente 2; ISO 21771).
 
-Positions on the line of action are measured from the base circle of the pinion: :math:`\rho_1`, the radius of
-curvature of its flank there. Flank 1 is the pinion's, flank 2 the wheel's; the pinion drives.
+Positions on the line of action are measured from the base circle of the pinion: :math:`\rho_1`, which is the
+radius of curvature of its flank. Flank 1 belongs to the pinion, flank 2 to the wheel; the pinion drives.
 """
 
 import math
@@ -13,7 +13,7 @@ MESH_STIFFNESS = 14e9  # Pa: single stiffness c' of steel teeth, 14 N/(mm um) of
 
 @dataclass(frozen=True)
 class GearPair:
-    """Dimensions and running conditions of a spur gear pair; a pair of values is of pinion and wheel.
+    """Dimensions and running conditions of a spur gear pair; pairs of values are those of pinion and wheel.
 
     Attributes
     ----------
@@ -21,11 +21,11 @@ class GearPair:
         [m].
     teeth : (int, int)
     pressure_angle : float
-        Of the basic rack [degrees].
+        Pressure angle of the basic rack [degrees].
     tip_diameter : (float, float)
         [m].
     torque, speed : float
-        Of the pinion [N m], [1/min].
+        Torque [N m] and speed [1/min] of the pinion.
     tip_relief : float
         Depth of the relief at both tips, falling linearly to none at B and D [m].
     load_sharing : str, optional
@@ -48,7 +48,7 @@ class GearPair:
 
     @property
     def rule(self):
-        """Load sharing rule: the one named, else by whether the tips are relieved."""
+        """Load sharing rule: `load_sharing`, by default according to the tip relief."""
         return self.load_sharing or ("tip-relief" if self.tip_relief > 0.0 else "thirds")
 
     @property
@@ -92,7 +92,7 @@ class GearPair:
     def points(self):
         """Positions of A, B, C, D and E [m]: dict of str to float.
 
-        A: tip of the wheel, the contact begins; E: tip of the pinion, it ends; one pair alone carries between
+        A: tip of the wheel, contact begins; E: tip of the pinion, contact ends; a single pair carries between
         B and D; C: pitch point.
         """
         a, e = self._a_and_e()
@@ -123,7 +123,7 @@ class GearPair:
     def flank_arcs(self, rho):
         r"""Arc lengths on flanks 1 and 2 from A [m], :math:`|\rho_i^2-\rho_{i,A}^2|/(2r_{b,i})`.
 
-        The lengths that contact has swept: the integrals of both speeds over time.
+        The integrals of both speeds over time.
         """
         a, (r_1, r_2), length = self.points["A"], self.base_radii, self.line_of_action
         return (rho**2 - a**2) / (2.0 * r_1), ((length - a) ** 2 - (length - rho) ** 2) / (2.0 * r_2)
@@ -137,14 +137,14 @@ class GearPair:
     def hunting_shift(self):
         """Shift of flank 2 between engagements of one pinion tooth [m].
 
-        The flanks of the wheel that the tooth meets follow each other in one profile: each engagement begins
-        where the flank before has ended, and the profile of `partners` flanks is then met again. 0 where the
-        tooth meets the same wheel tooth every time.
+        The wheel flanks in contact with the tooth follow each other in one profile: each engagement begins at
+        the end of the previous flank, and the profile of `partners` flanks repeats. 0 if the tooth meets the
+        same wheel tooth every time.
         """
         return float(self.flank_arcs(self.points["E"])[1]) if self.partners > 1 else 0.0
 
     def faults(self):
-        """Reasons why the pair cannot run, one sentence each, with the key at fault.
+        """Faults of the geometry, one message each, with the key.
 
         Returns
         -------

@@ -42,11 +42,11 @@ def mean_friction(path, friction):
 
 
 def ohlendorf_loss_factor(pair):
-    r"""Loss factor H_V of tooth numbers and contact ratios alone, of Ohlendorf (1958).
+    r"""Loss factor H_V from tooth numbers and contact ratios, Ohlendorf (1958).
 
     .. math:: H_V=\frac{\pi(i+1)}{z_1i}(1-\varepsilon_\alpha+\varepsilon_1^2+\varepsilon_2^2)
 
-    with i the gear ratio and the parts of the contact ratio from C to E and from A to C.
+    with the gear ratio i and the contact ratios :math:`\varepsilon_{1,2}` from C to E and from A to C.
     """
     points, i = pair.points, pair.teeth[1] / pair.teeth[0]
     e_1 = (points["E"] - points["C"]) / pair.base_pitch

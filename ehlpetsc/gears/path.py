@@ -8,25 +8,25 @@ from ehlpetsc.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES, kinks, relief_ratio, share
 
-SAMPLES = 400  # equal intervals of the path, besides its points and kinks
+PATH_INTERVALS = 400  # equal intervals of the path, in addition to its points and kinks
 PAIRS = ("teeth", "tip_diameter")
 OPTIONAL = ("pressure_angle", "tip_relief", "load_sharing", "mesh_stiffness")
 
 
 @dataclass(frozen=True)
 class Path:
-    """Conditions of a contact from A, where the wheel's tip meets, to E, where the pinion's leaves.
+    """Conditions of a contact from A, tip of the wheel, to E, tip of the pinion.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
         From A on [s], increasing.
     load : ndarray, shape (n,)
-        On this pair of teeth [N/m].
+        Load of this pair of teeth [N/m].
     radius : ndarray, shape (n,)
-        Of relative curvature [m].
+        Radius of relative curvature [m].
     speed_1, speed_2 : ndarray, shape (n,)
-        Of the flanks of pinion and wheel through the contact [m/s].
+        Speeds of the flanks of pinion and wheel through the contact [m/s].
     rho : ndarray, shape (n,)
         Position on the line of action from the base circle of the pinion [m].
     contact_ratio : float
@@ -47,7 +47,7 @@ class Path:
 
     @property
     def entrainment(self):
-        """Mean of both speeds [m/s]."""
+        """Entrainment speed, mean of both speeds [m/s]."""
         return 0.5 * (self.speed_1 + self.speed_2)
 
     @property
@@ -72,7 +72,7 @@ def path_of_contact(gears):
     ----------
     gears : dict or GearPair
         Keys of the ``[gears]`` table: `module`, `teeth`, `pressure_angle`, `centre_distance`, `tip_diameter`,
-        `face_width`, `torque`, `speed`, and as wanted `tip_relief`, `load_sharing`, `mesh_stiffness`.
+        `face_width`, `torque`, `speed`, and optionally `tip_relief`, `load_sharing`, `mesh_stiffness`.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def path_of_contact(gears):
     Raises
     ------
     CaseError
-        Keys that are missing, unknown or no numbers, or impossible geometry.
+        Missing or unknown keys, values that are not numbers, or impossible geometry.
 
     Examples
     --------
@@ -98,9 +98,9 @@ def path_of_contact(gears):
     if faults:
         raise CaseError(faults)
     points = pair.points
-    rho = np.linspace(points["A"], points["E"], SAMPLES + 1)
+    rho = np.linspace(points["A"], points["E"], PATH_INTERVALS + 1)
     rho = np.unique(np.concatenate([rho, list(points.values()), kinks(pair)]))
-    # equal positions but for rounding would be equal times
+    # positions that differ by rounding would be equal times
     rho = rho[np.append(True, np.diff(rho) > 1e-9 * pair.base_pitch)]
     speed_1, speed_2 = pair.speeds(rho)
     return Path(
@@ -122,7 +122,7 @@ def pair_of(gears):
     Raises
     ------
     CaseError
-        With all faults of the keys, one line each; the geometry is not checked.
+        Contains all faults of the keys, one message each; the geometry is not checked.
     """
     keys = [field.name for field in fields(GearPair)]
     faults = [f"gears.{key}: unknown key; allowed: {', '.join(keys)}" for key in gears if key not in keys]

@@ -13,7 +13,7 @@ COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 
 
 def hertz(path, contact):
-    """Half width [m] and Hertz pressure [Pa] along a path, None without both moduli.
+    """Half width [m] and Hertz pressure [Pa] along a path; None without both moduli.
 
     Parameters
     ----------
@@ -32,13 +32,13 @@ def hertz(path, contact):
 
 
 def rows(path, stresses=None):
-    """Lines of text: figures of the pair, and a table of A to E.
+    """Lines of text: data of the pair, and a table of A to E.
 
     Parameters
     ----------
     path : ehlpetsc.gears.path.Path
     stresses : tuple of ndarray, optional
-        As of :func:`hertz`.
+        See :func:`hertz`.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def _shown(value):
 
 
 def csv(path):
-    """The path as text of a table for ``[operation]``: where it carries load."""
+    """Loaded part of the path as CSV text for ``[operation]``."""
     kept = path.load > 0.0
     values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[kept]
     values[:, 0] -= values[0, 0]

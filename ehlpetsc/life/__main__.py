@@ -1,9 +1,10 @@
-"""Surfaces over their life: ``ehlpetsc life CASE.toml``; of ``OUT.life.h5``, the picture.
+"""Wear against fatigue over the life of two surfaces: ``ehlpetsc life CASE.toml``; draws ``OUT.life.h5``.
 
-Wear and fatigue damage of a pass are multiplied over as many passes as leave the surfaces nearly the same,
-see the table [life] of the case; the next pass meets the changed surfaces. The same command continues a life.
-Of a case with [series] a life for each of its members, their index ``OUT.life.series.json`` and a picture of
-the regimes: where wear wins and where fatigue. Under mpirun a rank takes a position of surface 2, or a life.
+Wear and fatigue damage of a solved pass are multiplied over the passes in which the surfaces hardly change,
+see the table [life] of the case; the next pass is solved with the changed surfaces. The same command
+continues a life. A case with [series] runs a life for each member and writes the index
+``OUT.life.series.json`` and a picture of the regimes, wear or fatigue. Under mpirun each rank solves a
+position of surface 2, or a life.
 """
 
 import sys
@@ -25,9 +26,9 @@ def arguments():
         metavar="TABLE.KEY=VALUE",
         help="a key of the case; may be repeated",
     )
-    parser.add_argument("--overwrite", action="store_true", help="begin anew")
+    parser.add_argument("--overwrite", action="store_true", help="start again")
     parser.add_argument("--after", type=int, metavar="ROW", help="continue after this row, from 1")
-    parser.add_argument("--no-picture", action="store_true", help="the numbers alone")
+    parser.add_argument("--no-picture", action="store_true", help="do not draw")
     parser.add_argument("--movie", metavar="FILE", help="profile and damage over the life: .gif, .mp4, .webm")
     return parser
 
@@ -42,7 +43,7 @@ def _run(chosen):
     """Run a life or a series of them, where a case is given; draw it on the first rank."""
     path, is_root = Path(chosen.case), True
     if path.suffix not in (".h5", ".json"):
-        path, is_root = _lived(chosen)
+        path, is_root = _run_lives(chosen)
     elif not chosen.no_picture:
         _pictures(chosen, path, [path])
     if is_root and not chosen.no_picture:
@@ -72,7 +73,7 @@ def _draw_regimes(chosen, path):
 
 
 def _pictures(chosen, path, inputs):
-    """Check the places of the pictures of a life or an index."""
+    """Check the paths of the pictures of a life or an index."""
     from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PICTURE_SIGNATURES, check_derived
 
     check_derived(path.with_suffix(".png"), inputs, PICTURE_SIGNATURES)
@@ -82,8 +83,8 @@ def _pictures(chosen, path, inputs):
             raise UsageError(f"--movie {chosen.movie}: of a life; allowed with a series: left out")
 
 
-def _lived(chosen):
-    """Run a life or those of a series; its file or index, and whether this is the first rank."""
+def _run_lives(chosen):
+    """Run a life or a series of lives; returns its file or index, and whether this is the first rank."""
     from ehlpetsc.api import need_solver
     from ehlpetsc.case.loading import load
 

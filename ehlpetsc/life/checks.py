@@ -14,7 +14,7 @@ NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
 
 
 def check_case(case):
-    """Refuse a case that has no life; CaseError."""
+    """Check that a case has a life; CaseError."""
     faults = []
     if case.life is None:
         faults.append("no [life] table; allowed: a case with one")
@@ -38,7 +38,7 @@ def pass_file(path, position, positions):
 
 
 def check_files(path, case):
-    """Refuse to write over an input, over what is no life, and over a result that is none of a life's passes.
+    """Refuse to overwrite an input, a file that is not a life, or a result that is not a pass of a life.
 
     Parameters
     ----------
@@ -58,11 +58,11 @@ def check_files(path, case):
         one_pass = pass_file(path, position, positions)
         check_output_path(one_pass, inputs_of(case), "-o")
         if exists(one_pass) and one_pass.stat().st_size and not _is_pass(one_pass):
-            raise OutputError(f"{one_pass}: exists and is no pass of a life; remove it or give another -o")
+            raise OutputError(f"{one_pass}: exists and is not a pass of a life; remove it or give another -o")
 
 
 def _is_pass(path):
-    """Whether a file is the result of a life's pass, or one of HDF5 that a killed run has left damaged."""
+    """Whether a file is the result of a pass of a life, or an HDF5 file damaged by a killed run."""
     try:
         with open_for_reading(path) as file:
             return "life" in tomllib.loads(str(plain(file.attrs.get("case", ""))))
@@ -73,7 +73,7 @@ def _is_pass(path):
 
 
 def stored_or_new(case, path, overwrite, after):
-    """The life that lies at `path`, up to the row `after` where one is given, or a new life.
+    """Life stored at `path`, up to the row `after` if given, or a new life.
 
     Raises
     ------

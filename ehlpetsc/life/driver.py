@@ -1,4 +1,4 @@
-"""The life of two surfaces: a round is solved, those like it are jumped, the next meets changed surfaces."""
+"""Life of two surfaces: solve a round, jump the passes like it, update the surfaces, repeat."""
 
 import time as clock
 from functools import partial
@@ -18,21 +18,21 @@ def run_life(case, output=None, *, overwrite=False, after=None, comm=None, show=
 
     Parameters
     ----------
-    case : case.loading.Case, or what `ehlpetsc.load` takes
+    case : case.loading.Case, or an argument of `ehlpetsc.load`
         With a table [life].
     output : path-like, optional
-        By default ``CASE.life.h5`` in the present folder. A life of the very same case there is continued.
+        By default ``CASE.life.h5`` in the current folder. An existing life of the same case is continued.
     overwrite : bool
-        Whether to begin anew and replace what lies there.
+        Whether to start again and replace an existing file.
     after : int, optional
-        Row of the life, from 1, after which to continue; later ones are dropped. By default the last one.
+        Row of the life, from 1, after which to continue; later rows are dropped. By default the last.
     comm : mpi4py communicator, optional
-        Its ranks share each round: a pass each, or all of them the one pass.
+        Its ranks share each round: a pass each, or all of them a single pass.
     show : callable(str), optional
-        Gets a line before the first and after each solved round.
+        Receives a line before the first round and after each.
     stop : run.stop.StopRequest, optional
     most : int, optional
-        Number of rounds to solve now, to continue later.
+        Number of rounds to solve in this call.
 
     Returns
     -------
@@ -82,7 +82,7 @@ class _Life:
         self._scene = scene(1)
 
     def run(self, stop, most):
-        """Solve rounds until the life is over."""
+        """Solve rounds until the end of the life."""
         status = "stopped"
         try:
             self._run(stop, most)
@@ -105,8 +105,8 @@ class _Life:
             one = self._solve(stop)
             bodies = self.history.bodies[-1] if self.history.rows else None
             self._jump(one, bodies or self.positions.new_bodies(one.passes[0]))
-            to_go = self.jumps.expected_rounds(self.history.bodies[-1], one, self.history.done)
-            self.show(progress.line(self.history, clock.monotonic() - begun, to_go))
+            remaining = self.jumps.expected_rounds(self.history.bodies[-1], one, self.history.done)
+            self.show(progress.line(self.history, clock.monotonic() - begun, remaining))
             rounds += 1
 
     @property
@@ -121,7 +121,7 @@ class _Life:
         return Round(self.ranks.solve(self._next_positions(), solve, stop), self.positions.passes_2)
 
     def _next_positions(self):
-        """Positions of the next round: one after the other while passes yield, as each changes the next."""
+        """Positions of the next round: a single one while passes yield, as each changes the next."""
         count, rows = self.positions.count, self.history.rows
         yields = self.case.contact.yield_pressure is not None
         if yields and (not rows or self.jumps.is_yielding(rows[-1]["yielded"])):
@@ -138,7 +138,7 @@ class _Life:
         return run_pass(simulation, records, pass_file(self.path, position, self.positions.count), stop)
 
     def _plastic(self):
-        """Record of the plastic deformation so far; None without."""
+        """Record of the plastic deformation after the last row; None without."""
         from ehlpetsc.effects.effect import unflat
         from ehlpetsc.effects.plastic_deformation import PlasticRecord
 
@@ -146,12 +146,12 @@ class _Life:
         return unflat(PlasticRecord, found, "plastic_deformation") if found else None
 
     def _jump(self, one, bodies):
-        """Jump with a round, and store the row."""
+        """Jump with the rates of a solved round, and store the row."""
         from ehlpetsc.effects.effect import flat
         from ehlpetsc.run.on_root import on_root
 
         done = self.history.done
-        after, jump, rates = self.jumps.take(bodies, one, done, self._smooth_since(one))
+        after, jump, rates = self.jumps.jump(bodies, one, done, self._smooth_since(one))
         row = {"passes": done + jump, "jump": jump, "solved": len(one.passes), "yielded": one.yielded}
         row["broken_out"] = sum(new.broken_out_since(old) for new, old in zip(after, bodies, strict=True))
         row |= one.figures()
@@ -165,7 +165,7 @@ class _Life:
         on_root(self.comm, self.file.store, self.history)
 
     def _smooth_since(self, one):
-        """Passes of the last jump; 0 where its rates do not lead smoothly to those of this round."""
+        """Passes of the last jump; 0 if the rates were discontinuous in it."""
         if not self.history.rows:
             return 0
         last = self.history.rows[-1]

@@ -6,7 +6,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.life.ageing.body import LifeBody
-from ehlpetsc.life.life_file import CHANGING, FIXED, FORMAT, KIND, VOUCHING, LifeFile
+from ehlpetsc.life.life_file import BODY_DATASETS, COMMIT_DATASET, FORMAT, KIND, ROW_DATASETS, LifeFile
 from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading
 
@@ -25,7 +25,7 @@ class LifeHistory:
     bodies : list of pair of LifeBody
         After each jump.
     plastic : list of dict
-        Record of the plastic deformation after each, flat; empty without.
+        Record of the plastic deformation after each jump, flat; empty without.
     """
 
     def __init__(self, case, title):
@@ -48,7 +48,7 @@ class LifeHistory:
         return min(float(body.failed.min()) for body in self.bodies[-1])
 
     def __call__(self, name):
-        """A figure of all rows, shape (rows,)."""
+        """Values of a figure in all rows, shape (rows,)."""
         return np.array([row[name] for row in self.rows])
 
     def add(self, row, bodies, plastic):
@@ -58,20 +58,20 @@ class LifeHistory:
         self.plastic.append(plastic)
 
     def up_to(self, count):
-        """The same life with its first rows alone."""
+        """Copy of the life up to a row."""
         found = LifeHistory(self.case, self.title)
         for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
             found.add(*values)
         return found
 
     def save(self, path):
-        """Write all of it in the place of `path`; OutputError."""
+        """Write all rows to `path`, replacing it; OutputError."""
         with LifeFile(Path(path)) as file:
             file.store(self)
 
 
 def read_life(path):
-    """A stored life, also one that is being written.
+    """Read a stored life, also while it is being written.
 
     Parameters
     ----------
@@ -101,11 +101,11 @@ def read_life(path):
 
 def _read(file):
     found = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]))
-    count = len(file[f"figures/{VOUCHING}"])
+    count = len(file[f"figures/{COMMIT_DATASET}"])
     figures = {name: dataset[:count] for name, dataset in file["figures"].items()}
     groups = [file[f"surface/{k}"] for k in (1, 2)]
-    fixed = [[group[name][:] for name in FIXED] for group in groups]
-    changing = [[group[name][:count] for name in CHANGING] for group in groups]
+    fixed = [[group[name][:] for name in BODY_DATASETS] for group in groups]
+    changing = [[group[name][:count] for name in ROW_DATASETS] for group in groups]
     plastic = {name: _records(file, name, count) for name in file.get("records", {})}
     for row in range(count):
         bodies = tuple(

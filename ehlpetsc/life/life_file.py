@@ -1,8 +1,8 @@
-"""The file of a life: HDF5, lengthened by a row for each solved round.
+"""File of a life: HDF5, extended by a row for each solved round.
 
-As result files it is written in single-writer/multiple-reader mode, room on the disk made sure of before.
-``figures/passes`` is lengthened after everything else, so that it vouches for the rows before it: a killed
-run loses the round in hand alone. A life that is continued is copied once, up to its last whole row.
+As result files it is written in single-writer/multiple-reader mode, after a check of the disk space.
+``figures/passes`` is extended last and thus commits the row: a killed run loses only the round in progress. A
+continued life is copied once, up to its last complete row.
 """
 
 import contextlib
@@ -14,12 +14,12 @@ from ehlpetsc.results.atomic_write import os_reason, replacing
 from ehlpetsc.results.hdf5.attributes import put
 from ehlpetsc.results.hdf5.datasets import close, create, extend, room
 
-FIXED = {"s": "m", "edges": "m", "height": "m"}  # of a body
-CHANGING = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
-CHANGING |= {"wear_rate": "m", "damage_rate": "1", "volume_rate": "m^2"}  # of a pass
+BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
+ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
+ROW_DATASETS |= {"wear_rate": "m", "damage_rate": "1", "volume_rate": "m^2"}  # of a pass
 KIND = "surfaces over their life"
 FORMAT = 3
-VOUCHING = "passes"  # of the figures, written last
+COMMIT_DATASET = "passes"  # of the figures, written last
 ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
 
 
@@ -41,7 +41,7 @@ class LifeFile:
         self.close("stopped" if kind else "done")
 
     def store(self, history):
-        """Append the last row of a life, or write all of its rows where the file is not open yet.
+        """Append the last row of a life, or write all rows if the file is not open yet.
 
         Parameters
         ----------
@@ -60,7 +60,7 @@ class LifeFile:
             raise OutputError(f"{self.path}: not written, {os_reason(error)}") from error
 
     def close(self, status):
-        """Note how it ended, and close.
+        """Store the final status and close the file.
 
         Parameters
         ----------
@@ -68,13 +68,13 @@ class LifeFile:
             "done", "stopped", "not converged".
         """
         if self._file:
-            with contextlib.suppress(OSError, RuntimeError):  # its rows are whole
+            with contextlib.suppress(OSError, RuntimeError):  # its rows are complete
                 close(self._file, status)
         self._file = None
 
     def _create(self, history):
-        with replacing(self.path) as beside:
-            file = self._file = create(beside)
+        with replacing(self.path) as temporary:
+            file = self._file = create(temporary)
             with room(file, 0):
                 about = {"kind": KIND, "case": history.case, "title": history.title}
                 put(file, about | {"format_version": FORMAT, "status": "running", "limits": " "})
@@ -86,20 +86,20 @@ class LifeFile:
     def _append(self, history, numbers):
         for number in numbers:
             values = dict(_values_of(history, number))
-            vouching = values.pop(f"figures/{VOUCHING}")
+            commit = values.pop(f"figures/{COMMIT_DATASET}")
             with room(self._file, sum(value.nbytes for value in values.values())):
                 for name, value in values.items():
                     extend(self._file[name], value)
-            with room(self._file, vouching.nbytes):
-                extend(self._file[f"figures/{VOUCHING}"], vouching)
+            with room(self._file, commit.nbytes):
+                extend(self._file[f"figures/{COMMIT_DATASET}"], commit)
 
 
 def _values_of(history, number):
-    """Names of the datasets, with what a row adds to each."""
+    """Names of the datasets and the values that a row appends to each."""
     for name, value in history.rows[number].items():
         yield f"figures/{name}", np.array([value])
     for k, body in enumerate(history.bodies[number], 1):
-        for name in CHANGING:
+        for name in ROW_DATASETS:
             yield f"surface/{k}/{name}", np.asarray(getattr(body, name))[None]
     for name, value in history.plastic[number].items():
         yield f"records/{name}", np.atleast_1d(value)
@@ -115,10 +115,10 @@ def _lay_out(file, history):
             name, (0, *shape), value.dtype, maxshape=(None, *shape), chunks=(chunk, *shape), fletcher32=True
         )
     for k, body in enumerate(history.bodies[0], 1):
-        for name, unit in FIXED.items():
+        for name, unit in BODY_DATASETS.items():
             file[f"surface/{k}/{name}"] = getattr(body, name)
             put(file[f"surface/{k}/{name}"], {"units": unit})
-        for name, unit in CHANGING.items():
+        for name, unit in ROW_DATASETS.items():
             put(file[f"surface/{k}/{name}"], {"units": unit})
     for name, value in history.plastic[0].items():
         put(file[f"records/{name}"], {"is_number": int(not np.ndim(value))})

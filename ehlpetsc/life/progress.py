@@ -1,10 +1,10 @@
-"""Lines about a life in progress: before it, and after each solved round."""
+"""Progress of a life: a line before it and one after each solved round."""
 
-PACE = 0.5  # weight of the last round in the mean time of a round; the first one also loads compiled code
+PACE_WEIGHT = 0.5  # of the last round in the mean time of a round
 
 
 def opening_line(case, scales, scene, positions):
-    """Passes of a round and the run time that is expected of one.
+    """Line before the first round: passes of a round, steps and expected run time of a pass.
 
     Parameters
     ----------
@@ -19,11 +19,11 @@ def opening_line(case, scales, scene, positions):
     seconds = forecast.work_time(case, scales, scene.roughness)
     rounds = f"rounds of {positions} passes" if positions > 1 else "rounds of one pass"
     steps = scene.operation.step_count(scales.dt)
-    return f"{rounds}, each of {steps} steps and {_time(seconds)} on one rank; their number after the first"
+    return f"{rounds}, each of {steps} steps and {_time(seconds)} on one rank"
 
 
 class Progress:
-    """Lines after solved rounds, with rounds and time to go.
+    """Lines after solved rounds, with the expected number of remaining rounds and their time.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Progress:
     def __init__(self, passes):
         self.passes, self._pace, self._rounds = passes, 0.0, 0
 
-    def line(self, history, seconds, to_go):
+    def line(self, history, seconds, remaining):
         """Line of the last row.
 
         Parameters
@@ -42,10 +42,11 @@ class Progress:
         history : history.LifeHistory
         seconds : float
             Wall clock time of its round.
-        to_go : int
-            Rounds that are expected.
+        remaining : (int, int)
+            Least and largest number of rounds expected, as of `jumps.Jumps.expected_rounds`.
         """
-        self._pace = seconds if self._rounds < 2 else PACE * seconds + (1.0 - PACE) * self._pace
+        # the first round also loads compiled code
+        self._pace = seconds if self._rounds < 2 else PACE_WEIGHT * seconds + (1.0 - PACE_WEIGHT) * self._pace
         self._rounds += 1
         row = history.rows[-1]
         shown = [f"{row['passes']:.4g} passes of {self.passes:.4g}, {history.solved} solved"]
@@ -56,8 +57,10 @@ class Progress:
                 f"Ra {1e6 * row[f'ra_{k}']:.4f} um"
             )
         shown.append(f"friction {row['friction']:.4f}, {_time(seconds)}")
-        if to_go:
-            shown.append(f"about {to_go} rounds and {_time(to_go * self._pace)} to go")
+        fewest, most = remaining
+        if most:
+            rounds = f"{fewest} to {most}" if fewest < most else f"{most}"
+            shown.append(f"remaining: {rounds} rounds, {_time(fewest * self._pace)} or more")
         return "; ".join(shown)
 
 

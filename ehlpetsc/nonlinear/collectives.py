@@ -16,10 +16,19 @@ HANDLES = {4: ctypes.c_int, 8: ctypes.c_size_t}  # numbers of MPICH, addresses o
 
 def global_max(ranks, number):
     """Largest of the numbers of all ranks."""
+    return _reduced(ranks, number, MPI.MAX)
+
+
+def global_sum(ranks, number):
+    """Sum of the numbers of all ranks, also of each of several numbers."""
+    return _reduced(ranks, number, MPI.SUM)
+
+
+def _reduced(ranks, number, operation):
     if ranks.size == 1:
         return number
     received = np.array([number], dtype=float)
-    ranks.Allreduce(MPI.IN_PLACE, received, MPI.MAX)
+    ranks.Allreduce(MPI.IN_PLACE, received, operation)
     return received[0]
 
 

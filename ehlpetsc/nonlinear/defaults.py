@@ -1,4 +1,4 @@
-"""PETSc's table of options as a run needs it, and as it was before."""
+"""Options of a run in PETSc's global table: defaults, precedence, restoring."""
 
 import ctypes
 import threading
@@ -6,63 +6,61 @@ import threading
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.refusals import check_options, loose_tolerances, petsc_message
+from ehlpetsc.nonlinear.option_checks import check_options, loose_tolerances, petsc_message
 
 DEFAULTS = {
     "snes_linesearch_type": "basic",
     "snes_linesearch_maxstep": "1e10",
     "snes_max_it": "30",
-    "snes_rtol": "0",  # the first residual of a thick film may be 1e17: a share of it says nothing
+    "snes_rtol": "0",  # no fraction of the first residual is an accuracy: with a thick film it may be 1e17
     "snes_stol": "0",
-    "snes_divergence_tolerance": "-1",  # of the first residual, which may be next to nothing
+    "snes_divergence_tolerance": "-1",  # relative to the first residual, which may be almost zero
     "snes_max_funcs": "100000",
-    "ksp_type": "fgmres",  # keeps what the preconditioner gave: one application less than gmres
+    "ksp_type": "fgmres",  # stores the preconditioned vectors: one application less than gmres
     "ksp_rtol": "1e-4",  # tighter gains nothing, looser costs Newton iterations
     "ksp_pc_side": "right",
     "snes_max_linear_solve_fail": "1000",
     "ksp_max_it": "100",
     "ksp_gmres_restart": "100",
 }
-# Direct contact makes up or loses percents of the oil where solids touch, and no figure changes in six digits
-# below 1e-5; mixed contact promises the oil's balance to 1e-6, which is what 1e-7 gives.
+# Direct contact does not conserve percents of the oil where solids touch, and below 1e-5 no result changes in
+# six digits; mixed contact conserves the oil to 1e-6, which needs 1e-7.
 # A compliant layer makes the load nonlinear in the film: 1e-8 balances it to 1e-10.
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
-# what this method of Krylov's knows; with any other option of KSP it is PETSc's own
-OF_KRYLOV = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
-# PETSc's LU and ILU do not exchange rows, and pivots of the deflection's rows come out as zero by chance
-OTHERS = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
+# options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
+GMRES_OPTIONS = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
+# PETSc's LU and ILU do not pivot, and pivots of the deflection rows may be zero by chance
+PETSC_FACTORISATION = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
 
-READ_AT_THE_END = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
+READ_BY_FINALIZE = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
-TABLE = (
-    threading.RLock()
-)  # one table serves the process: with two threads in it, each would take the other's options
+TABLE_LOCK = threading.RLock()  # the table is global: threads would get each other's options
 
 
 class RunOptions:
-    """The options of a run in PETSc's table, for a ``with`` statement; afterwards the table is as it was.
+    """Context manager that sets the options of a run in PETSc's table and restores the table on exit.
 
-    ``program's defaults < of_case < what the table holds < given``. May be entered again inside itself.
-    Threads enter one after the other.
+    Precedence: defaults < `of_case` < options already in the table < `given`. Reentrant; threads enter one
+    after the other.
 
     Parameters
     ----------
     law : {"direct", "mixed", "compliant"}
-        Of contact.
+        Contact model.
     of_case, given : dict of str to str
-        `[petsc]` of the case; those of a call from Python.
+        `[petsc]` of the case; options of a call from Python.
 
     Attributes
     ----------
     deferred_views : list of str
-        ``snes_view`` and ``ksp_view``, where they are set without a value: kept out of PETSc's table, because
-        PETSc would repeat them at every solve.
+        ``snes_view`` and ``ksp_view`` set without a value: not put into PETSc's table, because PETSc would
+        repeat the output at every solve.
     given : dict of str to str
-        All that are not the program's defaults; those of PETSc's table from the first entry on.
+        Options of the user: of the case, of PETSc's table (from the first entry on) and of the call.
     unused : set of str
-        Names in `of_case` and `given` that have not been read yet.
+        Names in `of_case` and `given` that have not been read.
     """
 
     def __init__(self, law="direct", of_case=(), given=()):
@@ -74,7 +72,7 @@ class RunOptions:
 
     @property
     def user_set(self):
-        """Names of the options that are not the program's defaults."""
+        """Names of the options set by the user."""
         return set(self.given)
 
     def value(self, name, default=None):
@@ -90,7 +88,7 @@ class RunOptions:
         Raises
         ------
         UsageError
-            It is none.
+            The value is not a number.
         """
         value = self.value(name, default)
         try:
@@ -99,12 +97,12 @@ class RunOptions:
             raise UsageError(f"-{name} {value}: allowed: a number") from None
 
     def __enter__(self):
-        TABLE.acquire()
+        TABLE_LOCK.acquire()
         try:
             if self._depth == 0:
                 self._enter(PETSc.Options())
         except BaseException:
-            TABLE.release()
+            TABLE_LOCK.release()
             raise
         self._depth += 1
         return self
@@ -115,17 +113,17 @@ class RunOptions:
             if self._depth == 0:
                 self._leave(PETSc.Options())
         finally:
-            TABLE.release()
+            TABLE_LOCK.release()
 
     def loose_tolerances(self):
-        """One line for every tolerance of the user that is looser than the program's own."""
+        """One message for every tolerance of the user that is looser than the default."""
         return loose_tolerances(self.given, float(self._defaults["snes_atol"]))
 
     def unused_so_far(self):
-        """Names of the user's options that have not been read by now."""
-        of_program = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *OTHERS, "snes_atol", *self.deferred_views}
-        mine = (name for name in self.unused if not (self._depth and was_read(name)))
-        return {*mine, *unused()} - of_program
+        """Names of the user's options that have not been read."""
+        defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PETSC_FACTORISATION, "snes_atol"}
+        of_run = (name for name in self.unused if not (self._depth and was_read(name)))
+        return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
     def _enter(self, table):
         there = table.getAll()
@@ -152,22 +150,22 @@ class RunOptions:
             table.delValue(name)
         for name, value in self._saved.items():
             table[name] = value
-            table.hasName(name)  # it has been read, for -options_left
+            table.hasName(name)  # marks it as read, for -options_left
 
 
 def _linear_solver(wanted):
-    """Defaults of KSP and PC beside options of the user: this program's own as far as these let it."""
+    """Defaults of KSP and PC: this program's types unless the options of the user exclude them."""
     if any(wanted.get(name, value) != value for name, value in PRECONDITIONER.items()):
-        return OTHERS
-    if any(name.startswith("ksp_") and name not in OF_KRYLOV for name in wanted):
+        return PETSC_FACTORISATION
+    if any(name.startswith("ksp_") and name not in GMRES_OPTIONS for name in wanted):
         return PRECONDITIONER
     return PRECONDITIONER | KRYLOV
 
 
 def unused():
-    """Unused options in PETSc's table, without ``-ehl_*`` and those that PETSc reads at its end."""
+    """Unused options in PETSc's table, without ``-ehl_*`` and the options read by PetscFinalize."""
     names = PETSc.Options().getAll()
-    return sorted(n for n in names if not (n.startswith("ehl_") or n in READ_AT_THE_END or was_read(n)))
+    return sorted(n for n in names if not (n.startswith("ehl_") or n in READ_BY_FINALIZE or was_read(n)))
 
 
 def was_read(name):

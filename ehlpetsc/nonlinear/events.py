@@ -1,4 +1,4 @@
-"""Parts of the method by name in PETSc's log, so that ``-log_view`` reads like it."""
+"""Log events and stages of the method, shown by ``-log_view``."""
 
 from petsc4py import PETSc
 

@@ -9,9 +9,7 @@ Arnoldi's process by classical Gram and Schmidt (Saad 1993),
 so that one sum over the ranks gives the products with all vectors and the norm of the next one, where PETSc
 takes two; it is taken again where the norm cancels. Vectors are those of the whole system; entries that an
 active set leaves out are zero. Tolerances, convergence test and monitors are PETSc's. There is no restart: at
-most `MOST` iterations.
-
-All iterations of a solve are one compiled call.
+most `MAX_IT`. All iterations of a solve are one compiled call.
 
 Use: ``-ksp_type python -ksp_python_type ehlpetsc.nonlinear.gmres.FlexibleGMRES`` (the default), on matrices
 and with the preconditioner of this program.
@@ -27,7 +25,7 @@ from ehlpetsc.nonlinear.collectives import exchange
 from ehlpetsc.nonlinear.operators.jacobian_product import jacobian_product
 from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
 
-MOST = 100  # iterations of a solve
+MAX_IT = 100  # of a solve
 CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences is right to as many digits
 
 
@@ -37,11 +35,11 @@ class Basis(NamedTuple):
     Attributes
     ----------
     vectors : tuple of ndarray
-        v, shape (MOST + 1, size); z, (MOST, size); products of the vectors, local parts of each rank,
-        (ranks, MOST + 2); norms of the residuals, (MOST + 1,).
+        v, shape (MAX_IT + 1, size); z, (MAX_IT, size); products of the vectors, local parts of each rank,
+        (ranks, MAX_IT + 2); norms of the residuals, (MAX_IT + 1,).
     numbers : tuple of ndarray
-        Columns of the triangular matrix, shape (MOST, MOST + 1); cosines and sines, (MOST, 2); rotated
-        right-hand side, (MOST + 1,), whose last number is the residual.
+        Columns of the triangular matrix, shape (MAX_IT, MAX_IT + 1); cosines and sines, (MAX_IT, 2); rotated
+        right-hand side, (MAX_IT + 1,), whose last number is the residual.
     """
 
     vectors: tuple
@@ -50,9 +48,10 @@ class Basis(NamedTuple):
     @classmethod
     def of(cls, size, ranks):
         """Room for vectors of a local size on so many ranks."""
-        sums, norms = np.zeros((ranks, MOST + 2)), np.zeros(MOST + 1)
-        vectors = np.empty((MOST + 1, size)), np.empty((MOST, size)), sums, norms
-        return cls(vectors, (np.zeros((MOST, MOST + 1)), np.zeros((MOST, 2)), np.zeros(MOST + 1)))
+        sums, norms = np.zeros((ranks, MAX_IT + 2)), np.zeros(MAX_IT + 1)
+        vectors = np.empty((MAX_IT + 1, size)), np.empty((MAX_IT, size)), sums, norms
+        numbers = np.zeros((MAX_IT, MAX_IT + 1)), np.zeros((MAX_IT, 2)), np.zeros(MAX_IT + 1)
+        return cls(vectors, numbers)
 
 
 class FlexibleGMRES:
@@ -72,16 +71,15 @@ class FlexibleGMRES:
         v[0] = 0.0
         v[0, operator.active] = b.array_r
         given = *operator.linearisation, *halo, *factors.lu.factors, factors.units
-        number = iterations(*basis, *given, min(max_it, MOST), *tolerances)
-        for k, norm in enumerate(norms[: number + 1]):
+        number = iterations(*basis, *given, min(max_it, MAX_IT), *tolerances)
+        for k, norm in enumerate(norms[: number + 1].tolist()):
             reason = ksp.callConvergenceTest(k, norm)
-            ksp.setIterationNumber(k)
-            ksp.setResidualNorm(norm)
             ksp.logConvergenceHistory(norm)
             ksp.monitor(k, norm)
+        ksp.setIterationNumber(number)
+        ksp.setResidualNorm(norm)
         ksp.setConvergedReason(reason or PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
-        if number > 0:
-            x.array[:] = combined(*basis, number)[operator.active]
+        x.array[:] = v[0, operator.active]
 
 
 @compiled
@@ -108,7 +106,7 @@ def iterations(
     atol,
     divtol,
 ):
-    """Iterate from the right-hand side, the first v, to PETSc's tolerances; collective.
+    """Replace the right-hand side, the first v, by the solution to PETSc's tolerances; collective.
 
     Parameters
     ----------
@@ -132,15 +130,17 @@ def iterations(
     """
     v, z, sums, norms = vectors
     halo = collective, load_weights, messages, window, rank, matrices, pressures
-    for new in range(most + 1):
+    new = 0
+    while True:
         if new > 0:
             solve(place, lu, cuts, border, room, v[new - 1], units, z[new - 1])
             jacobian_product(state, changes, halo, z[new - 1], v[new])
         norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
         norms[new] = least_residual(numbers, new, norm)
-        if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0]:
+        if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == most:
+            combine(vectors, numbers, new)
             return new
-    return most
+        new += 1
 
 
 @compiled
@@ -191,12 +191,12 @@ def least_residual(numbers, new, norm):
 
 
 @compiled
-def combined(vectors, numbers, number):
-    """Sum of the first vectors z that leaves the least residual."""
-    (_, z, _, _), (hessenberg, _, right) = vectors, numbers
+def combine(vectors, numbers, number):
+    """Replace the first v by the sum of so many vectors z that leaves the least residual."""
+    (v, z, _, _), (hessenberg, _, right) = vectors, numbers
     factors = right[:number].copy()
     for k in range(number - 1, -1, -1):
         factors[k] /= hessenberg[k, k]
         for i in range(k):
             factors[i] -= hessenberg[k, i] * factors[k]
-    return np.dot(factors, z[:number])
+    np.dot(factors, z[:number], out=v[0])

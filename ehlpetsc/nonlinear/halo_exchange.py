@@ -91,35 +91,22 @@ def exchange_unknowns(
     load : ndarray, shape (4,)
         As of `deflection.PressureSums`, and the number of ranks with the flag.
     """
-    mine, last, nodes = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)].reshape(-1, 2)
-    load = np.zeros(4)
-    np.dot(load_weights, pressure, out=load[:3])
-    for k in range(3):
-        mine[LOAD + k] = load[k]
+    mine, last, own = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)]
+    np.dot(load_weights, pressure, out=mine[LOAD : LOAD + 3])
     mine[LOAD + 3] = flag
     mine[LOAD - 1] = vector[-1]  # h00 on the last rank
     pack(rank, matrices, room, pressure, mine[BEHIND_LOAD:])
+    nodes = own.reshape(-1, 2)
     if last > 0:
-        for i in range(EDGE):
-            mine[i], mine[EDGE + i] = vector[i], vector[2 * len(nodes) - EDGE + i]
+        mine[:EDGE], mine[EDGE : 2 * EDGE] = own[:EDGE], own[-EDGE:]
         exchange(collective, messages)
-        nodes = window
-        fill_window(messages, rank, vector[: 2 * len(pressure)], window.ravel())
-    for k in range(4):
-        load[k] = messages[0, LOAD + k]
-        for other in range(last):
-            load[k] += messages[other + 1, LOAD + k]
-    return nodes, messages[last, LOAD - 1], unpack(rank, matrices, room, messages[:, BEHIND_LOAD:]), load
-
-
-@compiled
-def fill_window(messages, rank, vector, window):
-    """Fill in the local unknowns between those that the neighbours have sent."""
-    first = EDGE if rank > 0 else 0
-    for i in range(len(vector)):
-        window[first + i] = vector[i]
-    for i in range(EDGE):
+        nodes, unknowns, first = window, window.ravel(), EDGE if rank > 0 else 0
+        unknowns[first : first + len(own)] = own
         if rank > 0:
-            window[i] = messages[rank - 1, EDGE + i]
-        if rank < len(messages) - 1:
-            window[first + len(vector) + i] = messages[rank + 1, i]
+            unknowns[:EDGE] = messages[rank - 1, EDGE : 2 * EDGE]
+        if rank < last:
+            unknowns[-EDGE:] = messages[rank + 1, :EDGE]
+    load = messages[0, LOAD:BEHIND_LOAD].copy()
+    for other in range(last):
+        load += messages[other + 1, LOAD:BEHIND_LOAD]
+    return nodes, messages[last, LOAD - 1], unpack(rank, matrices, room, messages[:, BEHIND_LOAD:]), load

@@ -2,8 +2,8 @@ r"""Newton's method for a system of equations, by PETSc's SNES.
 
 Direct contact: ``vinewtonrsls``. At every iteration the nodes with h at its bound and F > 0 form the contact
 set, whose Reynolds rows and films leave the system. Steps whose guess is clear of the bound take the same
-iterations without it (``newtonls``), which is a tenth quicker; where a film then reaches the bound, the step
-begins again with it. Mixed contact: ``newtonls`` on the semismooth system, whose unknowns carry the
+iterations without it (``newtonls``), a tenth faster; where a film then reaches the bound, the step
+is repeated with it. Mixed contact: ``newtonls`` on the semismooth system, whose unknowns carry the
 complementarity in their sign and have no bounds; ``vinewtonrsls`` then takes the same iterations.
 """
 
@@ -16,11 +16,11 @@ from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.snes import owned, weakly
 
-LINEAR_ATOL = 1e-2  # of Newton's absolute tolerance: absolute tolerance of the linear residual
-LINEAR_WORK = 100  # linear iterations per Newton iteration allowed, at most, over a whole solve
-START_FACTOR = 7  # iterations allowed for a steady start over those of a time step
-MAX_ROUNDING_FACTOR = 10.0  # of Newton's absolute tolerance: rounding may raise it so far
-CLEAR_OF_BOUND = 0.02  # of the expected film: least film of a guess that is solved without the bound
+LINEAR_ATOL = 1e-2  # absolute tolerance of the linear residual over that of Newton's method
+LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton iteration allowed
+START_FACTOR = 7  # iteration limit of a steady start over that of a time step
+MAX_ROUNDING_FACTOR = 10.0  # limit of the factor by which rounding may raise Newton's absolute tolerance
+CLEAR_OF_BOUND = 0.02  # of the expected film: minimum film of a guess that is solved without the bound
 REJECTED_STEP = (
     PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
     PETSc.SNES.ConvergedReason.DIVERGED_LINE_SEARCH,
@@ -28,13 +28,13 @@ REJECTED_STEP = (
 
 
 class NewtonSolver:
-    """SNES of one system.
+    """Newton's method for one system, by SNES.
 
     Parameters
     ----------
-    system : systems.two_fields.TwoFields
+    system : two_fields.TwoFields
     options : defaults.RunOptions, optional
-        Entered, because PETSc reads its table when its objects are made; by default none are set.
+        Options, entered before because PETSc reads its table when its objects are created; default: none.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class NewtonSolver:
     Raises
     ------
     UsageError
-        PETSc refuses an option, or the system does.
+        An option is refused by PETSc or by the system.
     """
 
     def __init__(self, system, options=None):
@@ -56,7 +56,7 @@ class NewtonSolver:
         self._made = owned(self)
         self._watch, self._needs_renewal = None, False
         self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
-        # other line searches may end at another point than the last one that they try
+        # other line searches may end at another point than the last trial point
         self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
         self.snes = self._unconstrained_snes = self.tolerance = None
         self._create()
@@ -65,7 +65,7 @@ class NewtonSolver:
 
     @property
     def bound(self):
-        """Thinnest film that the contact model allows, in a^2/R."""
+        """Minimum film of the contact model in a^2/R."""
         return self.system.model.minimum_film
 
     def _create(self):
@@ -91,7 +91,7 @@ class NewtonSolver:
         snes.setJacobian(weakly(self._jacobian), self.system.operator, self.system.preconditioned)
 
     def _function(self, snes, x, f):
-        # the first one is that of the guess, evaluated already unless SNESVI projects it onto the bounds
+        # the first residual is that of the guess, already evaluated unless SNESVI projects it onto the bounds
         if self._is_first:
             f.array[:], self._is_first = self.system.evaluation(x).residual, False
             return
@@ -101,8 +101,8 @@ class NewtonSolver:
 
     def _jacobian(self, snes, x, operator, preconditioner):
         self.system.linearise(x, self._accepts_last and self._is_solving)
-        left = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
-        snes.ksp.setTolerances(max_it=min(self._linear_max_it, max(left, 1)))
+        remaining = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
+        snes.ksp.setTolerances(max_it=min(self._linear_max_it, max(remaining, 1)))
         operator.assemble()
 
     def _before_step(self, x, y):
@@ -124,11 +124,11 @@ class NewtonSolver:
         return needed or START_FACTOR * self._max_it
 
     def residual(self):
-        """Rows of the last solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
+        """Residual of the last solution: deflection and Reynolds rows, shape (nx,), and the load row."""
         return self.system.residual()
 
     def solve(self, q, w, h00, inputs, max_it=None, watch=None):
-        """Solve from a first guess.
+        """Solve from an initial guess.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class NewtonSolver:
         h00 : float
         inputs : ehl_problem.StepInputs
         max_it : int, optional
-            Iteration limit in place of the usual one.
+            Iteration limit in place of ``-snes_max_it``.
         watch : callable, optional
             Called in every iteration on every rank; an exception that it raises ends the solve.
 
@@ -154,7 +154,7 @@ class NewtonSolver:
         if self._is_clear_of_bound(w, inputs):
             try:
                 return self._solve(self._unconstrained_snes, guess, max_it)
-            except SolveFailed as error:  # it reaches the bound, or would not do better with it
+            except SolveFailed as error:  # at the bound, or with any other cause: repeated with the bound
                 spent = error.iterations
         try:
             *solution, iterations = self._solve(self.snes, guess, max_it)
@@ -163,7 +163,7 @@ class NewtonSolver:
         return *solution, iterations + spent
 
     def _is_clear_of_bound(self, w, inputs):
-        """Whether a step can begin without the bound, which costs a tenth of an iteration."""
+        """Whether a step can begin without the bound, which saves a tenth of the time."""
         possible = self._unconstrained_snes is not None and inputs.history is not None
         return possible and w.min() > self.bound + CLEAR_OF_BOUND * self.problem.film_scale
 
@@ -179,7 +179,7 @@ class NewtonSolver:
                 snes.solve(None, self.system.x)
             snes.setTolerances(max_it=self._max_it, atol=self._atol)  # for -snes_view
         except PETSc.Error as error:
-            raised = error.__cause__  # by a callback: newer releases wrap it
+            raised = error.__cause__  # exception of a callback, which newer releases wrap
             if raised and not isinstance(raised, PETSc.Error):
                 raise raised from None
             snes.destroy()
@@ -196,14 +196,14 @@ class NewtonSolver:
             system.factors.invalidate()
         self.tolerance = min(max(self._atol, system.rounding()), MAX_ROUNDING_FACTOR * self._atol)
         snes.setTolerances(max_it=max_it, atol=self.tolerance)
-        if snes.rtol > 0.0 or snes.stol > 0.0:  # the user's: obeyed; a solution is no worse than its guess
+        if snes.rtol > 0.0 or snes.stol > 0.0:  # set by the user; stol accepts the residual of the guess
             factor = 1.0 if snes.stol > 0.0 else snes.rtol
             system.f.array[:] = system.evaluation(system.x).residual
             self.tolerance = max(self.tolerance, factor * system.f.norm())
 
     def _solution(self, snes):
         reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
-        # PETSc's solver objects keep a failed factorisation; a step that is rejected is none
+        # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
         self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:
             raise SolveFailed("SNES", snes_objects.REASONS.get(reason, str(reason)), iterations)
@@ -216,7 +216,7 @@ class NewtonSolver:
         return q, w, h00, iterations
 
     def _renew(self, snes):
-        """New objects in place of those of a solve that failed; returns the one in place of `snes`."""
+        """Create PETSc's objects anew after a failed solve; return the successor of `snes`."""
         unconstrained = snes is self._unconstrained_snes
         while self._made:
             self._made.pop().destroy()
@@ -225,5 +225,5 @@ class NewtonSolver:
 
 
 def is_ours(pc):
-    """Whether a preconditioner is the one of this program."""
+    """Whether a preconditioner is a :class:`.preconditioner.FarFieldBand`."""
     return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)

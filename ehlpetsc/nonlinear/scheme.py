@@ -3,13 +3,13 @@
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 from ehlpetsc.nonlinear.newton import NewtonSolver
-from ehlpetsc.nonlinear.systems.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 
 ALLOWED = ("newton", "sweep")
 
 
 def check_scheme(name):
-    """Raise a `UsageError` where there is no iteration of that name."""
+    """Raise a `UsageError` for an unknown scheme."""
     if name and name not in ALLOWED:
         raise UsageError(f"-ehl_scheme {name}: allowed: {', '.join(ALLOWED)}")
 
@@ -29,7 +29,7 @@ def solver_of(case, scales, film_scale, comm, options):
     Raises
     ------
     UsageError
-        Sweeps with a dry or mixed contact.
+        Gauss-Seidel sweeps with a dry or mixed contact.
     """
     name = options.value("ehl_scheme")
     check_scheme(name)
@@ -40,5 +40,5 @@ def solver_of(case, scales, film_scale, comm, options):
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:
-        raise UsageError("-ehl_scheme sweep: the paper's sweeps know direct contact alone; leave it out")
+        raise UsageError("-ehl_scheme sweep: the paper's sweeps solve direct contact only; leave it out")
     return GaussSeidelSolver(case, scales, film_scale, options.real("snes_atol"))

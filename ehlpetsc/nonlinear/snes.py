@@ -1,4 +1,4 @@
-"""PETSc's SNES as this program makes it: its options obeyed or refused, and nothing left behind."""
+"""Creation and destruction of PETSc's SNES objects."""
 
 import ctypes
 import weakref
@@ -6,15 +6,15 @@ import weakref
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.refusals import refusal
+from ehlpetsc.nonlinear.option_checks import refusal
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
 
 
 def owned(owner, *objects):
-    """A list of PETSc's objects, destroyed with their owner or before Python ends, the last one first.
+    """List of PETSc's objects, destroyed with their owner or before Python ends, in reverse order.
 
-    Left to PETSc's own end they would call Python objects that are gone by then.
+    Destroyed by PetscFinalize they would call Python objects that no longer exist.
     """
     made = list(objects)
     weakref.finalize(owner, _destroy, made)
@@ -27,23 +27,23 @@ def _destroy(made):
 
 
 def create(comm, kind, f, function, pre_check, given):
-    """A SNES of a type, unless the user's ``-snes_type`` says another.
+    """Create a SNES of a type, or of the user's ``-snes_type``.
 
     Parameters
     ----------
     comm : petsc4py.PETSc.Comm
     kind : str
     f : petsc4py.PETSc.Vec
-        For residuals.
+        Vector of the residual.
     function, pre_check : bound method
-        Residual, and changes of Newton's step; they do not keep their object alive.
+        Residual function and pre-check of the line search; SNES does not keep their object alive.
     given : dict of str to str
         Options of the user.
 
     Raises
     ------
     UsageError
-        PETSc refuses an option, or the type cannot be.
+        PETSc refuses an option, or the type is not supported.
     """
     snes = PETSc.SNES().create(comm)
     try:
@@ -65,7 +65,7 @@ def create(comm, kind, f, function, pre_check, given):
 
 
 def raise_refusal(error, given):
-    """Raise PETSc's error as a `UsageError` where an option of the user can be its cause."""
+    """Raise an error of PETSc, as a `UsageError` where an option of the user can be its cause."""
     message = refusal(error, given)
     if message is None:
         raise error
@@ -78,6 +78,6 @@ def set_function_domain_error(snes):
 
 
 def weakly(method):
-    """A bound method for PETSc to call, by which it does not keep the object alive."""
+    """Function that calls a bound method without keeping its object alive."""
     method = weakref.WeakMethod(method)
     return lambda *arguments: method()(*arguments)

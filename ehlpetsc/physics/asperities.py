@@ -1,4 +1,4 @@
-r"""Contact of self-affine roughness: pressure over the mean separation, and the real area of contact.
+r"""Contact of self-affine roughness: pressure as a function of mean separation, and real area of contact.
 
 Persson (2007, Phys. Rev. Lett. 99, 125502; arXiv:0706.2762) derives from the elastic energy of the flattened
 asperities that a nominally flat rough surface carries
@@ -7,30 +7,36 @@ asperities that a nominally flat rough surface carries
 
 at the mean separation h, :math:`\sigma` the rms height. Akarapu, Sharp and Robbins (2011, Phys. Rev. Lett.
 106, 204301; arXiv:1011.1479) find the same exponential, and area and stiffness linear in the load, in
-simulations with many Hurst exponents, system sizes and Poisson ratios. Of both letters only the abstracts
-were available, which state these laws; no equation number is quoted from them, and the constants are not
-theirs.
+simulations with many Hurst exponents, system sizes and Poisson ratios. Lorenz and Persson (2009;
+arXiv:0810.0950) measure it between rubber and a road, with a decay length of the order of the rms height.
+Persson and Scaraggi (2009, J. Phys.: Condens. Matter 21, 185002) add it to the pressure of the oil in mixed
+lubrication, as is done here. Of all these only the abstracts were available, of the last one that of a later
+article on it (arXiv:2603.26563). They state the laws; hence no equation numbers, and other constants.
 
-Both constants are evaluated here from :math:`p=-dU/dh` with the energy of Yang and Persson (2008, J. Phys.:
+Both constants follow from :math:`p=-dU/dh` with the energy of Yang and Persson (2008, J. Phys.:
 Condens. Matter 20, 215214), as Almqvist, Campana, Prodanov and Persson (2011, J. Mech. Phys. Solids 59,
 2355) use it,
 
 .. math:: U=\frac{\pi E^*}2\int q^2C(q)\,P\,[g+(1-g)P^2]\,dq,
 
-P the share of real contact at the wavenumber q, C the spectrum, g = 0.45; g = 1 is the letter of 2007.
+P the relative area of contact at the wavenumber q, C the spectrum, g = 0.45; g = 1 is the letter of 2007.
 Formula and range of g (0.42 to 0.45) were compared with the open source of a later study of that energy
 (github.com/xylcsi/PerssonModelFudgeFactor). For spectra without roll-off, Hurst exponents 0.5 to 0.9, over
-one to three decades of waves (`tests/verification/test_asperities.py`), it gives
+one to three decades of wavelengths (`tests/verification/test_asperities.py`), the result is
 :math:`\gamma=0.44\ldots0.54`,
 and :math:`\beta=(1.4\ldots2.4)\,q_0\sigma` in the limit of light load or :math:`(1.0\ldots1.7)\,q_0\sigma`
-where :math:`0.5\sigma<h<3\sigma`, with :math:`q_0=2\pi/\lambda` of the longest wave of the roughness. So
+where :math:`0.5\sigma<h<3\sigma`, with :math:`q_0=2\pi/\lambda` of the longest wave of the roughness. Hence
 :math:`\beta` is of the order of the slope of that wave: 0.008 to 0.02 for 10 nm below 8 um. A larger
-:math:`\beta` counts the film from a plane that is lower by :math:`\gamma\sigma\ln(\beta/\beta_{theory})`, as
+:math:`\beta` measures the film from a plane lower by :math:`\gamma\sigma\ln(\beta/\beta_{theory})`, as
 an adsorbed film of that thickness would: 20 to 24 nm for :math:`\beta=1` in this example.
 
 Range: elastic asperities, :math:`p_c` below about :math:`\beta E^*/e`, where :math:`h>\gamma\sigma`. Thinner
 films have the continuation :math:`p_c=\beta E^*\gamma\sigma/(e\,h)` with the same slope, which keeps h
-positive.
+positive. At light load the law holds for a large contact: over few waves of the layer the stiffness
+:math:`-dp_c/dh` is not linear in the pressure (abstract of Pastewka et al. 2013, Phys. Rev. E 87, 062809;
+arXiv:1210.4635), up to a pressure that was not available. The separation depends on the ratio of the longest
+to the shortest wave too, the real area hardly on the Hurst exponent (abstract of Prodanov, Dapp and Mueser
+2014, Tribol. Lett. 53, 433).
 """
 
 import math
@@ -40,7 +46,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 
 GAMMA = 0.5  # decay length of the pressure over the rms height
-CONTACT_PRESSURE = 10e6  # Pa: places whose asperities carry more count as in contact
+CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
 KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, at light load
 
 
@@ -60,7 +66,7 @@ def asperity_pressure(h, decay, prefactor):
     Returns
     -------
     pressure, derivative : float
-        In the unit of `prefactor`, and over that of h.
+        In the unit of `prefactor`, and in this unit per unit of h.
     """
     if h >= decay:
         pressure = prefactor * math.exp(-h / decay)
@@ -110,7 +116,7 @@ def real_area_fraction(pressure, slope_modulus):
 
     Persson's law (2001, J. Chem. Phys. 115, 3840) has this form with :math:`\kappa=\sqrt{8/\pi}=1.6`;
     simulations give :math:`\kappa` about 2 at light load (Hyun, Pei, Molinari & Robbins 2004, Phys. Rev. E
-    70, 026117), which is taken here.
+    70, 026117), the value used here.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 r"""Table of operating conditions at points of time.
 
-Between its points load, radius and speeds are monotone cubics (PCHIP, Fritsch & Carlson 1980): no overshoot,
+Between the points load, radius and speeds are monotone cubics (PCHIP, Fritsch & Carlson 1980): no overshoot,
 continuous first derivatives. Distances travelled are their exact integrals.
 """
 
@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-SAMPLES = 4096  # at least, of a table, for time steps and extremes
-END_TOLERANCE = 1e-9  # of the duration: times nearer to its end are the end
-COUNTERMOTION = 1e-3  # of the surface speeds: an entrainment speed that is nowhere larger is no scale
+MIN_SAMPLES = 4096  # points at which a table is evaluated for time steps and extremes
+END_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
+MIN_ENTRAINMENT_RATIO = 1e-3  # of the faster surface's speed: smaller entrainment speeds are no scale
 
 
 class ConditionsTable(NamedTuple):
@@ -23,10 +23,10 @@ class ConditionsTable(NamedTuple):
     load, radius, u1, u2 : ndarray, shape (n,)
         [N/m], [m], [m/s], [m/s].
     repeat : int
-        Number of times that the table is run through.
+        Number of repetitions of the table.
     profile_offsets : (float, float), optional
-        Abscissas of both profiles that are at x = 0 at time 0 [m]: they lie under the whole contact from then
-        on, as flanks of teeth do. None: they enter at the inlet.
+        Abscissas of both profiles at x = 0 at time 0 [m]; the profiles then extend over the whole contact
+        from the beginning, as tooth flanks do. None: profiles enter at the inlet.
     """
 
     time: np.ndarray
@@ -49,21 +49,21 @@ class ConditionsTable(NamedTuple):
 
     @property
     def entrainment(self):
-        """Mean speed [m/s]."""
+        """Entrainment speed [m/s]."""
         return 0.5 * (self.u1 + self.u2)
 
     def sampled(self):
-        """The same conditions at `SAMPLES` points or more, those of the table among them."""
-        per_interval = -(-SAMPLES // (len(self.time) - 1))
-        parts = np.arange(per_interval) / per_interval
-        time = (self.time[:-1, None] + np.diff(self.time)[:, None] * parts).ravel()
+        """Same conditions at `MIN_SAMPLES` points or more, including the points of the table."""
+        per_interval = -(-MIN_SAMPLES // (len(self.time) - 1))
+        fractions = np.arange(per_interval) / per_interval
+        time = (self.time[:-1, None] + np.diff(self.time)[:, None] * fractions).ravel()
         time = np.append(time, self.time[-1])
         values = [cubic(time) for cubic in self.cubics()]
         return self._replace(time=time, load=values[0], radius=values[1], u1=values[2], u2=values[3])
 
     @property
     def is_periodic(self):
-        """Whether a repeated table ends as it begins: its slopes then are those of a periodic one."""
+        """Whether a repeated table has the same values at both ends; its cubics are then periodic."""
         return self.repeat > 1 and all(column[0] == column[-1] for column in self[1:5])
 
     def cubics(self):
@@ -78,35 +78,36 @@ class ConditionsTable(NamedTuple):
 
     def integrals(self):
         """Integrals of u1 and u2 over time, 0 at time 0."""
-        found = [cubic.antiderivative() for cubic in self.cubics()[2:]]
-        for integral in found:
+        integrals = [cubic.antiderivative() for cubic in self.cubics()[2:]]
+        for integral in integrals:
             integral.c[-1] -= integral(0.0)
-        return found
+        return integrals
 
     def extent(self):
-        """Least and largest displacement of each body over all repeats [m]: two pairs."""
-        found = []
+        """Minimum and maximum displacement of each body over all repetitions [m]: two pairs."""
+        extents = []
         for integral in self.integrals():
-            way = integral(self.sampled().time)
-            total = (self.repeat - 1) * way[-1]
-            found.append((float(way.min() + min(total, 0.0)), float(way.max() + max(total, 0.0))))
-        return tuple(found)
+            displacement = integral(self.sampled().time)
+            total = (self.repeat - 1) * displacement[-1]
+            low, high = displacement.min() + min(total, 0.0), displacement.max() + max(total, 0.0)
+            extents.append((float(low), float(high)))
+        return tuple(extents)
 
     def directions(self):
-        """Direction of each body's motion: 1, -1, or 0 where it reverses or rests."""
+        """Direction of each body's motion: 1, -1, or 0 if it reverses or rests."""
         signs = [np.sign(u[np.abs(u) > END_TOLERANCE * self.speed.max()]) for u in (self.u1, self.u2)]
         return tuple(int(s[0]) if len(s) and (s == s[0]).all() else 0 for s in signs)
 
     def swept_length(self):
-        r"""Distance covered by the faster surface, :math:`\int\max(|u_1|,|u_2|)dt` [m], repeats included."""
+        r"""Distance of the faster surface, :math:`\int\max(|u_1|,|u_2|)dt` [m], over all repetitions."""
         fine = self.sampled()
         return self.repeat * float(cumulative(fine.speed, fine.time)[-1])
 
     def reference(self):
         """Conditions of the scales: load and radius of the widest contact, speeds of the fastest entrainment.
 
-        Surfaces that move against each other all the time have no entrainment speed: that of the faster one
-        is then the scale.
+        Surfaces in counter-motion have no entrainment speed; the speed of the faster surface is then the
+        scale.
 
         Returns
         -------
@@ -116,11 +117,11 @@ class ConditionsTable(NamedTuple):
         widest = int(np.argmax(fine.load * fine.radius))
         fastest = int(np.argmax(np.abs(fine.entrainment)))
         u, sliding = fine.entrainment[fastest], fine.u1[fastest] - fine.u2[fastest]
-        if abs(u) < COUNTERMOTION * fine.speed.max():
+        if abs(u) < MIN_ENTRAINMENT_RATIO * fine.speed.max():
             u, sliding = fine.speed.max(), 0.0
         return float(fine.load[widest]), float(fine.radius[widest]), float(abs(u)), float(sliding / u)
 
 
 def cumulative(values, time):
-    """Integral from the first point to each by the trapezoidal rule."""
+    """Integral from the first point to each point by the trapezoidal rule."""
     return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time)))

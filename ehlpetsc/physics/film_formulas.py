@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-MINIMUM = 0.75  # minimum over central film of an incompressible oil
-FAR, STEPS = 100.0, 1000  # half widths that stand for infinity in Grubin's integral, its nodes
+MIN_OVER_CENTRAL_FILM = 0.75  # of an incompressible oil
+FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half widths in place of infinity in Grubin's integral; its points
 
 
 def moes_central_film(M, L):
@@ -34,10 +34,10 @@ def smooth_films(fluid, modulus, conditions):
     .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
        h_{min}=0.75\,h_{Moes}\left(\frac{\rho_0}{\rho(p_0)}\right)^{1/4}.
 
-    The inlet draws in the mass of an incompressible oil, which the contact carries at its density under p0;
-    the constriction at the exit is under less pressure. Both are within 4 % of computed films, compressible
+    The inlet entrains the mass of an incompressible oil, which passes the contact with its density at p0;
+    the pressure of the exit constriction is lower. Both are within 4 % of computed films, compressible
     and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_exact_solutions.py`), where
-    :math:`h_{Moes}` alone is 22 to 27 % too thick for the centre.
+    :math:`h_{Moes}` alone exceeds the central film by 22 to 27 %.
 
     Parameters
     ----------
@@ -57,35 +57,35 @@ def smooth_films(fluid, modulus, conditions):
     unit = radius * math.sqrt(2.0 * fluid.viscosity * speed / (modulus * radius))
     incompressible = unit * moes_central_film(M, L)
     ratio = 1.0 / float(density(np.array([hertz_line(load, radius, modulus)[1]]), fluid)[0][0])
-    return incompressible * ratio, MINIMUM * incompressible * ratio**0.25
+    return incompressible * ratio, MIN_OVER_CENTRAL_FILM * incompressible * ratio**0.25
 
 
 def inlet_opening(film, points):
-    r"""Opening of Hertz' gap from one node to the next beside the contact, in films.
+    r"""Opening of Hertz' gap over one node spacing beside the contact, over the film.
 
-    :math:`\frac{2\sqrt2}{3}(\Delta x/a)^{3/2}` in :math:`a^2/R` over the film there. At 0.25 the film
-    of a second-order scheme is some 5 % too thin, at 1 some 40 %; from about 5 on none is left.
+    :math:`\frac{2\sqrt2}{3}(\Delta x/a)^{3/2}` in :math:`a^2/R` over the film. At 0.25 the film
+    of a second-order scheme is about 5 % too thin, at 1 about 40 %; from about 5 on there is no film.
 
     Parameters
     ----------
     film : float
         Central film in a^2/R.
     points : float
-        Nodes a half width.
+        Nodes per half width.
     """
     return 2.0 * np.sqrt(2.0) / 3.0 * points**-1.5 / film
 
 
 def points_for_opening(film, opening):
-    """Nodes a half width at which :func:`inlet_opening` is as given."""
+    """Nodes per half width for a value of :func:`inlet_opening`."""
     return (inlet_opening(film, 1.0) / opening) ** (2.0 / 3.0)
 
 
 def film_left_by_inlet(film, inlet):
-    r"""Film under an inlet that begins at a distance, over that of a flooded one.
+    r"""Film with an inlet of finite length, over the film of the flooded contact.
 
-    Grubin's integral :math:`\int(g/(h_c+g)^3)dX` over Hertz' gap g, taken from the inlet instead of from
-    infinity, has the same value for the thinner film: what the pressure-viscosity coefficient asks for.
+    Grubin's integral :math:`\int(g/(h_c+g)^3)dX` over Hertz' gap g is prescribed by the pressure-viscosity
+    coefficient; from a finite inlet instead of infinity it has the same value for a thinner film.
 
     Parameters
     ----------
@@ -94,24 +94,24 @@ def film_left_by_inlet(film, inlet):
     inlet : float
         Distance of the first node from the middle in half widths, above 1.
     """
-    asked = _grubin(film, FAR)
+    prescribed = _grubin(film, FAR_INLET)
     low, high = np.log(film) - 20.0, np.log(film)
     while high - low > 1e-3:  # the integral falls as the film grows
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _grubin(np.exp(middle), inlet) > asked else (low, middle)
+        low, high = (middle, high) if _grubin(np.exp(middle), inlet) > prescribed else (low, middle)
     return float(np.exp(0.5 * (low + high)) / film)
 
 
 def _grubin(film, inlet):
     r"""Integral of g/(h_c+g)^3 over 1 < X < `inlet`; X = 1 + (inlet - 1) s^3 has nodes where g is small."""
-    s = (np.arange(STEPS) + 0.5) / STEPS
+    s = (np.arange(GRUBIN_POINTS) + 0.5) / GRUBIN_POINTS
     x = 1.0 + (inlet - 1.0) * s**3
     gap = 0.5 * (x * np.sqrt(x * x - 1.0) - np.log(x + np.sqrt(x * x - 1.0)))
-    return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / STEPS)
+    return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
 
 
 def expected_film(case, scales):
-    """Central film by Moes' fit over all regimes, in a^2/R: divides the Reynolds rows and sets the start."""
+    """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0
     return max(moes_central_film(scales.moes_m, scales.moes_l) * np.pi / (8.0 * scales.moes_m), 1e-6)

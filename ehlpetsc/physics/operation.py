@@ -1,14 +1,14 @@
 r"""Operating conditions as functions of time: load, radius of relative curvature and both surface speeds.
 
-:class:`~ehlpetsc.physics.scales.Scales` makes the problem dimensionless with those of a reference state; what
-acts at an instant comes from here.
+:class:`~ehlpetsc.physics.scales.Scales` makes the problem dimensionless with the conditions of a reference
+state; the conditions at an instant are defined here.
 """
 
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-LEVEL = 1e-6  # of a time step: times nearer than this are the same
+LEVEL_TOLERANCE = 1e-6  # of a time step: times nearer than this are equal
 
 
 class Conditions(NamedTuple):
@@ -31,7 +31,7 @@ class Conditions(NamedTuple):
 
     @property
     def entrainment(self):
-        """Mean speed (u1 + u2)/2 [m/s]."""
+        """Entrainment speed (u1 + u2)/2 [m/s]."""
         return 0.5 * (self.u1 + self.u2)
 
     @property
@@ -80,22 +80,22 @@ class ConstantOperation:
         return self.displacement(0.0, time)
 
     def remaining(self, time, travelled):
-        """Time left to the end of the run [s].
+        """Time to the end of the run [s].
 
         Parameters
         ----------
         time : float
-            Now [s].
+            Current time [s].
         travelled : (float, float)
-            Distances travelled by both surfaces [m]; after a restart at other speeds they are not those of
+            Distances travelled by both surfaces [m]; after a restart at other speeds they differ from
             :meth:`travelled`.
         """
         fastest = max(abs(self.conditions.u1), abs(self.conditions.u2))
-        left = self.travel - max(map(abs, travelled))
-        return max(left, 0.0) / fastest if left > 1e-9 * self.travel else 0.0
+        distance = self.travel - max(map(abs, travelled))
+        return max(distance, 0.0) / fastest if distance > 1e-9 * self.travel else 0.0
 
     def extent(self):
-        """Least and largest displacement of both surfaces over the run [m]: two pairs."""
+        """Minimum and maximum displacement of both surfaces over the run [m]: two pairs."""
         duration = 0.0 if self.travel is None else self.duration
         ends = self.conditions.u1 * duration, self.conditions.u2 * duration
         return tuple((min(end, 0.0), max(end, 0.0)) for end in ends)
@@ -107,16 +107,16 @@ class ConstantOperation:
         return None if self.travel is None else self.travel / fastest
 
     def time_step(self, time, nominal):
-        """Length of the time step that begins at or before `time` [s]; `nominal`: of the reference state."""
+        """Length of the time step that contains `time` [s]; `nominal`: of the reference state."""
         return nominal
 
     def time_left(self, time, nominal):
         """Time to the next time level [s]."""
         left = nominal - time % nominal
-        return left + nominal if left < LEVEL * nominal else left
+        return left + nominal if left < LEVEL_TOLERANCE * nominal else left
 
     def level(self, time, nominal):
-        """Number of time levels passed at a time [s], with its fraction."""
+        """Number of time levels at a time [s], with a fraction between two levels."""
         return time / nominal
 
     def step_count(self, nominal):

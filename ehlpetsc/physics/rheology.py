@@ -1,7 +1,7 @@
 r"""Lubricant laws: viscosity, density and the Eyring flow factor, each with its derivative.
 
 Every law is a pure function in SI units, of arrays or, where it is called in compiled loops over nodes, of
-numbers; complex arguments are carried through, so that the derivatives can be checked by complex step.
+numbers; complex arguments are allowed, so that the derivatives can be checked by complex step.
 """
 
 import numpy as np
@@ -80,12 +80,12 @@ def flow_factors(sigma):
     r"""Eyring factors of rolling and sliding, of one number.
 
     :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3` and :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`
-    (Conry, Wang & Cusano 1987); near zero their series, :math:`S_0=3\sum 2n\,\Sigma^{2n-2}/(2n+1)!`.
+    (Conry, Wang & Cusano 1987); near zero by their series, :math:`S_0=3\sum 2n\,\Sigma^{2n-2}/(2n+1)!`.
 
     Returns
     -------
     s0, ds0, el, del_ : float
-        Both with their derivatives.
+        :math:`S_0`, L and their derivatives.
     """
     s = sigma
     if abs(s.real) < SERIES_LIMIT:
@@ -112,9 +112,9 @@ def mobilities(h, gradient, fluidity_l, fluidity_r, eyring, slip):
     r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, of two oils in one gap.
 
     :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
-    :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987), as one quantity. It stays finite both for
-    :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`. The gap and the
-    gradient are a face's, the viscosities those of the nodes on both sides; numbers, not arrays.
+    :math:`\Sigma=h\,p_x/(2\tau_0)` (Conry, Wang & Cusano 1987). M is finite both for
+    :math:`\eta\to\infty`, where a sliding Eyring film still flows, and for :math:`h\to0`. Gap and gradient
+    belong to a face, the viscosities to the nodes on both sides; numbers, not arrays.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
 
 
 def _limited_mean(mean, fluid, p):
-    """Mean shear stress under the limiting one of the fluid, if it has one."""
+    """Mean shear stress, limited if the fluid has a limiting shear stress."""
     if getattr(fluid, "limiting_shear", None) is None:
         return mean
     size, limit = np.abs(mean), fluid.limiting_shear * p

@@ -1,4 +1,4 @@
-"""Traction of the film and of solids in contact on the two solids."""
+"""Traction on both surfaces: shear of the film and friction of the solids."""
 
 import numpy as np
 
@@ -10,8 +10,8 @@ def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
 
     In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, times the fraction of
     the gap in which oil is sheared; between the solids ``boundary_friction * solids``, + on surface 2
-    and - on surface 1 where u1 > u2, none in pure rolling. Where both act, they are added: the shear of
-    a boundary film of some nanometres is then that of the bulk viscosity, which overestimates it.
+    and - on surface 1 where u1 > u2, none in pure rolling. Where both act, they are added: a boundary film
+    of some nanometres is then sheared with the bulk viscosity, which overestimates its shear stress.
 
     Parameters
     ----------
@@ -21,13 +21,13 @@ def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
     sliding : float
         u1 - u2 [m/s].
     oil, solids : ndarray, shape (nx,)
-        Pressure of the oil, and the one under which solids rub, 0 out of contact [Pa].
+        Pressure of the oil; pressure of the friction between the solids, 0 out of contact [Pa].
     h : ndarray, shape (nx,)
         Film [m].
     sheared : ndarray, shape (nx,)
         Fraction of the gap in which oil is sheared: 1 less the void fraction, 0 without a film.
     ln_eta : ndarray, shape (nx,), optional
-        ln(eta/eta0); by default that of the isothermal law.
+        ln(eta/eta0); by default of the isothermal law.
 
     Returns
     -------

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from ehlpetsc.physics.conditions_table import END_TOLERANCE, ConditionsTable, cumulative
-from ehlpetsc.physics.operation import LEVEL, Conditions, ConstantOperation
+from ehlpetsc.physics.operation import LEVEL_TOLERANCE, Conditions, ConstantOperation
 
-SPEED_CHANGE = 0.04  # of the largest speed, for a Courant number of 1: largest change in a time step
-FEWEST_STEPS = 25  # over a table in which nothing moves for a while, for a Courant number of 1
+MAX_SPEED_CHANGE = 0.04  # in a time step, of the largest speed, for a Courant number of 1
+MIN_STEPS = 25  # of a table in which nothing moves for some time, for a Courant number of 1
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class VariableOperation:
     modulus : float
         E' [Pa].
     travel : float, optional
-        Distance of the faster surface after which the run ends [m]; by default all of the table.
+        Distance of the faster surface at the end of the run [m]; by default that of the whole table.
     """
 
     table: ConditionsTable
@@ -57,17 +57,17 @@ class VariableOperation:
         return bool(u.min() < -scale and u.max() > scale)
 
     def _local(self, time):
-        """Repeats completed at a time, and the time since the last one [s]."""
+        """Repetitions completed at a time, and the time since the last one [s]."""
         period = self.period
         done = min(max(int(time // period), 0), self.table.repeat - 1)
         local = min(max(time - done * period, 0.0), period)
         is_at_end = period - local < END_TOLERANCE * period
-        if is_at_end and done < self.table.repeat - 1:  # but for rounding the next repeat
+        if is_at_end and done < self.table.repeat - 1:  # the next repetition, except for rounding
             done, local = done + 1, 0.0
         return done, local
 
     def at(self, time):
-        """Conditions at a time [s]; before time 0 those of time 0."""
+        """Conditions at a time [s]; before time 0 the conditions at time 0."""
         local = self._local(time)[1]
         return Conditions(*(float(cubic(local)) for cubic in self._cubics))
 
@@ -89,11 +89,11 @@ class VariableOperation:
         return self._position(time)
 
     def extent(self):
-        """Least and largest displacement of both surfaces over the run [m]: two pairs."""
+        """Minimum and maximum displacement of both surfaces over the run [m]: two pairs."""
         return self.table.extent()
 
     def remaining(self, time, travelled):
-        """Time left to the end of the run [s]."""
+        """Time to the end of the run [s]."""
         left = self.duration - time
         return left if left > END_TOLERANCE * self.duration else 0.0
 
@@ -105,37 +105,37 @@ class VariableOperation:
             return whole
         fine = self.table.sampled()
         swept = cumulative(fine.speed, fine.time)
-        done, left = divmod(self.travel, swept[-1])
-        return min(done * self.period + float(np.interp(left, swept, fine.time)), whole)
+        done, rest = divmod(self.travel, swept[-1])
+        return min(done * self.period + float(np.interp(rest, swept, fine.time)), whole)
 
     @cached_property
     def _levels(self):
-        """Time levels of one table [s], 0 and its end among them."""
+        """Time levels of one repetition of the table [s], 0 and its end included."""
         fine = self.table.sampled()
         slopes = [cubic(fine.time, 1) for cubic in self._cubics]
         half_width = np.sqrt(8.0 * fine.load * fine.radius / (np.pi * self.modulus))
         cell = self.courant * self.dx
         with np.errstate(over="ignore"):
             rates = [
-                fine.speed / cell,  # of steps [1/s]: the faster surface moves by the Courant number
-                # so do the edges of the Hertz contact
+                fine.speed / cell,  # steps per second: the faster surface moves by the Courant number a step
+                # and so do the edges of the Hertz contact
                 0.5 * half_width * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius) / cell,
             ]
-            rates += [np.abs(v) / (SPEED_CHANGE * self.courant * fine.speed.max()) for v in slopes[2:]]
+            rates += [np.abs(v) / (MAX_SPEED_CHANGE * self.courant * fine.speed.max()) for v in slopes[2:]]
         rate = np.maximum.reduce(rates)
-        if (rate * self.period < 1.0).any():  # nothing moves for a while
-            rate = np.maximum(rate, FEWEST_STEPS / (self.courant * self.period))
+        if (rate * self.period < 1.0).any():  # nothing moves for some time
+            rate = np.maximum(rate, MIN_STEPS / (self.courant * self.period))
         steps = cumulative(rate, fine.time)
-        multiple = 4 if self.is_reversing else 1  # strokes alike then have time levels alike
+        multiple = 4 if self.is_reversing else 1  # equal time levels in both strokes
         count = multiple * max(int(np.ceil(steps[-1] * (1.0 - 1e-12) / multiple)), 1)
         return np.interp(np.linspace(0.0, steps[-1], count + 1), steps, fine.time)
 
     def step_count(self, nominal):
         """Number of time steps of the whole run."""
-        return int(np.ceil(self.level(self.duration, nominal) - LEVEL))
+        return int(np.ceil(self.level(self.duration, nominal) - LEVEL_TOLERANCE))
 
     def level(self, time, nominal):
-        """Number of time levels passed at a time [s], with its fraction."""
+        """Number of time levels at a time [s], with a fraction between two levels."""
         done, local = self._local(time)
         levels = self._levels
         within = np.interp(local, levels, np.arange(len(levels)))
@@ -144,20 +144,20 @@ class VariableOperation:
     def time_step(self, time, nominal):
         """Length of the time step from the level before `time` to the next one [s]."""
         levels = self._levels
-        k = max(int(np.floor(self.level(time, nominal) + LEVEL)), 0) % (len(levels) - 1)
+        k = max(int(np.floor(self.level(time, nominal) + LEVEL_TOLERANCE)), 0) % (len(levels) - 1)
         return float(levels[k + 1] - levels[k])
 
     def time_left(self, time, nominal):
-        """Time to the next level [s], to the end of the run at most."""
+        """Time to the next time level or to the end of the run, whichever is nearer [s]."""
         level, step = self.level(time, nominal), self.time_step(time, nominal)
-        part = level - np.floor(level + LEVEL)
-        left = (1.0 - part) * step if part > LEVEL else step
+        fraction = level - np.floor(level + LEVEL_TOLERANCE)
+        left = (1.0 - fraction) * step if fraction > LEVEL_TOLERANCE else step
         end = self.duration - time
         return min(left, end) if end > END_TOLERANCE * self.duration else left
 
 
 def operation_of(case, scales):
-    """Operation of a case: constant, or of its table of conditions.
+    """Operation of a case: constant, or from its table of conditions.
 
     Parameters
     ----------

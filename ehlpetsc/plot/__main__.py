@@ -1,13 +1,12 @@
 """Draw results: ``ehlpetsc plot RESULT.h5 [...]``, or the index of a series or of passes,
 OUTPUT.series.json, OUTPUT.passes.json.
 
-Pressure and film of one frame, by default that with the largest share of the load on the solids or, without
-such a share, of the highest pressure; of several files, a series, at the same travel in one picture. Or a map
-of pressure over x and time, contacts per millisecond, a movie; of a series its collisions, film and
-pressure at contact points against the swept value, its Stribeck curve, traction curves; of one result its
-temperatures, oil trapped between two contacts, or all of it as one HTML page. The file name given by -o
-chooses the format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). Input files are never
-overwritten.
+Pressure and film of one frame, by default that with the largest fraction of the load on the solids or,
+without load on the solids, of the highest pressure; several results at the same travel in one picture. Or a
+map of pressure over x and time, contacts per millisecond, a movie; of a series its collisions, film and
+pressure at contact points over the varied value, its Stribeck curve, traction curves; of one result its
+temperatures, oil trapped between two contacts, or an HTML page. The file name after -o determines the
+format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
 """
@@ -26,7 +25,7 @@ from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
 
-DPI = 160
+DPI = 160  # of pictures
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of outputs that are not pictures
 SIGNATURES = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
 WITHOUT_FRAMES = (
@@ -98,8 +97,8 @@ def draw(results, kind, options, output):
         save_report(results[0], output)
     else:
         figure = FIGURES.get(kind, draw_frame)(results, options)
-        with replacing(output, keep_ending=True) as beside:
-            figure.savefig(beside, dpi=DPI)
+        with replacing(output, keep_ending=True) as temporary:
+            figure.savefig(temporary, dpi=DPI)
 
 
 def _draw_case(options, cases):
@@ -111,13 +110,13 @@ def _draw_case(options, cases):
     output = options.output or Path(Path(cases[0]).stem + ".case.png")
     check_derived(output, [Path(cases[0])], PICTURE_SIGNATURES)
     figure = draw_case(cases[0], options.ehl_set or ())
-    with replacing(output, keep_ending=True) as beside:
-        figure.savefig(beside, dpi=DPI)
+    with replacing(output, keep_ending=True) as temporary:
+        figure.savefig(temporary, dpi=DPI)
     print(output)
 
 
 def _stem(paths):
-    """Name of a picture without its ending: of one result its own, of several both or how many more."""
+    """Name of a picture without its suffix, from the names of the results."""
     first, *others = (re.sub(r"(\.(series|passes)\.json|\.h5)$", "", path) for path in map(str, paths))
     if not others:
         return first

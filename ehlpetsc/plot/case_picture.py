@@ -1,4 +1,4 @@
-"""Picture of a case before it runs: its profiles, where they enter, and which part passes the contact."""
+"""Picture of a case before a run: profiles, with the part that passes the contact."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameter
 from ehlpetsc.surfaces.roughness import Roughness
 
 SIZE = (12.0, 3.6)  # inches, for each profile
-POINTS = 20_000  # drawn of a profile
+MAX_POINTS = 20_000  # drawn of a profile
 PASSING_COLOUR, OTHER_COLOUR = labels.SINGLE_COLOUR, "0.65"
 NAMES = {"ra": "Ra", "rq": "Rq", "rz": "Rz", "rk": "Rk", "rpk": "Rpk", "rvk": "Rvk"}
 
@@ -23,7 +23,7 @@ def draw_case(path, overrides=()):
     ----------
     path : path-like
     overrides : iterable of str
-        As of `ehlpetsc.load`.
+        See `ehlpetsc.load`.
 
     Raises
     ------
@@ -58,12 +58,12 @@ def conditions(case, scales):
 
 
 def passing(profile, case, scales):
-    """Stretch of a profile that passes the whole contact during a run.
+    """Part of a profile that passes the whole contact during a run.
 
     Returns
     -------
     begin, end : float
-        Abscissas [m]; equal where none does.
+        Abscissas [m]; equal if there is no such part.
     """
     first, last = float(profile.X[0]), float(profile.X[-1])
     arrives = entry_times(profile, scales)
@@ -78,7 +78,7 @@ def passing(profile, case, scales):
 
 def _heights(axes, profile, case, scales, side):
     X, z = profile.X, profile.heights
-    stride = -(-len(X) // POINTS)
+    stride = -(-len(X) // MAX_POINTS)
     axes.plot(1e3 * X[::stride], 1e6 * z[::stride], color=OTHER_COLOUR, lw=0.7)
     begin, end = passing(profile, case, scales)
     inside = (X >= begin) & (X <= end)

@@ -16,9 +16,9 @@ from ehlpetsc.plot.temperatures import temperatures
 from ehlpetsc.results.series_index import from_thick_to_thin
 
 SIZE = (8.4, 5.6)  # inches
-TALL = 7.6  # inches: height with the surfaces
-AROUND_WIDTH = 0.5  # half widths: of a view around a point
-COLLISION_WIDTH = 0.12  # half widths
+HEIGHT_WITH_SURFACES = 7.6  # inches
+AROUND_WIDTH = 0.5  # half widths, of a view around a point
+COLLISION_WIDTH = 0.12  # half widths, of a view around a collision
 MAX_POINTS = 8  # contact points in one picture
 
 
@@ -36,14 +36,14 @@ def window(results, options):
 
 
 def panel_title(results, indices=None):
-    """Title that all results share, and the instant of stored frames."""
+    """Common title of results, and the instant of stored frames."""
     titles = {result.attrs["title"] for result in results}
     parts = [titles.pop() if len(titles) == 1 else "", indices and frames.instant(results, indices)]
     return ": ".join(part for part in parts if part)
 
 
 def fill_frame(axes, results, indices, options):
-    """Draw pressure, film and their legends at an instant into given axes."""
+    """Draw pressure, film and their legends at an instant into axes."""
     colours, names, key = labels.series_colours(results)
     frames.pressure_and_film(axes, results, indices, colours, window(results, options))
     if len(results) > 1:
@@ -61,13 +61,13 @@ def fill_frame(axes, results, indices, options):
 
 
 def draw_frame(results, options):
-    """Figure of pressure and film at an instant; of one rough result both deformed surfaces too."""
+    """Figure of pressure and film at an instant; for one rough result also of both deformed surfaces."""
     indices = frames.choose_frames(results, options.step, options.time)
     rough = len(results) == 1 and any(results[0].profile(side) for side in ("1", "2"))
     if not rough:
         figure, axes = two_panels()
     else:
-        figure, axes = labels.new_figure(3, 1, (SIZE[0], TALL), sharex=True)
+        figure, axes = labels.new_figure(3, 1, (SIZE[0], HEIGHT_WITH_SURFACES), sharex=True)
         frames.deformed_surfaces(axes[2], results[0], indices[0], window(results, options))
     fill_frame(axes[:2], results, indices, options)
     if rough:
@@ -113,7 +113,7 @@ def draw_contacts(results, options):
 
 
 def draw_collision(results, options):
-    """Figure of collisions in all members of a series, a column each; by default the two best ranked."""
+    """Figure of collisions in all members of a series, one column each; by default the two first ranked."""
     found = collisions.find(from_thick_to_thin(results)[0])
     numbers = options.collision or film_breakdown.ranked(found)[:2]
     if not numbers or not 0 <= min(numbers) <= max(numbers) < len(found):
@@ -130,7 +130,7 @@ def draw_collision(results, options):
 
 
 def draw_points(results, _options):
-    """Figure of film and pressure at the points of contact against the swept value."""
+    """Figure of film and pressure at the points of contact over the varied value."""
     results, values, key = from_thick_to_thin(results)
     points = film_breakdown.selected(film_breakdown.contact_points(collisions.find(results)), MAX_POINTS)
     if not points:

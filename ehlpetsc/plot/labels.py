@@ -23,7 +23,7 @@ UNITS = {
 
 
 def new_figure(rows, columns, size, **shared):
-    """Figure and axes for files alone, unknown to pyplot and thus to a notebook.
+    """Figure and axes without pyplot, so that a notebook does not display the figure.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def new_figure(rows, columns, size, **shared):
 
 
 def series_colours(results):
-    """Colours and labels of several results: the swept value, else distinguishing names.
+    """Colours and labels of several results: varied value, otherwise distinguishing names.
 
     Returns
     -------
@@ -49,14 +49,14 @@ def series_colours(results):
     if len(results) == 1:
         return [SINGLE_COLOUR], [results[0].path.stem], None
     key, values = series_values(results)
-    # the light end of the map does not show on white
+    # the light end of the colour map is not visible on white
     colours = [mpl.colormaps["viridis"](0.9 * i / (len(results) - 1)) for i in range(len(results))]
     labels = [f"{value:g}" for value in values] if key else names(results)
     return colours, labels, key
 
 
 def names(results):
-    """Labels of results: titles where they differ, else the keys that differ, else file names."""
+    """Labels of results: titles if they differ, otherwise keys that differ, otherwise file names."""
     titles = [result.attrs["title"] for result in results]
     apart = distinguishing_names(results)
     if len(set(titles)) == 1 and apart:
@@ -69,7 +69,7 @@ def names(results):
 
 
 def conditions(results):
-    """Speed, sliding, Hertz contact and oil that all results share, in one line.
+    """Common speed, sliding, Hertz contact and oil of all results, in one line.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def conditions(results):
 
 
 def title(results):
-    """Title of the first result above the conditions that all share."""
+    """Title of the first result above the common conditions."""
     return f"{results[0].attrs['title']}\n{conditions(results)}"
 
 
@@ -110,7 +110,7 @@ def share_hertz_contact(results):
 
 
 def labels_with_hertz(labels, results):
-    """Labels with the Hertz contact of each result where these differ."""
+    """Labels with the Hertz contact of each result, if these differ."""
     if share_hertz_contact(results):
         return labels
     return [
@@ -122,7 +122,7 @@ def labels_with_hertz(labels, results):
 def series_legend(axes, colours, labels, title, more=(), dashed=False):
     """Legend right of the axes: at most `LEGEND_ENTRIES` members of a series, and `more`.
 
-    With `dashed` the second line is: two equal curves then do not hide each other.
+    With `dashed` the second line is dashed, so that two equal curves are both visible.
     """
     step = -(-len(labels) // LEGEND_ENTRIES)
     lines = [Line2D([], [], color=c, label=n) for c, n in list(zip(colours, labels, strict=True))[::step]]

@@ -42,7 +42,7 @@ def save_movie(results, options, path):
             fill_frame(axes, results, choose_frames(results, time=results[0].time[index]), options)
             for panel, limit in zip(axes, limits, strict=True):
                 panel.set_ylim(0.0, limit)
-            if number == 0:  # its layout is kept, so that the axes do not move
+            if number == 0:  # the layout of the first frame holds for all, so that the axes do not move
                 figure.draw_without_rendering()
                 figure.set_layout_engine("none")
             writer.grab_frame()
@@ -50,7 +50,7 @@ def save_movie(results, options, path):
 
 @contextlib.contextmanager
 def recording(figure, path):
-    """Writer of a movie of a figure, for a ``with`` statement; its `grab_frame()` adds a frame.
+    """Context manager of the writer of a movie; its `grab_frame()` adds a frame.
 
     Parameters
     ----------
@@ -67,13 +67,14 @@ def recording(figure, path):
         The file name does not end like a movie, or the encoder is not installed.
     """
     writer = _writer(path)
-    with replacing(path, keep_ending=True) as beside, _encoding(path), writer.saving(figure, beside, DPI):
-        yield writer
+    with replacing(path, keep_ending=True) as temporary, _encoding(path):
+        with writer.saving(figure, temporary, DPI):
+            yield writer
 
 
 @contextlib.contextmanager
 def _encoding(path):
-    """Turn the failure of an encoder, as on a full disk, into an OutputError."""
+    """Convert a failure of the encoder, as on a full disk, to an OutputError."""
     try:
         yield
     except subprocess.CalledProcessError as error:
@@ -93,7 +94,7 @@ def _writer(path):
 
 
 def _limits(results, frames):
-    """Upper limits of the axes [GPa, um]: of all pressures, and of the film inside the contact."""
+    """Upper limits of the axes [GPa, um] for all pressures and for the film inside the contact."""
     film = 1e-9
     for result in results:
         inside = np.abs(result.x) <= result.attrs["a"]

@@ -1,11 +1,11 @@
-"""Temperatures of one result: film and surfaces over pressure and film, a surface over x and time."""
+"""Temperatures of one result: film and surfaces at an instant, the hotter surface over x and time."""
 
 import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import SECOND_COLOUR, SINGLE_COLOUR, conditions, new_figure
 from ehlpetsc.plot.panels import frames
-from ehlpetsc.plot.panels.over_time import MAP_ROWS
+from ehlpetsc.plot.panels.over_time import MAX_MAP_ROWS
 
 SIZE = (8.4, 10.0)  # inches
 STEADY_SIZE = (8.4, 6.6)
@@ -78,7 +78,7 @@ def _over_time(axes, result, window):
     side = max("12", key=lambda name: np.nanmean(result.steps(f"temperature_{name}_mean")))
     x, time = result.x / result.attrs["a"], 1e6 * result.time
     shown = np.flatnonzero((x >= window[0]) & (x <= window[1]))
-    columns, stride = slice(shown[0], shown[-1] + 1), -(-len(time) // MAP_ROWS)
+    columns, stride = slice(shown[0], shown[-1] + 1), -(-len(time) // MAX_MAP_ROWS)
     values = result[f"temperature_{side}"][: len(time) : stride, columns].astype(float)
     mesh = dict(cmap="inferno", shading="nearest", rasterized=True)
     image = axes.pcolormesh(x[columns], time[::stride], values, vmax=np.percentile(values, 99.9), **mesh)

@@ -32,7 +32,7 @@ __all__ = list(_HOMES)
 
 
 def __getattr__(name):
-    """Import at first use: the command must be able to answer a signal before numba is loaded."""
+    """Import at first use, so that the command can handle a signal before numba is loaded."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

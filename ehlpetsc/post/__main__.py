@@ -5,7 +5,7 @@ import signal
 
 
 def _stop(*_):
-    """While everything is being imported: nothing has begun that would have to be ended in order."""
+    """Stop during the imports, before there is any work to end properly."""
     os.write(2, b"ehlpetsc.post: stopped before anything was computed\n")
     os._exit(4)
 

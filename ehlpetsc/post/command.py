@@ -1,4 +1,4 @@
-"""The command ``ehlpetsc.post``: its steps, its messages and its exit status."""
+"""The command ``ehlpetsc.post``: steps, messages and exit status."""
 
 import os
 import sys
@@ -32,7 +32,7 @@ class Progress:
         self.shown, self.parent = sys.stderr.isatty(), os.getppid()
 
     def __call__(self, done, total):
-        """Show the finished part of all depths, at most five times a second."""
+        """Show the finished fraction of the work, at most five times a second."""
         if os.getppid() != self.parent:  # the parent process was killed
             raise KeyboardInterrupt
         now = time.monotonic()
@@ -92,9 +92,9 @@ def _summary(output, wall):
             + "".join(f" {surface}: D_max={result.largest(surface, k):.3e}" for surface in result.surfaces)
             + _weibull(result.fits[k])
         )
-    for surface, found in result.temperatures.items():
+    for surface, temperatures in result.temperatures.items():
         if result.complete[surface].any():
-            print(_temperatures(surface, found))
+            print(_temperatures(surface, temperatures))
     points = " ".join(f"{name}={result.complete[name].sum()}" for name in result.surfaces)
     print(
         f"ehlpetsc.post: done {output} points {points} depths={len(result.z)} "
@@ -102,17 +102,18 @@ def _summary(output, wall):
     )
 
 
-def _temperatures(surface, found):
+def _temperatures(surface, temperatures):
     """Text of the surface temperatures of body points."""
-    flash, mean = found.flash[~np.isnan(found.flash)], found.mean[~np.isnan(found.mean)]
+    flash = temperatures.flash[~np.isnan(temperatures.flash)]
+    mean = temperatures.mean[~np.isnan(temperatures.mean)]
     return (
-        f"surface {surface} temperature: highest={np.nanmax(found.highest):.5g} K "
+        f"surface {surface} temperature: highest={np.nanmax(temperatures.highest):.5g} K "
         f"mean={mean.mean():.5g} K flash_max={flash.max():.4g} K flash_median={np.median(flash):.4g} K"
     )
 
 
 def _weibull(fit):
-    """Text of the Weibull distribution over asperities; "" where they are too few."""
+    """Text of the Weibull distribution over asperities; "" if they are too few."""
     if not fit.beta > 0:
         return ""
     return f" weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}"
@@ -128,35 +129,35 @@ def _store_passes(paths, chosen):
     if len(paths) < len(chosen.results):
         raise PostError("not all of the passes could be processed")
     results = [PostResult(_output(path, chosen)) for path in paths]
-    found = store_passes(_passes_file(chosen), results, chosen.passes)
+    passes = store_passes(_passes_file(chosen), results, chosen.passes)
     for k, z in enumerate(results[0].z):
-        worst = found.mean[k].argmax()
+        worst = passes.mean[k].argmax()
         print(
-            f"z/a={z:<6g} {chosen.passes}: mean D_max={found.mean[k, worst]:.3e} "
-            f"deviation={found.deviation[k, worst]:.3e} largest={found.largest[k].max():.3e} "
-            f"first failure after {found.life[k, worst]:.4g} passes"
+            f"z/a={z:<6g} {chosen.passes}: mean D_max={passes.mean[k, worst]:.3e} "
+            f"deviation={passes.deviation[k, worst]:.3e} largest={passes.largest[k].max():.3e} "
+            f"first failure after {passes.life[k, worst]:.4g} passes"
         )
     print(
-        f"ehlpetsc.post: done {_passes_file(chosen)} passes={len(results)} points={found.mean.shape[1]} "
-        f"depths={found.mean.shape[0]}"
+        f"ehlpetsc.post: done {_passes_file(chosen)} passes={len(results)} points={passes.mean.shape[1]} "
+        f"depths={passes.mean.shape[0]}"
     )
 
 
 def _note_damage(index):
     """Add the damage of every pass to the index of a run, and print one line for each pass."""
-    found = note_damage(index)
-    for number, known in found:
-        print(f"pass {number}: {' '.join(_pass_figures(known))}")
-    print(f"ehlpetsc.post: done {index} passes={len(found)}")
+    passes = note_damage(index)
+    for number, damage in passes:
+        print(f"pass {number}: {' '.join(_pass_figures(damage))}")
+    print(f"ehlpetsc.post: done {index} passes={len(passes)}")
 
 
-def _pass_figures(known):
-    """Largest damage of each surface, and with [heat] its largest flash temperature."""
+def _pass_figures(damage):
+    """Maximum damage of each surface and, with [heat], maximum flash temperature."""
     for side in ("1", "2"):
-        if side in known:
-            yield f"{side} D_max={max(known[side]['largest']):.3e}"
-            if "flash_temperature" in known[side]:
-                yield f"flash_max={known[side]['flash_temperature']:.4g} K"
+        if side in damage:
+            yield f"{side} D_max={max(damage[side]['largest']):.3e}"
+            if "flash_temperature" in damage[side]:
+                yield f"flash_max={damage[side]['flash_temperature']:.4g} K"
 
 
 def _draw(paths, chosen):
@@ -179,7 +180,7 @@ def _status(work, path, output):
         for line in str(fault).splitlines():
             say(line if line.startswith(str(path)) else f"{path}: {line}")
         return ExitStatus.BAD_INPUT
-    except BrokenPipeError:  # as by `| head`: the reader went before all was done
+    except BrokenPipeError:  # closed by the reader, as `| head`
         sys.stdout = None
         return ExitStatus.STOPPED
     except OSError as fault:
@@ -192,13 +193,13 @@ def _status(work, path, output):
 
 
 def main(argv=None, call=lambda name, work: work()):
-    """Process each file, draw what could be processed; returns the exit status.
+    """Process each file and draw the processed results; returns the exit status.
 
     Parameters
     ----------
     argv : list of str, optional
     call : callable(name, work), optional
-        Runs a piece of work of a given name and returns its exit status.
+        Runs the function `work` for the file `name` and returns its exit status.
     """
     chosen = arguments(argv)
     if not COMPILED:
@@ -233,4 +234,4 @@ def command():
     """Run as a command, every file in a separate process, so that a crash leaves the others unaffected."""
     status = main(call=SubprocessGuard(say))
     sys.stdout.flush()
-    os._exit(status)  # the system frees all at once; Python would search it for cycles
+    os._exit(status)  # faster than Python's end, which collects cycles

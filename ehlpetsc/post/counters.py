@@ -1,4 +1,4 @@
-"""Counters of a stress history: the paper's damage, then the other criteria."""
+"""Counters of stress histories: damage of the paper, then other criteria."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ class Counters:
     surface : str
     counting : Counting
     criteria : sequence of str
-        Of :data:`ehlpetsc.post.criteria.CRITERIA`.
+        Names in :data:`ehlpetsc.post.criteria.CRITERIA`.
     samples : int
         Longest history.
     """
@@ -43,7 +43,7 @@ class Counters:
 
 
 def columns(criteria):
-    """Pairs (criterion, column) of the criteria beside the paper's, in the order of the results."""
+    """Pairs (criterion, column) of the other criteria, in the order of the results."""
     if not criteria:
         return []
     from ehlpetsc.post.criteria.search import columns_of  # as above

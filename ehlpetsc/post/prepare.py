@@ -13,8 +13,8 @@ from ehlpetsc.post.inputs.settings import Settings, read_settings
 from ehlpetsc.post.stresses.body_points import NO_FLANK, body_points, passage
 
 MAX_POINTS = 5_000_000
-FEW_POINTS = 30  # fewer are not representative of a surface
-END_TOLERANCE = 0.01  # of the duration: a last frame nearer to its end is at it
+MIN_REPRESENTATIVE_POINTS = 30  # of a surface
+END_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
 MIN_SPEED = 1e-3  # of the faster surface's speed: slower surfaces take too long to pass
 DAMAGE_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
@@ -22,7 +22,7 @@ DAMAGE_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 
 
 class Prepared(NamedTuple):
-    """Checked data of a result file, shared by all tasks.
+    """Checked data of a result file, for all tasks.
 
     Attributes
     ----------
@@ -33,11 +33,11 @@ class Prepared(NamedTuple):
     s : ndarray (ns,)
         Body points, m.
     motions : dict
-        Passage by surface; complete only where no frame is missing.
+        Passage by surface; complete only without missing frames.
     missed : dict
         Frames missing while each point was among the nodes, (ns,), by surface.
     digest : str
-        Of all that the damage depends on.
+        Digest of all inputs of the damage.
     """
 
     loads: Loads
@@ -57,12 +57,12 @@ def prepare(loads, surfaces, report):
     loads : Loads
     surfaces : sequence of str
     report : callable(str)
-        Gets warnings.
+        Called with warnings.
 
     Raises
     ------
     PostError
-        The file is not fit for damage; the text gives the reason.
+        The file is not suitable for damage; the message states the reason.
     """
     settings = read_settings(loads.case)
     loads.check(surfaces)
@@ -73,31 +73,33 @@ def prepare(loads, surfaces, report):
     s, motions = _motions(loads, surfaces)
     missed = {name: frames_missed(gaps, motion, loads.x.size) for name, motion in motions.items()}
     digest = input_digest(loads, surfaces)
-    whole = {name: m._replace(complete=m.complete & (missed[name] == 0)) for name, m in motions.items()}
-    _warn(loads, gaps, motions, whole, report)
-    return Prepared(loads, settings, gaps.every, s, whole, missed, digest)
+    complete = {name: m._replace(complete=m.complete & (missed[name] == 0)) for name, m in motions.items()}
+    _warn(loads, gaps, motions, complete, report)
+    return Prepared(loads, settings, gaps.every, s, complete, missed, digest)
 
 
 def _check_frames(loads):
     if loads.time.size < 2 or loads.case.time is None:
-        what = "holds one stored frame" if loads.case.time else "is a steady run"
+        reason = "holds one stored frame" if loads.case.time else "is a steady run"
         if loads.time.size == 0:
-            what = "holds no stored frame"
-        raise PostError(f"it {what}: damage needs the stress history, a [time] section and output.every = 1")
+            reason = "holds no stored frame"
+        raise PostError(
+            f"it {reason}: damage needs the stress history, a [time] section and output.every = 1"
+        )
 
 
 def _motions(loads, surfaces):
-    ways = [loads.travelled[surface] for surface in surfaces]
-    moved = max(abs(way[-1] - way[0]) for way in ways)
+    distances = [loads.travelled[surface] for surface in surfaces]
+    moved = max(abs(distance[-1] - distance[0]) for distance in distances)
     if moved / loads.dx + loads.x.size > MAX_POINTS:
         raise PostError(
             f"the surfaces moved {moved / loads.dx:.3g} nodes: more than {MAX_POINTS} body points"
         )
-    s = body_points(loads.x, loads.dx, ways)
+    s = body_points(loads.x, loads.dx, distances)
     try:
         motions = {
-            surface: passage(s, loads.x, loads.dx, way, _flank(loads, surface))
-            for surface, way in zip(surfaces, ways, strict=True)
+            surface: passage(s, loads.x, loads.dx, distance, _flank(loads, surface))
+            for surface, distance in zip(surfaces, distances, strict=True)
         }
     except ValueError as fault:
         raise PostError(str(fault)) from None
@@ -111,7 +113,7 @@ def _motions(loads, surfaces):
 
 
 def _flank(loads, surface):
-    """Points of a flank between the ends of its path of contact, where the run has come to the end of it."""
+    """Points of a flank between the ends of its path of contact, if the run has reached its end."""
     case, number = loads.case, int(surface) - 1
     if case.gears is None:
         return NO_FLANK
@@ -121,7 +123,7 @@ def _flank(loads, surface):
     return begin - arc if ended else np.inf, begin
 
 
-def _warn(loads, gaps, motions, whole, report):
+def _warn(loads, gaps, motions, complete, report):
     if loads.status not in ("done", "unknown"):
         report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
     if gaps.every > 1:
@@ -132,15 +134,15 @@ def _warn(loads, gaps, motions, whole, report):
             f"{steps} two measured surfaces lost {top} % of a typical point's damage at z = 0 and {below} % "
             "at z/a = 0.01, more where damage is largest"
         )
-    _report_gaps(loads, gaps, motions, whole, report)
-    for surface, motion in whole.items():
+    _report_gaps(loads, gaps, motions, complete, report)
+    for surface, motion in complete.items():
         passed = np.count_nonzero(motion.complete)
         if not motions[surface].complete.any():
             report(
                 f"warning: no point of surface {surface} passed the whole contact: its damage is nan"
                 f"{_travel_needed(loads, surface, 'lets some through')}"
             )
-        elif passed < FEW_POINTS:
+        elif passed < MIN_REPRESENTATIVE_POINTS:
             report(
                 f"warning: only {passed} point{'s' if passed > 1 else ''} of surface {surface} passed "
                 "the whole contact, and its damage is theirs"
@@ -149,7 +151,7 @@ def _warn(loads, gaps, motions, whole, report):
 
 
 def _travel_needed(loads, surface, why, passed=0.0):
-    """Travel with which `passed` half widths of a surface cross the mesh; empty if it hardly moves."""
+    """Text of the travel for `passed` half widths of a surface to cross the mesh; "" if it hardly moves."""
     way, longest = (abs(w[-1] - w[0]) for w in (loads.travelled[surface], _longest(loads)))
     if way < MIN_SPEED * longest:
         return ""
@@ -161,20 +163,20 @@ def _longest(loads):
     return max(loads.travelled.values(), key=lambda way: abs(way[-1] - way[0]))
 
 
-def _report_gaps(loads, gaps, motions, whole, report):
-    """Points that were in the contact while frames are missing have no damage; PostError if none is left."""
+def _report_gaps(loads, gaps, motions, complete, report):
+    """Report points without damage because of missing frames; PostError if no point is left."""
     if not gaps.after.size:
         return
     frame = gaps.after[0]
     where = f"after step {loads.step[frame]}"
     positions = f"{gaps.after.size} places, first" if gaps.after.size > 1 else "one place,"
     what = f"{gaps.missing.sum()} frames are missing in {positions} {where}"
-    if not any(motion.complete.any() for motion in whole.values()):
+    if not any(motion.complete.any() for motion in complete.values()):
         raise PostError(
             f"{what}, while every point that passed was in the contact: peaks are lost, so no damage is given"
         )
     for surface, motion in motions.items():
-        passed, left = motion.complete.sum(), whole[surface].complete.sum()
+        passed, left = motion.complete.sum(), complete[surface].complete.sum()
         if left < passed:
             report(
                 f"warning: {what}: {passed - left} of {passed} points of surface {surface} were in the "

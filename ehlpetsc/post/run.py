@@ -21,15 +21,15 @@ from ehlpetsc.post.stresses.histories import HistoryCollector, runs_of_points, w
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import SURFACES
 
-MAX_HISTORY_BYTES = 1e9  # with fewer, frames are read several times
-ASPERITY_HALF_WIDTH = 0.02  # half widths on either side of a peak, where its largest damage is sought
-DEPTHS_AT_ONCE = 4  # share reading and transforms of the loads
+MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
+ASPERITY_HALF_WIDTH = 0.02  # half widths on either side of a peak, over which the damage is the maximum
+DEPTHS_AT_ONCE = 4  # with common reading and transforms of the loads
 
 
 class Job(NamedTuple):
     """One result file and the settings of its processing.
 
-    `depths` replaces those of the case, `settings` ("table.key=value") other keys of it; the strain rule of
+    `depths` overrides the depths of the case, `settings` ("table.key=value") other keys; the strain rule of
     `counting` is that of the case.
     """
 
@@ -45,7 +45,7 @@ class Job(NamedTuple):
     settings: tuple = ()
 
     def overrides(self):
-        """Overrides of the case, as of `ehlpetsc.load`."""
+        """Overrides of the case, see `ehlpetsc.load`."""
         depths = () if self.depths is None else (("post.depths", list(self.depths)),)
         return [*self.settings, *depths]
 
@@ -60,25 +60,25 @@ class Task(NamedTuple):
 def run(job, report=None, progress=None):
     """Compute damage and statistics of one result file and write them to `job.output`.
 
-    Depths already done by an interrupted run with the same input and choices are taken over; a finished
-    result of the same is left as it is.
+    Finished depths of an interrupted run with the same input and settings are reused; a finished result of
+    the same input and settings is not computed again.
 
     Parameters
     ----------
     job : Job
     report : callable(str), optional
-        Gets warnings and what was done.
+        Called with warnings and notes.
     progress : callable(done, of), optional
-        Gets the share of the work done.
+        Called with the finished work.
 
     Raises
     ------
     OutputError, CaseError
         The result file or its case cannot be read, or the output may not be overwritten.
     PostError
-        The result file is not fit for damage.
+        The result file is not suitable for damage.
     OSError
-        The output cannot be written, as on a full disk; nothing is left of it then.
+        The output cannot be written, as on a full disk; no file is left.
     """
     report = report or (lambda text: None)
     job.counting.check()
@@ -103,13 +103,13 @@ def run(job, report=None, progress=None):
                 _compute(job, prepared, cache, progress or (lambda done, of: None))
                 _store(job, prepared, cache, identity, report)
             except (PostError, OutputError, OSError):
-                cache.remove()  # unlike after an interruption there is nothing to continue from
+                cache.remove()  # the run cannot be continued, unlike after an interruption
                 raise
             cache.remove()
 
 
 def _note_material(case, criteria, report):
-    """Report the default steel where the case names none, and the assumptions of Dang Van's limits."""
+    """Report the default steel if the case names none, and the assumptions of Dang Van's limits."""
     if case.contact.material is None and all(getattr(case.post, key) is None for key in FATIGUE_KEYS):
         report(f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel")
     if "dang-van" in criteria:
@@ -120,7 +120,7 @@ def _note_material(case, criteria, report):
 
 
 def _note_heat(loads, surfaces, report):
-    """Report how the result accounts for heat."""
+    """Report the treatment of heat in the result."""
     if loads.case.heat is None:
         return
     if cold := [surface for surface in surfaces if surface not in loads.heated([surface])]:
@@ -148,7 +148,7 @@ def _compute(job, prepared, cache, progress):
 
 
 def _tasks(missing):
-    """Split the missing depths into tasks of about as many each."""
+    """Split the missing depths into tasks of about equal size."""
     tasks = []
     for surface, depths in missing.items():
         number = -(-len(depths) // DEPTHS_AT_ONCE)
@@ -157,7 +157,7 @@ def _tasks(missing):
 
 
 def solve(job, prepared, task, map_=map, progress=None):
-    """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan where none passed."""
+    """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan for incomplete points."""
     loads, motion = prepared.loads, prepared.motions[task.surface]
     width = len(PAPER) + len(columns(job.criteria))
     out = np.full((len(task.depths), prepared.s.size, width), np.nan)

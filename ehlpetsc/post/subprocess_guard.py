@@ -1,4 +1,4 @@
-"""Work in a process of its own: HDF5 may crash on a damaged file, or never return from it."""
+"""Work in a separate process, because HDF5 may crash on a damaged file or never return."""
 
 import contextlib
 import mmap
@@ -12,9 +12,9 @@ import traceback
 from ehlpetsc.errors import ExitStatus
 from ehlpetsc.results.hdf5.lazy_dataset import announced_to
 
-MAX_READ_SECONDS = 60  # for one read of some megabytes; longer, and it will not come
-MAX_STOP_SECONDS = 10  # to end in order after a signal
-STOPS = (signal.SIGTERM, signal.SIGINT)
+MAX_READ_SECONDS = 60  # of one read of some megabytes, which otherwise never ends
+MAX_STOP_SECONDS = 10  # until a child has ended after a signal
+STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT)
 NOTE_HEADER = struct.Struct("<QQ")
 
 
@@ -37,7 +37,7 @@ class _Note:
 
 
 def stop_on_signals():
-    """From now on the first SIGTERM or SIGINT raises KeyboardInterrupt; returns whether one has come."""
+    """Let the first SIGTERM or SIGINT raise KeyboardInterrupt; returns a function that tests for a signal."""
     requested = []
 
     def stop(*_):
@@ -45,24 +45,24 @@ def stop_on_signals():
             requested.append(True)
             raise KeyboardInterrupt
 
-    for number in STOPS:
+    for number in STOP_SIGNALS:
         signal.signal(number, stop)
     return lambda: bool(requested)
 
 
 class SubprocessGuard:
-    """Runs pieces of work, each in a forked process, and outlives whatever happens to them.
+    """Runs functions in forked processes, whose crashes do not affect this process.
 
     Parameters
     ----------
     say : callable(str)
-        Gets one line about work that crashed or hung.
+        Called with one line about a process that crashed or hung.
     """
 
     def __init__(self, say):
         self.say = say
         self._child, self._asked = None, False
-        for number in STOPS:
+        for number in STOP_SIGNALS:
             signal.signal(number, self._stop)
 
     def _stop(self, *_):
@@ -71,7 +71,7 @@ class SubprocessGuard:
             os.kill(self._child, signal.SIGTERM)
 
     def __call__(self, name, work):
-        """Exit status of work(), a function that returns one; `name` is that of its file."""
+        """Exit status of the function work(); `name` is that of its file."""
         note = _Note()
         ours, theirs = os.pipe()
         sys.stdout.flush()
@@ -91,7 +91,7 @@ class SubprocessGuard:
         return self._explain(name, status, note, hung)
 
     def _work(self, work, note):
-        """In the child: never returns."""
+        """Run in the child; never returns."""
         status = ExitStatus.BUG
         try:
             stop_on_signals()
@@ -105,12 +105,12 @@ class SubprocessGuard:
             traceback.print_exc()
         finally:
             for stream in filter(None, (sys.stdout, sys.stderr)):
-                with contextlib.suppress(OSError):  # whoever read it has gone
+                with contextlib.suppress(OSError):  # closed by the reader
                     stream.flush()
             os._exit(status)
 
     def _wait(self, pipe, note):
-        """Until the child's end of the pipe closes; True if it had to be killed."""
+        """Wait until the child's end of the pipe closes; True if the child had to be killed."""
         before, same, stopping = None, 0, 0
         while not select.select([pipe], [], [], 1.0)[0]:
             now = note.read()
@@ -118,7 +118,7 @@ class SubprocessGuard:
             before = now
             if self._asked:
                 if not stopping:
-                    os.kill(self._child, signal.SIGTERM)  # the first came before there was a child
+                    os.kill(self._child, signal.SIGTERM)  # the first signal came before the child existed
                 stopping += 1
             if same >= MAX_READ_SECONDS or stopping >= MAX_STOP_SECONDS:
                 os.kill(self._child, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""Surface temperatures of body points: each is followed through the contact as its stresses are."""
+"""Surface temperatures of body points on their way through the contact."""
 
 import numpy as np
 
@@ -6,20 +6,20 @@ from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.load_interpolation import limited_slopes
 from ehlpetsc.results.post_result import PointTemperatures
 
-FRAMES_READ = 256  # at a time
+FRAMES_PER_READ = 256
 
 
 def point_temperatures(loads, surface, motion, points):
     r"""Highest and mean surface temperature of body points and their flash temperature.
 
     The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
-    over the stored frames; the flash temperature is the highest temperature over that of the body.
+    over the stored frames; the flash temperature is the highest temperature minus that of the body.
 
     Parameters
     ----------
     loads : ehlpetsc.post.inputs.loads.Loads
     surface : {"1", "2"}
-        One whose temperature is stored.
+        Surface with stored temperature.
     motion : ehlpetsc.post.stresses.body_points.Passage
     points : int
         Number of body points.
@@ -27,12 +27,12 @@ def point_temperatures(loads, surface, motion, points):
     Returns
     -------
     PointTemperatures
-        Arrays of shape (points,) [K]; nan where a point did not pass the whole contact.
+        Arrays of shape (points,) [K]; nan for points that did not pass the whole contact.
     """
     highest, sums, times = np.full(points, -np.inf), np.zeros(points), np.zeros(points)
     lasts = _weights(loads.time)
-    for begin in range(0, loads.time.size, FRAMES_READ):
-        frames = np.arange(begin, min(begin + FRAMES_READ, loads.time.size))
+    for begin in range(0, loads.time.size, FRAMES_PER_READ):
+        frames = np.arange(begin, min(begin + FRAMES_PER_READ, loads.time.size))
         rows = _between(loads, surface, frames, motion.offset[frames])
         for frame, values in zip(frames, rows, strict=True):
             x = loads.x[: values.size] + motion.offset[frame] * loads.dx
@@ -66,7 +66,7 @@ def _weights(time):
 def _between(loads, surface, frames, offset):
     """Temperatures (frames, nodes), `offset` (frames,) elements right of the nodes, by limited cubics.
 
-    The last node has no element behind it: its own temperature is given.
+    The last node has no following element; its temperature is returned.
     """
     rows = loads.rows(f"temperature_{surface}", frames[0], frames[-1] + 1)
     slopes = np.empty_like(rows)

@@ -1,4 +1,4 @@
-"""Contact in a result file, as stored or from its films."""
+"""Contact nodes of a result file, as stored or from the films."""
 
 import tomllib
 
@@ -13,11 +13,11 @@ BOUND_TOLERANCE = 1e-6  # of the bound: films may be stored in single precision
 
 
 def film_at_contact(result):
-    """Film [m] between surfaces that touch; -inf if none ever do.
+    """Film [m] at contact nodes; -inf without contact.
 
-    The least film of the steps with contacts: in direct contact ``contact.minimum_film``, in mixed contact
-    ``contact.boundary_film``, given in the case or not; of a compliant layer, the film at which its
-    asperities carry the pressure from which nodes count as in contact.
+    Minimum film of the steps with contacts: in direct contact ``contact.minimum_film``, in mixed contact
+    ``contact.boundary_film``, also if the case has their defaults; with a compliant layer, the film at which
+    its asperities carry the pressure above which nodes count as in contact.
 
     Parameters
     ----------
@@ -31,14 +31,14 @@ def film_at_contact(result):
 
 
 def layer_film(contact):
-    """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; contact: table of a stored case."""
+    """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; `contact`: table of a stored case."""
     modulus = 0.5 * reduced_modulus(*elastic_constants(contact))
     prefactor = contact.get("asperity_stiffness", 1.0) * modulus
     return asperity_separation(CONTACT_PRESSURE, GAMMA * contact["asperity_height"], prefactor)
 
 
 def in_contact(result, frames, nodes=slice(None)):
-    """Whether surfaces touch, as stored, or else by the film being at its bound.
+    """Whether nodes are in contact, as stored, or from films at their bound.
 
     Parameters
     ----------
@@ -50,12 +50,12 @@ def in_contact(result, frames, nodes=slice(None)):
     Returns
     -------
     ndarray of bool
-        Of the shape of the frames and nodes.
+        Shape of the frames and nodes.
 
     Raises
     ------
     OutputError
-        The result holds neither contacts nor films.
+        The result has neither contacts nor films.
     """
     if "in_contact" in result:
         return np.asarray(result["in_contact"][frames, nodes], dtype=bool)

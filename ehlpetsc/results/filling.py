@@ -1,19 +1,19 @@
-"""Time from which the roughness of both surfaces fills the contact: means over a run begin there."""
+"""Time from which the roughness of both surfaces fills the contact, the beginning of means over a run."""
 
 import tomllib
 
 import numpy as np
 
-RAMP = 0.1  # half-widths of profile over which its heights come in: they belong to the filling
-LONE = ("ridge", "dent")  # synthetic features that do not repeat
+RAMP_LENGTH = 0.1  # half widths at the leading end of a profile over which its heights increase from zero
+SINGLE_FEATURES = ("ridge", "dent")  # synthetic features that do not repeat
 
 
 def filled_from(result):
     """Time [s] from which the roughness of both surfaces fills the Hertz contact.
 
-    A profile fills the contact when its full heights, ramp included, reach the far edge, a lone ridge or dent
-    when its centre is at x = 0. Smooth surfaces, also those that have yielded, and surfaces at rest count as
-    filled from the start.
+    A profile fills the contact when its heights after the ramp reach the far edge, a single ridge or dent
+    when its centre is at x = 0. Smooth surfaces, including smooth surfaces that have yielded, and surfaces at
+    rest fill the contact from the start.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def filled_from(result):
     Returns
     -------
     float
-        0 without a moving rough surface, inf where a run with varying speeds ends before.
+        0 without a moving rough surface; inf if a run with varying speeds ends before.
     """
     if len(result.steps("time")) < 2:
         return 0.0
@@ -46,14 +46,26 @@ def both_fill(result, times):
     return np.asarray(times) >= filled_from(result) * (1.0 - 1e-12)
 
 
+def filled_weights(result):
+    """Weights of the steps in means, shape (nsteps,): their lengths [s] while both surfaces fill the contact.
+
+    Lengths of all steps if the surfaces never fill the contact; 1 for a steady run.
+    """
+    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
+    if len(time) == 1:
+        return np.ones(1)
+    filled = both_fill(result, time)
+    return np.where(filled | (not filled.any()), dt, 0.0)
+
+
 def _filled_by(result, side, speed, table, number):
     profile = result.profile(side)
-    lone = table.get("synthetic", {}).get("kind") in LONE
-    if profile is None or speed == 0.0 or not (lone or profile[1].any()):
+    is_single = table.get("synthetic", {}).get("kind") in SINGLE_FEATURES
+    if profile is None or speed == 0.0 or not (is_single or profile[1].any()):
         return 0.0
     a, leading = result.attrs["a"], profile[0].max() if speed > 0.0 else profile[0].min()
-    distance = a + RAMP * a - np.sign(speed) * leading
-    if lone:
+    distance = a + RAMP_LENGTH * a - np.sign(speed) * leading
+    if is_single:
         feature = table["synthetic"]
         centre = feature.get("position", 2.0 * feature.get("wavelength", 0.0))
         distance = centre - np.sign(speed) * leading
@@ -61,7 +73,7 @@ def _filled_by(result, side, speed, table, number):
 
 
 def _time_of(result, distance, speed, name):
-    """Time [s] at which a surface has travelled a distance [m], by its displacements if stored."""
+    """Time [s] at which a surface has travelled a distance [m], from its displacements if stored."""
     if distance <= 0.0:
         return 0.0
     if f"steps/{name}" not in result:

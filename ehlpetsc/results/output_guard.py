@@ -14,7 +14,7 @@ from ehlpetsc.results.hdf5.opening import open_for_reading
 
 WAIT_ADVICE = "wait for it, or give another -ehl_output"
 OVERWRITE_ADVICE = "give another -ehl_output, or -ehl_overwrite to lose it"
-SIGNATURE_BYTES = 512  # bytes of a file that say what it is
+SIGNATURE_BYTES = 512  # at the beginning of a file, in which its signature is searched
 PICTURE_SIGNATURES = {
     ".png": b"\x89PNG",
     ".svg": b"<svg",
@@ -32,7 +32,7 @@ PAGE_SIGNATURES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
 
 
 def check_output_path(path, inputs, option="-ehl_output"):
-    """Refuse an output that is an input, or no plain file.
+    """Refuse an output path that is an input or not a regular file.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def check_output_path(path, inputs, option="-ehl_output"):
 
 
 def check_derived(path, inputs, kinds, option="-o"):
-    """Refuse a derived output that is an input, of another kind, or would replace a foreign file.
+    """Refuse a derived output path that is an input, has a wrong suffix, or is a file of another kind.
 
     Parameters
     ----------
@@ -64,10 +64,9 @@ def check_derived(path, inputs, kinds, option="-o"):
     inputs : iterable of Path
         Files that the command reads.
     kinds : dict of str to bytes
-        Endings allowed, each with bytes near the begin of every file of that kind: a file at the path of the
-        output without them is kept.
+        Allowed suffixes, each with the signature of its files: an existing file without it is not replaced.
     option : str
-        That names the output.
+        Option that names the output, for messages.
 
     Raises
     ------
@@ -88,9 +87,9 @@ def check_derived(path, inputs, kinds, option="-o"):
 
 
 def exists(path):
-    """Whether a path exists; OutputError where that cannot be read, as in a folder of others."""
+    """Whether a path exists; OutputError if that is not permitted, as in a folder of another user."""
     try:
-        return path.exists() or "\0" in str(path) and path.stat() is None  # stat refuses what exists takes
+        return path.exists() or "\0" in str(path) and path.stat() is None  # stat raises, exists does not
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         name = str(path) if str(path).isprintable() else repr(str(path))
@@ -98,31 +97,31 @@ def exists(path):
 
 
 def check_index(path, rows, files=()):
-    """Refuse to replace a file that is no index, and files at the paths of results that are no results.
+    """Refuse to replace a file that is not an index, or files at the paths of results that are not results.
 
-    A file that the index names may be replaced, however damaged; so may an HDF5 file that cannot be opened.
+    Files named in the index and HDF5 files that cannot be opened may be replaced.
 
     Parameters
     ----------
     path : Path
-        The index.
+        Index file.
     rows : str
-        Name of its list: "members" or "passes".
+        Name of the list in it: "members" or "passes".
     files : iterable of Path
-        Results to be.
+        Paths of the results.
 
     Raises
     ------
     OutputError
     """
-    known = set()
+    named = set()
     if exists(path):
         try:
-            known = {row["file"] for row in json.loads(path.read_text())[rows]}
+            named = {row["file"] for row in json.loads(path.read_text())[rows]}
         except (OSError, ValueError, KeyError, TypeError):
             raise OutputError(f"{path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}") from None
     for file in files:
-        if file.is_file() and file.stat().st_size and file.name not in known and not _is_ours(file):
+        if file.is_file() and file.stat().st_size and file.name not in named and not _is_ours(file):
             raise OutputError(f"{file}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}")
 
 
@@ -136,21 +135,21 @@ def _is_ours(path):
 
 
 class Lock:
-    """Lock on an output; for a ``with`` statement, or :meth:`acquire` and :meth:`release`.
+    """Lock on an output, a context manager, or by :meth:`acquire` and :meth:`release`.
 
-    The lock is one of the operating system's on ``OUTPUT.lock``: a killed run loses it.
+    The lock is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process.
 
     Parameters
     ----------
     path : Path
-        The output.
-    way : str
-        Advice where another process has it.
+        Output file.
+    advice : str
+        Advice if another process has the lock.
     """
 
-    def __init__(self, path, way=WAIT_ADVICE):
+    def __init__(self, path, advice=WAIT_ADVICE):
         self._output, self._path, self._file = path, path.with_name(path.name + ".lock"), None
-        self._way = way
+        self._advice = advice
 
     def __enter__(self):
         self.acquire()
@@ -160,10 +159,10 @@ class Lock:
         self.release()
 
     def acquire(self):
-        """Acquire the lock; OutputError names the process that has it."""
+        """Acquire the lock; an OutputError names the process that has it."""
         file = self._locked()
         while not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
-            file.close()  # the one before gave it back between our opening and our locking
+            file.close()  # the previous process removed the file between opening and locking
             file = self._locked()
         file.truncate(0)
         file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
@@ -179,9 +178,9 @@ class Lock:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             file.seek(0)
-            whose = file.read().strip() or "another process"
+            process = file.read().strip() or "another process"
             file.close()
-            raise OutputError(f"{self._output}: is being written by {whose}; {self._way}") from None
+            raise OutputError(f"{self._output}: is being written by {process}; {self._advice}") from None
         except OSError:
             pass  # a file system without locks
         return file
@@ -196,7 +195,7 @@ class Lock:
 
 
 def inputs_of(case):
-    """Files that a case is read from.
+    """Files from which a case is read.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Results of post-processing, ``RESULT.post.h5``, read back for summaries, pictures and indices."""
+"""Results of post-processing, ``RESULT.post.h5``, for summaries, pictures and indices."""
 
 from copy import copy
 from pathlib import Path
@@ -25,15 +25,15 @@ class WeibullFit(NamedTuple):
 
 
 class PointTemperatures(NamedTuple):
-    """Surface temperatures of body points in one pass, (ns,) [K]; nan where a point did not pass.
+    """Surface temperatures of body points in one pass, (ns,) [K]; nan for points that did not pass.
 
     Attributes
     ----------
     highest : ndarray
     mean : ndarray
-        Over the time inside the Hertz contact.
+        Mean over the time inside the Hertz contact.
     flash : ndarray
-        Highest temperature over that of the body.
+        Highest temperature minus that of the body.
     """
 
     highest: np.ndarray
@@ -48,7 +48,7 @@ def post_path(path):
 
 
 class PostResult:
-    """A result of post-processing in memory; parts that an older file does not hold are empty.
+    """Result of post-processing in memory; data missing in an older file are empty.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ class PostResult:
         return other
 
     def passed(self, surface):
-        """Damage (nz, points) of the points that passed the whole contact; none of a surface not computed."""
+        """Damage (nz, points) of the points that passed the whole contact; empty if not computed."""
         if surface not in self.damage:
             return np.empty((len(self.z), 0))
         return self.damage[surface][:, self.complete[surface]]
@@ -144,19 +144,19 @@ class PostResult:
         return self.passed(surface)[depth].max(initial=-np.inf) if self.complete[surface].any() else np.nan
 
     def summary(self):
-        """Depths, and by surface that passed the largest and the median damage at each of them.
+        """Depths, and for each surface the maximum and median damage at each depth.
 
-        With [heat] also the largest flash temperature [K].
+        With [heat] also the maximum flash temperature [K].
         """
-        found = {"z_over_a": self.z.tolist()}
+        summary = {"z_over_a": self.z.tolist()}
         for side in self.surfaces:
             values = self.passed(side)
             if values.size:
                 largest, median = values.max(axis=1), np.median(values, axis=1)
-                found[side] = {"largest": largest.tolist(), "median": median.tolist()}
+                summary[side] = {"largest": largest.tolist(), "median": median.tolist()}
                 if side in self.temperatures:
-                    found[side]["flash_temperature"] = float(np.nanmax(self.temperatures[side].flash))
-        return found
+                    summary[side]["flash_temperature"] = float(np.nanmax(self.temperatures[side].flash))
+        return summary
 
     def worst_point(self, surface):
         """(s, z/a) of the largest damage."""
@@ -171,7 +171,7 @@ def _array(file, name, default):
 
 
 def damage_beside(result):
-    """Damage that post-processing has left beside a result; None: nothing, or of another case.
+    """Post-processing result beside a result; None if it is missing or of another case.
 
     Parameters
     ----------
@@ -184,5 +184,5 @@ def damage_beside(result):
     path = post_path(result.path)
     if not path.exists():
         return None
-    found = PostResult(path)
-    return found if found.attrs["case"] == result.attrs["case"] else None
+    post = PostResult(path)
+    return post if post.attrs["case"] == result.attrs["case"] else None

@@ -13,20 +13,20 @@ from ehlpetsc import __version__
 
 
 def versions(more):
-    """Names and versions in one line, those of `more` (dict of str to str) after our own."""
-    ours = {
+    """Names and versions in one line: of Python and its libraries, then of `more` (dict of str to str)."""
+    common = {
         "ehlpetsc": __version__,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
-    return ", ".join(f"{name} {version}" for name, version in (ours | more).items())
+    return ", ".join(f"{name} {version}" for name, version in (common | more).items())
 
 
 @cache
 def git_commit():
-    """Commit of the checkout the package runs from, ``-dirty`` if changed; empty if it is none."""
+    """Commit of the checkout of the package, ``-dirty`` if changed; "" outside a checkout."""
     top = Path(__file__).resolve().parents[2]
     if not (top / ".git").exists():
         return ""
@@ -34,12 +34,12 @@ def git_commit():
     try:
         answer = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
     except (OSError, subprocess.SubprocessError):
-        return ""  # no git, or a checkout of another user: the result matters more
+        return ""  # no git, or a checkout of another user
     return answer.stdout.strip()
 
 
 def earlier_runs(attrs, last_step):
-    """JSON list of the configurations of all runs before a restart, the last of them described by `attrs`."""
+    """JSON list of the configurations of all runs before a restart; `attrs` describes the last one."""
     runs = json.loads(attrs.get("history", "[]"))
     keys = ("case", "petsc_options", "ranks", "versions", "git_commit")
     known = {key: attrs[key] for key in keys if key in attrs}

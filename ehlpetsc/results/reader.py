@@ -1,4 +1,4 @@
-"""Result files: fields and scalars by name, of complete files and of those that a killed run left."""
+"""Reading of result files, complete or left by a killed run: fields and scalars by name."""
 
 from pathlib import Path
 
@@ -11,21 +11,21 @@ from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.lazy_dataset import LazyDataset, reading
 from ehlpetsc.results.hdf5.opening import open_result
 
-CHECKED = 1024  # frames at a time
-OVER_NODES = ("x", "contact_count")
+FRAMES_PER_BLOCK = 1024  # read at once
+NODE_DATASETS = ("x", "contact_count")  # without a time axis
 
 
 def read_result(path, **options):
-    """A result file as `Result`, to be closed or used in a ``with`` statement.
+    """Open a result file as `Result`, to be closed or used in a ``with`` statement.
 
     Options are those of `h5py.File`, errors those of `open_result`.
     """
     return Result(open_result(path, **options), path)
 
 
-def _whole_rows(group, path):
-    """Number of complete rows of a group; its ``time`` is written last."""
-    rows = [d for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in OVER_NODES]
+def _complete_rows(group, path):
+    """Number of complete rows of a group, whose ``time`` is written last."""
+    rows = [d for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in NODE_DATASETS]
     for dataset in rows:
         if not dataset.shape:
             raise OutputError(f"{path}: {dataset.name.lstrip('/')}: damaged, it has no rows")
@@ -60,7 +60,7 @@ class Steps:
 
 
 class Result:
-    """A result file, read lazily; each of its `fields` is also an attribute, shape (nt, nx), kept once read.
+    """Result file, read lazily; each of the `fields` is also an attribute, shape (nt, nx).
 
     Attributes
     ----------
@@ -84,9 +84,9 @@ class Result:
         self.path = Path(path)
         self.attrs = Attributes(file, path)
         with reading(path):
-            # a killed writer may have lengthened some datasets and not yet others
-            self._frames = _whole_rows(file, path)
-            self.steps = Steps(file["steps"], _whole_rows(file["steps"], path), path)
+            # a killed writer may have extended only some datasets
+            self._frames = _complete_rows(file, path)
+            self.steps = Steps(file["steps"], _complete_rows(file["steps"], path), path)
             datasets = {n: d for n, d in file.items() if isinstance(d, h5py.Dataset)}
             self.fields = [current_name(name) for name, dataset in datasets.items() if dataset.ndim == 2]
         self.scalars = self.steps.names
@@ -112,7 +112,7 @@ class Result:
         self._file.close()
 
     def __getitem__(self, name):
-        """The dataset `name`, not read yet; after a killed run it may have rows beyond `time`."""
+        """Dataset `name`, read on demand; after a killed run it may have rows beyond `time`."""
         with reading(self.path, name):
             dataset = self._file.get(stored_name(self._file, name))
             if not isinstance(dataset, h5py.Dataset):
@@ -175,10 +175,10 @@ class Result:
         )
 
     def check(self):
-        """Read everything once; OutputError where something is damaged."""
+        """Read all data once; OutputError if any is damaged."""
         for name in ["step", *self.fields]:
-            for begin in range(0, self._frames, CHECKED):
-                self[name][begin : min(begin + CHECKED, self._frames)]
+            for begin in range(0, self._frames, FRAMES_PER_BLOCK):
+                self[name][begin : min(begin + FRAMES_PER_BLOCK, self._frames)]
         for name in self.scalars:
             self.steps(name)
 
@@ -190,26 +190,26 @@ class Result:
         """Index of the stored frame nearest to a time [s] or to a step number."""
         if (time is None) == (step is None):
             raise OutputError(f"{self.path}: nearest_frame needs either time or step")
-        wanted, stored = (time, self.time) if step is None else (step, self.step)
-        return int(np.argmin(np.abs(stored - wanted)))
+        value, stored = (time, self.time) if step is None else (step, self.step)
+        return int(np.argmin(np.abs(stored - value)))
 
     def contact_rate(self):
         """Contacts per millisecond at each node, Q of Holmes et al. 2005, figure 7; shape (nx,).
 
-        One time step in contact counts as one contact, so that Q grows as the time step falls.
+        Every time step in contact counts as one contact, so that Q increases as the time step decreases.
 
         Raises
         ------
         OutputError
-            The run has lasted no time: a steady one.
+            The run is steady.
         """
-        lasted = np.nansum(self.steps("dt"))
-        if not lasted > 0.0:
+        duration = np.nansum(self.steps("dt"))
+        if not duration > 0.0:
             raise OutputError(f"{self.path}: a steady solution has no contacts per millisecond")
-        return self.contact_count / (1e3 * lasted)
+        return self.contact_count / (1e3 * duration)
 
     def profile(self, surface):
-        """Roughness of surface "1" or "2" as ``(s, z, speed)``; None if it was smooth."""
+        """Roughness of surface "1" or "2" as ``(s, z, speed)``; None if the surface is smooth."""
         name = f"surface/{surface}"
         with reading(self.path, name):
             name = stored_name(self._file, name)

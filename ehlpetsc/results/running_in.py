@@ -1,12 +1,12 @@
-"""Running in: surfaces and contact after each pass."""
+"""Running-in: surfaces and contact after each pass."""
 
 import numpy as np
 
 from ehlpetsc.quantities import OTHERS, STEP_SCALARS
 
 DEPTHS = [name.removeprefix("surface/") for name in OTHERS if name.startswith("surface/")][2:]
-SHIFTED_IN_A_ROW = 10  # passes of surfaces that are shifted from pass to pass
-RUN_IN = 0.01  # of what the first pass has added: a pass that adds less changes the surfaces no more
+SHIFTED_IN_A_ROW = 10  # consecutive run-in passes required with shifted surfaces
+RUN_IN = 0.01  # of the volume added by the first pass: surfaces are run in if a pass adds less
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
 
@@ -22,21 +22,21 @@ def pass_summary(result, begin):
     Returns
     -------
     dict
-        SI units; a surface is None where it is not stored.
+        SI units; a surface that is not stored is None.
     """
     steps = result.steps
     dt = np.where(steps("time") >= begin, steps("dt"), 0.0)
     names = [name for name in MEANS if name in result.scalars]
-    found = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
-    found |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
-    found["halved"] = int(np.count_nonzero(steps("retries")))
-    found |= {name: float(steps(name)[-1]) for name in result.scalars if STEP_SCALARS[name].units == "m^2"}
-    found.setdefault("set_volume", 0.0)
-    return found | {side: statistics(result, side) for side in ("1", "2")}
+    summary = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
+    summary |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
+    summary["halved"] = int(np.count_nonzero(steps("retries")))
+    summary |= {name: float(steps(name)[-1]) for name in result.scalars if STEP_SCALARS[name].units == "m^2"}
+    summary.setdefault("set_volume", 0.0)
+    return summary | {side: statistics(result, side) for side in ("1", "2")}
 
 
 def heights(result, side):
-    """Body points, heights as made and after the pass [m]; None: not stored."""
+    """Body points, original heights and heights after the pass [m]; None: not stored."""
     name = f"surface/{side}"
     if f"{name}/s" not in result:
         return None
@@ -46,38 +46,37 @@ def heights(result, side):
 
 
 def statistics(result, side):
-    """Ra, Rq [m], Rsk, largest slope and deepest indentation [m] of a surface after a pass."""
-    found = heights(result, side)
-    if found is None:
+    """Ra, Rq [m], Rsk, maximum slope and maximum indentation [m] of a surface after a pass."""
+    surface = heights(result, side)
+    if surface is None:
         return None
-    s, z, left = found
-    height = left - left.mean()
+    s, z, z_after = surface
+    height = z_after - z_after.mean()
     rq = float(np.sqrt((height**2).mean()))
     return {
         "ra": float(np.abs(height).mean()),
         "rq": rq,
         "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
-        "slope": float(np.abs(np.diff(left) / np.diff(s)).max()),
-        "deepest": float((z - left).max()),
+        "slope": float(np.abs(np.diff(z_after) / np.diff(s)).max()),
+        "deepest": float((z - z_after).max()),
     }
 
 
 def passes_to_run_in(rows, in_a_row=1):
-    """Number of the pass from which on each adds less than `RUN_IN` of what the first one added; None: none.
+    """First of the passes that all add less than `RUN_IN` of the first pass's volume; None: not run in.
 
     Parameters
     ----------
     rows : list of dict
-        Of the passes from the first on, each with its number, "pass", and the volume it "added".
+        Index entries of the passes from the first on, with the number "pass" and the volume "added".
     in_a_row : int
-        Passes that it takes: where the surfaces are shifted from pass to pass, one that adds little may be
-        followed by others.
+        Required number of such passes: with shifted surfaces, a pass that adds little may be an exception.
     """
     if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
         return None
-    found = None
+    first = None
     for row in reversed(rows):
         if row["added"] >= RUN_IN * rows[0]["added"]:
             break
-        found = row["pass"]
-    return found if found and len(rows) - found + 1 >= in_a_row else None
+        first = row["pass"]
+    return first if first and len(rows) - first + 1 >= in_a_row else None

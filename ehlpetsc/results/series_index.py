@@ -1,4 +1,4 @@
-"""Results of a series, opened and sorted by their swept value."""
+"""Results of a series, opened and sorted by the varied value."""
 
 import contextlib
 import json
@@ -11,8 +11,8 @@ from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import read_result
 
-MAX_NAME_LENGTH = 80  # characters of a name
-DEFAULTS = {
+MAX_NAME_LENGTH = 80  # characters
+DEFAULTS = {  # of keys that are missing in a case
     "contact.model": "direct",
     "contact.boundary_friction": 0.0,
     "contact.minimum_film": 0.0,
@@ -21,26 +21,26 @@ DEFAULTS = {
     "time.passes": 1,
     "time.pass_shift": 0.0,
     "output.every": 1,
-}  # of keys that a case leaves out
-OTHER_ENDINGS = (".post.h5", ".restart.h5")  # beside results, and matched by the same pattern of a shell
-WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which films grow and fall
+}
+OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files beside results that match the same shell pattern
+WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which the film increases
 
 
 def open_all(paths, stack):
-    """Results of files; of the index of a series (.series.json) those of its members that exist.
+    """Results of files; for the index of a series (.series.json) the existing results of its members.
 
-    Files of post-processing and restart files among results are left out.
+    Post-processing and restart files among results are ignored.
 
     Parameters
     ----------
     paths : list of path-like
     stack : contextlib.ExitStack
-        Closes them.
+        Closes the results.
 
     Raises
     ------
     OutputError
-        A file cannot be read, or no member of a series has one.
+        A file cannot be read, or no member of a series has a result.
     """
     result_paths = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
     if not result_paths:
@@ -66,9 +66,9 @@ def command(name, about, report, arguments):
     name : str
         Module of the command.
     about : str
-        What it is for.
+        Description for ``--help``.
     report : callable
-        Takes the opened results, returns lines.
+        Returns the lines of the report on a list of results.
     arguments : list of str or None
 
     Returns
@@ -88,12 +88,12 @@ def command(name, about, report, arguments):
 
 
 def files_of(path):
-    """Result files of a name; of a series' index those of its members that have one.
+    """Result file of a path, or the existing result files of an index.
 
     Raises
     ------
     OutputError
-        As of `open_all`.
+        See `open_all`.
     """
     path = Path(path)
     if path.suffix != ".json":
@@ -104,10 +104,10 @@ def files_of(path):
         files = [path.with_name(member["file"]) for member in members]
     except (ValueError, KeyError, TypeError) as error:
         raise OutputError(f"{path}: not the index of a series ({error})") from error
-    there = [file for file in files if file.exists()]
-    if not there:
+    existing = [file for file in files if file.exists()]
+    if not existing:
         raise OutputError(f"{path}: no member of the series has a result file beside it")
-    return there
+    return existing
 
 
 def read_index(path):
@@ -126,12 +126,12 @@ def read_index(path):
 
 
 def series_values(results):
-    """Key and numbers of the one number in which the case files of a series differ.
+    """Key and values of the single number in which the case files of a series differ.
 
     Returns
     -------
     key : str or None
-        Dotted key, None if no single key differs or it holds no numbers.
+        Dotted key; None if no or several keys differ, or if the values are not numbers.
     values : list of float
     """
     differing = differences(results)
@@ -148,57 +148,57 @@ def differences(results):
     Returns
     -------
     dict of str to list
-        By dotted key the value of each result, None where it has none.
+        Values of each result by dotted key; None for a missing key.
     """
     tables = [flat_keys(tomllib.loads(result.attrs["case"])) for result in results]
     keys = sorted(key for key in set().union(*tables) - {"title"} if not key.startswith("series."))
     values = {key: [table.get(key) for table in tables] for key in keys}
-    return {key: found for key, found in values.items() if any(value != found[0] for value in found)}
+    return {key: column for key, column in values.items() if any(value != column[0] for value in column)}
 
 
 def distinguishing_names(results):
-    """Names of results by the values in which their cases differ; None where these are not unique.
+    """Names of results from the values in which their cases differ; None if these are not unique.
 
     Returns
     -------
     list of str or None
-        As ``viscosity = 0.002, entrainment_speed = 5``.
+        For example ``viscosity = 0.002, entrainment_speed = 5``.
     """
     differing = differences(results)
     last = [key.rpartition(".")[2] for key in differing]
-    words = [key if last.count(word) > 1 else word for key, word in zip(differing, last, strict=True)]
+    labels = [key if last.count(name) > 1 else name for key, name in zip(differing, last, strict=True)]
     names = [
-        ", ".join(_shown(*named) for named in zip(differing, words, row, strict=True))
-        for row in zip(*differing.values(), strict=True)
+        ", ".join(_setting(*entry) for entry in zip(differing, labels, values, strict=True))
+        for values in zip(*differing.values(), strict=True)
     ]
     if len(set(names)) < len(results) or max(map(len, names)) > MAX_NAME_LENGTH:
         return None
     return names
 
 
-def _shown(key, word, value):
+def _setting(key, label, value):
     value = DEFAULTS.get(key) if value is None else value
-    if value is None:  # a key that this case leaves out
-        return f"no {word}"
-    return f"{word} = {value:g}" if isinstance(value, int | float) else f"{word} = {value}"
+    if value is None:  # a key without a default that is missing in this case
+        return f"no {label}"
+    return f"{label} = {value:g}" if isinstance(value, int | float) else f"{label} = {value}"
 
 
 def flat_keys(table, prefix=""):
     """Values of nested tables by dotted key."""
-    found = {}
+    values = {}
     for key, value in table.items():
-        found |= flat_keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
-    return found
+        values |= flat_keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+    return values
 
 
 def in_order(results):
-    """A series sorted by its swept value; other results as they come."""
+    """Results of a series sorted by the varied value; other results in their order."""
     key, values = series_values(results)
     return [results[i] for i in np.argsort(values, kind="stable")] if key else results
 
 
 def from_thick_to_thin(results):
-    """A series sorted so that its film falls along it: viscosity and speed from high to low, others as swept.
+    """Series sorted by falling film: viscosity and speed from high to low, other values from low to high.
 
     Returns
     -------
@@ -209,7 +209,7 @@ def from_thick_to_thin(results):
     Raises
     ------
     OutputError
-        They are not a series over numbers.
+        The results are not a series over numbers.
     """
     key, _ = series_values(results)
     if key is None:

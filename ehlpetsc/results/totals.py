@@ -5,8 +5,8 @@ import numpy as np
 from ehlpetsc.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.results.filling import both_fill
 
-OF_ALL = ("sum", "min", "max")  # reductions that are meaningful over several runs
-REDUCED = {name: figure for name, figure in STEP_SCALARS.items() if figure.over_run}
+SERIES_REDUCTIONS = ("sum", "min", "max")  # reductions that are meaningful over several runs
+REDUCED = {name: scalar for name, scalar in STEP_SCALARS.items() if scalar.over_run}
 
 
 class Totals:
@@ -15,9 +15,9 @@ class Totals:
     Parameters
     ----------
     values : dict of str to number, optional
-        Of the steps so far, keys of `REDUCED`.
+        Totals of the steps so far, keys of `REDUCED`.
     means : dict of str to float, optional
-        Over the time in which both surfaces fill the contact, keys of `ehlpetsc.quantities.MEANS`.
+        Means over the time in which both surfaces fill the contact, keys of `ehlpetsc.quantities.MEANS`.
     """
 
     def __init__(self, values=(), means=()):
@@ -43,11 +43,14 @@ class Totals:
         ----------
         runs : iterable of Totals
         """
-        known = [run.values for run in runs]
-        named = {name: figure.over_series or figure.over_run for name, figure in REDUCED.items()}
-        names = [n for n, how in named.items() if how in OF_ALL and any(n in values for values in known)]
-        of_all = {name: [values[name] for values in known if name in values] for name in names}
-        return cls({name: REDUCTIONS[named[name]](values) for name, values in of_all.items()})
+        totals = [run.values for run in runs]
+        kinds = {name: scalar.over_series or scalar.over_run for name, scalar in REDUCED.items()}
+        columns = {
+            name: [values[name] for values in totals if name in values]
+            for name, kind in kinds.items()
+            if kind in SERIES_REDUCTIONS
+        }
+        return cls({name: REDUCTIONS[kinds[name]](values) for name, values in columns.items() if values})
 
     def add(self, scalars):
         """Add the scalars of the next step.
@@ -62,19 +65,19 @@ class Totals:
             self.values[name] = REDUCTIONS[REDUCED[name].over_run](both)
 
     def __str__(self):
-        """``name=value`` of the summary, the means at its end; 0 where no step was taken."""
-        shown = [
-            (figure.label or name, self.values.get(name, 0), figure.summary)
-            for name, figure in REDUCED.items()
-            if figure.summary and (name in self.values or not figure.only)
-            if not (name in MEANS and figure.over_run == "last")
+        """``name=value`` of the summary, then the means; 0 before the first step."""
+        entries = [
+            (scalar.label or name, self.values.get(name, 0), scalar.summary)
+            for name, scalar in REDUCED.items()
+            if scalar.summary and (name in self.values or not scalar.only)
+            if not (name in MEANS and scalar.over_run == "last")
         ]
-        shown += [(name, value, ".4g") for name, value in self.means.items()]
-        return " ".join(f"{label}={value:{form}}" for label, value, form in shown)
+        entries += [(name, value, ".4g") for name, value in self.means.items()]
+        return " ".join(f"{label}={value:{form}}" for label, value, form in entries)
 
 
 def _sliding_reverses(result):
-    """Whether the sliding speed changes sign during the run: means of friction are then of its magnitude."""
+    """Whether the sliding speed changes its sign; the mean of friction is then that of its magnitude."""
     if "speed_1" not in result.scalars:
         return False
     sliding = result.steps("speed_1") - result.steps("speed_2")
@@ -82,7 +85,7 @@ def _sliding_reverses(result):
 
 
 def means(result):
-    """Means over the time in which both surfaces fill the contact, by name; a steady run has its values.
+    """Means over the time in which both surfaces fill the contact, by name; for a steady run its values.
 
     Parameters
     ----------
@@ -91,16 +94,16 @@ def means(result):
     Returns
     -------
     dict of str to float
-        Empty where the run ends before.
+        Empty if the run ends before.
     """
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
     weights = np.ones(1) if len(time) == 1 else np.where(both_fill(result, time), dt, 0.0)
-    found = {}
+    by_name = {}
     for name in MEANS if weights.any() else ():
         values = result.steps(name).astype(float) if name in result.scalars else np.full(len(time), np.nan)
         if name == "friction_coefficient" and _sliding_reverses(result):
             values = np.abs(values)
-        known = np.isfinite(values)
-        if weights[known].any():
-            found[name] = float(np.average(values[known], weights=weights[known]))
-    return found
+        finite = np.isfinite(values)
+        if weights[finite].any():
+            by_name[name] = float(np.average(values[finite], weights=weights[finite]))
+    return by_name

@@ -1,9 +1,8 @@
-"""Writing result files, on rank 0.
+"""Writing of result files on rank 0.
 
 The file is written in HDF5's single-writer/multiple-reader mode: all datasets exist from the start, rows are
-appended in batches, and ``time`` is written after everything else, so that it vouches for the rows before
-it. A reader can therefore open a running job's file, and a killed job leaves one that is whole up to its
-last flush.
+appended in batches, and ``time`` is written last, so that rows with a time are complete. The file of a
+running job can be opened, and the file of a killed job is complete up to its last flush.
 """
 
 import contextlib
@@ -22,38 +21,40 @@ from ehlpetsc.results.hdf5.datasets import close, create, dataset_names, last_ro
 from ehlpetsc.results.hdf5.opening import FORMAT_VERSION
 from ehlpetsc.results.provenance import git_commit, versions
 
-LIMITS_ROOM = 2000  # characters kept free for what close() may have to say
-FLUSH_SECONDS = 2.0  # between two flushes, if steps are quicker; what a kill can lose beside the step in hand
+LIMITS_LENGTH = 2000  # characters reserved for the attribute "limits"
+FLUSH_SECONDS = (
+    2.0  # between two flushes, if steps are faster; a kill can lose this time and the current step
+)
 
 
 class ResultWriter:
     """Result file of one run.
 
-    A new file is made beside `path` and takes its name once it is complete in structure, so that an older
-    result is not lost to a run that fails at its start.
+    A new file is created under a temporary name and renamed when all datasets exist, so that a run that fails
+    at its start does not destroy an older result.
 
     Parameters
     ----------
     path : str, path-like or None
         None: in memory, for :meth:`to_bytes`.
     layout : results.hdf5.datasets.Layout
-        What it stores.
+        Datasets of the file.
     attributes : dict
-        Root attributes: title and case (its text as run), a, p0, h_scale, u1, u2, ranks, petsc_options ...;
-        ``versions`` may be a dict of more versions to name.
+        Root attributes: title and case (its text), a, p0, h_scale, u1, u2, ranks, petsc_options ...;
+        ``versions`` is an optional dict of further versions.
     every : int
         Steps between stored frames.
     resume_step : int, optional
         Continue the file at `path` after this step; later steps are dropped. The file is copied, which
-        also repairs one left by a killed run, and replaced when the copy is whole. Without a file at `path` a
-        new one begins after that step.
+        also repairs a file left by a killed run, and replaced when the copy is complete. Without a file at
+        `path` a new one begins after this step.
     contact_count : ndarray, shape (nx,), optional
-        Steps in contact up to `resume_step`; needed if the file has gone beyond it.
+        Steps in contact up to `resume_step`; required if the file contains later steps.
 
     Attributes
     ----------
     written : (int, float) or None
-        The last step that the file holds whole, and its time [s]; None: it holds none yet.
+        Last complete step in the file and its time [s]; None: no step.
 
     Raises
     ------
@@ -84,7 +85,7 @@ class ResultWriter:
         self._batch, self._flushed = Batch(self._file, len(layout.x)), clock.monotonic()
 
     def append(self, step, time, fields, scalars, in_contact, frame=None):
-        """Hold an accepted time step, and write when the buffer is full.
+        """Add an accepted time step to the buffer; write the buffer if it is full.
 
         Parameters
         ----------
@@ -95,11 +96,11 @@ class ResultWriter:
         fields : dict of str to ndarray, shape (nx,)
             At least the fields to be stored.
         scalars : dict of str to number
-            Per-step scalars, keys of `ehlpetsc.quantities.STEP_SCALARS`; those left out become
-            nan, counts 0.
+            Scalars of the step, keys of `ehlpetsc.quantities.STEP_SCALARS`; missing scalars become nan,
+            missing counts 0.
         in_contact : ndarray of bool, shape (nx,)
         frame : bool, optional
-            Whether to store the fields; by default if `every` divides the step.
+            Whether to store the fields; by default if the step is a multiple of `every`.
 
         Raises
         ------
@@ -115,7 +116,7 @@ class ResultWriter:
             self.flush()
 
     def flush(self):
-        """Hand all rows to the operating system; a killed process then does not lose them."""
+        """Write all rows to the file; a killed process then does not lose them."""
         self._check_still_there()
         with self._plain_faults("not written on"), room(self._file, self._batch.size):
             self._batch.write(self.contact_count)
@@ -134,7 +135,7 @@ class ResultWriter:
         status : str
             "done", "stopped", "not converged".
         limits : sequence of str
-            Limits of the physics that it went beyond, a sentence each.
+            Messages on results outside the validity of the model.
         """
         if not self._file:
             return
@@ -153,12 +154,12 @@ class ResultWriter:
         raise OutputError(f"{self.path}: result file removed or replaced by others during the run")
 
     def to_bytes(self):
-        """The bytes of a file in memory, once it is closed."""
+        """Content of a closed file in memory."""
         self._file.flush()
         return self._file.id.get_file_image()
 
     @contextlib.contextmanager
-    def _plain_faults(self, what):
+    def _plain_faults(self, failure):
         try:
             yield
         except OutputError:
@@ -166,17 +167,17 @@ class ResultWriter:
             raise
         except (OSError, RuntimeError) as error:
             self._close_after_a_fault()
-            kept = f"; {self._kept()}" if hasattr(self, "_batch") else ""
-            raise OutputError(f"{self.path}: result file {what}, {os_reason(error)}{kept}") from error
+            content = f"; {self._content()}" if hasattr(self, "_batch") else ""
+            raise OutputError(f"{self.path}: result file {failure}, {os_reason(error)}{content}") from error
 
-    def _kept(self):
+    def _content(self):
         if self.written is None:
             return "no step is in it yet"
         step, time = self.written
         return f"the file is whole up to step {step} ({1e6 * time:.4f} us)"
 
     def _close_after_a_fault(self):
-        with contextlib.suppress(Exception):  # the fault at hand is the one to report
+        with contextlib.suppress(Exception):  # the first fault is reported
             close(self._file, "stopped")
 
     def _root_attributes(self, given):
@@ -187,7 +188,7 @@ class ResultWriter:
             "restarts": 0,
             "history": "[]",
             "status": "running",
-            "limits": LIMITS_ROOM * " ",
+            "limits": LIMITS_LENGTH * " ",
         }
         put(self._file, given | own)
         change(self._file, "limits", "")

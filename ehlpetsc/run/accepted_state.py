@@ -12,12 +12,12 @@ class AcceptedState:
     Attributes
     ----------
     scalars : dict of str to number
-        Of the step, as below ``steps/`` of a result file [SI units].
+        Scalars of the step, as in ``steps/`` of a result file [SI units].
     fields : dict of str to ndarray, shape (nx,)
-        In SI units.
+        Fields of the step [SI units].
     in_contact : ndarray of bool, shape (nx,)
     solution : stepping.state.State
-        Unknowns, and what the next step needs of the past.
+        Unknowns, and the history for the next step.
     """
 
     scalars: dict
@@ -33,13 +33,13 @@ class AcceptedState:
 
     @classmethod
     def of(cls, simulation, started):
-        """State of a simulation's `solution`.
+        """Accepted state of the `solution` of a simulation.
 
         Parameters
         ----------
         simulation : run.simulation.Simulation
         started : float
-            Monotonic clock at the begin of the step [s].
+            Monotonic clock at the beginning of the step [s].
         """
         stepper, solution = simulation.stepper, simulation.solution
         scalars, fields, in_contact = diagnostics(

@@ -1,4 +1,4 @@
-"""Checks of the arguments that Python callers give to a simulation."""
+"""Checks of the arguments of a simulation that is called from Python."""
 
 import math
 import os
@@ -11,7 +11,7 @@ from mpi4py import MPI
 from ehlpetsc.errors import UsageError
 
 NODE_TOLERANCE = 1e-9  # relative: nodes and half widths nearer than this are equal
-MIN_STEP_RATIO = 1e-9  # of the nominal time step
+MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
 def check_file(name, path):
@@ -20,7 +20,7 @@ def check_file(name, path):
     Parameters
     ----------
     name : str
-        Of the argument.
+        Name of the argument.
     path : path-like or None
 
     Raises
@@ -28,8 +28,8 @@ def check_file(name, path):
     UsageError
     """
     if path is not None and not isinstance(path, str | Path):
-        known = os.fspath(path) if isinstance(path, os.PathLike) else path
-        if not isinstance(known, str):
+        text = os.fspath(path) if isinstance(path, os.PathLike) else path
+        if not isinstance(text, str):
             raise UsageError(f"{name} = {path!r}: allowed: the name of a file")
 
 
@@ -40,12 +40,12 @@ def check_comm(comm):
 
 
 def option_texts(options):
-    """PETSc options as texts by name.
+    """PETSc options as strings by name.
 
     Parameters
     ----------
     options : dict or None
-        None, True, False, numbers and texts by name without the dash.
+        None, True, False, numbers and strings by name without the dash.
 
     Raises
     ------
@@ -63,14 +63,14 @@ def option_texts(options):
 
 
 def check_pass(case, scales, after, pass_number):
-    """Number of a pass, where it may follow another one.
+    """Number of a pass, after checks against the previous pass.
 
     Parameters
     ----------
     case : case.loading.Case
     scales : physics.scales.Scales
     after : run.simulation.Simulation or None
-        The pass before.
+        The previous pass.
     pass_number : int or None
 
     Returns
@@ -107,7 +107,7 @@ def check_time_step(dt, simulation):
     Parameters
     ----------
     dt : float or None
-        [s]; None: that of the case.
+        [s]; None: of the step control.
     simulation : run.simulation.Simulation
 
     Raises
@@ -122,6 +122,6 @@ def check_time_step(dt, simulation):
         raise UsageError(f"dt = {dt!r}: the first state is the steady start, which has no time step")
     left = simulation.end - simulation.solution.time
     shortest = MIN_STEP_RATIO * simulation.scales.dt
-    known = isinstance(dt, Real) and not isinstance(dt, bool) and math.isfinite(dt)
-    if not known or not shortest <= dt <= left * (1.0 + NODE_TOLERANCE):
+    is_number = isinstance(dt, Real) and not isinstance(dt, bool) and math.isfinite(dt)
+    if not is_number or not shortest <= dt <= left * (1.0 + NODE_TOLERANCE):
         raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")

@@ -1,4 +1,4 @@
-"""Actions of rank 0 alone, whose errors are raised on every rank."""
+"""Actions of rank 0, whose errors are raised on every rank."""
 
 from ehlpetsc.errors import OutputError
 

@@ -7,7 +7,7 @@ from ehlpetsc.surfaces.roughness import SurfacePositions
 
 
 def scene_of(case, scales, operation, pass_number):
-    """Scene at the begin of a pass, `effects.effect.Scene`.
+    """Scene at the beginning of a pass, `effects.effect.Scene`.
 
     Parameters
     ----------
@@ -15,16 +15,16 @@ def scene_of(case, scales, operation, pass_number):
     scales : physics.scales.Scales
     operation : physics.operation.ConstantOperation
     pass_number : int
-        From 1; surface 2 begins each pass by `time.pass_shift` further on.
+        From 1; `time.pass_shift` shifts surface 2 from one pass to the next.
     """
-    one, other = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
+    offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
     shift = (pass_number - 1) * case.time.pass_shift if case.time else 0.0
-    positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(one, other + shift))
+    positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(offset_1, offset_2 + shift))
     return Scene(case, scales, operation, positions, _heat_transfer)
 
 
 def _heat_transfer(scene):
-    """Steps of the temperatures of a scene."""
+    """Time stepping of the temperatures of a scene."""
     from ehlpetsc.discretisation.heat.step import HeatStep
 
     return HeatStep(scene)

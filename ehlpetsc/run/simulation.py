@@ -34,24 +34,24 @@ MONITOR_OPTIONS = (
 
 
 class Simulation:
-    """A case, solved while its accepted states are iterated.
+    """Simulation of a case, an iterable over its accepted states.
 
-    Iteration begins with the steady solution at time 0 and ends where the travel of the case does; broken
-    off, it goes on where it was. A simulation given the state of a restart file (:meth:`resume`) goes on from
-    there.
+    The iteration begins with the steady solution at time 0 and ends at the travel of the case; it can be
+    interrupted and continued. After :meth:`resume` it continues from the state of a restart file.
 
     Parameters
     ----------
-    case : case.loading.Case, or what `load` takes
+    case : case.loading.Case, or an argument of `load`
     comm : mpi4py communicator, optional
-        The ranks that share the work; every one of them iterates. By default this process alone.
+        Ranks of the simulation, all of which iterate. Default: this process alone.
     options : dict, optional
-        PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, before all others;
-        PETSc's table holds them only while the simulation is solving.
+        PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, which override all
+        others; they are in PETSc's table only during solves.
     after : Simulation, optional
-        The pass before, of the same case, that is over: both bodies meet again as it has left them.
+        Previous pass of the same case, at its end, whose bodies meet again with their plastic deformation and
+        wear.
     pass_number : int, optional
-        Of a pass continued from a restart file; else it follows from `after`.
+        Number of a pass that is continued from a restart file; by default it follows from `after`.
 
     Attributes
     ----------
@@ -60,23 +60,23 @@ class Simulation:
         Load, radius and speeds over time.
     roughness : surfaces.roughness.Roughness or None
     scene : effects.effect.Scene
-        Case, scales, operation and the positions of both surfaces at the begin of this run.
+        Case, scales, operation and the positions of both surfaces at the beginning of this run.
     options : nonlinear.defaults.RunOptions
-        A context: whoever takes many steps enters it once around them.
+        Context manager; entering it once around many steps saves time.
     stepper : stepping.time_stepping.TimeStepping
     pass_number : int
-        Of the passes of both bodies over each other, from 1.
+        Number of the pass of both bodies over each other, from 1.
     state : AcceptedState or None
-        The last one of this process.
+        Last state of this process.
     solution : stepping.state.State or None
-        Its unknowns, or those of a restart file.
+        Unknowns of the last state, or of a restart file.
 
     Raises
     ------
     CaseError
         The case is faulty, or it is a series.
     UsageError
-        An option that cannot be, or a pass that cannot follow the one before.
+        An impossible option, or a pass that cannot follow the previous one.
 
     Examples
     --------
@@ -109,25 +109,25 @@ class Simulation:
         self.state = self.solution = None
         with self.options:
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
-            self._followed = not self.options.user_set.isdisjoint(MONITOR_OPTIONS)
+            self._is_monitored = not self.options.user_set.isdisjoint(MONITOR_OPTIONS)
         before = after.solution.records if after else {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
 
     @property
     def finished(self):
-        """Whether the last state is the end of the travel; of a steady case, whether it is solved."""
+        """Whether the last state is at the end of the travel; of a steady case, whether it is solved."""
         if self.solution is None:
             return False
         return self.case.time is None or self._time_left() == 0.0
 
     @property
     def end(self):
-        """Time at which the run ends [s]."""
+        """Time of the end of the run [s]."""
         return self.solution.time + self._time_left()
 
     def level(self, time):
-        """Number of nominal time steps up to a time [s], with its fraction."""
+        """Number of nominal time steps up to a time [s], with a fraction."""
         return self.operation.level(time, self.scales.dt)
 
     def _time_left(self):
@@ -142,8 +142,8 @@ class Simulation:
         Parameters
         ----------
         stop : run.stop.StopRequest, optional
-            Asked before every time step with the communicator whether to end there, and in every iteration
-            whether the step in progress is to be given up.
+            Called with the communicator: before every time step, whether to stop; in every iteration, whether
+            to abandon the step in progress.
 
         Raises
         ------
@@ -154,8 +154,8 @@ class Simulation:
             begun = self.solution is not None
             if begun and stop and stop(self.comm):
                 raise Stopped
-            asked = stop and (stop.overdue if begun else stop)
-            yield self.advance(watch=stop and partial(_end_where_asked, asked, self.comm))
+            is_requested = stop and (stop.overdue if begun else stop)
+            yield self.advance(watch=stop and partial(_raise_if_stopped, is_requested, self.comm))
 
     def resume(self, solution, baseline, positions):
         """Continue from a time level instead of from the steady solution.
@@ -166,7 +166,7 @@ class Simulation:
         baseline : pair of ndarray, shape (nx,)
             Steady q and w, for the predictor.
         positions : surfaces.roughness.SurfacePositions
-            Of both surfaces at that level.
+            Positions of both surfaces at this time level.
         """
         solver = self.stepper.solver
         self.scene = replace(self.scene, positions=positions)
@@ -183,7 +183,7 @@ class Simulation:
         Parameters
         ----------
         dt : float, optional
-            Length of the step [s]; by default the case's, shorter after steps that had to be halved.
+            Length of the step [s]; by default that of the case, shorter after halved steps.
         watch : callable, optional
             Called in every iteration on every rank; an exception from it ends the solve.
 
@@ -194,7 +194,7 @@ class Simulation:
         Raises
         ------
         NotConverged
-            Its `state` is the last good one.
+            Its `state` is the last accepted state.
         UsageError
             No such time step is possible, or the simulation is at its end.
         """
@@ -215,7 +215,7 @@ class Simulation:
         check_ends(self.scales.x, solution.p, touching)
 
     def _start(self, watch):
-        self._head("steady start")
+        self._print_heading("steady start")
         with events.START:
             solution = self.stepper.start(self._records, watch)
         if isinstance(self.stepper.solver, NewtonSolver):
@@ -225,16 +225,16 @@ class Simulation:
         return solution
 
     def _step(self, dt, watch):
-        self._head(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
+        self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
         with events.STEPS:
             return self.stepper.advance(self.solution, dt, watch)
 
-    def _head(self, what):
-        """Print a heading above the lines of PETSc that the user has enabled."""
-        if self._followed:
-            PETSc.Sys.Print(what, comm=self.comm)
+    def _print_heading(self, text):
+        """Print a heading above the output of PETSc's monitors."""
+        if self._is_monitored:
+            PETSc.Sys.Print(text, comm=self.comm)
 
 
-def _end_where_asked(asked, comm):
-    if asked(comm):
+def _raise_if_stopped(is_requested, comm):
+    if is_requested(comm):
         raise Stopped

@@ -1,4 +1,4 @@
-"""A run from time 0 or a restart file to its end, with its outputs and messages."""
+"""Run of a simulation from time 0 or a restart file to its end, with outputs and messages."""
 
 import contextlib
 import sys
@@ -31,7 +31,7 @@ class Outcome:
 
 
 def solve(simulation, outputs, stop=None):
-    """Write the states of a simulation to outputs, up to its end, a step that does not converge or a stop.
+    """Write the states of a simulation to outputs until its end, a stop or a step that does not converge.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def solve(simulation, outputs, stop=None):
 
 
 class UnusedOptions:
-    """Note on unused options, most likely misspelt, after the first time step; an output.
+    """Output that prints the unused, probably misspelt options after the first time step.
 
     Parameters
     ----------
@@ -73,12 +73,12 @@ class UnusedOptions:
         self._options, self._show, self._noted = options, show, None
 
     def write(self, state):
-        """Print the note once PETSc has read the options of its solver."""
+        """Print the note after the first step, when PETSc has read the options of the solver."""
         if state.step >= 1 and self._noted is None:
             self.note()
 
     def close(self, status):
-        """Do nothing: at the end of a run the note belongs to its report."""
+        """Do nothing: at the end of a run its report prints the note."""
 
     def note(self):
         """Print the unused options that have not been printed yet."""
@@ -90,7 +90,7 @@ class UnusedOptions:
 
 
 class Run:
-    """A simulation with its outputs and messages, for the command.
+    """Run of a simulation by the command, with outputs and messages.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Run:
     output : path-like
     stop : run.stop.StopRequest, optional
     out, err : file, optional
-        Where rank 0 prints; standard output and error by default.
+        Streams of rank 0; default: standard output and error.
     """
 
     def __init__(self, simulation, output, stop=None, out=None, err=None):
@@ -108,14 +108,14 @@ class Run:
         self._unused = UnusedOptions(simulation.options, self._print)
 
     def run(self, restart=None, overwrite=False):
-        """Run to the end and report how it ended.
+        """Run to the end and print a report.
 
         Parameters
         ----------
         restart : path-like, optional
             Restart file to resume from.
         overwrite : bool
-            As of `Recorder.lock_output`.
+            See `Recorder.lock_output`.
 
         Returns
         -------
@@ -142,12 +142,12 @@ class Run:
             restart = self.recorder.lock_output(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
-            self._looser = self.simulation.options.loose_tolerances()
-            shown = []
+            self._notes = self.simulation.options.loose_tolerances()
+            printed = []
             if self.root:
                 slow = SlowSteps(self.simulation.comm.size, self._print)
-                shown = [self._unused, ProgressOutput(self.simulation, self.out), slow]
-            return solve(self.simulation, [self.recorder, *shown], self.stop)
+                printed = [self._unused, ProgressOutput(self.simulation, self.out), slow]
+            return solve(self.simulation, [self.recorder, *printed], self.stop)
 
     def _report(self, outcome):
         recorder, state = self.recorder, self.simulation.solution
@@ -157,19 +157,19 @@ class Run:
         elif outcome.status is ExitStatus.STOPPED and state is None:
             self._print("ehlpetsc: stopped during the steady start; nothing to continue from")
         elif outcome.status is ExitStatus.STOPPED:
-            way = f"continue with -ehl_restart {recorder.restart} or the same command"
-            self._print(f"ehlpetsc: stopped at step {state.step}; {way}")
+            advice = f"continue with -ehl_restart {recorder.restart} or the same command"
+            self._print(f"ehlpetsc: stopped at step {state.step}; {advice}")
         for line in recorder.result.limits:
             self._print(f"limit: {line}")
-        for line in self._looser:
-            self._print(f"note: {line}")
+        for note in self._notes:
+            self._print(f"note: {note}")
         self._unused.note()
         if state is not None:
             self._print(f"result: {recorder.output}")
         self._print(self._summary(outcome))
 
     def _summary(self, outcome):
-        """The last line, with the means of what the result file holds by now."""
+        """Last line of the output, with means from the result file."""
         totals = self.recorder.totals
         if self.root and totals.values and outcome.status is not ExitStatus.BAD_INPUT:
             with contextlib.suppress(OutputError), read_result(self.recorder.output) as result:

@@ -1,4 +1,4 @@
-"""Stopping on request: a signal or the time limit ends a run after the step in hand."""
+"""Stop on request: a signal or the time limit ends a run after the current step."""
 
 import math
 import signal
@@ -6,25 +6,25 @@ import sys
 import time as clock
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1)
-GRACE_TIME = 0.4  # s for the step in hand: mpirun kills one second after the signal that it hands on
+GRACE_TIME = 0.4  # s for the current step: mpirun kills one second after it has forwarded a signal
 
 
 class Interrupted(BaseException):
-    """A signal to stop before the run; Python would end by a KeyboardInterrupt inside an import itself."""
+    """Signal to stop before the run; unlike KeyboardInterrupt, an import does not end the process by it."""
 
 
 class EarlyStop:
-    """Handler of the signals that come before a :class:`StopRequest` takes over: each is an `Interrupted`.
+    """Handler of signals before :class:`StopRequest` is installed; raises `Interrupted`.
 
     Attributes
     ----------
-    asked : bool
-        Whether a signal has come. One inside a callback of numba's compiler is lost there: the next handler
-        of signals looks here.
+    is_requested : bool
+        Whether a signal has arrived. The exception is lost inside a callback of numba's compiler; the next
+        handler of signals then reads this attribute.
     """
 
     def __init__(self):
-        self.asked = False
+        self.is_requested = False
         previous_hook = sys.unraisablehook
         sys.unraisablehook = lambda lost: (
             None if isinstance(lost.exc_value, Interrupted) else previous_hook(lost)
@@ -32,14 +32,14 @@ class EarlyStop:
         _handle(self)
 
     def __call__(self, *_):
-        self.asked = True
+        self.is_requested = True
         raise Interrupted
 
 
 class StopRequest:
-    """Whether the run is to stop: a signal has come on any rank, or the time is over.
+    """Stop request of a run: a signal on any rank, or the time limit.
 
-    Signals that are ignored, as SIGHUP under nohup, stay so.
+    Ignored signals, as SIGHUP under nohup, remain ignored.
 
     Parameters
     ----------
@@ -49,10 +49,10 @@ class StopRequest:
 
     def __init__(self, minutes=0.0):
         self.until = clock.monotonic() + 60.0 * minutes if minutes else math.inf
-        if any(getattr(handler, "asked", False) for handler in _handle(self._ask)):
-            self._ask()
+        if any(getattr(handler, "is_requested", False) for handler in _handle(self._request)):
+            self._request()
 
-    def _ask(self, *_):
+    def _request(self, *_):
         self.until = min(self.until, clock.monotonic())
 
     def __call__(self, comm):
@@ -60,7 +60,7 @@ class StopRequest:
         return comm.allreduce(int(clock.monotonic() >= self.until)) > 0
 
     def overdue(self, comm):
-        """Whether the step in hand has had its grace time; the same answer on every rank."""
+        """Whether the grace time of the current step is over; equal on every rank of the communicator."""
         return comm.allreduce(int(clock.monotonic() >= self.until + GRACE_TIME)) > 0
 
 

@@ -1,29 +1,29 @@
-r"""Dry contact of solids that yield, as a convex problem: a start for Newton's method.
+r"""Dry contact of yielding solids as a convex problem: initial guess of Newton's method.
 
 .. math:: \min_p\ \tfrac12\,p\cdot Ap+p\cdot g,\qquad 0\le p\le p_y,\quad \sum p\,\Delta x=W,
 
-A the deflection, g the gap of the undeformed shapes: the gradient is the deformed gap, but for the approach.
-Projected gradients with Nesterov's momentum, restarted wherever a step turns back, converge from any start;
-where nearly all that touches yields, Newton's method alone wanders from one set of elastic nodes to the next.
+A the deflection, g the gap of the undeformed shapes: the gradient is the deformed gap without the approach.
+Projected gradients with Nesterov's momentum, restarted where a step turns back, converge from any guess;
+where nearly all nodes in contact yield, Newton's method alone does not find the set of elastic nodes.
 """
 
 import numpy as np
 
 from ehlpetsc.stepping.first_guess import AMBIENT, load_of, smoothed, undeformed_gap
 
-MAX_EIGENVALUE = 0.26  # eigenvalue of A over the mesh's length, of pressures without a mean
-MAX_STEPS = 1000  # steps
+MAX_EIGENVALUE = 0.26  # of A over the length of the mesh, for pressures with zero mean
+MAX_ITERATIONS = 1000  # of the projected gradient method
 STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
-HALVINGS = 60  # of an interval: to rounding
+BISECTIONS = 60  # of an interval, down to rounding
 
 
 def bounded_pressure(problem, inputs):
-    """Pressure of the dry contact, 0 <= p <= p_y, and its gap but for the approach.
+    """Pressure of the dry contact, 0 <= p <= p_y, and its gap without the approach.
 
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-        Of solids that yield.
+        Problem with a yield pressure.
     inputs : ehl_problem.StepInputs
 
     Returns
@@ -36,7 +36,7 @@ def bounded_pressure(problem, inputs):
     rate = 1.0 / (MAX_EIGENVALUE * (problem.x[-1] - problem.x[0]))
     p = ahead = project(np.sqrt(np.maximum(load - problem.x**2, 0.0)), limit, total)
     momentum = 1.0
-    for _ in range(MAX_STEPS):
+    for _ in range(MAX_ITERATIONS):
         new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
         if np.abs(new - p).max() < STEP_TOLERANCE * limit:
             break
@@ -48,25 +48,25 @@ def bounded_pressure(problem, inputs):
 
 
 def project(p, limit, total):
-    """The nearest pressures between 0 and `limit` of the given sum: a constant added, and cut."""
+    """Projection of p onto pressures between 0 and `limit` with the sum `total`: shifted and clipped."""
     low, high = -p.max(), limit - p.min()
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         shift = 0.5 * (low + high)
         low, high = (shift, high) if np.clip(p + shift, 0.0, limit).sum() < total else (low, shift)
     return np.clip(p + high, 0.0, limit)
 
 
 def bounded_start(problem, film, inputs, smoothing):
-    """Unknowns q, w and the approach h00 of that contact; with oil the oil carries it on an even film.
+    """Unknowns q, w and approach h00 of the dry contact; with oil, the oil carries the load on an even film.
 
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
     film : float
-        Of oil, in a^2/R.
+        Oil film in a^2/R.
     inputs : ehl_problem.StepInputs
     smoothing : float
-        Of the pressure under oil, over so many lengths of the inlet sweep, film^(2/3).
+        Width of the smoothing of the oil pressure in lengths of the inlet sweep, film^(2/3).
 
     Returns
     -------

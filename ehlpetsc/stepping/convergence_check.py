@@ -1,14 +1,15 @@
-r"""Convergence check of a solution, independent of SNES: a step is accepted only if it holds.
+r"""Convergence check of a solution, independent of SNES; a step is accepted only if it passes.
 
-Of the rows of :mod:`ehlpetsc.discretisation.ehl_problem` at the solution
+Conditions on the rows of :mod:`ehlpetsc.discretisation.ehl_problem` at the solution:
 
-* the deflection's and, where there is oil, Reynolds': :math:`\|F\|_2` at most the tolerance of the solve,
-  ``-snes_atol`` (or what rounding leaves, up to ten times that; or ``-snes_rtol`` of the first residual);
-* where direct contact leaves Reynolds out, complementarity: :math:`F\ge0` and :math:`h\ge h_b`, F to the same
-  tolerance, h to the thickness below which a film counts as closed; in mixed contact it holds by what the
-  unknowns mean;
-* the load's: :math:`|\sum p\,\Delta x-\pi/2|` to the same tolerance;
-* everything finite, and no node with less than no oil, :math:`q\ge-1`.
+* deflection and, with oil, Reynolds equation: :math:`\|F\|_2` at most the tolerance of the solve,
+  ``-snes_atol`` (or the residual of rounding, up to ten times that; or ``-snes_rtol`` times the first
+  residual);
+* complementarity at the contact nodes of direct contact: :math:`F\ge0` and :math:`h\ge h_b`, F to the same
+  tolerance, h to the thickness below which a film counts as closed; in mixed contact it follows from the
+  definition of the unknowns;
+* load: :math:`|\sum p\,\Delta x-\pi/2|` to the same tolerance;
+* all values finite, void fractions at most 1, :math:`q\ge-1`.
 """
 
 from dataclasses import replace
@@ -17,8 +18,8 @@ import numpy as np
 
 from ehlpetsc.errors import SolveFailed
 
-SUM_ROUNDING = 1.0 + 1e-6  # of a tolerance: the order of sums differs
-VOID_TOLERANCE = 1e-9  # void fractions beyond 1 by no more than this are rounding
+SUM_ROUNDING = 1.0 + 1e-6  # factor on tolerances: sums in another order differ by rounding
+VOID_TOLERANCE = 1e-9  # excess of a void fraction over 1 that is rounding
 
 
 def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
@@ -29,7 +30,7 @@ def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
     Raises
     ------
     SolveFailed
-        The solver gave up, or its solution does not pass the check.
+        The solver does not converge, or its solution does not pass the check.
     """
     *solution, iterations = solver.solve(q, w, h00, inputs, max_it=max_it, watch=watch)
     fault = find_fault(solver.problem, *solution, solver.residual(), solver.tolerance)
@@ -39,7 +40,7 @@ def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
 
 
 def solve_step(solver, q, w, h00, inputs, watch=None):
-    """Checked solution of a time step; where solids yield and it fails, from that of elastic solids.
+    """Checked solution of a time step; with yielding solids, on failure, from the solution of elastic ones.
 
     Parameters, returned values and errors are those of :func:`solve_checked`.
     """
@@ -68,7 +69,7 @@ def find_fault(problem, q, w, h00, rows, tolerance):
     q, w : ndarray, shape (nx,)
     h00 : float
     rows : (ndarray, ndarray, float)
-        Deflection and Reynolds at every node, and the load's.
+        Residual: deflection and Reynolds rows, load row.
     tolerance : float
     """
     deflection, reynolds, load = rows
@@ -80,11 +81,11 @@ def find_fault(problem, q, w, h00, rows, tolerance):
     fault, reynolds = problem.model.check(w, reynolds, bound)
     if fault:
         return fault
-    for what, size in (
+    for equation, norm in (
         ("load", abs(load)),
         ("deflection", np.linalg.norm(deflection)),
         ("open gap" if problem.fluid is None else "oil balance", np.linalg.norm(reynolds)),
     ):
-        if not size <= bound:
-            return f"the residual of the {what} is {size:.2e}, allowed: {tolerance:.1e}"
+        if not norm <= bound:
+            return f"the residual of the {equation} is {norm:.2e}, allowed: {tolerance:.1e}"
     return None

@@ -1,12 +1,12 @@
-"""Check that the domain does not cut off pressure or contact: such a solution is meaningless."""
+"""Check that pressure and contact vanish at the ends of the domain; otherwise a solution is meaningless."""
 
 from ehlpetsc.errors import NotConverged
 
-CUT_OFF = 0.01  # of p0, at an end of the domain
+MAX_END_PRESSURE = 0.01  # p0
 
 
 def check_ends(x, pressure, touching):
-    """Whether pressure and contact end within the domain.
+    """Refuse a solution whose pressure or contact is cut off by an end of the domain.
 
     Parameters
     ----------
@@ -19,12 +19,12 @@ def check_ends(x, pressure, touching):
     Raises
     ------
     NotConverged
-        They do not; the text names the end and the cure.
+        Pressure or contact at an end; the message names the end and the cure.
     """
     for end, key in ((0, "inlet"), (-1, "outlet")):
         at = f"at the {key}, x = {x[end]:g} a"
         cure = f"put mesh.{key} further out"
         if touching[end]:
             raise NotConverged(f"solids touch {at}: the contact is wider than the domain; {cure}")
-        if pressure[end] > CUT_OFF:
+        if pressure[end] > MAX_END_PRESSURE:
             raise NotConverged(f"{pressure[end]:.2g} p0 {at}: the domain cuts the pressure off; {cure}")

@@ -1,30 +1,30 @@
-"""First guesses of steady solutions: Hertz pressure under an even film, or behind a starved inlet."""
+"""Initial guesses of steady solutions: Hertz pressure with an even film, flooded or starved."""
 
 import numpy as np
 
 from ehlpetsc.discretisation.elasticity import fast_length
 
-SMOOTHED = 0.2
-DIRECT = 1000  # nodes on either side: beyond it a transform is quicker than the sum
-AMBIENT = 1e-6  # pressure in p0 of oil that is not to begin as a cavity
+SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep
+MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum
+AMBIENT = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
 
 
 def undeformed_gap(problem, inputs):
-    """Gap of a step's inputs beyond the parabola of the reference radius, in a^2/R."""
+    """Undeformed gap of a step without the parabola of the reference radius, in a^2/R."""
     change = problem.scales.R / inputs.conditions.radius - 1.0
     return inputs.phi + 0.5 * change * problem.x**2
 
 
 def load_of(problem, inputs):
-    """Load of a step's inputs over that of the scales."""
+    """Load of a step over the load of the scales."""
     return inputs.load_share * (inputs.conditions.load / problem.scales.load)
 
 
 def hertz_start(problem, film, inputs, thick=1.3):
-    """Hertz pressure and a film everywhere above the expected one; behind the outlet a cavity.
+    """Hertz pressure with a film above the expected one at every node; downstream of the contact a cavity.
 
-    The pressure is smoothed over `SMOOTHED` times the length of the inlet sweep, film^(2/3): the infinite
-    slope at Hertz' edge drives more oil through a thick film than all that follows.
+    The pressure is smoothed over `SMOOTHING` times the length of the inlet sweep, film^(2/3): the infinite
+    slope at the edge of the Hertz pressure would dominate the flow through a thick film.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def hertz_start(problem, film, inputs, thick=1.3):
         Expected film in a^2/R.
     inputs : ehl_problem.StepInputs
     thick : float
-        Times the expected film.
+        Film over the expected film.
 
     Returns
     -------
@@ -44,7 +44,7 @@ def hertz_start(problem, film, inputs, thick=1.3):
     width_2 = load * (inputs.conditions.radius / problem.scales.R)
     p = np.sqrt(np.maximum(width_2 - x**2, 0.0))
     if problem.fluid is not None:
-        p = smoothed(p, SMOOTHED * film ** (2.0 / 3.0) / problem.dx)
+        p = smoothed(p, SMOOTHING * film ** (2.0 / 3.0) / problem.dx)
     p *= 0.5 * np.pi * load / (problem.dx * p.sum())
     h = problem.film(p, 0.0, undeformed_gap(problem, inputs))
     if problem.fluid is None:
@@ -59,14 +59,14 @@ def hertz_start(problem, film, inputs, thick=1.3):
 
 
 def smoothed(p, width):
-    """Mean of p, zero beyond its ends, under a Gaussian of a width in nodes, cut off at the mesh's length.
+    """Convolution of p, zero outside the mesh, with a Gaussian of a width in nodes.
 
-    (scipy.ndimage has it, but loads 14 MB, which a smooth contact has no other need of.)
+    `scipy.ndimage.gaussian_filter1d` would load 14 MB that a smooth contact does not need otherwise.
     """
     reach = min(int(4.0 * width + 0.5), len(p) - 1)
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
     weights /= weights.sum()
-    if reach <= DIRECT:
+    if reach <= MAX_DIRECT_REACH:
         return np.convolve(p, weights)[reach : reach + len(p)]
     length = fast_length(len(p) + 2 * reach)
     product = np.fft.irfft(np.fft.rfft(p, length) * np.fft.rfft(weights, length), length)
@@ -74,7 +74,7 @@ def smoothed(p, width):
 
 
 def starved_start(problem, film, inputs):
-    """Hertz pressure and the oil film of the inlet, void wherever the gap is wider."""
+    """Hertz pressure and the oil film of the inlet, with void where the gap of the inlet is wider."""
     oil = inputs.inlet_film
     q, w, h00 = hertz_start(problem, min(film, oil), inputs)
     h = problem.model.state(q, w).film

@@ -9,7 +9,7 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.traction import shear_stresses
 
 MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
-MIN_BALANCE_FILM = 1e-10  # m: an atom; mass defects are relative to this film at least
+MIN_BALANCE_FILM = 1e-10  # m, size of an atom: smallest reference film of the mass error
 
 
 def diagnostics(scene, problem, effects, state, started):
@@ -22,20 +22,20 @@ def diagnostics(scene, problem, effects, state, started):
     effects : list of effects.effect.Effect
     state : stepping.state.State
     started : float
-        Monotonic clock at the begin of the step [s].
+        Monotonic clock at the beginning of the step [s].
 
     Returns
     -------
-    figures : dict of str to number
+    scalars : dict of str to number
     fields : dict of str to ndarray, shape (nx,)
     in_contact : ndarray of bool, shape (nx,)
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
     loads = problem.model.surface_loads(state.q, state.w, state.h, state.reynolds_residual)
-    found = (
+    of_effects = (
         e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case)
     )
-    ln_eta = next((values for values in found if values is not None), None)
+    ln_eta = next((values for values in of_effects if values is not None), None)
     fields, contact_mask = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, film = s.dx * pressure.sum(), mean_film(s, state.h)
@@ -94,7 +94,7 @@ def _fields(case, s, conditions, problem, state, loads, ln_eta):
 
 
 def _of_oil(loads, s):
-    """Largest pressure of the oil, and number of nodes under less than 1 nm of it."""
+    """Maximum pressure of the oil, and number of nodes with less than 1 nm of oil."""
     oil = np.where(loads.oil_mask, loads.oil_pressure, 0.0) * s.p0
     thin = ~loads.contact_mask & (loads.film * s.h < MIN_CONTINUUM_FILM)
     return {"oil_pressure": oil.max(), "nodes_below_1nm": int(thin.sum())}
@@ -110,13 +110,13 @@ def mass_error(problem, state):
     r"""Mass defect of a step over the mass that the contact carries.
 
     :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
-    where mass is conserved at every node. Where direct contact leaves the Reynolds equation out, F is the
-    mass that this adds; elsewhere, and everywhere in mixed contact, it is the residual of Newton's method.
-    (The mass drawn in at the inlet is no measure: nearly all of the thick film there flows back.) The inlet
-    node has no balance: its pressure or its oil is given.
+    where mass is conserved at every node. At contact nodes of direct contact, F is the mass that is not
+    conserved; at other nodes, and at all nodes in mixed contact, it is the residual of Newton's method.
+    (The mass flow at the inlet is no reference: nearly all of the thick film there flows back.) The inlet
+    node has no balance: its pressure or its oil film is prescribed.
     """
     if problem.fluid is None:
         return 0.0
-    made = problem.film_scale * np.abs(state.reynolds_residual[1:]).sum()
+    defect = problem.film_scale * np.abs(state.reynolds_residual[1:]).sum()
     carried = state.m[np.abs(problem.x) <= 1.0].mean()
-    return float(made / max(carried, MIN_BALANCE_FILM / problem.scales.h))
+    return float(defect / max(carried, MIN_BALANCE_FILM / problem.scales.h))

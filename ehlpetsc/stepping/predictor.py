@@ -1,10 +1,10 @@
-r"""First guess of a time step: the change of the smooth solution by roughness, advected.
+r"""Predictor of a time step: the difference from the smooth solution, which roughness causes, advected.
 
-It is carried with the mean speed (of films the ratio, which keeps them positive), from that one of the last
-three time levels whose way from here is nearest to a whole number of nodes. Asperity pressures are
-two or three nodes wide, and interpolating between the nodes is what a predictor loses most by: on the
-measured surfaces the last level alone cost 6.0 Newton iterations a step, the best of three 4.6 (over 5 a of
-travel). Extrapolation in time gained nothing more.
+The difference (of films the ratio, which keeps them positive) is advected with the entrainment speed from one
+of the last three time levels, the one whose distance to the new level is nearest to a whole number of nodes.
+Asperity pressures are two or three nodes wide, and interpolation between the nodes is the largest error of a
+predictor: on the measured surfaces the last level alone costs 6.0 Newton iterations a step, the best of three
+4.6 (over a travel of 5 a). Extrapolation in time does not reduce this number.
 """
 
 from typing import NamedTuple
@@ -14,8 +14,8 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL
 
-MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth one may touch too
-LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that outweighs one step of age
+MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth solution may be in contact too
+LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that counts as much as one step of age
 
 
 class TimeLevel(NamedTuple):
@@ -28,11 +28,11 @@ class TimeLevel(NamedTuple):
 
 @compiled
 def advected(values, nodes):
-    """Advect the change of the smooth solution by roughness by `nodes` nodes.
+    """Values advected by `nodes` nodes.
 
-    Cubic interpolation, kept between the two values it lies between: beside the pressure spikes of
-    asperities, two or three nodes wide, a cubic undershoots, and the cavity it makes there costs Newton's
-    method iterations.
+    Cubic interpolation, limited to the range of the two neighbouring values: beside the pressure spikes of
+    asperities, two or three nodes wide, a cubic undershoots, and the resulting cavity costs Newton's method
+    iterations.
     """
     whole, last, moved = int(np.floor(nodes)), len(values) - 1, np.empty_like(values)
     t = 1.0 - (nodes - whole)
@@ -68,24 +68,21 @@ def predict(problem, smooth, levels, nodes):
     ----------
     problem : ehl_problem.EHLProblem
     smooth : TimeLevel
-        The steady solution of the start.
+        Steady solution of the start.
     levels : sequence of TimeLevel
-        Latest first.
+        Earlier time levels, latest first.
     nodes : sequence of float
-        Way of each to the new time, with the mean speed, in nodes.
+        Distance of each level to the new time, with the entrainment speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
     level, distance, model = levels[best], nodes[best], problem.model
     q0, film = smooth.q, model.state(level.q, level.w).film
     h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
     q = q0 + advected(level.q - q0, distance)
-    # where there was oil, the differences carried must not leave a cavity: it fills by a few nodes an
-    # iteration, one that opens does so at once
+    # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
     least = np.minimum(*neighbours(level.q, distance))
-    refilled = np.minimum(
-        np.minimum(least, level.q), PRESSURE_AFTER_REFILL
-    )  # where the smooth film cavitates
-    full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, least), refilled)
+    in_cavity = np.minimum(np.minimum(least, level.q), PRESSURE_AFTER_REFILL)  # of the smooth solution
+    full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, least), in_cavity)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
     interpolated = model.w_from_film(h0 * advected(film / h0, distance))
     return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, distance)))

@@ -18,15 +18,15 @@ class State:
     p, h
         Pressure and film.
     m, m_older
-        Masses per area of the film at this level and the one before (None: none).
+        Masses per area of the film at this level and the previous one (None: no such level).
     time, dt
         [s]; `dt` is the step to this level (None at the start).
     step
-        Number of steps taken.
+        Number of the time step.
     travelled
         Distances travelled by surfaces 1 and 2 since time 0 [m], signed.
     earlier
-        The two levels before this one, latest first.
+        Up to two previous levels, latest first.
     reynolds_residual
         F of the Reynolds equation at the solution.
     records
@@ -52,5 +52,5 @@ class State:
 
     @property
     def level(self):
-        """Time level for the predictors of later steps."""
+        """Time level for the predictor of later steps."""
         return TimeLevel(0.5 * sum(self.travelled), self.q, self.w)

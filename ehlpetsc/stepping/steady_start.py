@@ -1,23 +1,23 @@
 r"""Steady start of a run, with continuation for hard cases.
 
-From Hertz' pressure, smoothed, under a film 1.3 times Moes' central one, Newton's method takes 4 to 7
-iterations for most oils and loads. Where it does not arrive, pressures of the exit spike swing: beyond about
-:math:`\alpha p_0=20` the flow out of a node at high pressure hardly depends on that pressure any more, and
-shorter steps or other film thicknesses only swing elsewhere. Thick films fail otherwise: Eyring's flow is
-exponential in :math:`hp_x/\tau_0`, which at the start may be in the hundreds.
+From the smoothed Hertz pressure and a film of 1.3 times Moes' central film, Newton's method takes 4 to 7
+iterations for most oils and loads. It fails in two cases. Beyond about :math:`\alpha p_0=20` the pressures of
+the exit spike oscillate, because the flow out of a node at high pressure hardly depends on that pressure;
+shorter steps or other films do not help. With thick films, Eyring's flow is exponential in
+:math:`hp_x/\tau_0`, which at the start may be in the hundreds.
 
-What leads there is continuation: the same contact with a share s of the pressure-viscosity coefficient and
-with :math:`\tau_0/s^4`, nearly Newtonian, is solved first, s halved until that succeeds; s then grows back
-to 1, each solution the start of the next; roughness that lies under the film from the start is left out
-meanwhile and then grown likewise. It took Barus' law to :math:`\alpha p_0=267`, and thick films from first
-residuals of 1e50; steps in pseudo-time, tried on contacts of the first kind, cost three times the iterations
-and did not always arrive.
+Both are solved by continuation: first the same contact with a fraction s of the pressure-viscosity
+coefficient and with :math:`\tau_0/s^4`, nearly Newtonian, s halved until Newton's method converges; then s
+increases to 1, each solution the guess of the next one. Roughness under the film at the start is left out
+and then added in the same way. Barus' law converges up to :math:`\alpha p_0=267`, and thick films converge
+from first residuals of 1e50. Pseudo-time steps needed three times the iterations in contacts of the
+first kind and did not always converge.
 
-A starved inlet needs another start: the meniscus moves one node per iteration, so that the void is put where
-the gap is wider than the oil film. Whether a contact starves at all, the flooded solution tells: it does if
-it takes more oil than it is given, and else it is the solution but for the first node.
+A starved inlet needs another guess, because the meniscus moves one node per iteration: void where the gap is
+wider than the oil film. The flooded solution decides whether the contact starves: if it carries more oil than
+the inlet supplies, the contact is starved; otherwise the flooded solution holds except at the first node.
 
-Solids whose yield pressure Hertz' would exceed begin with the dry contact, see :mod:`.bounded_contact`.
+If the Hertz pressure exceeds the yield pressure, the guess is the dry contact of :mod:`.bounded_contact`.
 """
 
 from dataclasses import replace
@@ -25,12 +25,12 @@ from dataclasses import replace
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.stepping.bounded_contact import bounded_start
 from ehlpetsc.stepping.convergence_check import solve_checked
-from ehlpetsc.stepping.first_guess import SMOOTHED, hertz_start, starved_start
+from ehlpetsc.stepping.first_guess import SMOOTHING, hertz_start, starved_start
 
-MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: below it an oil is as good as isoviscous
+MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
 LOAD_GROWTH = 1.2  # factor from one load to the next
-MIN_RAMP_INCREMENT = 1e-3  # of the share, from one solution to the next
+MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
 
 
@@ -44,14 +44,14 @@ def steady(solver, film, inputs, watch=None):
         Expected film in a^2/R.
     inputs : ehl_problem.StepInputs
     watch : callable, optional
-        As of `nonlinear.newton.NewtonSolver.solve`.
+        See `nonlinear.newton.NewtonSolver.solve`.
 
     Returns
     -------
     q, w : ndarray, shape (nx,)
     h00 : float
     iterations : int
-        Of Newton, those of failed attempts too.
+        Newton iterations, failed attempts included.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def steady(solver, film, inputs, watch=None):
     if problem.model.yield_pressure < 1.0:
         return yielding_start(solver, film, inputs, watch)
     if oil is None:
-        # every node of the mesh may change to or from the dry set, one in each iteration
+        # every node of the mesh may enter or leave the contact set, one an iteration
         max_it = problem.n if problem.fluid is None and solver.bounded else None
         return Continuation(solver, inputs, max_it, watch).solve(hertz_start(problem, film, inputs))
     flooded = replace(inputs, inlet_film=None)
@@ -73,21 +73,21 @@ def steady(solver, film, inputs, watch=None):
         begin = q, w, h00
     else:
         begin = starved_start(problem, film, inputs)
-    # the meniscus may pass all nodes of the inlet, one in each iteration
+    # the meniscus may move over all nodes of the inlet, one an iteration
     *state, more = Continuation(solver, inputs, problem.n, watch).solve(begin)
     return *state, iterations + more
 
 
 def yielding_start(solver, film, inputs, watch=None):
-    """Steady solution of solids that yield under Hertz' pressure: from that of the dry contact.
+    """Steady solution of solids that yield at the Hertz pressure, from the dry contact.
 
-    Arguments, returns and errors of :func:`steady`. All nodes in contact would yield at once under Hertz'
-    pressure, and a pressure at its bound everywhere does not depend on the load. Most films need smoothed
-    edges of the flat pressure; thin films far above the yield pressure do not, and for thick ones the load
-    is increased from where the solids begin to yield.
+    Parameters, returned values and errors are those of :func:`steady`. From the Hertz pressure all nodes in
+    contact would yield at once, and a pressure at its bound everywhere does not depend on the load. Most
+    films need smoothed edges of the flat pressure; thin films far above the yield pressure do not. For thick
+    films the load is increased from the onset of yielding.
     """
     problem, attempt = solver.problem, SolveAttempts(solver, watch=watch)
-    for width in (SMOOTHED, 0.0):
+    for width in (SMOOTHING, 0.0):
         state = attempt(bounded_start(problem, film, inputs, width), inputs)
         if state is not None:
             return *state, attempt.spent
@@ -110,9 +110,9 @@ class SolveAttempts:
     Attributes
     ----------
     spent : int
-        Newton iterations, those of failed attempts too.
+        Newton iterations, failed attempts included.
     failure : SolveFailed or None
-        The last one.
+        Last failure.
     """
 
     def __init__(self, solver, max_it=None, watch=None):
@@ -120,7 +120,7 @@ class SolveAttempts:
         self.made, self.spent, self.failure = 0, 0, None
 
     def __call__(self, begin, inputs):
-        """q, w and h00; None: Newton's method does not converge."""
+        """Return q, w and h00; None if Newton's method does not converge."""
         if self.made == MAX_ATTEMPTS:
             tried = f"{self.made} attempts and {self.spent} Newton iterations"
             message = f"given up after {tried}; the last failure: {self.failure}"
@@ -136,13 +136,13 @@ class SolveAttempts:
 
 
 class Continuation:
-    """Solve directly or, failing that, with growing fractions of pressure-viscosity effect and roughness."""
+    """Solve directly or by continuation in the pressure-viscosity coefficient and the roughness."""
 
     def __init__(self, solver, inputs, max_it=None, watch=None):
         self.inputs, self.attempt = inputs, SolveAttempts(solver, max_it, watch)
 
     def solve(self, begin):
-        """Returns q, w, h00 and the iterations spent."""
+        """Return q, w, h00 and the number of Newton iterations."""
         state = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
         return *state, self.attempt.spent
 

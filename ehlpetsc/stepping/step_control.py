@@ -2,36 +2,35 @@
 
 import numpy as np
 
-from ehlpetsc.physics.operation import LEVEL
+from ehlpetsc.physics.operation import LEVEL_TOLERANCE
 
-GROWTH = 2.0  # from one step to the next; BDF2 bears 2.4
-NEARLY_NOMINAL = 1.5  # a step within this factor of the nominal one is followed by the nominal one
+MAX_STEP_RATIO = 2.0  # of successive steps; BDF2 is stable up to 2.4
+NEARLY_NOMINAL = 1.5  # a step within this factor of the nominal step is followed by the nominal step
 
 
 def on_level(steps, every=1):
-    """Whether a number of nominal steps is a multiple of `every`, but for rounding."""
-    return abs(steps - every * round(steps / every)) < LEVEL
+    """Whether a number of nominal steps is a multiple of `every`, except for rounding."""
+    return abs(steps - every * round(steps / every)) < LEVEL_TOLERANCE
 
 
 def next_step(dt, retries, nominal, left):
-    """Size of the step to try next [s]: a whole number of it ends on a multiple of the nominal step.
+    """Size of the next time step [s], of which a whole number ends on the next time level.
 
-    So the run comes back after halved steps to the time levels that the members of a series share. After a
-    step that had to be halved it does not grow at once: where steps have just failed, the next longer one
-    mostly fails too.
+    After halved steps the run thus returns to the time levels that the members of a series have in common.
+    The size does not increase directly after a halved step, because a longer step would mostly fail too.
 
     Parameters
     ----------
     dt : float or None
-        Step that led there [s], None at the start.
+        Last step [s]; None at the start.
     retries : int
-        How often that step was halved.
+        Number of times that the last step was halved.
     nominal : float
-        Step that the operation proposes, courant dx / u_max [s].
+        Nominal step, courant dx / u_max [s].
     left : float
         Time to the next time level [s].
     """
     longest = nominal
     if dt is not None and NEARLY_NOMINAL * dt < nominal:
-        longest = dt if retries else GROWTH * dt
-    return left / np.ceil(left / longest - LEVEL)
+        longest = dt if retries else MAX_STEP_RATIO * dt
+    return left / np.ceil(left / longest - LEVEL_TOLERANCE)

@@ -1,7 +1,7 @@
 """Time stepping of a run: steady solution, time steps, retries.
 
-The first guess of a step is :mod:`.predictor`'s. A step that does not converge is halved and counted;
-:mod:`.step_control` returns to the nominal one.
+The initial guess of a step is that of :mod:`.predictor`. A step that does not converge is halved and counted;
+:mod:`.step_control` returns to the nominal step.
 """
 
 from dataclasses import replace
@@ -16,11 +16,11 @@ from ehlpetsc.stepping.convergence_check import solve_step
 from ehlpetsc.stepping.predictor import TimeLevel, predict
 from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.steady_start import steady
-from ehlpetsc.stepping.step_control import LEVEL, next_step
+from ehlpetsc.stepping.step_control import LEVEL_TOLERANCE, next_step
 
-RAMP_LENGTH = 1.0  # half-widths at the mean speed over which roughness at rest grows, where it has to
+RAMP_LENGTH = 1.0  # half widths of entrained distance over which roughness at rest is ramped up
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
-MIN_STEP_RATIO = 2.0**-12  # of the nominal step: below it a step is given up
+MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
 
 
 class TimeStepping:
@@ -34,30 +34,30 @@ class TimeStepping:
     film : float
         Expected film in a^2/R.
     baseline : pair of ndarray, optional
-        Steady q and w that the predictor starts from, of a resumed run; else :meth:`start` finds them.
+        Steady q and w for the predictor of a resumed run; otherwise computed by :meth:`start`.
 
     Attributes
     ----------
     ramp_time : float
-        Time before time 0 over which roughness at rest grew [s]; 0 where a steady solution was found.
+        Time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
     """
 
     def __init__(self, solver, scene, effects, film, baseline=None):
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time = baseline, 0.0
-        # the baseline is the steady solution of the start: under other conditions it is none
+        # the baseline is the steady solution of the start, which holds for constant conditions only
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
     def start(self, records, watch=None):
-        """Steady solution at time 0; by time steps, if roughness at rest has none in reach.
+        """Steady solution at time 0; by time steps if roughness at rest prevents convergence.
 
         Parameters
         ----------
         records : dict
-            Of the effects at time 0.
+            Records of the effects at time 0.
         watch : callable, optional
-            As of `nonlinear.newton.NewtonSolver.solve`.
+            See `nonlinear.newton.NewtonSolver.solve`.
         """
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
@@ -104,7 +104,7 @@ class TimeStepping:
         ----------
         inputs : ehl_problem.StepInputs
         solve : callable
-            Of inputs and the arrays `nodal`; returns q, w, h00 and the number of iterations.
+            Function of inputs and the arrays `nodal`; returns q, w, h00 and the number of iterations.
         *nodal : ndarray, shape (nx,)
 
         Returns
@@ -112,7 +112,7 @@ class TimeStepping:
         solution : (q, w, h00)
         iterations : int
         residual : ndarray, shape (nx,)
-            Of the Reynolds equation at the solution.
+            Residual of the Reynolds equation at the solution.
         """
         if inputs.conditions.entrainment >= 0.0:
             *solution, iterations = solve(inputs, *nodal)
@@ -121,10 +121,11 @@ class TimeStepping:
         return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.residual()[1])
 
     def _start_by_time_stepping(self, records, watch):
-        """State at time 0 after time steps during which roughness at rest has grown.
+        """State at time 0 after time steps during which roughness at rest is ramped up.
 
-        Roughness at rest is under the film from the start, where Newton's method may not converge; that of a
-        moving body enters through the inlet. It grows over `RAMP_LENGTH` at the mean speed.
+        Roughness at rest is under the film from the start, where Newton's method may not converge; the
+        roughness of a moving body enters through the inlet. The ramp ends after an entrained distance of
+        `RAMP_LENGTH`.
         """
         try:
             end = self._step_end()
@@ -137,14 +138,14 @@ class TimeStepping:
         moved = self.operation.displacement(0.0, -self.ramp_time)
         state = replace(state, time=-self.ramp_time, travelled=moved)
         self.baseline = (state.q, state.w)
-        while state.time < -LEVEL * dt:
+        while state.time < -LEVEL_TOLERANCE * dt:
             state = self.advance(state, watch=watch)
             newton += state.newton
         begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
 
     def _roughness_ramp(self, time):
-        """Factor on the gap's contributions: grows to 1 before time 0 [s], 1 from there on."""
+        """Factor of the roughness: from 0 to 1 before time 0 [s], then 1."""
         r = 1.0 + time / self.ramp_time if time < 0.0 else 1.0
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
@@ -165,7 +166,7 @@ class TimeStepping:
         return inputs
 
     def inputs(self, state, dt):
-        """End of a step of `dt` [s] from a state, and the inputs of its solve."""
+        """Step of `dt` [s] from a state, and the inputs of its solve."""
         history = None
         if self.problem.fluid is not None:
             unit = self.scales.u / self.scales.a
@@ -200,16 +201,16 @@ class TimeStepping:
         )
 
     def guess(self, state, dt):
-        """Start of Newton's iteration for a step of dt [s]."""
+        """Initial guess of q and w for a step of `dt` [s]."""
         if not self._advected or self.problem.fluid is None:
             return state.q, state.w
         levels = (state.level, *state.earlier)
-        then = 0.5 * sum(self._step_end(state, dt).travelled)
-        nodes = [(then - level.travelled) / self.scales.dx for level in levels]
+        entrained = 0.5 * sum(self._step_end(state, dt).travelled)
+        nodes = [(entrained - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
     def advance(self, state, dt=None, watch=None):
-        """One accepted time step of `dt` [s], by default the step control's; halved as needed."""
+        """State after one time step of `dt` [s], by default of the step control; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
         dt = dt or next_step(state.dt, state.retries, nominal, left)

@@ -1,1 +1,1 @@
-"""Studies of the solver itself: its table of extremes, its error against run time, random cases."""
+"""Studies of the solver: table of extremes, error over run time, random cases."""

@@ -1,9 +1,9 @@
 """Studies of accuracy, speed and robustness: ``ehlpetsc study``.
 
-``CASE.toml``: error against run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
-at the edge of the ranges; with ``--far`` of forty far beyond them; with ``--models mixed`` in mixed contact.
-``--contact CASE.toml``: how much solids carry, against mesh, time step, boundary film and contact model.
-``--random N``: N random cases within the ranges, of both contact models, which must end in 0 or 3.
+``CASE.toml``: error over run time, as a table, a CSV file and a picture. ``--extremes``: a table of cases
+at the edge of the ranges; with ``--far`` forty cases far beyond; with ``--models mixed`` in mixed contact.
+``--contact CASE.toml``: load on the solids over mesh, time step, boundary film and contact model.
+``--random N``: N random cases within the ranges, of both contact models, which must end with status 0 or 3.
 """
 
 import os
@@ -15,7 +15,7 @@ from ehlpetsc import environment
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import CaseError, OutputError
 
-SWEPT = {  # lists of values: type, default, what they are
+VALUE_LISTS = {  # type, default, description
     "--meshes": (int, [50, 100, 200, 400], "points per half width"),
     "--courant": (float, [0.5, 1.0, 2.0, 4.0], "time steps"),
     "--ranks": (int, [2], "ranks besides one"),
@@ -31,13 +31,13 @@ SWITCHES = {
 
 
 def arguments():
-    """The command line."""
+    """Parse the command line."""
     parser = CommandParser("ehlpetsc.study", __doc__.partition(":")[0] + ".\n" + __doc__.partition("\n")[2])
     add = parser.add_argument
     add("case", nargs="?", help="case file")
     shared = "change of the case that all runs share; may be repeated"
     add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=shared)
-    for name, (kind, default, what) in SWEPT.items():
+    for name, (kind, default, what) in VALUE_LISTS.items():
         shown = " ".join(f"{value:g}" for value in default)
         add(name, type=kind, nargs="+", default=default, metavar="N", help=f"{what} (default: {shown})")
     for name, what in SWITCHES.items():
@@ -75,7 +75,7 @@ def say(text):
 
 
 def check_outputs(head, *outputs, case=None):
-    """Refuse, before anything is run, outputs that are the case's own files, another's, or not to be written.
+    """Refuse, before any run, outputs that are files of the case, other files, or not writable.
 
     `head` are the names of the first columns of the table.
     """
@@ -91,17 +91,17 @@ def check_outputs(head, *outputs, case=None):
 
 
 def extremes(chosen):
-    """The table of extremes."""
+    """Run the table of extremes."""
     from ehlpetsc.study.extremes import COLUMNS, table
 
-    model = chosen.models[0] if len(chosen.models) == 1 else None  # both: each case with its own
+    model = chosen.models[0] if len(chosen.models) == 1 else None  # None: model of each case
     path = f"{chosen.output or 'extremes'}.csv"
     check_outputs(COLUMNS, path)
     table(path, chosen.short, chosen.limit, say, far=chosen.far, model=model)
 
 
 def random_cases(chosen):
-    """Random cases: 1 where one ended in another status than 0 and 3, or left a broken file."""
+    """Run random cases; status 1 if one ended with another status than 0 and 3, or left a damaged file."""
     from ehlpetsc.study.random_cases import COLUMNS, run_all
 
     table = f"{chosen.output or 'random'}.csv"
@@ -110,7 +110,7 @@ def random_cases(chosen):
 
 
 def contact(chosen):
-    """Amount of contact."""
+    """Run the study of the amount of contact."""
     from ehlpetsc.case.loading import load
     from ehlpetsc.study.contact import COLUMNS, settings, table
     from ehlpetsc.study.runs import check_damage
@@ -129,7 +129,7 @@ def contact(chosen):
 
 
 def accuracy(chosen):
-    """Error against run time."""
+    """Run the study of error over run time."""
     from ehlpetsc.study.accuracy.picture import draw
     from ehlpetsc.study.accuracy.plan import plan
     from ehlpetsc.study.accuracy.table import COLUMNS, Study

@@ -9,7 +9,7 @@ from ehlpetsc.physics.film_formulas import moes_central_film
 from ehlpetsc.physics.scales import moes_groups, reduced_modulus
 
 PROFILES = Path(__file__).parents[2] / "cases" / "profiles"
-FLOODED = 20.0  # central films in the undeformed gap at the inlet: further out the film does not feel it
+FLOODED_GAP = 20.0  # central films: undeformed gap at an inlet that does not affect the film
 
 TABLE_1 = """
 title = "extreme"
@@ -66,11 +66,11 @@ class StudyCase:
     Attributes
     ----------
     axis, value : str
-        As printed.
+        As printed in the table.
     overrides : tuple of str
         ``table.key=value``.
     text : str
-        The case that they change.
+        Base case.
     short : bool
         Whether the case belongs to the short form.
     before : tuple of str or None
@@ -86,15 +86,15 @@ class StudyCase:
 
 
 def load_of(pressure):
-    """Load [N/m] of a Hertz pressure [Pa] on TABLE_1's solids: p0 goes with its root."""
+    """Load [N/m] for a Hertz pressure [Pa] of the solids of `TABLE_1`."""
     return 2.0 * math.pi * RADIUS * pressure**2 / MODULUS
 
 
 def inlet_of(load, viscosity, speed, alpha=11.1e-9, modulus=MODULUS):
-    """Inlet [half widths] that floods the contact: `FLOODED` central films of undeformed gap."""
+    """Inlet [half widths] of a flooded contact: `FLOODED_GAP` central films of undeformed gap."""
     m, ell = moes_groups(viscosity, speed, alpha, load, RADIUS, modulus)
     film = math.pi / (8.0 * m) * moes_central_film(m, ell)  # in a^2/R
-    return -max(2.5, math.ceil(10.0 * math.sqrt(1.0 + 2.0 * FLOODED * film)) / 10.0)
+    return -max(2.5, math.ceil(10.0 * math.sqrt(1.0 + 2.0 * FLOODED_GAP * film)) / 10.0)
 
 
 def ground(ra, seed=1, correlation=CORRELATION):
@@ -124,7 +124,7 @@ def read_cases(*groups):
 
 
 def _case(synthetic, axis, value, base="table_1", travel=None, short=False, before=None, **given):
-    """One case; with `travel` on a short domain, so that few time steps fill the contact."""
+    """Case of the table; with `travel` on a short domain, so that few time steps fill the contact."""
     settings = () if travel is None else (*SHORT_DOMAIN, f"time.travel={travel}")
     for side in ("1", "2"):
         if f"surface_{side}" in given:

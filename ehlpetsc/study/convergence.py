@@ -1,4 +1,4 @@
-"""Observed order of convergence, and error estimates from it, on meshes that halve their spacing."""
+"""Observed order of convergence and error estimates on meshes with successively halved spacing."""
 
 import numpy as np
 
@@ -9,7 +9,8 @@ def observed_order(errors):
     Parameters
     ----------
     errors : sequence of float
-        Errors, or differences of successive results, above zero; each on half the spacing of the one before.
+        Errors, or differences of successive results, above zero; each with half the spacing of the previous
+        one.
 
     Returns
     -------
@@ -24,7 +25,7 @@ def richardson_error(difference, order):
     Parameters
     ----------
     difference : float
-        Coarser result minus finer one, or its magnitude.
+        Coarser result minus finer result, or its magnitude.
     order : float
     """
     return difference / (2.0**order - 1.0)

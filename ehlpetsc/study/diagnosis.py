@@ -16,13 +16,13 @@ from ehlpetsc.physics.rheology import viscosity
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.study.runs import TIMED_OUT
 
-SOLID = 50.0  # ln(eta/eta0) from which on oil flows no more within any contact
-PLASTIC = 6.0  # GPa: asperities of hardened steel yield
+SOLID_OIL = 50.0  # ln(eta/eta0) above which oil does not flow during any contact
+ASPERITY_YIELD = 6.0  # GPa: pressure at which asperities of hardened steel yield
 MAX_FILM_SLOPE = 1.0  # films by which the gap may open within one node
 
 
 def diagnosis(outcome, path, overrides):
-    """One line: properties of the contact that explain the failure, then the message of the solver.
+    """Line with properties of the contact that explain the failure, then the message of the solver.
 
     Parameters
     ----------
@@ -36,33 +36,35 @@ def diagnosis(outcome, path, overrides):
         return outcome.message
     case = load(path, overrides)
     scales = Scales.of(case)
-    found = _findings(outcome, case, scales)
-    return "; ".join([*found, f"solver: {outcome.message}"])
+    findings = _findings(outcome, case, scales)
+    return "; ".join([*findings, f"solver: {outcome.message}"])
 
 
 def _findings(outcome, case, scales):
-    found = []
+    findings = []
     hertz = float(viscosity(np.array([scales.p0]), case.fluid)[0][0]) if case.fluid else 0.0
     if case.fluid:
-        found += _too_coarse(case, scales)
+        findings += _too_coarse(case, scales)
         film = scales.h * expected_film(case, scales)
         if film > scales.a:
-            found.append(
+            findings.append(
                 f"the expected film, {1e6 * film:.2g} um, is thicker than Hertz' half width, "
                 f"{1e6 * scales.a:.2g} um: the solids hardly deform, the domain is too small"
             )
-    if hertz > SOLID:
+    if hertz > SOLID_OIL:
         decades = hertz / math.log(10)
-        found.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")
-    if outcome.p_max > PLASTIC * 1e9:
-        found.append(f"asperity pressures reached {1e-9 * outcome.p_max:.1f} GPa, beyond what steel carries")
+        findings.append(f"the oil is solid at Hertz pressure (10^{decades:.0f} times its ambient viscosity)")
+    if outcome.p_max > ASPERITY_YIELD * 1e9:
+        findings.append(
+            f"asperity pressures reached {1e-9 * outcome.p_max:.1f} GPa, beyond what steel carries"
+        )
     if outcome.h_min < 1e-9 and outcome.steps:
-        found.append(f"the film fell to {1e9 * outcome.h_min:.2g} nm before solids touched")
-    return found
+        findings.append(f"the film fell to {1e9 * outcome.h_min:.2g} nm before solids touched")
+    return findings
 
 
 def _too_coarse(case, scales):
-    """Finding of a mesh too coarse for the inlet sweep."""
+    """Finding of a mesh that is too coarse for the inlet."""
     film = moes_central_film(scales.moes_m, scales.moes_l) * math.pi / (8.0 * scales.moes_m)
     opening = inlet_opening(film, case.mesh.points_per_half_width)
     if opening < MAX_FILM_SLOPE:

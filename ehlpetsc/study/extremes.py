@@ -1,4 +1,4 @@
-"""The table of extremes: a run and a row for each of its cases, printed and in a CSV file."""
+"""Table of extremes: a run and a row for each case, printed and in a CSV file."""
 
 import tempfile
 from dataclasses import replace
@@ -26,25 +26,25 @@ COLUMNS = (
 )
 LAWS, LAYER = {"compliant": "mixed"}, "contact.asperity_height=10e-9"
 COARSE_MESH = ("mesh.points_per_half_width=50",)
-BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5: the roughness is just in the contact
+BRIEF = ("time.travel=1.0",)  # from an inlet at -1.5, the roughness just reaches the contact
 LONG_STEPS = ("time.courant=1.0",)  # of cases without a time step, and of first runs
 
 
 def cases(short=False, far=False, model=None):
-    """Cases of the table; the short form coarser and with fewer steps.
+    """Cases of the table; in the short form with coarser meshes and fewer steps.
 
     Parameters
     ----------
     short : bool
     far : bool
-        Instead of the cases at the edge of the ranges, forty far beyond it.
+        Forty cases far beyond the ranges, instead of the cases at their edge.
     model : str, optional
-        Contact model of all cases that do not choose their own: "direct", "mixed" or "compliant".
+        Contact model of all cases that do not set one: "direct", "mixed" or "compliant".
     """
-    found = read_cases("far") if far else read_cases("steady", "time")
+    selected = read_cases("far") if far else read_cases("steady", "time")
     if short:
-        found = [_shortened(one) for one in found if one.short]
-    return [_of_model(one, model) for one in found] if model else found
+        selected = [_shortened(one) for one in selected if one.short]
+    return [_of_model(one, model) for one in selected] if model else selected
 
 
 def _of_model(case, model):
@@ -60,7 +60,7 @@ def _shortened(case):
     brief = BRIEF if "time.travel" in keys else ()
     brief += LONG_STEPS if brief and "time.courant" not in keys else ()
     coarse = () if "mesh.points_per_half_width" in keys else COARSE_MESH
-    before = case.before and (*case.before, *coarse, *LONG_STEPS)  # the mesh of both runs is one
+    before = case.before and (*case.before, *coarse, *LONG_STEPS)  # both runs have the same mesh
     return replace(case, overrides=(*case.overrides, *coarse, *brief), before=before)
 
 
@@ -70,18 +70,18 @@ def table(path, short=False, limit=300.0, say=print, *, far=False, model=None):
     Parameters
     ----------
     path : path-like
-        The CSV file.
+        CSV file.
     short, far, model
-        As of `cases`.
+        See :func:`cases`.
     limit : float
         Wall clock time of a run [s].
     say : callable
-        Prints each row as its run ends.
+        Prints each row at the end of its run.
 
     Returns
     -------
     list of dict
-        Rows by the names of `COLUMNS`.
+        Rows with the keys `COLUMNS`.
     """
     rows = []
     say(_text(dict(zip(COLUMNS, COLUMNS, strict=True))))

@@ -1,4 +1,4 @@
-"""Random cases within the ranges of the table of extremes: each ends in 0 or 3 and leaves a whole file."""
+"""Random cases within the ranges of the table of extremes, which end with 0 or 3 and a complete file."""
 
 import math
 import random
@@ -25,15 +25,15 @@ from ehlpetsc.study.cases import (
 from ehlpetsc.study.runs import csv_table, run
 
 COLUMNS = ("number", "status", "steps", "retries", "newton", "file", "message", "overrides")
-STEPS = 50
-OPENING = 3.0  # films that the gap may open from one node to the next beside the contact
+STEPS = 50  # time steps of a case
+MAX_OPENING = 3.0  # films by which the gap opens from node to node beside the contact
 STEEL, SOFT_AND_HARD = [207e9, 207e9], ([3e9, 207e9], [600e9, 600e9])  # Young's moduli [Pa]
 MODELS = ("direct", "mixed")
 EVERY_SLIDING = (0.0, 0.1, 1.0, 1.9, 2.0, 4.0)
 
 
 def draw(rng):
-    """A case text and its overrides.
+    """Draw a case text and its overrides.
 
     Parameters
     ----------
@@ -45,22 +45,22 @@ def draw(rng):
     overrides : list of str
     """
 
-    def between(low, high):  # evenly in the logarithm
+    def between(low, high):  # uniform in the logarithm
         return math.exp(rng.uniform(math.log(low), math.log(high)))
 
     text = rng.choice((TABLE_1, TABLE_1, BARUS, ROELANDS))
     viscosity, speed, load = between(0.0005, 1.0), between(0.01, 50.0), load_of(1e9 * between(0.2, 3.0))
-    if text is BARUS:  # its pressures up to 1 GPa
+    if text is BARUS:  # pressures up to 1 GPa
         load = load_of(1e9 * between(0.2, 1.0))
     alpha = {TABLE_1: 11.1, BARUS: rng.uniform(5.0, 25.0), ROELANDS: rng.uniform(10.0, 25.0)}[text]
     moduli = rng.choice(SOFT_AND_HARD) if rng.random() < 0.1 else STEEL
     model, courant = rng.choice(MODELS), between(0.05, 4.0)
     points = int(between(25, 200))
-    if model == "direct":  # on too coarse a mesh no film is left, and the case is refused
+    if model == "direct":  # a mesh that is too coarse for the film is refused
         modulus = reduced_modulus(moduli, POISSON)
         m, ell = moes_groups(viscosity, speed, alpha * 1e-9, load, RADIUS, modulus)
         film = math.pi / (8.0 * m) * moes_central_film(m, ell)
-        points = max(points, math.ceil(points_for_opening(film, OPENING)))
+        points = max(points, math.ceil(points_for_opening(film, MAX_OPENING)))
     inlet = inlet_of(load, viscosity, speed, alpha * 1e-9) if rng.random() < 0.5 else -rng.uniform(1.2, 6.0)
     overrides = [
         f"fluid.viscosity={viscosity:.4g}",
@@ -87,7 +87,7 @@ def draw(rng):
 
 
 def _surface(rng, between, side, a, points):
-    """One side: smooth, ground, waves, a spike, or the dusty profile."""
+    """Surface: smooth, ground, waves, a spike, or the dusty profile."""
     length = a * between(6.0 / points, 2.0)
     kind = rng.choice(("smooth", "ground", "ground", "sine", "square", "ridge", "dust"))
     if kind == "smooth":
@@ -100,12 +100,12 @@ def _surface(rng, between, side, a, points):
 
 
 def run_all(count, seed, path, limit, say=print):
-    """Run so many cases; each draw has its own seed, so that one can be run again alone.
+    """Run `count` cases, each with its own seed, so that a single case can be repeated.
 
     Returns
     -------
     int
-        Cases that ended in another status than 0 and 3, or left a file that cannot be read.
+        Number of cases with another status than 0 and 3, or with a damaged file.
     """
     wrong, converged = 0, 0
     with tempfile.TemporaryDirectory() as folder, csv_table(path, COLUMNS) as append:
@@ -125,7 +125,7 @@ def run_all(count, seed, path, limit, say=print):
 
 
 def run_one(seed, folder, limit):
-    """Run the case of a seed; its row."""
+    """Run the case of a seed; return its row."""
     text, overrides = draw(random.Random(seed))
     case = folder / "case.toml"
     case.write_text(text)
@@ -143,7 +143,7 @@ def run_one(seed, folder, limit):
 
 
 def _whole(path):
-    """Whether a result file, where there is one, opens and has as many frames as it says."""
+    """Whether a result file, if it exists, can be opened and is complete."""
     if not path.exists():
         return "none"
     try:

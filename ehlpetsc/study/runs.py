@@ -1,4 +1,4 @@
-"""One run of a case as its own process, with a time limit: scalars, exit status, last message."""
+"""Run of a case in a separate process with a time limit: scalars, exit status, last message."""
 
 import contextlib
 import csv
@@ -22,7 +22,7 @@ from ehlpetsc.results.post_result import PostResult, post_path
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 
-TIMED_OUT = -1  # beside the exit statuses of the program
+TIMED_OUT = -1  # in addition to the exit statuses of the program
 
 
 @dataclass
@@ -32,21 +32,21 @@ class Outcome:
     Attributes
     ----------
     status : int
-        Exit status of ``python3 -m ehlpetsc``; `TIMED_OUT` where the time limit ended it.
+        Exit status of ``python3 -m ehlpetsc``, or `TIMED_OUT`.
     message : str
-        Last line of its output; the reason where it ended before its time.
+        Last line of the output, or the reason of an early end.
     steps, retries, newton : int
-        Of the whole run, the steady start's iterations included.
+        Sums over the run, including the steady start.
     h_min, p_max, viscosity : float
-        Least film [m], greatest pressure [Pa] and the viscosity there [Pa s] of all steps.
+        Minimum film [m], maximum pressure [Pa] and its viscosity [Pa s] of all steps.
     load_error, mass_error : float
-        Greatest of all steps, relative.
+        Maximum relative errors of all steps.
     seconds, wall : float
-        Wall clock time of the process, and of its steps alone [s].
+        Wall clock time of the process, and of its time steps [s].
     processor : float
         Processor time of the process [s].
     result : Path or None
-        The result file, where a step was stored.
+        Result file; None without a stored step.
     """
 
     status: int
@@ -76,7 +76,7 @@ def command(case, overrides, options, ranks, output):
 
 
 def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=600.0):
-    """Run a case file in a process of its own.
+    """Run a case file in a separate process.
 
     Parameters
     ----------
@@ -84,10 +84,10 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
     overrides : sequence of str
         ``table.key=value``.
     options : sequence of str
-        Further words of the command line.
+        Further arguments of the command line.
     ranks : int
     folder : path-like
-        Where result, restart file and the program's output go.
+        Folder of result, restart file and output of the program.
     name : str
         Stem of those files.
     limit : float
@@ -98,7 +98,7 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
     Outcome
     """
     output = Path(folder) / f"{name}.h5"
-    for left in (output, output.with_suffix(".restart.h5")):  # of an earlier run of that name
+    for left in (output, output.with_suffix(".restart.h5")):  # of an earlier run with this name
         left.unlink(missing_ok=True)
     begun, used = clock.monotonic(), _processor_time()
     with open(output.with_suffix(".txt"), "w+") as printed:
@@ -114,7 +114,7 @@ def run(case, overrides=(), *, options=(), ranks=1, folder, name="run", limit=60
 
 
 def check_damage(case, surface, mesh):
-    """Refuse damage before anything is run where no point of a surface would pass the whole mesh.
+    """Refuse damage, before any run, if no point of a surface would pass the whole mesh.
 
     Parameters
     ----------
@@ -122,7 +122,8 @@ def check_damage(case, surface, mesh):
     surface : str
         "1" or "2".
     mesh : int
-        Points per half width of the coarsest run, whose mesh may be half a spacing wider than the case's.
+        Points per half width of the coarsest run, whose mesh may be half a spacing wider than that of the
+        case.
 
     Raises
     ------
@@ -145,7 +146,7 @@ def check_damage(case, surface, mesh):
 
 
 def greatest_damage(path, surface, depths=()):
-    """Largest fatigue damage on a surface at each depth [half widths]; without depths those of the case.
+    """Maximum fatigue damage on a surface at each depth [half widths]; by default at the depths of the case.
 
     Returns
     -------
@@ -154,7 +155,7 @@ def greatest_damage(path, surface, depths=()):
     Raises
     ------
     PostError
-        As of `ehlpetsc.post`: the travel is too short for one passage, for example.
+        See `ehlpetsc.post`; for instance, the travel is too short for one passage.
     """
     output = post_path(path)
     words = [sys.executable, "-m", "ehlpetsc.post", str(path), "-o", str(output), "--surface", surface]
@@ -169,7 +170,7 @@ def greatest_damage(path, surface, depths=()):
 
 @contextlib.contextmanager
 def csv_table(path, columns):
-    """Function that appends a row, a dict by column, to a new CSV file; rows are on disk at once.
+    """Function that appends a row, a dict by column, to a new CSV file and writes it to disk at once.
 
     Parameters
     ----------
@@ -206,14 +207,14 @@ def _wait(words, stream, limit):
 
 
 def last_message(text):
-    """Line with the reason of an early end: that of the solver, else the last one."""
+    """Line with the reason of an early end: message of the solver, otherwise last line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     failures = [line for line in lines if line.startswith("ehlpetsc: not converged:")]
     return (failures or lines or [""])[-1].removeprefix("ehlpetsc: not converged: ")
 
 
 def _read_scalars(path, case, message):
-    """Fields of an `Outcome` from a result file; its message names a file that cannot be read."""
+    """Fields of an `Outcome` from a result file; the message names a damaged file."""
     try:
         with read_result(path) as result:
             totals = Totals.of_result(result).values

@@ -1,4 +1,4 @@
-"""Setting of a run in a study: the values in which it differs from its case."""
+"""Setting of a run in a study: values that differ from those of the case."""
 
 import json
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ class Setting:
     values : dict
         By key of the case file (``table.key``), by PETSc option (``-name``), and `RANKS`.
     varied : str
-        Name of the value that a study varies; "" where it varies several.
+        Name of the varied value; "" for several.
     label : object
-        The varied value, as its table prints it.
+        Varied value, as printed in the table.
     """
 
     values: dict
@@ -36,11 +36,11 @@ class Setting:
         return [f"{key}={value}" for key, value in self.values.items() if "." in key]
 
     def options(self):
-        """Words of PETSc options."""
+        """Arguments for PETSc options."""
         pairs = [(key, f"{value:g}") for key, value in self.values.items() if key.startswith("-")]
         return [word for pair in pairs for word in pair]
 
 
 def stored(fields, every):
-    """Overrides for fields stored at every so many time steps."""
+    """Overrides for fields stored at intervals of `every` time steps."""
     return [f"output.every={every}", f"output.fields={json.dumps(fields)}"]

@@ -13,14 +13,14 @@ CELLS_PER_MESH_CELL = 4  # cells of a body per cell of the mesh
 
 
 class BodyField(NamedTuple):
-    """Depth of one body over its own abscissa.
+    """Depth of one body over its abscissa.
 
     Attributes
     ----------
     spacing : float
-        Width of its cells [m].
+        Width of the cells [m].
     first : int
-        Edges lie at ``(first + k) spacing`` of the body's abscissa.
+        The abscissas of the edges are ``(first + k) spacing``.
     depth : ndarray, shape (cells,)
         Mean depth of each cell [m].
     """
@@ -31,11 +31,11 @@ class BodyField(NamedTuple):
 
     @classmethod
     def zero(cls, cell):
-        """Depth zero, under a mesh with cells of the width `cell` [m]."""
+        """Depth zero, for a mesh with cells of the width `cell` [m]."""
         return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros(0))
 
     def fault(self):
-        """Reason why the values cannot be a depth; None: they can."""
+        """Reason why the values cannot be a depth; None if they can."""
         if not 0.0 < self.spacing < 1.0 or self.depth.ndim != 1:
             return "has no cells of a positive width"
         return None if (self.depth >= 0.0).all() else "has a negative depth"
@@ -58,7 +58,7 @@ class BodyField(NamedTuple):
         return np.diff(np.interp(faces, self.edges, below)) / np.diff(faces)
 
     def add(self, faces, depth):
-        """The field with depths [m] added between faces.
+        """Field with depths [m] added between faces.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class BodyFields(NamedTuple):
 
     @classmethod
     def zero(cls, cell):
-        """Depth zero on both bodies, under a mesh with cells of the width `cell` [m]."""
+        """Depth zero on both bodies, for a mesh with cells of the width `cell` [m]."""
         return cls(BodyField.zero(cell), BodyField.zero(cell))
 
     @property
@@ -104,30 +104,32 @@ class BodyFields(NamedTuple):
 
 
 class MeshOnBodies:
-    """The cells of the mesh in the abscissas of both bodies.
+    """Cells of the mesh in the abscissas of both bodies.
 
     Parameters
     ----------
     scales : scales.Scales
     offsets : (float, float)
-        Signed shift of the points of both bodies [m], as of :meth:`.roughness.SurfacePositions.offsets`.
+        Signed shift of the points of both bodies [m], see :meth:`.roughness.SurfacePositions.offsets`.
     """
 
     def __init__(self, scales, offsets=(0.0, 0.0)):
         self.cell, self.offsets = scales.dx, offsets
-        places = scales.x * scales.a
-        self._faces = np.append(places - 0.5 * self.cell, places[-1] + 0.5 * self.cell)
+        x = scales.x * scales.a
+        self._faces = np.append(x - 0.5 * self.cell, x[-1] + 0.5 * self.cell)
 
     def faces(self, travelled):
-        """Faces of the mesh [m] in both bodies, which have travelled so far [m], shape (nx + 1,) each."""
-        return [self._faces - way + offset for way, offset in zip(travelled, self.offsets, strict=True)]
+        """Faces of the mesh [m] in both bodies after distances travelled [m], shape (nx + 1,) each."""
+        return [
+            self._faces - distance + offset for distance, offset in zip(travelled, self.offsets, strict=True)
+        ]
 
     def means(self, fields, travelled):
         """Means of both bodies' depths over the cells of the mesh [m], shape (nx,) each."""
         return [one.means(faces) for one, faces in zip(fields, self.faces(travelled), strict=True)]
 
     def add(self, fields, travelled, depths):
-        """The fields with depths at the nodes [m], shape (nx,) for each body, added.
+        """Fields with depths at the nodes [m], shape (nx,) for each body, added.
 
         Parameters
         ----------
@@ -141,7 +143,7 @@ class MeshOnBodies:
         )
 
     def at_points(self, fields, points):
-        """Mean depths [m] around equally spaced points s of each body [m]; None where there are no points."""
+        """Mean depths [m] around equally spaced points s of each body [m]; None without points."""
         found = []
         for one, s, offset in zip(fields, points, self.offsets, strict=True):
             half = None if s is None else 0.5 * (s[1] - s[0])

@@ -1,8 +1,8 @@
-"""Times at which the roughness reaches the contact and fills it."""
+"""Times at which roughness reaches the contact and fills it."""
 
 
 def entry_times(profile, scales):
-    """Travel of the faster surface [half widths] until a profile is in the contact.
+    """Travel of the faster surface [half widths] when a profile reaches and fills the contact.
 
     Parameters
     ----------

@@ -1,18 +1,16 @@
-"""Resolution of the waves of the profiles by the mesh."""
+"""Resolution of the profiles by the mesh."""
 
 import numpy as np
 
 from ehlpetsc.surfaces.profile import WAVE_NODES
 
-SPIKE_RQ_RATIO = 4.0  # Rq beside its surroundings that make a point one of a spike
-MAX_WINDOW = (
-    129  # points of a window whose median is sought in all of them: the work grows as points times window
-)
-MAX_UNRESOLVED = 0.01  # of the height variance in such wavelengths that calls for a warning
+SPIKE_RQ_RATIO = 4.0  # distance of a spike from its surroundings over Rq
+MAX_WINDOW = 129  # points of a window whose median is exact: the work grows as points times window
+MAX_UNRESOLVED = 0.01  # of the height variance: more in unresolved wavelengths causes a warning
 
 
 def mesh_warnings(rough, scales):
-    """Warnings of height variance and spikes that the mesh does not resolve, with figures.
+    """Warnings of height variance and spikes that the mesh does not resolve, with values.
 
     Parameters
     ----------
@@ -37,13 +35,13 @@ def mesh_warnings(rough, scales):
 
 
 def _spike_warning(side, given, dx):
-    count, highest, place = spikes(given, dx)
+    count, highest, abscissa = spikes(given, dx)
     if not count:
         return []
     return [
         f"surface.{side}: spikes narrower than a cell of the mesh ({dx * 1e6:.2f} um), up to "
         f"{highest * 1e6:.3g} um beside their surroundings, {count} points, the first at "
-        f"{place * 1e3:.4g} mm: they vanish between nodes; short_cutoff takes them off, "
+        f"{abscissa * 1e3:.4g} mm: they vanish between nodes; short_cutoff takes them off, "
         "a finer mesh carries them"
     ]
 
@@ -60,39 +58,39 @@ def spikes(given, dx):
     Returns
     -------
     count : int
-    highest, place : float
-        Greatest distance from the median, and abscissa of the first point [m].
+    highest, abscissa : float
+        Maximum distance from the median; abscissa of its first point [m].
     """
     window = 2 * round(dx / given.spacing) + 1
     if not given.measured or window < 3:  # the mesh is finer than the profile
         return 0, 0.0, 0.0
     rq, given = given.z.std(), given.source or given
     window = 2 * round(dx / given.spacing) + 1
-    beside = np.abs(given.z - _running_median(given.z, min(window, given.z.size)))
-    found = beside > SPIKE_RQ_RATIO * rq
+    deviation = np.abs(given.z - _running_median(given.z, min(window, given.z.size)))
+    found = deviation > SPIKE_RQ_RATIO * rq
     if not found.any():
         return 0, 0.0, 0.0
-    return int(found.sum()), float(beside.max()), float(given.X[found.argmax()])
+    return int(found.sum()), float(deviation.max()), float(given.X[found.argmax()])
 
 
 def _running_median(z, window):
-    """Medians over a window around each point; of wide windows the median of those of their parts.
+    """Medians over a window around each point; for wide windows medians of medians of parts.
 
     Parameters
     ----------
     z : ndarray, shape (n,)
     window : int
-        Points.
+        Number of points.
     """
     from scipy.ndimage import median_filter
 
     size = window // MAX_WINDOW + 1
     if size == 1:
         return median_filter(z, window, mode="mirror")
-    whole = z.size // size
-    parts = np.median(z[: whole * size].reshape(whole, size), axis=1)
+    block_count = z.size // size
+    parts = np.median(z[: block_count * size].reshape(block_count, size), axis=1)
     return median_filter(parts, window // size | 1, mode="mirror")[
-        np.minimum(np.arange(z.size) // size, whole - 1)
+        np.minimum(np.arange(z.size) // size, block_count - 1)
     ]
 
 

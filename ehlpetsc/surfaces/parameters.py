@@ -8,11 +8,11 @@ import numpy as np
 
 SAMPLING_LENGTHS = 5
 SECANT_WIDTH = 0.4  # of the material ratio: width of the secant whose least slope defines the core
-CURVE_POINTS = 4001  # of the curve
+CURVE_POINTS = 4001  # of the Abbott curve
 
 
 def abbott_curve(X, z):
-    """Material ratio curve: heights over the share of the profile's length that lies above them.
+    """Material ratio curve: heights over the fraction of the profile's length above them.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def core(ratio, height):
     Parameters
     ----------
     ratio, height : ndarray
-        As of :func:`abbott_curve`.
+        See :func:`abbott_curve`.
 
     Returns
     -------

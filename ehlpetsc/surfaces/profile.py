@@ -1,11 +1,11 @@
-"""Heights of one surface: a spline that travels with its body."""
+"""Heights of one surface: a spline that moves with the body."""
 
 from functools import cached_property
 
 import numpy as np
 
-WAVE_NODES = 4  # nodes a wavelength below which the mesh does not carry it
-MAX_SAMPLES = 5_000_000  # of a profile as stored
+WAVE_NODES = 4  # nodes per wavelength below which a wave is not resolved
+MAX_SAMPLES = 5_000_000  # of a stored profile
 
 
 class Profile:
@@ -14,11 +14,11 @@ class Profile:
     Body point s is at :math:`x=s+Ut`. Its abscissa in the profile is
 
     * U > 0: :math:`X=x_\mathrm{inlet}-s`, so that the profile enters at the inlet from time 0 on;
-    * U < 0: :math:`X=s-x_\mathrm{outlet}`, it enters at the outlet;
-    * U = 0, or a steady case: :math:`X=s-x_\mathrm{inlet}`, it lies under the whole domain from the start.
+    * U < 0: :math:`X=s-x_\mathrm{outlet}`, so that it enters at the outlet;
+    * U = 0, or a steady case: :math:`X=s-x_\mathrm{inlet}`, in the whole domain from the start.
 
-    A moving surface is smooth where X < 0 and its heights come in over the ramp by
-    :math:`r^3(10-15r+6r^2)`: film and its rate of change have no jump.
+    A moving surface is smooth where X < 0; its heights increase over the ramp as
+    :math:`r^3(10-15r+6r^2)`, so that film and its rate of change have no jump.
 
     Parameters
     ----------
@@ -30,22 +30,22 @@ class Profile:
     inlet, outlet, ramp, swept_length : float
         Ends of the domain, length of the ramp and of the profile that enters during the run [m].
     begin : float
-        Abscissa in the profile with which it begins, instead of 0 [m].
+        Abscissa at which the profile begins, instead of 0 [m].
     reach : (float, float), optional
-        Least and largest displacement of a body whose profile lies under the whole domain from the start [m].
+        Minimum and maximum displacement of a body whose profile is in the whole domain from the start [m].
     is_flank : bool
-        Whether that profile begins at x = 0 at time 0, :math:`X=-s`, as arc lengths of flanks do.
+        Whether this profile begins at x = 0 at time 0, :math:`X=-s`, as the arc length of a flank.
 
     Attributes
     ----------
     is_moving : bool
-        False where it lies under the domain from the start.
+        False if it is in the whole domain from the start.
     ramp, travelled : float
-        Length of the ramp, and of the profile that is drawn in [m].
+        Length of the ramp, and of the part of the profile that enters [m].
     body_offset : float
         Signed shift of the body points s by `begin` [m].
     ra, rq, rsk : float
-        Of the samples about their mean: m, m, 1.
+        Parameters of the samples: m, m, 1.
     """
 
     def __init__(
@@ -80,7 +80,7 @@ class Profile:
         r"""Mean height [m] of each cell between faces at body points s [m].
 
         :math:`\frac{1}{s_{i+1}-s_i}\int_{s_i}^{s_{i+1}}z\,ds`, the integral of the spline, also across its
-        mirrored continuation. The ramp is taken at the middle of the cell.
+        mirrored continuation. The ramp is evaluated at the centre of the cell.
 
         Parameters
         ----------
@@ -95,11 +95,11 @@ class Profile:
         return self._entry_factor(0.5 * (X[1:] + X[:-1])) * mean if self.is_moving else mean
 
     def entered(self, s):
-        """Share of the heights that has come in at body points s [m]: 0 ahead of the profile."""
+        """Ramp factor of the heights at body points s [m]: 0 ahead of the profile."""
         return self._entry_factor(self._sign * (s - self._origin))
 
     def extremes_of_cells(self, cell):
-        """Lowest and highest mean height [m] over cells of a mesh, wherever they lie on the profile.
+        """Minimum and maximum mean height [m] over cells of a mesh at any position on the profile.
 
         Parameters
         ----------
@@ -125,10 +125,10 @@ class Profile:
         return np.where(inside, self._spline(np.clip(X, first, last)), 0.0)
 
     def _integral(self, X):
-        """Integral [m^2] of height less `_level` up to X.
+        """Integral [m^2] of height minus `_level` up to X.
 
-        Mirrored heights less their mean integrate to nothing over a profile, so that the integral is periodic
-        too and loses no digits on a long way.
+        Mirrored heights minus their mean have the integral 0 over a profile, so that the integral is periodic
+        too and loses no digits over long distances.
         """
         first, last = self.X[0], self.X[-1]
         if not self.repeats:
@@ -139,7 +139,7 @@ class Profile:
 
     @cached_property
     def _level(self):
-        """Mean height of what is mirrored [m]; 0 where the heights are 0 beyond the samples."""
+        """Mean height of a mirrored profile [m]; 0 if the heights are 0 beyond the samples."""
         return (
             self._spline.integrate(self.X[0], self.X[-1]) / (self.X[-1] - self.X[0]) if self.repeats else 0.0
         )
@@ -154,7 +154,7 @@ class Profile:
 
     @cached_property
     def s(self):
-        """Body points [m] that enter during the run, two at least, increasing, spaced as the samples."""
+        """Body points [m] that enter during the run, at least two, with the spacing of the samples."""
         step = np.diff(self.X).mean()
         if self._ends:
             count = int((self._ends[1] - self._ends[0]) / step) + 1
@@ -169,11 +169,11 @@ class Profile:
         return self.height(self.s)
 
     def unresolved_variance(self, dx):
-        """Share of the height variance in wavelengths under `WAVE_NODES` spacings dx [m]."""
+        """Fraction of the height variance in wavelengths below `WAVE_NODES` spacings dx [m]."""
         n = min(max(self.X.size, 16), 1 << 17)
         x = np.linspace(self.X[0], self.X[-1], n)
         z = self._spline(x)
-        z = np.concatenate([z, z[-2:0:-1]])  # mirrored: no jump to spill over the spectrum
+        z = np.concatenate([z, z[-2:0:-1]])  # mirrored: no jump, hence no leakage in the spectrum
         power = np.abs(np.fft.rfft(z)) ** 2
         power[0] = 0.0
         total = power.sum()

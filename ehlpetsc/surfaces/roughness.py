@@ -1,4 +1,4 @@
-"""Roughness of both surfaces, fixed in the bodies and carried through the contact."""
+"""Roughness of both surfaces, fixed to the bodies and moving through the contact."""
 
 from dataclasses import dataclass
 
@@ -7,22 +7,22 @@ import numpy as np
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.samples import samples
 
-END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are the same
-RAMP_LENGTH = 0.1  # half widths of profile over which its heights come in
+END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are equal
+RAMP_LENGTH = 0.1  # half widths at the beginning of a profile over which its heights increase from zero
 
 
 @dataclass(frozen=True)
 class SurfacePositions:
-    """Positions of both surfaces at the begin of a run.
+    """Positions of both surfaces at the beginning of a run.
 
     Attributes
     ----------
     travelled : (float, float)
-        Distances that both bodies have travelled since their profiles began to enter [m], signed.
+        Distances travelled by both bodies since their profiles began to enter [m], signed.
     domain_ends_at_entry : (float, float)
-        Inlet and outlet at which they entered [m].
+        Inlet and outlet at which the profiles entered [m].
     profile_offsets : (float, float)
-        Abscissas of their profiles at which they began to enter [m].
+        Abscissas at which the profiles began to enter [m].
     """
 
     travelled: tuple
@@ -31,7 +31,7 @@ class SurfacePositions:
 
     @classmethod
     def at_rest(cls, scales):
-        """Positions at the begin of a run at time 0."""
+        """Positions at time 0."""
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
 
     def offsets(self, speeds):
@@ -40,7 +40,7 @@ class SurfacePositions:
         Parameters
         ----------
         speeds : (float, float)
-            As of :func:`directed_speeds`.
+            See :func:`directed_speeds`.
         """
         return tuple(
             -begin if speed > 0.0 else begin
@@ -49,7 +49,7 @@ class SurfacePositions:
 
 
 def directed_speeds(case, scales):
-    """Speeds of both surfaces [m/s] by which their profiles enter; 0 of one that reverses.
+    """Speeds of both surfaces [m/s] at which their profiles enter; 0 if a surface reverses.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def directed_speeds(case, scales):
 
 @dataclass(frozen=True)
 class Roughness:
-    """Both profiles; a smooth side is None."""
+    """Profiles of both surfaces; None for a smooth surface."""
 
     surface_1: Profile | None
     surface_2: Profile | None
@@ -78,14 +78,14 @@ class Roughness:
 
     @classmethod
     def of(cls, case, scales, positions=None):
-        """Roughness of a case, None where both surfaces are smooth.
+        """Roughness of a case; None if both surfaces are smooth.
 
         Parameters
         ----------
         case : case.loading.Case
         scales : scales.Scales
         positions : SurfacePositions, optional
-            Of a resumed run; by default those at time 0.
+            Positions of a resumed run; by default at time 0.
 
         Raises
         ------
@@ -104,23 +104,23 @@ class Roughness:
         Parameters
         ----------
         x : ndarray, shape (n,)
-            Places [m], with `cell` equally spaced by it.
+            Positions [m], with `cell` equally spaced by it.
         t : float
         cell : float, optional
-            Width of the cells of a mesh [m]: means over them. Waves shorter than that, which no mesh of this
-            width carries, are then damped instead of taken for longer ones. Without it values at x.
+            Cell width of the mesh [m] over which means are taken: waves shorter than a cell, which a mesh
+            does not resolve, are damped instead of aliased. Without it values at x.
         """
-        ways = [profile.speed * t if profile else 0.0 for profile in (self.surface_1, self.surface_2)]
-        return self.phi_after(x, ways, cell)
+        travelled = [profile.speed * t if profile else 0.0 for profile in (self.surface_1, self.surface_2)]
+        return self.phi_after(x, travelled, cell)
 
     def phi_after(self, x, travelled, cell=None):
         """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2)."""
         phi = np.zeros_like(x)
         at = x if cell is None else np.append(x - 0.5 * cell, x[-1] + 0.5 * cell)
-        for profile, way in zip((self.surface_1, self.surface_2), travelled, strict=True):
+        for profile, distance in zip((self.surface_1, self.surface_2), travelled, strict=True):
             if profile is not None:
                 heights = profile.height if cell is None else profile.mean_height
-                phi -= heights(at - way)
+                phi -= heights(at - distance)
         return phi
 
     @property
@@ -137,7 +137,7 @@ def _profile(case, scales, spec, speed, side, positions):
         swept_length = max(map(abs, reach))
     elif case.time is not None:
         left = max(scales.duration * scales.u_max - max(map(abs, positions.travelled)), 0.0)
-        # under another load the domain may reach further out than where the profile entered
+        # with another load the domain may extend beyond the point at which the profile entered
         wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
         swept_length = abs(travelled) + left * abs(speed) / scales.u_max
         swept_length += wider if wider > END_TOLERANCE * scales.a else 0.0

@@ -1,4 +1,4 @@
-"""Samples of one surface as its table in the case file describes them."""
+"""Samples of one surface, from its table in the case file."""
 
 from dataclasses import dataclass
 
@@ -9,25 +9,25 @@ from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.measured.profile_files import KEYS, UNITS, Layout, checked, read_profile
 from ehlpetsc.surfaces.measured.thinning import thinned
 
-MEAN_TOLERANCE = 1e-3  # of Rq: a mean beyond rounding
+MEAN_TOLERANCE = 1e-3  # of Rq: smaller means are rounding
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Heights of one surface, read or made.
+    """Heights of one surface, measured or synthetic.
 
     Attributes
     ----------
     X, z : ndarray, shape (n,)
         m; heights positive out of the metal.
     repeats : bool
-        Whether the profile continues mirrored beyond its ends, else with height 0.
+        Whether the profile is continued by reflection at its ends, otherwise by height 0.
     measured : bool
-        Read from a file.
+        Whether the heights are from a file.
     notes : tuple of str
-        Notes on the processing of the file's numbers, for the user.
+        Notes on the processing of the numbers of a file.
     source : Samples or None
-        Of thinned ones those before, without spikes narrower than `short_cutoff`.
+        Samples before thinning, without spikes narrower than `short_cutoff`.
     """
 
     X: np.ndarray
@@ -39,7 +39,7 @@ class Samples:
 
     @property
     def length(self):
-        """From the first sample to the last [m]."""
+        """Distance from the first sample to the last [m]."""
         return float(self.X[-1] - self.X[0])
 
     @property
@@ -49,15 +49,15 @@ class Samples:
 
 
 def samples(folder, spec, cell=None):
-    """Samples of one surface: read or generated, thinned, levelled, filtered, without mean, flipped, scaled.
+    """Samples of one surface: read or generated, thinned, levelled, filtered, centred, flipped, scaled.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Of the case file: profile files lie beside it.
+        Folder of the case file, in which profile files are.
     spec : ehlpetsc.case.tables.surface.SurfaceProfile
     cell : float, optional
-        Spacing of the mesh [m], to which far denser samples are thinned.
+        Spacing of the mesh [m], to which much denser samples are thinned.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def samples(folder, spec, cell=None):
         notes.append(f"{before[1].size} points, thinned to {z.size} local means")
         source = Samples(*_turned(*before, spec), True, True)
     mean = float(z.mean())
-    if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would come in as a step and thin the film
+    if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
         z = z - mean
         notes.append(f"mean height of {1e6 * mean:.4g} um subtracted")
     return Samples(*_turned(X, z, spec), True, True, tuple(notes), source)

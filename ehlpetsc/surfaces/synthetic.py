@@ -1,10 +1,10 @@
-"""Synthetic profiles: sampled heights, processed as measured ones."""
+"""Synthetic profiles: sampled heights, processed like measured profiles."""
 
 import numpy as np
 
-POINTS_PER_WAVE = 64  # a wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
+POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
-FLANK_WIDTH = 0.1  # of a square wave: over it, in units of the cosine, the flank rises
+FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
 
 
 def sampled(spec):
@@ -17,10 +17,10 @@ def sampled(spec):
     Returns
     -------
     X, z : ndarray, shape (n,)
-        m; heights positive out of the metal. A wave is half a wavelength long: mirrored end to end it is the
-        whole wave.
+        m; heights positive out of the metal. The profile of a wave is half a wavelength, continued by
+        reflection.
     repeats : bool
-        Whether the profile continues mirrored beyond its ends, else with height 0.
+        Whether the profile is continued by reflection at its ends, otherwise by height 0.
     """
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
@@ -46,8 +46,8 @@ def bump(spec):
 def ground(ra, correlation, skewness, seed):
     r"""Random profile with autocorrelation :math:`\exp[-(X/l)^2]` before its heights are skewed.
 
-    White noise under a Gaussian weight, then each height moved to where its rank lies in a gamma
-    (Pearson III) distribution, whose parameter is chosen so that the sample has the required skewness.
+    White noise filtered with a Gaussian weight; then each height is mapped by its rank to a gamma
+    (Pearson III) distribution with the parameter for which the sample has the prescribed skewness.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def ground(ra, correlation, skewness, seed):
 
 
 def _pearson3(normal, skewness):
-    """Standard normal heights turned into Pearson III ones of the same rank."""
+    """Pearson III heights with the ranks of standard normal heights."""
     from scipy.special import gammaincinv, ndtr
 
     if abs(skewness) < 1e-3:

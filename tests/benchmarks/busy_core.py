@@ -52,7 +52,7 @@ def measured(is_bound):
 
 
 def main():
-    """Measure and tell."""
+    """Measure and print."""
     for beside, session in (("alone", None), ("beside one of the same session", False), ("of another", True)):
         busy = None if session is None else subprocess.Popen(BUSY, start_new_session=session)
         try:

@@ -132,7 +132,7 @@ class Counting:
 
 
 def main():
-    """Measure and tell."""
+    """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--meshes", type=int, nargs="+", default=[200, 800, 1600])
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2])
@@ -148,10 +148,10 @@ def main():
         for _ in range(arguments.repeats):
             for ranks, figures in taken.items():
                 figures.append(measured(points, ranks, arguments.count))
-        tell(points, taken)
+        print_row(points, taken)
 
 
-def tell(points, taken):
+def print_row(points, taken):
     """One line for each number of ranks."""
     base = None
     for ranks, figures in taken.items():

@@ -1,10 +1,10 @@
-"""The program met with nonsense: ``python3 tests/fuzz/all.py --seed 1 --options 500 --restarts 500 ...``.
+"""The program given invalid input: ``python3 tests/fuzz/all.py --seed 1 --options 500 --restarts 500 ...``.
 
 options   a small case run with one to four PETSc and own options drawn from a list of good and bad ones
 restarts  damaged restart files: bytes changed or cut off; or content changed under a right checksum, run on
 results   damaged result files: a bit changed, or datasets and attributes replaced; read, compared, drawn
 layouts   shipped cases laid out otherwise in TOML, keys set, stored, loaded again: the same case
-cases     case files with one to three mutations, loaded, told, used as far as a run does before it computes
+cases     case files with one to three mutations, loaded, explained, used up to the first solve
 ensembles results, damaged ones among them, given to every command that reads several
 passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
 python    calls from Python with arguments drawn from lists of good and bad ones
@@ -77,8 +77,8 @@ def fuzz(seed, show=False, keep=None, **numbers):
                 if word in BAD and keep:
                     Path(keep).mkdir(parents=True, exist_ok=True)
                     draw.keep(Path(keep) / f"{kind}_{seed}_{number}")
-        told = ", ".join(f"{word} {counts[word]}" for word in (*WORDS.values(), *BAD) if counts[word])
-        print(f"{kind}: {told}", flush=True)
+        counted = ", ".join(f"{word} {counts[word]}" for word in (*WORDS.values(), *BAD) if counts[word])
+        print(f"{kind}: {counted}", flush=True)
     return found
 
 

@@ -89,16 +89,16 @@ class Draw:
             path.unlink()
         for name, content in FOREIGN.items():
             (self.folder / name).write_bytes(content)
-        told = []
+        actions = []
         for k, content in enumerate(self.content):
             path = self.folder / f"r{k}.h5"
             path.write_bytes(content)
             if rng.random() < 0.3:
                 spoil = self.spoil[2 * k + int(rng.integers(2))]
-                told.append(f"r{k}: {spoil(rng, int(rng.integers(10**6)), path)}")
+                actions.append(f"r{k}: {spoil(rng, int(rng.integers(10**6)), path)}")
             elif rng.random() < 0.1:
                 path.write_bytes(self.empty)
-                told.append(f"r{k}: no frame")
+                actions.append(f"r{k}: no frame")
         members = ", ".join(
             f'{{"value": {v}, "file": "r{k}.h5", "state": "done"}}' for k, v in enumerate(SPEEDS)
         )
@@ -113,16 +113,16 @@ class Draw:
             words += WORDS[command][int(rng.integers(len(WORDS[command])))]
         if command in (ensemble, plot) and rng.random() < 0.6:
             words += ["-o", OUTPUTS[int(rng.integers(len(OUTPUTS)))]]
-        status, said = process(lambda: self._run(command, words), self.folder / "said", LIMIT)
+        status, report = process(lambda: self._run(command, words), self.folder / "report", LIMIT)
         word = (
             "done"
-            if status == 1 and command is compare and "Traceback" not in said
-            else word_of(status, said)
+            if status == 1 and command is compare and "Traceback" not in report
+            else word_of(status, report)
         )
         after = {path.name: path.read_bytes() for path in self.folder.iterdir() if path.name in before}
         if after != before or list(self.folder.glob(".*.tmp*")):
             word = "changed"
-        return word, f"{told} {command.__name__} {words}: {status} {said[-1500:]}"
+        return word, f"{actions} {command.__name__} {words}: {status} {report[-1500:]}"
 
     def keep(self, place):
         """Copy the files of the last draw."""

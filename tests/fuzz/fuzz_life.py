@@ -51,8 +51,8 @@ class Draw:
             os.chdir(folder)
             return main(["case.toml", *ONCE, "-o", STORED[0], "--no-picture"])
 
-        status, said = process(begin, folder / "said", LIMIT)
-        assert status == 0, said
+        status, report = process(begin, folder / "report", LIMIT)
+        assert status == 0, report
         self.content = {name: (folder / name).read_bytes() for name in STORED}
         self.spoil = {name: [kind(folder / name) for kind in (Flips, Strange)] for name in STORED}
 

@@ -136,8 +136,8 @@ class Draw:
     def __init__(self, folder):
         self.folder, self.answers = folder, {}
         for number, (name, *_) in enumerate(SCENES):
-            status, said = self._run(number, ["-ehl_time_limit", "10"])  # the first compiles
-            assert status == 0, (name, said)
+            status, report = self._run(number, ["-ehl_time_limit", "10"])  # the first compiles
+            assert status == 0, (name, report)
             self.answers[number] = self._answer()
 
     def __call__(self, rng):
@@ -151,20 +151,20 @@ class Draw:
             words += [f"-{name}", *filter(None, [str(rng.choice(VALUES[name]))])]
         case = CASES / SCENES[scene][0]
         before = hashlib.sha256(case.read_bytes()).digest()
-        status, said = self._run(scene, words)
-        word = word_of(status, said)
+        status, report = self._run(scene, words)
+        word = word_of(status, report)
         if hashlib.sha256(case.read_bytes()).digest() != before:
             word = "changed"
-        elif word == "done" and not any(told in " ".join((said, *words)) for told in ANOTHER):
+        elif word == "done" and not any(marker in " ".join((report, *words)) for marker in ANOTHER):
             answer = self._answer()
             if answer is not None and not np.allclose(answer, self.answers[scene], rtol=SAME, atol=0.0):
                 word = "different"
         if word in ("done", "stopped", "not converged") and list(self.folder.glob(".*.tmp")):
             word = "changed"
-        return word, f"{SCENES[scene][:2]} {' '.join(words)}: {status} {said[-1500:]}"
+        return word, f"{SCENES[scene][:2]} {' '.join(words)}: {status} {report[-1500:]}"
 
     def keep(self, place):
-        """What was said is printed already."""
+        """Nothing to keep: the output is printed."""
 
     def _run(self, scene, words):
         name, *settings = SCENES[scene]
@@ -178,7 +178,7 @@ class Draw:
             os.chdir(self.folder)
             return int(run_guarded(arguments))
 
-        return process(work, self.folder / "said", LIMIT)
+        return process(work, self.folder / "report", LIMIT)
 
     def _answer(self):
         """Least film and largest pressure of the run, None without a result."""

@@ -44,8 +44,8 @@ class Draw:
         place = self.folder.with_name(name)
         place.mkdir()
         begun = time.monotonic()
-        status, said = self._run(name, place)
-        assert status == 0, said
+        status, report = self._run(name, place)
+        assert status == 0, report
         self.lasts[name] = time.monotonic() - begun
         self.whole[name] = place
 
@@ -58,19 +58,22 @@ class Draw:
         self.folder.mkdir()
         for other, content in FOREIGN.items():
             (self.folder / other).write_bytes(content)
-        told, said = [name], ""
+        actions, report = [name], ""
         often = ("output.checkpoint=1e-5",) if rng.random() < 0.5 else ()
         for _ in range(int(rng.integers(1, 4))):
             after, stop = self.lasts[name] * rng.random(), STOPS[int(rng.integers(len(STOPS)))]
-            status, said = self._run(name, self.folder, after, stop, often)
-            told.append(f"{stop.name} after {after:.2f} s: {status}")
+            status, report = self._run(name, self.folder, after, stop, often)
+            actions.append(f"{stop.name} after {after:.2f} s: {status}")
             if status not in (0, 4, -stop.value):
-                return word_of(status, said) if status in (2, 3) else "traceback", f"{told} {said[-1500:]}"
+                return word_of(status, report) if status in (
+                    2,
+                    3,
+                ) else "traceback", f"{actions} {report[-1500:]}"
             if rng.random() < 0.25:
-                told.append(self._rob(rng))
-        status, said = self._run(name, self.folder, often=often)
-        what = f"{told}: {status} {said[-1500:]}"
-        word = word_of(status, said)
+                actions.append(self._rob(rng))
+        status, report = self._run(name, self.folder, often=often)
+        what = f"{actions}: {status} {report[-1500:]}"
+        word = word_of(status, report)
         if word == "done" and not often and not self._is_whole(name):
             word = "different"
         if any((self.folder / other).read_bytes() != content for other, content in FOREIGN.items()):
@@ -94,16 +97,16 @@ class Draw:
             text=True,
         )
         try:
-            said, _ = run.communicate(timeout=after)
+            report, _ = run.communicate(timeout=after)
         except subprocess.TimeoutExpired:
             run.send_signal(stop)
             try:
-                said, _ = run.communicate(timeout=LIMIT)
+                report, _ = run.communicate(timeout=LIMIT)
             except subprocess.TimeoutExpired:
                 run.kill()
                 return None, run.communicate()[0]
-            return (None if after == LIMIT else run.returncode), said
-        return run.returncode, said
+            return (None if after == LIMIT else run.returncode), report
+        return run.returncode, report
 
     def _rob(self, rng):
         pattern = str(rng.choice(ROBBED))

@@ -167,8 +167,8 @@ class Draw:
         for name, content in FOREIGN.items():
             (self.folder / name).write_bytes(content)
         calls = [pick(rng, CALLS) for _ in range(int(rng.integers(1, 4)))]
-        status, said = process(lambda: self._call(calls, rng), self.folder / "said", LIMIT)
-        what = f"{[call.__name__ for call in calls]}: {status} {said[-1500:]}"
+        status, report = process(lambda: self._call(calls, rng), self.folder / "report", LIMIT)
+        what = f"{[call.__name__ for call in calls]}: {status} {report[-1500:]}"
         if any((self.folder / name).read_bytes() != content for name, content in FOREIGN.items()):
             return "changed", what
         if list(self.folder.glob(".*.tmp*")) or list(self.folder.glob("*.lock")):

@@ -40,12 +40,12 @@ class Draw:
         what = self._forge(rng) if forged else self._damage(rng)
         shutil.copy(self.folder / "sound.h5", self.folder / "run.h5")
         before = [path.read_bytes() for path in (self.path, self.folder / "run.h5")]
-        status, said = process(lambda: self._go_on(forged), self.folder / "said", LIMIT)
-        word = "different" if "DIFFERENT STATE" in said else word_of(status, said)
+        status, report = process(lambda: self._go_on(forged), self.folder / "report", LIMIT)
+        word = "different" if "DIFFERENT STATE" in report else word_of(status, report)
         after = [path.read_bytes() for path in (self.path, self.folder / "run.h5")]
         if (word == "refused" and after != before) or list(self.folder.glob(".*.tmp")):
             word = "changed"
-        return word, f"{what}: {status} {said[-1500:]}"
+        return word, f"{what}: {status} {report[-1500:]}"
 
     def keep(self, place):
         """Copy the file of the last draw."""
@@ -99,17 +99,17 @@ class Draw:
 
     def _forge(self, rng):
         arrays, numbers = load_restart(self.sound)
-        told = []
+        changes = []
         for _ in range(1 + int(rng.integers(2))):
             if rng.random() < 0.5:
-                told.append(self._other_array(rng, arrays))
+                changes.append(self._other_array(rng, arrays))
             else:
-                told.append(self._other_number(rng, numbers))
+                changes.append(self._other_number(rng, numbers))
         try:
             save_restart(self.path, arrays, numbers)
         except (TypeError, ValueError, OSError, OverflowError):  # not to be stored
             shutil.copy(self.sound, self.path)
-        return ", ".join(told)
+        return ", ".join(changes)
 
     @staticmethod
     def _other_array(rng, arrays):

@@ -31,18 +31,18 @@ class Draw:
         what = self.spoil[not flipped](rng, self.number // 2, self.path)
         before, self.number = digest(self.path), self.number + 1
         drawn = self.number % PICTURES < 2
-        status, said = process(lambda: self._use(flipped, drawn), self.folder / "said", LIMIT)
-        word = "different" if "DIFFERENT CONTENT" in said else word_of(status, said)
+        status, report = process(lambda: self._use(flipped, drawn), self.folder / "report", LIMIT)
+        word = "different" if "DIFFERENT CONTENT" in report else word_of(status, report)
         if digest(self.path) != before:
             word = "changed"
-        return word, f"{what}: {status} {said[-1500:]}"
+        return word, f"{what}: {status} {report[-1500:]}"
 
     def keep(self, place):
         """Copy the file of the last draw."""
         place.with_suffix(".h5").write_bytes(self.path.read_bytes())
 
     def _use(self, flipped, drawn):
-        """All that reads results; a bit turned over is told or is in nothing that is read."""
+        """Read a result in every way; a flipped bit is reported or lies outside the data read."""
         try:
             now = content(self.path)
         except OutputError as error:

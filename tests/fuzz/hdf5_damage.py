@@ -241,15 +241,15 @@ class Structures:
     def __call__(self, rng, number, path):
         """Write spoiled file `number`; returns what was done to it."""
         path.write_bytes(self.content)
-        told = []
+        changes = []
         with h5py.File(path, "r+") as file:
             for _ in range(1 + int(rng.integers(3))):
                 change = STRUCTURES[rng.integers(len(STRUCTURES))]
                 try:
-                    told.append(change(rng, file))
+                    changes.append(change(rng, file))
                 except Exception as fault:  # what is spoiled already cannot be changed in every way
-                    told.append(f"{change.__name__} stopped by {type(fault).__name__}")
-        return ", ".join(told)
+                    changes.append(f"{change.__name__} stopped by {type(fault).__name__}")
+        return ", ".join(changes)
 
 
 class Strange:

@@ -83,20 +83,20 @@ def write_base(path):
     assert abs(scalars["load"] / LOAD - 1) < 1e-9
 
 
-def outcome(status, said, path):
+def outcome(status, report, path):
     """One word; "refused" only with a line that names the file and why."""
     if status is None:
         return "hang"
     if status < 0:
         return "signal"
-    if "Traceback" in said or status not in (0, 2):
+    if "Traceback" in report or status not in (0, 2):
         return "traceback"
     output = path.with_suffix(".post.h5")
     left = [p for p in path.parent.iterdir() if ".parts" in p.name or ".tmp" in p.name]
     if left or status == 2 and output.exists():
         return "litter"
     if status == 2:
-        reasons = [line for line in said.splitlines() if line.startswith(f"ehlpetsc.post: {path}: ")]
+        reasons = [line for line in report.splitlines() if line.startswith(f"ehlpetsc.post: {path}: ")]
         return "refused" if reasons else "traceback"
     return "done"
 
@@ -110,17 +110,17 @@ def run(spoil, number, seed, pictures, keep, show):
             what = spoil(np.random.default_rng([seed, k]), k, path)
             options = ["--pictures", str(path.parent / "pictures")] if pictures and k % pictures == 0 else []
             words = [str(path), *options]
-            status, said = process(
+            status, report = process(
                 lambda words=words: command.main(words, subprocess_guard.SubprocessGuard(command.say)),
-                path.with_suffix(".said"),
+                path.with_suffix(".report"),
                 LIMIT,
             )
-            word = outcome(status, said, path)
+            word = outcome(status, report, path)
             counts[word] += 1
-            counts["refused as HDF5 crashed"] += "HDF5 crashes" in said
-            counts["refused as HDF5 hung"] += "does not return" in said
+            counts["refused as HDF5 crashed"] += "HDF5 crashes" in report
+            counts["refused as HDF5 hung"] += "does not return" in report
             if show or word in BAD:
-                print(f"{k}: {what}: {word} {status}: {said.strip()[:2000]}", flush=True)
+                print(f"{k}: {what}: {word} {status}: {report.strip()[:2000]}", flush=True)
             if word in BAD and keep:
                 Path(keep).mkdir(parents=True, exist_ok=True)
                 path.rename(Path(keep) / f"{type(spoil).__name__}_{seed}_{k}.h5")

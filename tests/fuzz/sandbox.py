@@ -6,21 +6,21 @@ import sys
 import time
 
 
-def process(work, said, limit):
-    """Exit status of work() and what it said; negative: a signal, None: a hang.
+def process(work, report, limit):
+    """Exit status and output of work(); negative status: a signal, None: a hang.
 
     Parameters
     ----------
     work : callable
         Returns an exit status.
-    said : Path
+    report : Path
         File for its output.
     limit : float
         Seconds.
     """
     child = os.fork()
     if child == 0:
-        descriptor = os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        descriptor = os.open(report, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(descriptor, 1)
         os.dup2(descriptor, 2)
         sys.stdout = open(1, "w", closefd=False)
@@ -42,32 +42,32 @@ def process(work, said, limit):
     while time.monotonic() < until:
         found, status = os.waitpid(child, os.WNOHANG)
         if found:
-            return os.waitstatus_to_exitcode(status), said.read_text(errors="replace")
+            return os.waitstatus_to_exitcode(status), report.read_text(errors="replace")
         time.sleep(0.005)
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
-    return None, said.read_text(errors="replace")
+    return None, report.read_text(errors="replace")
 
 
 WORDS = {0: "done", 2: "refused", 3: "not converged", 4: "stopped"}
 BAD = ("traceback", "hang", "signal", "different", "changed")
 
 
-def word_of(status, said):
-    """How it ended in a word of `WORDS` or `BAD`."""
+def word_of(status, report):
+    """Outcome as a word of `WORDS` or `BAD`."""
     if status is None:
         return "hang"
     if status < 0:
         return "signal"
-    if "Traceback (most" in said or status not in WORDS:
+    if "Traceback (most" in report or status not in WORDS:
         return "traceback"
-    if status == 2 and not any(": " in line for line in said.splitlines()):
+    if status == 2 and not any(": " in line for line in report.splitlines()):
         return "traceback"  # no word of why
     return WORDS[status]
 
 
 def beside_others(folder, inputs, work, limit, may_change=()):
-    """One word for how work() ended in a folder of these files alone, and what it said.
+    """Outcome, one word, and output of work() in a folder of these files only.
 
     Parameters
     ----------
@@ -90,10 +90,10 @@ def beside_others(folder, inputs, work, limit, may_change=()):
         os.chdir(folder)
         return int(work())
 
-    status, said = process(inside, folder / "said", limit)
-    word = word_of(status, said)
+    status, report = process(inside, folder / "report", limit)
+    word = word_of(status, report)
     kept = [name for name in inputs if word == "refused" or name not in may_change]
     changed = any((folder / name).read_bytes() != inputs[name] for name in kept)
     if word not in BAD and (changed or list(folder.glob(".*.tmp*"))):
         word = "changed"
-    return word, f"{status} {said[-1500:]}"
+    return word, f"{status} {report[-1500:]}"

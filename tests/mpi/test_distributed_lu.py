@@ -15,6 +15,7 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.operators.jacobian_operator import PIVOT_REGULARISATION
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
+from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -68,7 +69,7 @@ def dense(problem, at, inactive_nodes):
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
-def test_it_solves_its_matrix(model):
+def test_distributed_lu_solves_its_matrix(model):
     case, ranks = load(CASE, [*MESH, f"contact.model={model}"]), PETSc.COMM_WORLD.tompi4py()
     scales = Scales.of(case)
     n, at, film = scales.nx, state(case, scales), expected_film(case, scales)
@@ -94,7 +95,7 @@ def test_it_solves_its_matrix(model):
     has_load = int(last == n)
     found = np.empty(2 * (last - first) + has_load)
     units = np.repeat(np.eye(2)[:, None], last - first, axis=1)
-    lu.solve(right[2 * first : 2 * last + has_load], units, found)
+    solve(*lu.factors, right[2 * first : 2 * last + has_load], units, found)
     found, approach = found[: 2 * (last - first)], ranks.bcast(found[-1], root=ranks.size - 1)
     part.model.from_band(nodes, part.owned, found.reshape(-1, 2))
     expected = np.linalg.solve(dense(whole, at, inactive_nodes), right)

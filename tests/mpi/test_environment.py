@@ -5,11 +5,11 @@ import os
 import numpy as np
 
 
-def test_every_rank_of_mpirun_is_in_the_world():
+def test_world_communicator_has_every_rank():
     from mpi4py import MPI
 
-    told = next(os.environ[name] for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") if name in os.environ)
-    assert MPI.COMM_WORLD.size == int(told)
+    size = next(os.environ[name] for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") if name in os.environ)
+    assert MPI.COMM_WORLD.size == int(size)
     assert MPI.COMM_WORLD.allreduce(MPI.COMM_WORLD.rank) == sum(range(MPI.COMM_WORLD.size))
 
 

@@ -21,7 +21,7 @@ SHORT = {
 @pytest.mark.parametrize(
     "keys", [{"mesh.points_per_half_width": 20}, {"time.pass_shift": 50e-6, "life.partners": 3}]
 )
-def test_the_life_is_that_of_one_rank(keys, tmp_path):
+def test_life_is_independent_of_the_number_of_ranks(keys, tmp_path):
     from mpi4py import MPI
 
     world, case = MPI.COMM_WORLD, load(CASE, SHORT | keys)
@@ -36,7 +36,7 @@ def test_the_life_is_that_of_one_rank(keys, tmp_path):
             assert body.damage == pytest.approx(other.damage, rel=1e-9)
 
 
-def test_a_fault_in_one_position_ends_the_life_on_every_rank(tmp_path):
+def test_stop_in_one_position_ends_the_life_on_every_rank(tmp_path):
     from mpi4py import MPI
 
     from ehlpetsc.errors import Stopped

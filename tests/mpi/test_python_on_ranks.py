@@ -10,7 +10,7 @@ CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 COARSE = {"mesh.points_per_half_width": 20}
 
 
-def test_every_rank_gets_the_result_of_one_rank():
+def test_every_rank_gets_the_single_rank_result():
     alone = ehlpetsc.solve(ehlpetsc.load(CASE, COARSE))  # on each rank by itself
     from mpi4py import MPI
 

@@ -69,7 +69,7 @@ def marched(comm, model):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_rough_run_is_the_same_on_every_number_of_ranks(model, alone):
+def test_rough_run_is_independent_of_the_number_of_ranks(model, alone):
     pressure, film, touching, newton, volume = marched(MPI.COMM_WORLD, model)
     expected = alone[model]
     assert touching.any()

@@ -1,4 +1,4 @@
-"""Every case of cases/ in a short form, and the scalars of its result that are held against stored ones.
+"""Every case of cases/ in a short form, and the scalars of its result compared with stored ones.
 
 Refresh after a change that is meant to move results, and say in the commit why they move::
 

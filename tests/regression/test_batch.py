@@ -1,4 +1,4 @@
-"""The batch script, with a stand-in for Slurm: stopped in time, queued again, it goes on and ends."""
+"""The batch script with a stand-in for Slurm: it stops in time, is requeued, continues and ends."""
 
 import signal
 import subprocess
@@ -13,7 +13,7 @@ JOB = ["/bin/bash", ROOT / "cases" / "batch.slurm", ROOT / "cases" / "table1_rou
 
 
 def slurm(folder):
-    """The environment of a job, and a scontrol that notes what it is told."""
+    """Environment of a job with a scontrol that records its arguments."""
     scontrol = folder / "bin" / "scontrol"
     scontrol.parent.mkdir(exist_ok=True)
     scontrol.write_text('#!/bin/sh\necho "$@" >>requeued\n')
@@ -49,9 +49,7 @@ PASSES = (
     ],
     ids=["one run", "passes"],
 )
-def test_a_job_stopped_before_its_time_is_over_continues_when_queued_again(
-    tmp_path, case, keys, first, results
-):
+def test_requeued_job_continues(tmp_path, case, keys, first, results):
     """The second job is the same command: it ends, and nothing that was done is computed again.
 
     Of a series that is the test of the same command, without the script.
@@ -78,7 +76,7 @@ def test_a_job_stopped_before_its_time_is_over_continues_when_queued_again(
 
 
 @pytest.mark.slow
-def test_a_job_that_never_gets_to_its_first_step_is_not_queued_for_ever(tmp_path):
+def test_job_without_a_step_is_not_requeued(tmp_path):
     environment = slurm(tmp_path) | {"SLURM_RESTART_COUNT": "20"}
     words = [*JOB, "-ehl_time_limit", "1e-6"]
     done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
@@ -86,7 +84,7 @@ def test_a_job_that_never_gets_to_its_first_step_is_not_queued_for_ever(tmp_path
     assert "queued 20 times" in done.stderr
 
 
-def test_the_modules_of_a_cluster_are_loaded_before_the_run(tmp_path):
+def test_cluster_modules_are_loaded_before_the_run(tmp_path):
     environment = slurm(tmp_path) | {
         "MODULES": "petsc petsc4py",
         "BASH_FUNC_module%%": '() { echo "$@" >>loaded; }',

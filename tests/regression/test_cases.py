@@ -1,4 +1,4 @@
-"""Every case of cases/ in its short form gives the figures stored; see short_cases.py for refreshing them."""
+"""Every case of cases/ in its short form reproduces stored values; short_cases.py refreshes them."""
 
 import json
 
@@ -10,12 +10,12 @@ STORED = json.loads(EXPECTED.read_text())
 LOAD_ERROR = 1e-8
 
 
-def test_no_case_is_left_out():
+def test_every_case_has_stored_values():
     assert set(SHORT) == set(STORED) == {path.stem for path in (ROOT / "cases").glob("*.toml")}
 
 
 @pytest.mark.parametrize("name", SHORT)
-def test_case_gives_the_stored_figures(name, tmp_path):
+def test_case_reproduces_stored_values(name, tmp_path):
     found, stored = results(name, tmp_path), STORED[name]
     assert found.keys() == stored.keys()
     for file, expected in stored.items():

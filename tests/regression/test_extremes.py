@@ -1,4 +1,4 @@
-"""The edge of the ranges: the short form of the table of extremes, and random cases."""
+"""Extreme conditions: short form of the table of extremes, and random cases."""
 
 import math
 import os
@@ -14,7 +14,7 @@ from ehlpetsc.study.random_cases import run_all
 
 @pytest.fixture(autouse=True)
 def quick_start(monkeypatch):
-    """Runs begin in a process that has imported already."""
+    """Run in the prepared process."""
 
     def run_command(words, stream, limit):
         (_, _, module), rest = words[:3], words[3:]
@@ -38,13 +38,13 @@ def test_short_table_of_extremes(tmp_path):
 
 
 @pytest.mark.slow
-def test_random_cases_end_in_0_or_3_and_leave_whole_files(tmp_path):
-    said = []
+def test_random_cases_end_with_status_0_or_3_and_complete_files(tmp_path):
+    message = []
     count = int(os.environ.get("EHL_DRAWS", "3"))
-    assert run_all(count, 1, tmp_path / "random.csv", 120, said.append) == 0, said
+    assert run_all(count, 1, tmp_path / "random.csv", 120, message.append) == 0, message
 
 
-def test_every_line_of_the_whole_table_is_a_case_that_loads(tmp_path):
+def test_every_row_of_the_full_table_loads(tmp_path):
     whole = cases()
     assert len({(line.axis, line.value) for line in whole}) == len(whole) > 100
     for line in whole:

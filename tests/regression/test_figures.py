@@ -41,7 +41,7 @@ def figure_4(tmp_path_factory):
     return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values, "time.courant=1.0")
 
 
-def test_films_reach_zero_where_extrapolation_says(figure_4):
+def test_film_reaches_zero_at_the_extrapolated_viscosity(figure_4):
     """Figure 4 (i): six contact points or more, film falling to zero without steepening."""
     with ExitStack() as stack:
         results, values, found = thin_ones_and_collisions(stack, figure_4)
@@ -55,7 +55,7 @@ def test_films_reach_zero_where_extrapolation_says(figure_4):
         assert np.median(before) < 0.03 and before.max() < 0.2
 
 
-def test_pressure_grows_once_the_film_is_gone(figure_4):
+def test_pressure_grows_after_contact(figure_4):
     """Figure 4 (ii)."""
     with ExitStack() as stack:
         _, _, found = thin_ones_and_collisions(stack, figure_4)
@@ -66,7 +66,7 @@ def test_pressure_grows_once_the_film_is_gone(figure_4):
         assert np.mean(np.concatenate(changes) > 0) >= 0.75
 
 
-def test_thinner_oil_touches_wherever_thicker_does(figure_4):
+def test_contacts_persist_at_lower_viscosity(figure_4):
     """Figures 1 and 2: contacts develop from those at higher viscosity."""
     with ExitStack() as stack:
         results, _, found = thin_ones_and_collisions(stack, figure_4)
@@ -104,7 +104,7 @@ def test_meshes_agree_on_collisions(tmp_path):
         assert 0.4 < counts.mean_rate(fine) / counts.mean_rate(coarse) < 1.8
 
 
-def test_oil_is_trapped_between_two_contacts(tmp_path):
+def test_entrapment_between_two_contacts(tmp_path):
     """Figure 5, at four times the time step and up to the collision alone."""
     short = settings("mesh.outlet=1.2", "time.travel=1.7", "time.courant=2.0")
     done = run(ROOT / "cases" / "fig5.toml", *short, cwd=tmp_path)

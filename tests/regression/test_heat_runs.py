@@ -21,7 +21,7 @@ QUICK = (
 FIELDS = ("pressure", "film_thickness", "film_temperature", "temperature_1", "heat_flux_2")
 
 
-def test_restart_gives_the_same_run_to_the_last_bit(tmp_path):
+def test_restart_is_bitwise_identical(tmp_path):
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     for folder in (whole, parts):
         folder.mkdir()
@@ -37,7 +37,7 @@ def test_restart_gives_the_same_run_to_the_last_bit(tmp_path):
             np.testing.assert_array_equal(one[name][:], other[name][:])
 
 
-def test_a_series_of_speeds_heats_more(tmp_path):
+def test_temperature_rises_with_speed_in_a_series(tmp_path):
     series = ('series.key="motion.entrainment_speed"', "series.values=[5.0, 25.0]", "time.travel=0.1")
     done = run(CASE, *settings(*QUICK, *series), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -63,7 +63,7 @@ def test_both_bodies_enter_every_pass_at_bulk_temperature(tmp_path):
 
 
 @pytest.mark.parametrize("name, heated", [("table1_mixed", False), ("table1_heat", True)])
-def test_an_isothermal_run_imports_nothing_of_heat(name, heated, tmp_path):
+def test_isothermal_run_imports_no_heat_module(name, heated, tmp_path):
     code = (
         "import sys; from ehlpetsc.case.loading import load; from ehlpetsc.run.simulation import Simulation;"
         f"list(Simulation(load({str(ROOT / 'cases' / name)!r} + '.toml',"

@@ -1,4 +1,4 @@
-"""Whatever ends a run, or takes its output away: a status that is documented, one sentence, no dump."""
+"""Signals and lost outputs: a documented exit status, one line, no traceback."""
 
 import os
 import shutil
@@ -38,8 +38,8 @@ def assert_stopped_whole(folder):
     assert done.returncode == 0 and f"step {last}, " in done.stdout
 
 
-def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path):
-    """Open MPI then ends with a status of its own, 1; the fifth hands on nothing that its ranks still say."""
+def test_signal_to_mpirun_writes_a_restart_file(tmp_path):
+    """Open MPI then ends with status 1; version 5 drops the remaining output of its ranks."""
     version = subprocess.run(["mpirun", "--version"], capture_output=True, text=True, env=BARE).stdout
     process = start(*LONG, cwd=tmp_path, ranks=2)
     wait_for(tmp_path / "r.h5", process)
@@ -51,7 +51,7 @@ def test_a_signal_to_mpirun_itself_leaves_the_restart_file(tmp_path):
     assert_stopped_whole(tmp_path)
 
 
-def test_a_signal_to_a_run_of_one_process(tmp_path):
+def test_signal_to_a_single_process_writes_a_restart_file(tmp_path):
     process = start(*LONG, cwd=tmp_path)
     wait_for(tmp_path / "r.h5", process)
     process.send_signal(signal.SIGHUP)
@@ -62,8 +62,8 @@ def test_a_signal_to_a_run_of_one_process(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_step_that_lasts_is_not_waited_for(tmp_path):
-    """mpirun kills a second after the signal: the state before the step in hand is saved by then."""
+def test_signal_interrupts_a_long_step(tmp_path):
+    """mpirun kills one second after the signal: the state before the current step is saved by then."""
     never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip", "-snes_monitor"]
     assert run(*LONG, cwd=tmp_path, tampered=("SIGTERM", 0, 2)).returncode == 4
     process = start(*LONG, "-ehl_restart", "r.restart.h5", *never, cwd=tmp_path)
@@ -75,7 +75,7 @@ def test_a_step_that_lasts_is_not_waited_for(tmp_path):
     assert process.returncode == 4 and time.monotonic() - asked < 3.0
 
 
-def test_a_hangup_that_is_ignored_stays_so(tmp_path):
+def test_ignored_hangup_stays_ignored(tmp_path):
     words = ["nohup", *command(*STEADY)]
     process = subprocess.Popen(
         words, cwd=tmp_path, env=BARE | SCRIPT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
@@ -87,9 +87,9 @@ def test_a_hangup_that_is_ignored_stays_so(tmp_path):
     assert process.returncode == 0
 
 
-# on a quick machine it has begun by then, and stops all the same
+# on a fast machine the run has started by then and stops too
 @pytest.mark.parametrize("name, delay", [("SIGINT", 0.5), ("SIGTERM", 0.8), ("SIGHUP", 1.1)])
-def test_a_signal_during_imports_ends_in_one_sentence(tmp_path, name, delay):
+def test_signal_during_imports_prints_one_line_at_most(tmp_path, name, delay):
     endless = [*STEADY, *settings("time.courant=1.0", "time.travel=500"), "-ehl_overwrite"]
     process = start(*endless, cwd=tmp_path)
     time.sleep(delay)
@@ -100,7 +100,7 @@ def test_a_signal_during_imports_ends_in_one_sentence(tmp_path, name, delay):
     assert len(errors.splitlines()) <= 1
 
 
-def test_output_that_nobody_reads_does_not_end_a_run(tmp_path):
+def test_closed_pipe_does_not_end_a_run(tmp_path):
     process = start(*STEADY, "-snes_monitor", "-log_view", cwd=tmp_path)
     process.stdout.close()
     errors = process.stderr.read()
@@ -112,7 +112,7 @@ def test_output_that_nobody_reads_does_not_end_a_run(tmp_path):
 
 
 @pytest.mark.parametrize("redirection", [">/dev/full 2>&1", ">&- 2>&-", "<&- >&-"])
-def test_output_that_is_full_or_closed_does_not_end_a_run(tmp_path, redirection):
+def test_full_or_closed_output_does_not_end_a_run(tmp_path, redirection):
     line = " ".join(map(str, command(*STEADY, "-snes_monitor"))) + f" {redirection}"
     done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -121,13 +121,13 @@ def test_output_that_is_full_or_closed_does_not_end_a_run(tmp_path, redirection)
         assert result.attrs["status"] == "done"
 
 
-def test_an_answer_without_room_is_no_success(tmp_path):
+def test_keys_on_a_full_device_end_with_status_2(tmp_path):
     line = " ".join(command("--keys")) + " >/dev/full"
     done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
     assert done.returncode == 2 and "No space left on device" in done.stderr
 
 
-def test_a_working_folder_that_is_gone(tmp_path):
+def test_removed_working_folder_is_refused(tmp_path):
     (tmp_path / "gone").mkdir()
     line = "rmdir ../gone && " + " ".join(map(str, command(*STEADY)))
     done = subprocess.run(
@@ -137,13 +137,13 @@ def test_a_working_folder_that_is_gone(tmp_path):
     assert is_line_with(done.stderr, "working folder")
 
 
-def test_a_place_for_temporary_files_that_cannot_be_written(tmp_path):
+def test_missing_tmpdir_is_refused(tmp_path):
     done = run(*STEADY, cwd=tmp_path, TMPDIR=str(tmp_path / "nowhere"))
     assert done.returncode == 2
     assert is_line_with(done.stderr, f"{tmp_path}/nowhere", "TMPDIR")
 
 
-def test_a_folder_removed_in_mid_run_is_seen(tmp_path):
+def test_folder_removed_during_a_run_is_an_error(tmp_path):
     folder = tmp_path / "out"
     folder.mkdir()
     soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there

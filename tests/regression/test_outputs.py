@@ -1,4 +1,4 @@
-"""Nothing is lost: what stands in the place of an output, locks, results removed in mid-run."""
+"""Outputs: existing files are kept, locks, results removed during a run."""
 
 import os
 import subprocess
@@ -21,7 +21,7 @@ def done(tmp_path):
     return tmp_path
 
 
-def test_the_same_case_is_made_again_and_another_is_refused(done):
+def test_same_case_overwrites_and_another_is_refused(done):
     path = done / "table1_smooth.h5"
     assert run(*CASE, cwd=done).returncode == 0
     before = path.read_bytes()
@@ -37,7 +37,7 @@ def test_the_same_case_is_made_again_and_another_is_refused(done):
     assert [p.name for p in done.iterdir()] == ["table1_smooth.h5"]
 
 
-def test_a_run_that_waits_for_its_restart_is_not_lost(tmp_path):
+def test_stopped_result_is_not_overwritten(tmp_path):
     case = [*LONG, "-ehl_output", "r.h5"]
     stopped = run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5))
     assert stopped.returncode == 4
@@ -53,7 +53,7 @@ def test_a_run_that_waits_for_its_restart_is_not_lost(tmp_path):
     )
 
 
-def test_the_same_command_continues_a_run(tmp_path):
+def test_same_command_continues_a_run(tmp_path):
     case = [*LONG[:-2], *settings("time.travel=0.2"), "-ehl_output", "r.h5"]
     assert run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5)).returncode == 4
     done = run(*case, cwd=tmp_path)
@@ -65,7 +65,7 @@ def test_the_same_command_continues_a_run(tmp_path):
     assert again.returncode == 0 and "restart: " not in again.stdout
 
 
-def test_the_same_command_begins_anew_where_a_run_was_killed_before_its_first_checkpoint(tmp_path):
+def test_run_killed_before_its_first_checkpoint_starts_again(tmp_path):
     case = [*LONG[:-2], *settings("time.travel=0.2"), "-ehl_output", "r.h5"]
     assert run(*case, cwd=tmp_path, tampered=("SIGKILL", 0, 5)).returncode == -9
     assert sorted(path.name for path in tmp_path.iterdir() if path.name.endswith(".h5")) == ["r.h5"]
@@ -75,7 +75,7 @@ def test_the_same_command_begins_anew_where_a_run_was_killed_before_its_first_ch
         assert result.attrs["status"] == "done"
 
 
-def test_a_damaged_restart_file_is_refused_and_left(tmp_path):
+def test_damaged_restart_file_is_refused_and_kept(tmp_path):
     case = [*LONG, "-ehl_output", "r.h5"]
     assert run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5)).returncode == 4
     raw = bytearray((tmp_path / "r.restart.h5").read_bytes())
@@ -101,7 +101,7 @@ def make_fifo(folder):
         (lambda folder: None, "/", "a folder"),
     ],
 )
-def test_what_is_no_result_is_refused_and_left(tmp_path, make, output, fault):
+def test_foreign_file_is_refused_and_kept(tmp_path, make, output, fault):
     make(tmp_path)
     refused = run(*CASE, "-ehl_output", output, cwd=tmp_path)
     assert refused.returncode == 2 and fault in refused.stderr
@@ -113,7 +113,7 @@ def test_what_is_no_result_is_refused_and_left(tmp_path, make, output, fault):
 
 
 @pytest.mark.parametrize("words", [[], ["-ehl_overwrite"]])
-def test_an_input_is_never_an_output(tmp_path, words):
+def test_input_is_never_an_output(tmp_path, words):
     case = (ROOT / "cases" / "table1_rough.toml").read_text().replace("profiles/", "")
     profile = (ROOT / "cases" / "profiles" / "alicona_meander_profile.csv").read_text()
     (tmp_path / "case.toml").write_text(case)
@@ -127,7 +127,7 @@ def test_an_input_is_never_an_output(tmp_path, words):
 
 
 def running(folder, *more):
-    """A long run, once its result is there."""
+    """A long run whose result file exists."""
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     words = command(*LONG, "-ehl_output", "r.h5", *more)
     process = subprocess.Popen(words, cwd=folder, env=BARE | SCRIPT, **pipes)
@@ -136,7 +136,7 @@ def running(folder, *more):
 
 
 @pytest.mark.slow
-def test_a_second_run_is_kept_away_and_a_killed_one_is_not_in_the_way(tmp_path):
+def test_output_lock_excludes_a_second_run_and_ends_with_its_process(tmp_path):
     process = running(tmp_path)
     try:
         second = run(*LONG, "-ehl_output", "r.h5", "-ehl_overwrite", cwd=tmp_path)
@@ -152,14 +152,14 @@ def test_a_second_run_is_kept_away_and_a_killed_one_is_not_in_the_way(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_result_removed_in_mid_run_is_seen(tmp_path):
+def test_result_removed_during_a_run_is_an_error(tmp_path):
     soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there
     process = running(tmp_path, *soon)
     try:
         (tmp_path / "r.h5").unlink()
-        told, errors = process.communicate(timeout=60)
+        output, errors = process.communicate(timeout=60)
     finally:
         process.kill()
     assert process.returncode == 2
-    assert told.splitlines()[-1].startswith("ehlpetsc: bad input steps=")
+    assert output.splitlines()[-1].startswith("ehlpetsc: bad input steps=")
     assert "r.h5: result file removed or replaced by others during the run" in errors

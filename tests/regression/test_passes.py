@@ -1,4 +1,4 @@
-"""Passes of two bodies over each other: files, index, restart in the middle of one, refusals."""
+"""Repeated passes: files, index, restart within a pass, refused input."""
 
 import errno
 import json
@@ -32,7 +32,7 @@ SHORT = (
 
 
 @pytest.mark.slow
-def test_a_result_a_pass_and_an_index(tmp_path):
+def test_every_pass_has_a_result_and_an_index_entry(tmp_path):
     done = run(CASE, *settings(*SHORT), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     rows = json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
@@ -53,29 +53,29 @@ def test_a_result_a_pass_and_an_index(tmp_path):
     assert "pass 2 of 2" in done.stdout and "passes: running_in.passes.json" in done.stdout
 
 
-def test_the_index_is_kept_for_one_run(tmp_path):
-    """A second run of passes, or post-processing that would write into it, is told of the first."""
+def test_pass_index_is_locked_by_one_run(tmp_path):
+    """A second run of passes, or post-processing that would write to the index, names the first run."""
     with Lock(tmp_path / "running_in.passes.json"):
         for words in ([], ["-ehl_overwrite"], ["-ehl_restart", "running_in.pass2.restart.h5"]):
             second = run(CASE, *settings(*SHORT), *words, cwd=tmp_path)
             assert second.returncode == 2
-            (told,) = second.stderr.splitlines()
-            assert told.startswith("ehlpetsc: running_in.passes.json: is being written by process ")
-            assert f"{os.getpid()} on " in told
+            (message,) = second.stderr.splitlines()
+            assert message.startswith("ehlpetsc: running_in.passes.json: is being written by process ")
+            assert f"{os.getpid()} on " in message
         assert [path.name for path in tmp_path.iterdir()] == ["running_in.passes.json.lock"]
         with pytest.raises(OutputError, match=f"written by process {os.getpid()} on .*; wait for it$"):
             note_damage(tmp_path / "running_in.passes.json")
     assert not list(tmp_path.iterdir())
 
 
-def test_an_index_that_cannot_be_written_ends_the_run_in_words(tmp_path, monkeypatch):
+def test_unwritable_pass_index_is_an_output_error(tmp_path, monkeypatch):
     def full(path, content):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr("ehlpetsc.run.series.passes.atomic_write", full)
     case = load(CASE, [*SHORT, "time.travel=0.05"])
-    told = "r.passes.json: index not written, No space left on device; r.pass1.h5 is whole"
-    with pytest.raises(OutputError, match=told):
+    message = "r.passes.json: index not written, No space left on device; r.pass1.h5 is whole"
+    with pytest.raises(OutputError, match=message):
         Passes(MPI.COMM_SELF, case, tmp_path / "r.h5").run()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["r.pass1.h5", "r.pass1.restart.h5"]
     with read_result(tmp_path / "r.pass1.h5") as result:
@@ -83,7 +83,7 @@ def test_an_index_that_cannot_be_written_ends_the_run_in_words(tmp_path, monkeyp
 
 
 def passes(case, path=None, stop=None):
-    """Both passes; the second one recorded and broken off after so many states, where that is asked for."""
+    """Both passes; with `stop` the second is recorded and stopped after that step."""
     first = Simulation(case)
     list(first)
     second = Simulation(case, after=first)
@@ -101,7 +101,7 @@ def passes(case, path=None, stop=None):
 
 
 @pytest.mark.slow
-def test_a_pass_goes_on_in_its_middle(tmp_path):
+def test_pass_restarts_from_its_middle(tmp_path):
     case = load(CASE, SHORT)
     whole, states = passes(case)
     _, restart = passes(case, tmp_path / "r.h5", stop=40)
@@ -116,7 +116,7 @@ def test_a_pass_goes_on_in_its_middle(tmp_path):
     assert after[-1].set_volume > states[0].set_volume > 0.0
 
 
-def test_a_shifted_pass_meets_other_parts():
+def test_shifted_pass_offsets_one_profile():
     keys = [*SHORT, "time.pass_shift=50e-6"]
     first = Simulation(load(CASE, keys))
     list(first)
@@ -138,23 +138,23 @@ def test_a_shifted_pass_meets_other_parts():
         ('"hard"', "yield_pressure"),
     ],
 )
-def test_yield_pressures_that_cannot_be_are_refused(value, words):
+def test_invalid_yield_pressures_are_refused(value, words):
     with pytest.raises(CaseError) as refused:
         load(CASE, [f"contact.yield_pressure={value}"])
     assert "contact.yield_pressure" in str(refused.value) and words in str(refused.value)
 
 
-def test_direct_contact_does_not_yield():
+def test_yield_pressure_in_direct_contact_is_refused():
     with pytest.raises(CaseError, match="contact.yield_pressure"):
         load(CASES / "table1_rough.toml", ["contact.yield_pressure=3e9"])
 
 
-def test_a_series_of_passes_is_refused(tmp_path):
+def test_series_of_passes_is_refused(tmp_path):
     done = run(CASES / "fig1.toml", *settings("time.passes=2"), cwd=tmp_path)
     assert done.returncode == 2 and "one of them at a time" in done.stderr
 
 
-def test_a_body_that_moves_less_than_a_point_of_its_profile(tmp_path):
+def test_body_displacement_below_the_profile_spacing(tmp_path):
     short = ("motion.slide_roll_ratio=1.99", "time.travel=0.1", "mesh.points_per_half_width=20")
     done = run(CASE, *settings("time.passes=1", *short, "contact.yield_pressure=1.1e9"), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -191,7 +191,7 @@ def assert_as_uninterrupted(folder, whole):
 @pytest.mark.parametrize(
     "accident", [("SIGKILL@2", 0, 3), ("SIGKILL@1", 0, 9), ("SIGTERM@1", 0, 9), ("SIGINT@2", 0, 5)]
 )
-def test_the_same_command_continues_passes_wherever_they_ended(tmp_path, uninterrupted, accident):
+def test_same_command_continues_interrupted_passes(tmp_path, uninterrupted, accident):
     often = settings("output.checkpoint=1e-5") if accident[0] == "SIGKILL@1" else []
     ended = run(CASE, *BRIEF, *often, cwd=tmp_path, tampered=accident)
     assert ended.returncode == (4 if accident[0][:7] != "SIGKILL" else -9)
@@ -204,7 +204,7 @@ def test_the_same_command_continues_passes_wherever_they_ended(tmp_path, uninter
         assert_as_uninterrupted(tmp_path, uninterrupted)
 
 
-def test_a_pass_killed_before_its_first_checkpoint_continues_from_the_pass_before(tmp_path, uninterrupted):
+def test_pass_killed_before_its_first_checkpoint_restarts_from_the_previous_pass(tmp_path, uninterrupted):
     assert run(CASE, *BRIEF, cwd=tmp_path, tampered=("SIGKILL@2", 0, 3)).returncode == -9
     with read_result(tmp_path / "running_in.pass2.h5") as begun:
         assert begun.attrs["status"] == "running"
@@ -219,7 +219,7 @@ def copied(folder, place, *left_out):
             (place / path.name).write_bytes(path.read_bytes())
 
 
-def test_an_index_that_is_lost_is_written_again(tmp_path, uninterrupted):
+def test_lost_pass_index_is_rewritten(tmp_path, uninterrupted):
     copied(uninterrupted, tmp_path, "running_in.passes.json")
     done = run(CASE, *BRIEF, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -227,7 +227,7 @@ def test_an_index_that_is_lost_is_written_again(tmp_path, uninterrupted):
     assert_as_uninterrupted(tmp_path, uninterrupted)
 
 
-def test_a_restart_file_whose_result_is_gone_is_kept(tmp_path, uninterrupted):
+def test_restart_file_without_its_result_is_kept(tmp_path, uninterrupted):
     copied(uninterrupted, tmp_path, "running_in.pass2.h5")
     before = (tmp_path / "running_in.pass2.restart.h5").read_bytes()
     refused = run(CASE, *BRIEF, cwd=tmp_path)
@@ -236,7 +236,7 @@ def test_a_restart_file_whose_result_is_gone_is_kept(tmp_path, uninterrupted):
     assert (tmp_path / "running_in.pass2.restart.h5").read_bytes() == before
 
 
-def test_more_passes_continue_from_the_last_one(tmp_path, uninterrupted):
+def test_additional_passes_continue_from_the_last_one(tmp_path, uninterrupted):
     copied(uninterrupted, tmp_path)
     more = [*BRIEF, *settings("time.passes=3"), "-ehl_restart", "running_in.pass2.restart.h5"]
     done = run(CASE, *more, cwd=tmp_path)
@@ -246,7 +246,7 @@ def test_more_passes_continue_from_the_last_one(tmp_path, uninterrupted):
     assert rows[2]["set_volume"] > rows[1]["set_volume"]
 
 
-def test_passes_killed_as_the_index_is_written_are_finished_by_the_same_command(tmp_path, uninterrupted):
+def test_passes_killed_while_writing_the_index_are_completed(tmp_path, uninterrupted):
     assert run(CASE, *BRIEF, cwd=tmp_path, tampered=("index", 0, 2)).returncode == -9
     assert [
         row["pass"] for row in json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
@@ -259,7 +259,7 @@ def test_passes_killed_as_the_index_is_written_are_finished_by_the_same_command(
     assert not [path.name for path in tmp_path.iterdir() if path.name.endswith((".lock", ".tmp"))]
 
 
-def test_passes_whose_folder_is_lost_end_in_words(tmp_path):
+def test_passes_in_a_removed_folder_end_with_status_2(tmp_path):
     (tmp_path / "out").mkdir()
     lost = run(CASE, *BRIEF, "-ehl_output", "out/r.h5", cwd=tmp_path, tampered=("lost", 0, 5))
     assert lost.returncode == 2 and "Traceback" not in lost.stderr
@@ -268,7 +268,7 @@ def test_passes_whose_folder_is_lost_end_in_words(tmp_path):
 
 
 @pytest.mark.parametrize("case", [CASE, CASES / "stribeck.toml"])
-def test_a_folder_that_may_not_be_written_to_is_refused(tmp_path, case):
+def test_read_only_folder_is_refused(tmp_path, case):
     (tmp_path / "out").mkdir(mode=0o500)
     user = {"user": 65534} if os.getuid() == 0 else {}
     if user:

@@ -1,4 +1,4 @@
-"""Series through the command: every member once, failures named, reruns that do only what is missing."""
+"""Series from the command line: one result per member, failures named, reruns of missing members."""
 
 import json
 import shutil
@@ -35,7 +35,7 @@ def finished(tmp_path_factory):
     """Three members on two ranks."""
     folder = tmp_path_factory.mktemp("series")
     done = series(folder)
-    shutil.copytree(folder, kept(folder))  # as they are now: tests go on with the others
+    shutil.copytree(folder, kept(folder))  # unchanged copies: other tests modify the originals
     return folder, done
 
 
@@ -44,7 +44,7 @@ def kept(folder):
 
 
 @pytest.mark.slow
-def test_every_member_has_its_file(finished):
+def test_every_series_member_has_a_result(finished):
     folder, done = finished
     assert done.returncode == 0, done.stderr
     assert states(folder) == {f"out_viscosity_{v:g}.h5": "done" for v in VALUES}
@@ -62,7 +62,7 @@ def test_every_member_has_its_file(finished):
 
 
 @pytest.mark.slow
-def test_a_member_is_what_the_case_alone_gives(finished, tmp_path):
+def test_series_member_equals_a_single_run(finished, tmp_path):
     folder, _ = finished
     alone = run(
         ROOT / "cases" / "table1_rough.toml",
@@ -77,7 +77,7 @@ def test_a_member_is_what_the_case_alone_gives(finished, tmp_path):
 
 
 @pytest.mark.slow
-def test_members_are_at_the_same_times(finished):
+def test_series_members_share_time_levels(finished):
     folder, _ = finished
     times = []
     for value in VALUES:
@@ -88,7 +88,7 @@ def test_members_are_at_the_same_times(finished):
 
 
 @pytest.mark.slow
-def test_a_rerun_does_only_what_is_missing(finished):
+def test_rerun_computes_missing_members_only(finished):
     folder, first = finished
     files = sorted(folder.glob("out_*.h5"))
     before = {file: file.stat().st_mtime_ns for file in files}
@@ -108,7 +108,7 @@ def test_a_rerun_does_only_what_is_missing(finished):
 @pytest.mark.parametrize(
     "name, what", [("out.series.json", "an index"), ("out_viscosity_0.006.h5", "a result")]
 )
-def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
+def test_foreign_file_in_a_series_is_refused_and_kept(tmp_path, name, what):
     (tmp_path / name).write_text("mine")
     refused = series(tmp_path, ranks=0)
     assert refused.returncode == 2 and is_line_with(
@@ -117,7 +117,7 @@ def test_what_is_no_file_of_a_series_is_refused_and_left(tmp_path, name, what):
     assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
 
 
-def test_another_file_of_hdf5_in_a_members_place_is_refused_and_left(tmp_path):
+def test_foreign_hdf5_file_in_a_series_is_refused_and_kept(tmp_path):
     place = tmp_path / "out_viscosity_0.006.h5"
     with h5py.File(place, "w") as file:
         file["mine"] = [1.0, 2.0]
@@ -128,7 +128,7 @@ def test_another_file_of_hdf5_in_a_members_place_is_refused_and_left(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_damaged_member_is_computed_again(tmp_path):
+def test_damaged_member_is_recomputed(tmp_path):
     assert series(tmp_path, ranks=0, values=VALUES[:2]).returncode == 0
     member = tmp_path / "out_viscosity_0.006.h5"
     sound = read_result(member).steps("h_min")
@@ -138,7 +138,7 @@ def test_a_damaged_member_is_computed_again(tmp_path):
     assert (read_result(member).steps("h_min") == sound).all()
 
 
-def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
+def test_failed_member_is_named_and_does_not_stop_the_series(tmp_path):
     done = series(tmp_path, ranks=0, key="petsc.snes_max_it", values=("1", "30", "0"))
     assert done.returncode == 3
     assert list(states(tmp_path).values()) == ["not converged", "done", "not converged"]
@@ -147,8 +147,8 @@ def test_a_failed_member_is_named_and_stops_no_other(tmp_path):
     assert done.stdout.strip().splitlines()[-1].startswith("ehlpetsc: not converged steps=")
 
 
-def test_a_series_whose_folder_is_lost_ends_on_every_rank(tmp_path):
-    """The first rank alone writes the index: where it cannot, the others must not wait for it for ever."""
+def test_series_in_a_removed_folder_ends_on_every_rank(tmp_path):
+    """Only the first rank writes the index: if it fails, the others must not wait forever."""
     (tmp_path / "out").mkdir()
     done = series(tmp_path, "-ehl_output", "out/out.h5", tampered=("lost", 0, 5))
     assert done.returncode == 2
@@ -159,7 +159,7 @@ def test_a_series_whose_folder_is_lost_ends_on_every_rank(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_stopped_series_goes_on_where_it_was(tmp_path, finished):
+def test_stopped_series_continues(tmp_path, finished):
     stopped = series(tmp_path, tampered=("SIGUSR1", 0, 10))  # in the first rank's first member
     assert stopped.returncode == 4, stopped.stdout + stopped.stderr
     assert "the same command computes what is missing" in stopped.stdout
@@ -183,7 +183,7 @@ def assert_as_finished(folder, finished):
 @pytest.mark.parametrize(
     "ranks, accident", [(2, ("SIGKILL", 1, 5)), (0, ("SIGKILL", 0, 12)), (0, ("index", 0, 2))]
 )
-def test_a_series_that_was_killed_is_finished_by_the_same_command(tmp_path, finished, ranks, accident):
+def test_killed_series_is_completed_by_the_same_command(tmp_path, finished, ranks, accident):
     killed = series(tmp_path, ranks=ranks, tampered=accident)
     assert killed.returncode not in (0, 4)
     assert set(states(tmp_path).values()) != {"done"}  # the index is whole, old or new
@@ -201,14 +201,14 @@ def test_a_series_that_was_killed_is_finished_by_the_same_command(tmp_path, fini
         (["-ehl_set", "series.values=[0.01,-1]"], "series.values: -1"),
     ],
 )
-def test_what_makes_no_series(tmp_path, words, fault):
+def test_invalid_series_are_refused(tmp_path, words, fault):
     done = series(tmp_path, *words, ranks=0)
     assert done.returncode == 2 and fault in done.stderr
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.slow
-def test_several_keys_make_a_grid_that_all_commands_take(tmp_path):
+def test_grid_of_keys_is_accepted_by_all_commands(tmp_path):
     keys = ["surface.2.synthetic.seed", "motion.entrainment_speed"]
     sets = [
         *SHORT[:2],

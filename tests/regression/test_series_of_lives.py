@@ -1,4 +1,4 @@
-"""A series of lives, dealt to ranks that were just started: each takes lives of its own, and all end."""
+"""A series of lives distributed over ranks."""
 
 import json
 import subprocess
@@ -14,7 +14,7 @@ KEYS = (
 )
 
 
-def test_lives_on_two_ranks_end(tmp_path):
+def test_series_of_lives_ends_on_two_ranks(tmp_path):
     """PETSc starts on all ranks together: one that met it alone in its first life waited for ever."""
     words = [word for key in KEYS for word in ("--set", key)]
     done = subprocess.run(

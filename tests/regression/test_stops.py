@@ -1,4 +1,4 @@
-"""Accidents, stops and restarts: what is left is whole, and going on equals an uninterrupted run."""
+"""Failures, stops and restarts: files stay readable, and a restarted run equals an uninterrupted one."""
 
 import json
 import re
@@ -44,9 +44,7 @@ def last_step(path):
 @pytest.mark.parametrize(
     "name, ranks, others, step", [("SIGTERM", 2, 0, 10), ("SIGUSR1", 0, 0, 30), ("SIGINT", 0, 0, 20)]
 )
-def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(
-    whole, tmp_path, name, ranks, others, step
-):
+def test_run_stopped_by_a_signal_restarts_on_other_ranks(whole, tmp_path, name, ranks, others, step):
     stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), step))
     assert stopped.returncode == 4, stopped.stderr
     assert f"stopped at step {step}; continue with -ehl_restart table1_rough.restart.h5" in stopped.stdout
@@ -66,7 +64,7 @@ def test_after_a_signal_the_step_is_finished_and_the_run_goes_on_elsewhere(
         assert earlier["ranks"] == max(ranks, 1) and earlier["up_to_step"] == step
 
 
-def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
+def test_error_on_one_rank_aborts_all_with_its_traceback(tmp_path):
     done = run(*CASE, cwd=tmp_path, ranks=2, tampered=("raise", 1, 5))
     assert done.returncode == 1
     assert "ValueError: an accident" in done.stderr
@@ -75,7 +73,7 @@ def test_an_error_on_one_rank_ends_all_with_its_traceback(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_killed_run_leaves_its_last_checkpoint_and_goes_on_from_there(whole, tmp_path):
+def test_killed_run_restarts_from_its_last_checkpoint(whole, tmp_path):
     often = [*CASE, *settings("output.checkpoint=1e-5")]
     killed = run(*often, cwd=tmp_path, tampered=("SIGKILL", 0, 11))
     assert killed.returncode not in (0, 4)
@@ -87,7 +85,7 @@ def test_a_killed_run_leaves_its_last_checkpoint_and_goes_on_from_there(whole, t
     assert [p.name for p in tmp_path.iterdir() if p.name.endswith(".tmp")] == []
 
 
-def test_the_time_limit_stops_with_a_restart_file(tmp_path):
+def test_time_limit_writes_a_restart_file(tmp_path):
     done = run(*CASE, "-ehl_time_limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
     assert done.returncode == 4
     # the limit is long over in step 5, which is not waited for
@@ -96,12 +94,12 @@ def test_the_time_limit_stops_with_a_restart_file(tmp_path):
 
 
 @pytest.mark.parametrize("words, ranks", [([], 2), (["-ehl_scheme", "sweep"], 0)])
-def test_the_time_limit_ends_the_steady_start_too(tmp_path, words, ranks):
+def test_time_limit_ends_the_steady_start(tmp_path, words, ranks):
     done = run(*CASE, "-ehl_time_limit", "1e-6", *words, cwd=tmp_path, ranks=ranks)
     assert done.returncode == 4, done.stderr
     assert done.stderr == ""
-    told, last = done.stdout.splitlines()[-2:]
-    assert "steady start" in told
+    message, last = done.stdout.splitlines()[-2:]
+    assert "steady start" in message
     assert last.startswith("ehlpetsc: stopped steps=0 ")
     assert list(tmp_path.iterdir()) == []
 
@@ -114,19 +112,19 @@ def stopped(tmp_path_factory):
     return folder / "table1_rough.restart.h5"
 
 
-def test_a_run_may_go_on_with_another_viscosity_and_says_so(stopped, tmp_path):
+def test_restart_with_another_viscosity_lists_the_change(stopped, tmp_path):
     changed = settings("fluid.viscosity=0.003", "time.travel=0.2", "output.every=2")
     done = run(*CASE, *changed, "-ehl_restart", stopped, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    said = [line for line in done.stdout.splitlines() if line.startswith("restart: ")][1:]
-    assert said == ["restart: fluid.viscosity was 0.002, is 0.003", "restart: time.travel was 0.5, is 0.2"]
+    message = [line for line in done.stdout.splitlines() if line.startswith("restart: ")][1:]
+    assert message == ["restart: fluid.viscosity was 0.002, is 0.003", "restart: time.travel was 0.5, is 0.2"]
     with read_result(tmp_path / "table1_rough.h5") as result:
         h_min = result.steps("h_min")
         assert list(result.steps("step")) == [11, 12, 13, 14, 15, 16]
         assert np.all(np.diff(h_min) > 0)  # the thicker oil comes in
 
 
-def test_a_step_that_does_not_converge_is_named_and_leaves_its_last_good_state(stopped, tmp_path):
+def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
     going_on = [*CASE, *settings("time.travel=0.2"), "-ehl_output", "f.h5", "-ehl_restart"]
     never = ["-snes_atol", 1e-30, "-snes_rtol", 1e-30, "-snes_max_it", 4]
     failed = run(*going_on, stopped, *never, cwd=tmp_path)
@@ -146,7 +144,7 @@ def test_a_step_that_does_not_converge_is_named_and_leaves_its_last_good_state(s
         (["mesh.inlet=-1.6", "mesh.outlet=1.2"], "its nodes lie from"),
     ],
 )
-def test_a_restart_file_of_another_mesh_is_refused(stopped, tmp_path, more, message):
+def test_restart_on_another_mesh_is_refused(stopped, tmp_path, more, message):
     done = run(*CASE, *settings(*more), "-ehl_restart", stopped, cwd=tmp_path)
     assert done.returncode == 2
     assert message in done.stderr
@@ -160,8 +158,8 @@ SMOOTH = [
 
 
 @pytest.mark.slow
-def test_after_a_jump_of_the_load_the_film_becomes_that_of_the_new_load(tmp_path):
-    """Twice the load, half the radius or a softer solid, at once; the film of before leaves."""
+def test_film_after_a_step_in_conditions_is_the_steady_one(tmp_path):
+    """Twice the load, half the radius or a softer solid from one step to the next."""
     moving = [*SMOOTH, *settings("time.courant=2.0", "time.travel=0.8")]
     assert run(*moving, "-ehl_output", "r.h5", cwd=tmp_path, tampered=("SIGTERM", 0, 10)).returncode == 4
     jumps = ["contact.load=1054e3", "contact.radius=0.0095", "contact.youngs_modulus=[100e9, 207e9]"]
@@ -185,7 +183,7 @@ def test_after_a_jump_of_the_load_the_film_becomes_that_of_the_new_load(tmp_path
 
 
 @pytest.mark.parametrize("speed, steps", [(7.5, 20), (2.5, 20)])
-def test_at_another_speed_the_bodies_go_on_from_where_they_are(whole, tmp_path, speed, steps):
+def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path, speed, steps):
     """Roughness at the same travel is the same; the run ends at the travel of the case."""
     stopped = run(*CASE, cwd=tmp_path, tampered=("SIGTERM", 0, 20))
     assert stopped.returncode == 4, stopped.stderr
@@ -217,14 +215,14 @@ def test_at_another_speed_the_bodies_go_on_from_where_they_are(whole, tmp_path, 
             np.testing.assert_allclose(*heights, atol=2e-9)
 
 
-def test_a_finished_run_has_nothing_left_to_do(whole, stopped, tmp_path):
+def test_restart_beyond_the_end_takes_no_step(whole, stopped, tmp_path):
     done = run(*CASE, *settings("time.travel=0.1"), "-ehl_restart", stopped, cwd=tmp_path)
     assert done.returncode == 0
     assert summary(done.stdout)["steps"] == "10"
 
 
 @pytest.mark.slow
-def test_a_full_disk_is_told_and_loses_nothing_that_was_stored(tmp_path):
+def test_full_disk_keeps_all_stored_steps(tmp_path):
     scene = [*CASE, *settings("mesh.points_per_half_width=70")]
     often = settings(
         "time.travel=100", "output.checkpoint=0.002"

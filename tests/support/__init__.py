@@ -1,4 +1,4 @@
-"""What tests of several folders share: paths of the project, what a message holds, how a command refuses."""
+"""Paths of the project, and checks of messages and refused commands."""
 
 from pathlib import Path
 
@@ -7,12 +7,12 @@ CASES = ROOT / "cases"
 
 
 def is_line_with(text, *parts):
-    """Whether a text is one line that holds all of these keys, names and figures, in whatever words."""
+    """Whether a text is one line that contains all these keys, names and figures."""
     return text.strip().count("\n") == 0 and all(str(part) in text for part in parts)
 
 
 def refused(capsys, command, *words):
-    """Error output of a command, called in process, that ends with exit status 2.
+    """Error output of a command called in process that must end with exit status 2.
 
     Parameters
     ----------
@@ -29,6 +29,6 @@ def refused(capsys, command, *words):
     """
     capsys.readouterr()
     assert command([str(word) for word in words]) == 2
-    said = capsys.readouterr().err
-    assert said and "Traceback" not in said
-    return said
+    message = capsys.readouterr().err
+    assert message and "Traceback" not in message
+    return message

@@ -1,4 +1,4 @@
-"""Driving a scene of the project from a test, without files."""
+"""Run a case from a test without files."""
 
 import numpy as np
 import petsc4py
@@ -31,13 +31,13 @@ class Scene:
         self.centre = int(np.argmin(np.abs(self.x)))
 
     def start(self, max_it=30):
-        """Steady solution at time 0, in so many Newton iterations at most."""
+        """Solve the steady start in at most `max_it` Newton iterations."""
         self.solver.snes.max_it = max_it
         self.state = self.simulation.advance().solution
         return self
 
     def steps(self, count, dt):
-        """Go `count` steps of `dt` [s], yielding after each; a step that had to be halved is an error."""
+        """Take `count` steps of `dt` [s] and yield each state; a halved step is an error."""
         for _ in range(count):
             self.state = self.simulation.advance(dt).solution
             assert self.state.retries == 0

@@ -1,4 +1,4 @@
-"""What the fuzz tests of cases and profiles share: number of draws, what a run does first, how it ends."""
+"""Number of draws, and the checks of a drawn case up to its first solve."""
 
 import os
 import tomllib
@@ -21,14 +21,14 @@ def draws(usual):
 
 
 def faults_of(load, about):
-    """Faults that a case is refused for, in words; none where a run can use it. Any other end fails the test.
+    """Fault messages of a case, none if a run can use it. Any other exception fails the test.
 
     Parameters
     ----------
     load : callable
         Loads the case.
     about : callable
-        What was drawn, as text for the failure.
+        Description of the draw for the failure message.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def faults_of(load, about):
 
 
 def _used(case):
-    """What a run does with a case that loads: it must not fail over a value that was let through."""
+    """Use a case as a run does before its first solve: no accepted value may raise."""
     scales = Scales.of(case)
     if case.mesh.nodes < LARGE:
         rough = Roughness.of(case, scales)

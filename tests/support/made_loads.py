@@ -73,7 +73,7 @@ class Scene:
 
     @cached_property
     def pressures(self):
-        """Pressure (frames, nodes): found once, as many files are written of one scene."""
+        """Pressure (frames, nodes), cached because many files are written of one scene."""
         return np.array([self.pressure(k) for k in range(self.time.size)])
 
 
@@ -90,7 +90,7 @@ def write(
     dtype=float,
     edit=None,
 ):
-    """Write the scene's result file; `edit(file)` may spoil it before it is closed."""
+    """Write the scene's result file; `edit(file)` may damage it before it is closed."""
     kept = np.arange(0, scene.time.size, every)[:frames]
     case = CASE.format(
         mean=scene.mean,

@@ -1,4 +1,4 @@
-"""Result files with made-up but plausible values, for tests of what reads them."""
+"""Result files with plausible analytic values, for tests of their readers."""
 
 import shutil
 import tempfile
@@ -111,7 +111,7 @@ def made(
 
 
 def with_solids(path, share=0.3, coefficient=0.08, scatter=0.2):
-    """Add to a result what a mixed contact stores beside the direct one: `share` of the load on the solids.
+    """Add the fields of mixed contact to a result; `share` is the load fraction on the solids.
 
     The figures of the steps swing about their mean by `scatter` of it.
 

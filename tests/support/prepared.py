@@ -1,9 +1,11 @@
-"""The program with its imports done, which forks for every run: importing costs more than most runs here.
+"""A process with all imports done that forks for every run: importing takes longer than most runs here.
 
-A run has a process, arguments, a folder and streams of its own as otherwise; the modules of MPI and PETSc,
-whose import starts them, are imported in it alone. Orders come in as lines of JSON, exit statuses go out.
+Each run has its own process, arguments, folder and streams. The modules of MPI and PETSc are imported in the
+forked process only, because their import initialises them. Requests are lines of JSON on standard input, exit
+statuses lines on standard output.
 """
 
+import contextlib
 import ctypes
 import gc
 import importlib.util
@@ -14,91 +16,150 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-
-import numpy as np
+from unittest import mock
 
 HERE = Path(__file__).resolve()
-LIMIT = 300  # s, after which a run is ended
+ROOT = HERE.parents[2]
+LIMIT = 300  # [s] of a run
 HEAVY = (
     "scipy.fft",
     "scipy.interpolate",
     "scipy.linalg",
     "scipy.ndimage",
+    "statistics",
     "ehlpetsc.__main__",
     "ehlpetsc.case.loading",
+    "ehlpetsc.commands",
     "ehlpetsc.discretisation.ehl_problem",
-    "ehlpetsc.run.cli.options",
+    "ehlpetsc.discretisation.heat.bodies",
+    "ehlpetsc.discretisation.heat.mixing",
+    "ehlpetsc.discretisation.heat.step",
+    "ehlpetsc.nonlinear.option_checks",
     "ehlpetsc.results.output_guard",
     "ehlpetsc.results.reader",
     "ehlpetsc.results.restart_file",
+    "ehlpetsc.results.running_in",
     "ehlpetsc.results.writer",
     "ehlpetsc.run.accepted_state",
     "ehlpetsc.run.cli.command_line",
+    "ehlpetsc.run.cli.options",
+    "ehlpetsc.run.outputs.limits",
+    "ehlpetsc.run.outputs.progress",
+    "ehlpetsc.run.outputs.restart_file",
+    "ehlpetsc.run.outputs.slow_steps",
+    "ehlpetsc.run.outputs.stored_surfaces",
     "ehlpetsc.run.preview.banner",
     "ehlpetsc.run.preview.explain",
+    "ehlpetsc.run.restart.checkpoint",
+    "ehlpetsc.run.restart.contents",
     "ehlpetsc.run.restart.rescaling",
+    "ehlpetsc.run.restart.resume_advice",
+    "ehlpetsc.run.scene",
     "ehlpetsc.run.series.member",
+    "ehlpetsc.stepping.domain_ends",
     "ehlpetsc.stepping.observables",
     "ehlpetsc.stepping.predictor",
+    "ehlpetsc.stepping.state",
     "ehlpetsc.stepping.steady_start",
+    "ehlpetsc.stepping.step_control",
     "ehlpetsc.surfaces.body_field",
     "ehlpetsc.surfaces.roughness",
 )
 
 
 class Prepared:
-    """The prepared process, started when first asked; it ends with this one."""
+    """Client of the prepared process, which starts at the first run and ends with this process."""
 
     def __init__(self, python, environment):
         self.command, self.environment, self.process = [python, str(HERE)], environment, None
 
     def run(self, words, folder, environment, out, err):
-        """Run a script, the first of `words`, in a folder, streams into files; returns the exit status."""
+        """Exit status of a script, the first of `words`, run in `folder` with its output in files."""
         if self.process is None:
             pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
             self.process = subprocess.Popen(self.command, env=self.environment, text=True, bufsize=1, **pipes)
-        order = {"words": words, "folder": folder, "environment": environment, "out": out, "err": err}
-        self.process.stdin.write(json.dumps(order, default=str) + "\n")
+        request = {"words": words, "folder": folder, "environment": environment, "out": out, "err": err}
+        self.process.stdin.write(json.dumps(request, default=str) + "\n")
         return int(self.process.stdout.readline())
 
 
-def load_compiled():
-    """Have the compiled loops ready: to load them takes as long as all else that a short run does."""
-    from ehlpetsc.case.loading import load
-    from ehlpetsc.discretisation.contact.node_state import directional_derivative
-    from ehlpetsc.discretisation.ehl_problem import EHLProblem, jacobian_rows
-    from ehlpetsc.discretisation.finite_volumes import extrapolated, reynolds_rounding
-    from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.stepping.predictor import advected
+@contextlib.contextmanager
+def temporary_modules(modules):
+    """Add modules to `sys.modules`; drop them, and what is imported of the package meanwhile, at the end."""
+    before = set(sys.modules)
+    sys.modules.update(modules)
+    yield
+    for name in sys.modules.keys() - before:
+        if name in modules or name.startswith("ehlpetsc."):
+            del sys.modules[name]
 
-    case = load(HERE.parents[2] / "cases" / "table1_smooth.toml", ["mesh.points_per_half_width=20"])
-    scales = Scales.of(case)
-    problem, one = EHLProblem(case, scales, 1.0, 0, scales.nx), np.ones(scales.nx)
-    found = problem.evaluate(one, one, 0.0, problem.inputs(0.0 * one))
-    step, now = np.zeros((scales.nx, 2)), np.ones((scales.nx, 2))
-    now.flags.writeable = False  # as PETSc gives it
-    by, rows = found.state.derivatives(), np.empty(2 * scales.nx + 1)
-    directional_derivative(by[0], step, problem.owned.start, one)
-    sums = problem.deflection.sums(one)
-    form, room = problem.deflection.form, np.empty((3, scales.nx))
-    jacobian_rows(by, found.reynolds_derivatives, step, 0.0, *sums, *form, room, rows)
-    reynolds_rounding(found.reynolds_derivatives, one, one, problem.owned.start)
-    extrapolated(one, one, 1.0)
-    advected(one, 1.0)
-    problem.model.pressure_change(now, step)
-    problem.model.clip_step(now, step, 0.0)
+
+def load_kernels():
+    """Import the solver's modules with stand-ins for MPI and PETSc, for their compiled functions.
+
+    Loading compiled code takes a third of a short run. The modules are dropped again: a run imports them with
+    MPI and PETSc, and `ehlpetsc.compiled.compiled` then adds the code that is loaded already. Code for named
+    tuples of a dropped module is not among it, as that module then has another class of the same name.
+
+    Returns
+    -------
+    kernels : dict
+        Compiled function by module and name.
+    modules : dict
+        Modules by name.
+    """
+    from numba.core.dispatcher import Dispatcher
+
+    library = importlib.util.find_spec("mpi4py.MPI").origin
+    stand_ins = {"mpi4py.MPI": mock.MagicMock(__file__=library), "petsc4py.PETSc": mock.MagicMock()}
+    with temporary_modules(stand_ins):
+        for path in sorted((ROOT / "ehlpetsc").glob("nonlinear/**/[!_]*.py")):
+            importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
+        modules = {name: module for name, module in sys.modules.items() if name.startswith("ehlpetsc.")}
+    for name in modules.keys() - sys.modules.keys():
+        package, _, attribute = name.rpartition(".")
+        if package in sys.modules:
+            delattr(sys.modules[package], attribute)
+    values = (value for module in modules.values() for value in vars(module).values())
+    kernels = {
+        (one.py_func.__module__, one.py_func.__qualname__): one
+        for one in values
+        if isinstance(one, Dispatcher) and hasattr(one._cache, "_cache_file")
+    }
+    original = compiled.compiled
+
+    def with_loaded_code(function=None, **options):
+        if function is None:
+            return lambda function: with_loaded_code(function, **options)
+        kernel, name = original(function, **options), (function.__module__, function.__qualname__)
+        for code in kernels[name].overloads.values() if name in kernels else ():
+            kernel.add_overload(code)
+        return kernel
+
+    compiled.compiled = with_loaded_code
+    return kernels, modules
+
+
+def load_cached(kernels, modules):
+    """Load code that earlier runs have compiled into numba's cache."""
+    with temporary_modules(modules):  # numba imports the module of each function
+        for kernel in kernels.values():
+            for signature, *_ in kernel._cache._cache_file._load_index():
+                if signature not in kernel.overloads:
+                    kernel.compile(signature)
 
 
 def load_libraries():
-    """Have the libraries of MPI and PETSc in memory; what starts them is that Python imports them."""
+    """Load the libraries of MPI and PETSc without initialising them, which the import in Python does."""
     place = importlib.util.find_spec("petsc4py").submodule_search_locations[0]
     for path in Path(place, "lib").rglob(f"PETSc.{sys.implementation.cache_tag}-*.so"):
         ctypes.CDLL(path)
 
 
-def serve():
-    """Fork for every order; the child returns, ready to run, this process does not."""
+def serve(kernels, modules):
+    """Fork for every request; only the child returns, ready to run."""
     for line in sys.stdin:
+        load_cached(kernels, modules)
         child = os.fork()
         if child == 0:
             return make_ready(**json.loads(line))
@@ -108,7 +169,7 @@ def serve():
 
 
 def make_ready(words, folder, environment, out, err):
-    """Folder, environment, streams and arguments as ordered."""
+    """Set folder, environment, streams and arguments as requested."""
     os.chdir(folder)
     os.environ.update(environment)
     for stream, path in ((0, os.devnull), (1, out), (2, err)):
@@ -123,9 +184,12 @@ if __name__ == "__main__":
     sys.path[0] = ""  # as for python -m: the folder of the run
     for name in HEAVY:
         __import__(name)
-    load_compiled()
     load_libraries()
+    from ehlpetsc import compiled
+
+    kernels, modules = load_kernels()
+    load_cached(kernels, modules)
     assert not {"mpi4py.MPI", "petsc4py.PETSc"} & sys.modules.keys(), "started before the fork"
     gc.freeze()  # or a run's first collection would copy all that it shares with this process
-    serve()
+    serve(kernels, modules)
     runpy.run_path(sys.argv[0], run_name="__main__")

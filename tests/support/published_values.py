@@ -1,4 +1,4 @@
-"""Published and independently computed values that the solver is held against."""
+"""Published and independently computed reference values."""
 
 from typing import NamedTuple
 

@@ -1,6 +1,6 @@
-"""Bad input: what is said, and from the command line to the exit status that nothing is left behind.
+"""Bad input: messages, exit status, and no files left.
 
-What is said is the same in a process of its own as from `load`, which is quicker to ask.
+Messages of the command equal those of `load`, which is faster to call.
 """
 
 import subprocess
@@ -20,7 +20,7 @@ LEVEL = "".join(f"{k}e-6,0\n" for k in range(8))
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Run a case text in an empty directory: how it ended and what it said, and names of files it made."""
+    """Run a case text in an empty directory: exit status, output, and names of files written."""
     monkeypatch.setenv("PYTHONPATH", str(ROOT), prepend=":")
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
 
@@ -59,7 +59,7 @@ def refused(run, text, profile=None):
 
 @pytest.fixture
 def faults(tmp_path, monkeypatch):
-    """What is said of a case text on loading."""
+    """Fault messages of a case text on loading."""
     monkeypatch.chdir(tmp_path)
 
     def of(text, profile=None):
@@ -94,11 +94,11 @@ def faults(tmp_path, monkeypatch):
     ],
     ids=["unknown key", "missing key", "wrong type", "nan", "negative radius", "zero entrainment"],
 )
-def test_a_bad_key(faults, text, words):
-    said = "\n".join(faults(text))
-    assert said.startswith("my.toml: ")
+def test_bad_key_names_key_value_and_range(faults, text, words):
+    message = "\n".join(faults(text))
+    assert message.startswith("my.toml: ")
     for word in words:
-        assert word in said
+        assert word in message
 
 
 @pytest.mark.parametrize(
@@ -111,13 +111,13 @@ def test_a_bad_key(faults, text, words):
     ],
     ids=["missing", "text", "unsorted", "duplicate"],
 )
-def test_a_bad_roughness_file(faults, profile, words):
-    said = faults(SMOOTH + SURFACE, profile)
-    assert len(said) == 1
-    assert said[0].startswith('my.toml: surface.1.file = "p.csv": ') and words in said[0]
+def test_bad_profile_file_is_one_fault(faults, profile, words):
+    message = faults(SMOOTH + SURFACE, profile)
+    assert len(message) == 1
+    assert message[0].startswith('my.toml: surface.1.file = "p.csv": ') and words in message[0]
 
 
-def test_everything_wrong_is_told_at_once_by_the_command_and_on_loading(run, faults):
+def test_all_faults_are_listed_together(run, faults):
     text = SMOOTH + SURFACE + "[surface.2]\nfile = 'nowhere.csv'\n"
     for old, new in (
         ("radius = 0.0191", "radius = -1"),
@@ -128,8 +128,8 @@ def test_everything_wrong_is_told_at_once_by_the_command_and_on_loading(run, fau
     ):
         assert text.count(old) == 1
         text = text.replace(old, new)
-    said = refused(run, text, LEVEL + "7e-6,0\n")
-    assert said == faults(text)
+    message = refused(run, text, LEVEL + "7e-6,0\n")
+    assert message == faults(text)
     for key in (
         "contact.radius =",
         "fluid.viscosity =",
@@ -140,11 +140,11 @@ def test_everything_wrong_is_told_at_once_by_the_command_and_on_loading(run, fau
         "surface.1.file =",
         "surface.2.file =",
     ):
-        assert sum(line.startswith(f"my.toml: {key}") for line in said) == 1, key
-    assert len(said) == 8
+        assert sum(line.startswith(f"my.toml: {key}") for line in message) == 1, key
+    assert len(message) == 8
 
 
-def test_a_mesh_too_coarse_for_the_profile_is_a_warning_with_the_figure(run):
+def test_mesh_too_coarse_for_the_profile_is_a_warning(run):
     rough = (CASES / "table1_rough.toml").read_text()
     rough = rough.replace("profiles/", f"{CASES}/profiles/")
     coarse = ("mesh.points_per_half_width=20", "mesh.inlet=-1.5", "time.travel=0.1")

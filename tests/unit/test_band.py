@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
 
 
-def test_changes_of_a_compliant_node_are_those_of_its_pair():
+def test_compliant_node_changes_follow_from_its_unknown_pair():
     """Full of oil (p, h), under a void (q, h), and (p, q) where asperities are stiff there."""
     layer = Layer(decay=1e-3, prefactor=100.0, slope_modulus=1.0, contact_pressure=1e-2, high_pressure=0.1)
     model, w = CompliantContact(layer), np.array([5e-3, 20e-3, 2e-3])

@@ -13,6 +13,7 @@ from ehlpetsc.nonlinear.preconditioner.block_lu import (
     SIZE,
     WIDTH,
     BlockLU,
+    backward_transposed,
     forward,
 )
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS
@@ -42,7 +43,7 @@ def dense(rows):
     return matrix[:, SIZE:-SIZE]
 
 
-def test_the_compiled_sizes_are_those_of_a_group():
+def test_compiled_sizes_equal_group_sizes():
     assert SIZE == TERMS + 2 * GROUP
     assert LEFT == TERMS + GROUP + 2  # sums, pressures and, upwind, two films
     assert RIGHT == LEFT and FROM_RIGHT == SIZE - FROM_LEFT - RIGHT  # the same from the right end
@@ -52,7 +53,7 @@ def test_the_compiled_sizes_are_those_of_a_group():
 
 @pytest.mark.parametrize("groups", [1, 2, 30])
 @pytest.mark.parametrize("sparse", [False, True])
-def test_it_solves(groups, sparse):
+def test_block_lu_solves(groups, sparse):
     """Without dominance of the diagonal, so that rows are exchanged; `sparse`: with zeros there too."""
     rng = np.random.default_rng(groups)
     rows = rng.standard_normal((groups, SIZE, WIDTH))
@@ -71,8 +72,10 @@ def test_it_solves(groups, sparse):
         solution[:, :SIZE], coefficients[:, :SIZE] = b, rng.standard_normal(b.shape)
         forward(lu.factors, solution.ravel(), first)
         product = (coefficients[:, :SIZE] * found).sum()
-        lu.backward_transposed(coefficients.reshape(1, -1))  # the same sum over what is not substituted yet
-        assert (coefficients * solution).sum() == pytest.approx(product, rel=1e-6, abs=1e-6)
+        rows = np.stack([coefficients.ravel(), 2.0 * coefficients.ravel(), -coefficients.ravel()])
+        backward_transposed(lu.factors[2], rows)  # the same sums over what is not substituted yet
+        expected_sums = pytest.approx(np.array([1.0, 2.0, -1.0]) * product, rel=1e-6, abs=1e-6)
+        assert rows @ solution.ravel() == expected_sums
         np.testing.assert_allclose(found.ravel(), expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 
 

@@ -36,7 +36,7 @@ def in_gap(effect, record, way=0.0):
 
 
 @pytest.mark.parametrize("kind", [PlasticDeformation, Wear])
-def test_a_steady_start_sees_no_depth_ahead_of_a_shifted_profile(kind):
+def test_steady_start_has_no_depth_ahead_of_a_shifted_profile(kind):
     effect, before = made(kind)
     one, other = in_gap(effect, before)
     assert one.max() > 20e-9 and other.max() > 20e-9, "all that is there"
@@ -47,7 +47,7 @@ def test_a_steady_start_sees_no_depth_ahead_of_a_shifted_profile(kind):
     assert record.depth is before.depth, "hidden, not removed"
 
 
-def test_the_depth_comes_in_with_the_profile():
+def test_depth_enters_with_the_profile():
     effect, before = made(PlasticDeformation)
     record, scales = effect.start(before), effect.scene.scales
     way = 1.5 * scales.a
@@ -60,7 +60,7 @@ def test_the_depth_comes_in_with_the_profile():
     assert np.all(seen <= there + ROUNDING)
 
 
-def test_a_pass_sees_what_it_adds_ahead_of_the_profile_itself():
+def test_depth_added_ahead_of_the_profile_is_included():
     effect, before = made(PlasticDeformation)
     record = effect.start(before)
     added = np.full(effect.scene.scales.nx, 1e-8)
@@ -68,12 +68,12 @@ def test_a_pass_sees_what_it_adds_ahead_of_the_profile_itself():
     np.testing.assert_allclose(in_gap(effect, record._replace(depth=depth))[1][1:-1], 1e-8, rtol=1e-9)
 
 
-def test_without_a_shift_nothing_is_hidden():
+def test_unshifted_pass_includes_all_depth():
     effect, before = made(PlasticDeformation, "time.pass_shift=0.0")
     assert effect.start(before).hidden.volume == 0.0
 
 
-def test_an_even_depth_is_no_pit():
+def test_uniform_depth_is_included_everywhere():
     """A life gives the stretch ahead of its columns their mean wear, which stays."""
     effect, before = made(Wear)
     even = before.depth.surface_2._replace(depth=np.full_like(before.depth.surface_2.depth, 2e-6))

@@ -1,4 +1,4 @@
-"""The case file: what is read, and what a user is told about faults in it."""
+"""The case file: values read from it, and messages about its faults."""
 
 import tomllib
 
@@ -39,7 +39,7 @@ def write(tmp_path):
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_every_case_of_the_project_loads_and_says_what_it_is_for(path):
+def test_every_case_loads_and_has_a_description(path):
     assert case.load(path).title
     head = path.read_text().splitlines()[:2]
     assert all(line.startswith("# ") for line in head)
@@ -47,7 +47,7 @@ def test_every_case_of_the_project_loads_and_says_what_it_is_for(path):
         assert "Holmes, Qiao, Evans & Snidle (2005)" in head[1]
 
 
-def test_sections_left_out_are_none_or_default():
+def test_omitted_sections_are_none_or_default():
     c = case.load(SMOOTH)
     assert (c.time, c.series, c.surface.body_1, c.surface.body_2) == (None,) * 4
     assert (c.mesh.near_field, c.output.every, c.output.precision) == (3, 1, "float64")
@@ -57,7 +57,7 @@ def test_sections_left_out_are_none_or_default():
     assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.0, 0.0)
 
 
-def test_values_come_as_written():
+def test_values_are_read_as_written():
     c = case.load(ROUGH)
     assert c.contact.youngs_modulus == (207e9, 207e9)
     assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
@@ -65,12 +65,12 @@ def test_values_come_as_written():
     assert (c.time.travel, c.time.courant) == (6.0, 0.5)
 
 
-def test_a_case_cannot_be_changed():
+def test_case_is_immutable():
     with pytest.raises(TypeError):
         case.load(SMOOTH).contact.radius = 1.0
 
 
-def test_overrides_win_and_stand_in_the_text_with_its_comments():
+def test_overrides_replace_values_and_keep_comments():
     c = case.load(
         ROUGH, ["fluid.viscosity=0.003", "output.fields=['pressure']", "time.travel = 2", "title=Mine"]
     )
@@ -79,7 +79,7 @@ def test_overrides_win_and_stand_in_the_text_with_its_comments():
     assert "# Pa s at ambient pressure" in c.text
 
 
-def test_the_text_of_an_overridden_case_loads_to_the_same_case(tmp_path):
+def test_overridden_text_loads_to_the_same_case(tmp_path):
     c = case.load(
         SMOOTH,
         [
@@ -95,12 +95,12 @@ def test_the_text_of_an_overridden_case_loads_to_the_same_case(tmp_path):
     assert again.petsc == {"snes_max_it": "9"}
 
 
-def test_petsc_options_become_text():
+def test_petsc_options_are_stored_as_text():
     c = case.load(SMOOTH, ["petsc.ksp_rtol=1e-8", "petsc.snes_vi_monitor=true", 'petsc.pc_type="lu"'])
     assert c.petsc == {"ksp_rtol": "1e-08", "snes_vi_monitor": "true", "pc_type": "lu"}
 
 
-def test_members_of_a_series_differ_in_its_key_alone():
+def test_series_members_differ_in_the_series_key_only():
     c = case.load(CASES / "fig4.toml")
     members = case.members(c)
     assert [value for value, _ in members] == c.series.values
@@ -111,14 +111,14 @@ def test_members_of_a_series_differ_in_its_key_alone():
         assert member.motion == c.motion and member.surface == c.surface and member.path == c.path
 
 
-def test_a_fault_names_file_key_value_and_what_is_allowed():
+def test_fault_names_file_key_value_and_range():
     assert fault(SMOOTH, "contact.radius=-0.02") == (
         f"{SMOOTH}: contact.radius = -0.02: "
         "allowed: a number >= 1e-09 and <= 100 [m] (radius of relative curvature)"
     )
 
 
-def test_all_faults_come_at_once():
+def test_all_faults_of_a_case_are_reported_together():
     found = faults(
         ROUGH,
         "contact.radius=-1",
@@ -172,14 +172,14 @@ def test_all_faults_come_at_once():
         ("post.b=0.09", ["post.b", "< 0"]),
     ],
 )
-def test_a_fault_of_each_kind(override, words):
+def test_every_kind_of_fault_is_reported(override, words):
     line = fault(ROUGH, override)
     for word in words:
         assert word in line
 
 
 @pytest.mark.parametrize("key", ["radius", "viscosity", "kappa", "entrainment_speed", "outlet"])
-def test_a_missing_key_is_named(write, key):
+def test_missing_key_is_named(write, key):
     assert f".{key} is missing; allowed: a number" in fault(write(f"\n{key} = ", "\n# "))
 
 
@@ -193,7 +193,7 @@ def test_missing_tables_are_named(write, tmp_path):
     )
 
 
-def test_synthetic_keys_are_those_of_its_kind():
+def test_synthetic_surface_accepts_keys_of_its_kind():
     wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
     assert [line.partition(": surface.2.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)] == [
         "wavelength",
@@ -205,20 +205,20 @@ def test_synthetic_keys_are_those_of_its_kind():
     )
 
 
-def test_a_series_is_checked_member_by_member():
+def test_every_series_member_is_checked():
     found = faults(SMOOTH, "series.key='fluid.viscosity'", "series.values=[0.01, -1, 0.02, nan]")
     assert len(found) == 2
     assert "fluid.viscosity = -1" in found[0] and "fluid.viscosity = nan" in found[1]
     assert "unknown key" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
 
 
-def test_text_that_is_no_toml_is_refused_with_the_line(tmp_path):
+def test_invalid_toml_is_refused_with_its_line(tmp_path):
     path = tmp_path / "bad.toml"
     path.write_text("title = 'x'\n[contact\n")
     assert "not valid TOML" in fault(path) and "line 2" in fault(path)
 
 
-def test_files_that_cannot_be_read(tmp_path):
+def test_unreadable_files_are_refused(tmp_path):
     assert "No such file" in fault(tmp_path / "none.toml")
     assert "directory" in fault(tmp_path)
     path = tmp_path / "bytes.toml"
@@ -239,7 +239,7 @@ def test_files_that_cannot_be_read(tmp_path):
         ("0,0,0\n1,2,3\n", "write columns = [1, 2]"),
     ],
 )
-def test_a_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
+def test_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
     if content is not None:
         (tmp_path / "p.csv").write_text(content)
     path = write("[mesh]", "[surface.1]\nfile = 'p.csv'\n[mesh]")
@@ -248,7 +248,7 @@ def test_a_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
 
 
 @pytest.mark.parametrize("typed, meant", [("table1_ruff.toml", "table1_rough.toml"), ("nothing.toml", None)])
-def test_a_mistyped_file_name_gets_a_hint(typed, meant):
+def test_mistyped_file_name_has_a_hint(typed, meant):
     with pytest.raises(CaseError) as error:
         case.load(CASES / typed)
     hint = f"; did you mean {CASES / meant}?" if meant else ""

@@ -126,7 +126,7 @@ def _cut(text, rng):
 
 
 @pytest.mark.filterwarnings("error")
-def test_corrupted_files_end_in_case_errors(tmp_path):
+def test_corrupted_files_raise_case_errors(tmp_path):
     rng = random.Random(SEED)
     texts = [path.read_text() for path in sorted(CASES.glob("*.toml"))]
     (tmp_path / "profiles").symlink_to(CASES / "profiles")
@@ -141,7 +141,7 @@ def test_corrupted_files_end_in_case_errors(tmp_path):
     assert refused > 0.7 * DRAWS
 
 
-def test_corrupted_overrides_end_in_case_errors():
+def test_corrupted_overrides_raise_case_errors():
     rng = random.Random(SEED)
     refused = 0
     for _ in range(DRAWS):

@@ -14,7 +14,7 @@ from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameter
 from ehlpetsc.surfaces.roughness import Roughness
 
 
-def test_parameters_of_a_cosine():
+def test_roughness_parameters_of_a_cosine():
     X = np.linspace(0.0, 1e-3, 20001)
     found = roughness_parameters(X, 2e-7 * np.cos(2 * np.pi * X / 1e-4))
     assert found["ra"] == pytest.approx(2 / np.pi * 2e-7, rel=1e-3)
@@ -24,14 +24,14 @@ def test_parameters_of_a_cosine():
     # the ratio curve is 2e-7 cos(pi r): its flattest 40 % lie at an end, from r = 0 on or up to 1
 
 
-def test_the_core_of_a_ramp_is_all_of_it():
+def test_core_of_a_ramp_is_its_full_height():
     X = np.linspace(0.0, 1.0, 10001)
     about = core(*abbott_curve(X, np.abs(2.0 * X - 1.0)))
     assert about["rk"] == pytest.approx(1.0, rel=1e-3)
     assert about["rpk"] < 2e-3 and about["rvk"] < 2e-3
 
 
-def test_peaks_and_valleys_beside_a_plateau():
+def test_peaks_and_valleys_of_a_plateau_profile():
     """A core of slope 1 over the whole ratio with peaks on 10 % and valleys on 20 % of the length."""
     ratio = np.linspace(0.0, 1.0, 4001)
     height = 1.0 - ratio + 5.0 * np.maximum(0.1 - ratio, 0.0) - 10.0 * np.maximum(ratio - 0.8, 0.0)
@@ -41,7 +41,7 @@ def test_peaks_and_valleys_beside_a_plateau():
     assert about["rvk"] == pytest.approx(10.0 * 0.2, rel=0.02)
 
 
-def test_the_part_that_passes_is_that_of_the_travel():
+def test_passing_profile_length_follows_from_travel():
     case = load(CASES / "fig1.toml")
     scales = Scales.of(case)
     profile = Roughness.of(case, scales).surface_1
@@ -53,7 +53,7 @@ def test_the_part_that_passes_is_that_of_the_travel():
     assert np.ptp(passing(Roughness.of(short, scales).surface_1, short, scales)) == 0.0
 
 
-def test_a_case_is_drawn_with_its_parameters_and_the_part_that_passes(tmp_path, capsys):
+def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     out = tmp_path / "c.png"
     assert plot.main([str(CASES / "table1_rough.toml"), "-o", str(out)]) == 0
     assert capsys.readouterr().out == f"{out}\n"
@@ -75,12 +75,12 @@ def test_a_case_is_drawn_with_its_parameters_and_the_part_that_passes(tmp_path, 
         ([str(CASES / "fig1.toml"), "-ehl_set", "mesh.inlet=3"], "mesh.inlet = 3"),
     ],
 )
-def test_what_cannot_be_drawn_of_a_case_is_one_sentence(words, message, capsys, tmp_path, monkeypatch):
+def test_undrawable_case_is_refused_in_one_line(words, message, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert plot.main(words) == 2
     assert message in capsys.readouterr().err
 
 
-def test_smooth_cases_raise_from_python():
+def test_drawing_a_smooth_case_raises():
     with pytest.raises(OutputError, match="smooth"):
         draw_case(CASES / "dry_hertz.toml")

@@ -35,7 +35,7 @@ def test_control_characters_in_options_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize("where", ["top", "table", "heading", "spaced"])
-def test_keys_of_thousands_of_parts_are_refused_at_once(tmp_path, where):
+def test_deeply_nested_keys_are_refused_quickly(tmp_path, where):
     chain = ".".join(["a"] * 20_000)
     text = {
         "top": f"{chain} = 1\n{CASE}",
@@ -47,11 +47,11 @@ def test_keys_of_thousands_of_parts_are_refused_at_once(tmp_path, where):
     assert "allowed: table.key=value" in faults(tmp_path, CASE, [f"{chain}=1"])
 
 
-def test_a_key_of_megabytes_is_refused_in_a_line(tmp_path):
+def test_key_of_megabytes_is_refused_in_one_line(tmp_path):
     assert "unknown key" in faults(tmp_path, f"{'a' * 10_000_000} = 1\n{CASE}")
 
 
-def test_long_arrays_and_dots_in_comments_are_no_long_keys(tmp_path):
+def test_long_arrays_and_dotted_comments_are_accepted(tmp_path):
     path = tmp_path / "case.toml"
     heights = ",\n".join("0." + "1" * 5 for _ in range(300))
     rows = f'\n[surface.2]\nspacing = 1e-6\nunit = "um"\nz = [\n{heights}\n]\n[time]\ntravel = 1.0\n'
@@ -59,7 +59,7 @@ def test_long_arrays_and_dots_in_comments_are_no_long_keys(tmp_path):
     assert len(load(path).surface.body_2.z) == 300
 
 
-def test_a_mark_of_byte_order_before_a_case_is_no_part_of_it(tmp_path):
+def test_byte_order_mark_of_a_case_is_ignored(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(MARK + CASE)
     assert load(path).text == CASE
@@ -67,7 +67,7 @@ def test_a_mark_of_byte_order_before_a_case_is_no_part_of_it(tmp_path):
 
 @pytest.mark.parametrize("rest", ["", "# \xb5m\n"])
 @pytest.mark.parametrize("marks", [1, 2])
-def test_a_mark_of_byte_order_does_not_cost_the_first_point(tmp_path, rest, marks):
+def test_byte_order_mark_of_a_profile_keeps_its_first_point(tmp_path, rest, marks):
     path = tmp_path / "profile.csv"
     text = "".join(f"{k}e-6,{k % 3}e-7\n" for k in range(20))
     coding = "latin-1" if rest else "utf-8"
@@ -123,7 +123,7 @@ def layouts():
 
 
 @pytest.mark.slow
-def test_what_is_stored_is_what_is_run_whatever_the_layout(tmp_path):
+def test_stored_case_equals_the_run_case_in_any_layout(tmp_path):
     path, count = tmp_path / "case.toml", 0
     for text in layouts():
         path.write_text(text)
@@ -137,16 +137,16 @@ def test_what_is_stored_is_what_is_run_whatever_the_layout(tmp_path):
     assert count > 400
 
 
-def test_warnings_of_numpy_reach_no_user():
+def test_numpy_warnings_are_hidden():
     """They are for developers: python3 -W default shows them."""
     code = "import sys; import numpy; from ehlpetsc import __main__ as command\n"
     code += "command.main = lambda argv: numpy.log(numpy.zeros(1)) is None\n"
     code += "sys.exit(command.run_guarded(['ehlpetsc']))"
-    told = {}
+    warnings_shown = {}
     for words in ((), ("-W", "default")):
         done = subprocess.run(
             [sys.executable, *words, "-c", code], capture_output=True, text=True, timeout=60
         )
         assert done.returncode == 0
-        told[words] = done.stderr
-    assert told[()] == "" and "divide by zero" in told["-W", "default"]
+        warnings_shown[words] = done.stderr
+    assert warnings_shown[()] == "" and "divide by zero" in warnings_shown["-W", "default"]

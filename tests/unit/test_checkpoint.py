@@ -1,5 +1,6 @@
 """A state into a restart file and back, with the case as it was and with other settings."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact import contact_model
+from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.effects.wear import WearRecord
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.physics.film_formulas import expected_film
@@ -16,10 +19,13 @@ from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.resume_advice import resume_advice
 from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.state import State
+from ehlpetsc.surfaces.body_field import BodyFields
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
 MESH = ["mesh.points_per_half_width=20"]
+NODES = 81
+NO_DEPTH = BodyFields.zero(1e-6)
 TOTALS = {"newton": 17, "h_min": 1e-9, "contacts": 3}
 
 
@@ -62,7 +68,7 @@ def state_of(scene, mixed=False):
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
-def test_the_same_case_gets_back_what_was_saved(tmp_path, model):
+def test_restart_file_round_trip(tmp_path, model):
     scene = Scene(f"contact.model='{model}'")
     state, smooth = state_of(scene, model == "mixed")
     scene.save(tmp_path / "f.restart.h5", state, smooth)
@@ -81,7 +87,7 @@ def test_the_same_case_gets_back_what_was_saved(tmp_path, model):
         np.testing.assert_allclose(one[1:], other[1:], rtol=1e-14, atol=1e-18)
 
 
-def test_totals_are_read_under_their_former_names(tmp_path):
+def test_totals_are_read_under_former_names(tmp_path):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
     arrays, attributes = load_restart(tmp_path / "f.restart.h5")
@@ -93,7 +99,7 @@ def test_totals_are_read_under_their_former_names(tmp_path):
 @pytest.mark.parametrize(
     "change", [("contact.load=1054e3", "contact.radius=0.00955"), ("contact.load=2108e3",)]
 )
-def test_under_another_load_the_state_is_that_of_the_new_contact(tmp_path, change):
+def test_state_is_rescaled_to_another_load(tmp_path, change):
     """Pressures keep their share of p0; films above Hertz' gap and oil in cavities keep their metres."""
     scene, other = Scene(), Scene(*change)
     state, smooth = state_of(scene)
@@ -119,7 +125,7 @@ def test_under_another_load_the_state_is_that_of_the_new_contact(tmp_path, chang
     assert "contact.load was 527000.0" in " ".join(notes)
 
 
-def test_a_run_may_go_on_with_solids_that_carry_and_back(tmp_path):
+def test_restart_switches_between_contact_models(tmp_path):
     direct, mixed = Scene(), Scene("contact.model='mixed'", "contact.boundary_film=20e-9")
     state, smooth = state_of(mixed, mixed=True)
     mixed.save(tmp_path / "m.restart.h5", state, smooth)
@@ -136,7 +142,7 @@ def test_a_run_may_go_on_with_solids_that_carry_and_back(tmp_path):
     assert "contact.boundary_film was left out, is 2e-08" in notes
 
 
-def test_every_other_key_may_change_and_is_told_but_what_is_no_physics(tmp_path):
+def test_changed_physical_keys_are_listed(tmp_path):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
     changed = ("fluid.viscosity=0.004", "time.courant=0.25", "title='x'", "output.every=7")
@@ -151,14 +157,14 @@ def test_every_other_key_may_change_and_is_told_but_what_is_no_physics(tmp_path)
         (["mesh.inlet=-2.45", "mesh.outlet=1.55"], "its nodes lie from"),
     ],
 )
-def test_another_mesh_is_refused(tmp_path, change, message):
+def test_state_of_another_mesh_is_refused(tmp_path, change, message):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
     with pytest.raises(OutputError, match=message):
         Scene(*change).load(tmp_path / "f.restart.h5")
 
 
-def test_a_rough_body_cannot_turn_round(tmp_path):
+def test_reversed_rough_body_is_refused(tmp_path):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
     with pytest.raises(OutputError, match="surface.2 moved at 4.375 m/s, now at -1 m/s"):
@@ -214,7 +220,7 @@ DAMAGE = [
 
 
 @pytest.mark.parametrize("damage, message", DAMAGE)
-def test_what_cannot_be_is_told_in_one_sentence(tmp_path, damage, message):
+def test_inconsistent_restart_file_is_refused_in_one_line(tmp_path, damage, message):
     """Files with a right checksum, whose content is wrong."""
     scene, path = Scene(), tmp_path / "f.restart.h5"
     scene.save(path, *state_of(scene))
@@ -226,7 +232,24 @@ def test_what_cannot_be_is_told_in_one_sentence(tmp_path, damage, message):
     assert "\n" not in str(refused.value) and str(refused.value).startswith(str(path))
 
 
-def test_every_byte_is_looked_at(tmp_path):
+@pytest.mark.parametrize(
+    "record", [PlasticRecord(NO_DEPTH, np.zeros(NODES), NO_DEPTH), WearRecord(NO_DEPTH, NO_DEPTH)]
+)
+def test_a_file_from_before_depths_were_hidden_is_refused_in_one_sentence(tmp_path, record):
+    scene, path = Scene("contact.model='mixed'"), tmp_path / "f.restart.h5"
+    state, smooth = state_of(scene, mixed=True)
+    name = "plastic_deformation" if isinstance(record, PlasticRecord) else "wear"
+    scene.save(path, replace(state, records={name: record}), smooth)
+    assert scene.load(path)[0].state.records[name].hidden.volume == 0.0
+    arrays, numbers = load_restart(path)
+    save_restart(path, *({k: v for k, v in d.items() if "hidden" not in k} for d in (arrays, numbers)))
+    with pytest.raises(OutputError) as refused:
+        scene.load(path)
+    message = f"or of an earlier ehlpetsc: {name}.hidden.surface_1.spacing is missing"
+    assert str(refused.value) == f"{path}: damaged restart file, {message}"
+
+
+def test_every_changed_byte_is_detected(tmp_path):
     scene, path = Scene(), tmp_path / "f.restart.h5"
     scene.save(path, *state_of(scene))
     whole = path.read_bytes()
@@ -250,7 +273,7 @@ def test_every_byte_is_looked_at(tmp_path):
         (3, ["motion.slide_roll_ratio=0"], False),
     ],
 )
-def test_only_a_restart_file_that_fits_the_result_is_named_as_the_way_on(tmp_path, stored, other, there):
+def test_resume_advice_names_matching_restart_files_only(tmp_path, stored, other, there):
     """Of the same case, and of a step that the result holds: an older run may have left another."""
     path = tmp_path / "f.restart.h5"
     scene = Scene()

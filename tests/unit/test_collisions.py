@@ -77,7 +77,7 @@ def series(tmp_path):
     ]
 
 
-def test_collisions_are_found_where_they_are(series):
+def test_collisions_are_found_at_their_positions(series):
     early, late = collisions.find(series)
     assert early.touching == (True, True, True, True) and late.touching == (False, False, True, True)
     assert (late.x / A, late.time) == (pytest.approx(-0.2), pytest.approx(20e-6))
@@ -88,14 +88,14 @@ def test_collisions_are_found_where_they_are(series):
     assert film_breakdown.ranked([early, late]) == [1, 0]
 
 
-def test_contact_at_a_bound_above_zero_counts_as_no_film(tmp_path):
+def test_film_at_its_positive_bound_counts_as_contact(tmp_path):
     result = make(tmp_path / "b.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)], bound=1e-4)
     assert all(c.film == (0.0,) for c in collisions.find([result]))
 
 
 @pytest.mark.parametrize("bound", [0.0, 1e-2])
 @pytest.mark.parametrize("precision", ["float64", "float32"])
-def test_contacts_are_the_same_whether_stored_or_told_by_the_bound(tmp_path, bound, precision):
+def test_contacts_from_flags_equal_contacts_from_the_bound(tmp_path, bound, precision):
     """Also in maps, and also at a bound [um] above zero, which is no number of single precision."""
     dips = [(-0.2, 20e-6, 6e-6, 0.35)]
     whole = make(tmp_path / "whole.h5", 0.01, dips, bound=bound)
@@ -112,19 +112,19 @@ def test_contacts_are_the_same_whether_stored_or_told_by_the_bound(tmp_path, bou
     np.testing.assert_array_equal(marks.filled(0).ravel(), whole.in_contact[:, shown].ravel())
 
 
-def test_no_film_is_a_bound_where_nothing_touches(tmp_path):
+def test_no_contact_without_a_film_at_its_bound(tmp_path):
     result = make(tmp_path / "open.h5", 0.01, [], fields=FIELDS[:2])
     assert film_at_contact(result) == -np.inf
     assert not in_contact(result, slice(0, len(result.time))).any()
 
 
-def test_points_are_spread_over_the_members():
+def test_contact_points_are_spread_over_series_members():
     one, two, three = (collisions.Collision(0, 0, 0, 0, (), film, ()) for film in ((1, 0), (1, 0), (2, 1, 0)))
     assert film_breakdown.selected([one, two, three], 2) == [one, three]
     assert film_breakdown.selected([one, two, three], 9) == [one, three, two]
 
 
-def test_report_of_a_series(tmp_path, series, capsys):
+def test_collision_report_of_a_series(tmp_path, series, capsys):
     index = {"members": [{"file": result.path.name} for result in series] + [{"file": "missing.h5"}]}
     (tmp_path / "s.series.json").write_text(json.dumps(index))
     assert collisions.main([str(tmp_path / "s.series.json")]) == 0
@@ -144,13 +144,13 @@ def test_report_of_a_series(tmp_path, series, capsys):
         ([3, 1, 0], [-0.5]),
     ],
 )
-def test_jumps_of_slope(film, jumps):
+def test_slope_jumps_at_contact(film, jumps):
     values = np.arange(len(film), 0, -1.0)
     np.testing.assert_allclose(film_breakdown.slope_jumps(values, film), jumps, atol=1e-12)
     np.testing.assert_allclose(film_breakdown.slope_jumps(3 * values, film), jumps, atol=1e-12)
 
 
-def test_jumps_of_slope_need_films_and_contact():
+def test_slope_jumps_need_films_and_contact():
     for film in ([3, 2, 1], [1, 0, 0], [0, 0, 0]):
         with pytest.raises(ValueError, match="two films before contact"):
             film_breakdown.slope_jumps([3, 2, 1], film)
@@ -161,14 +161,14 @@ def test_pressure_changes_are_those_after_contact():
     assert len(film_breakdown.pressure_steps([2, 1, 1], [1, 2, 3])) == 0
 
 
-def test_members_are_sorted_from_thick_to_thin(series):
+def test_members_are_sorted_by_decreasing_film(series):
     ordered, values, key = swept.from_thick_to_thin(series[::-1])
     assert key == "fluid.viscosity" and values == [0.010, 0.008, 0.006, 0.004] and ordered == series
     with pytest.raises(OutputError, match="not a series"):
         swept.from_thick_to_thin([series[0], series[0]])
 
 
-def test_oil_between_two_contacts_is_found(tmp_path):
+def test_entrapment_between_two_contacts_is_found(tmp_path):
     dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
     at = SPEED * 20e-6 / A
     result = make(tmp_path / "e.h5", 0.01, dips, bumps=[(-at, 6.0)])
@@ -182,7 +182,7 @@ def test_oil_between_two_contacts_is_found(tmp_path):
     np.testing.assert_allclose(upper - lower, result.frame("film_thickness", best.frame), atol=1e-20)
 
 
-def test_a_peak_that_is_not_between_is_no_entrapment(series):
+def test_pressure_peak_outside_contacts_is_no_entrapment(series):
     with pytest.raises(OutputError, match="no pressure maximum between two contacts"):
         entrapment.find(series[-1])
 
@@ -201,7 +201,7 @@ def markers(axis, shape):
     return np.concatenate(lines) if lines else np.empty((0, 2))
 
 
-def test_picture_of_collisions_shows_every_member_at_the_collisions_time(series, drawn):
+def test_collision_picture_shows_every_member_at_the_collision_time(series, drawn):
     assert plot.main([*(str(result.path) for result in series), "--collision"]) == 0
     (figure,) = drawn
     upper, lower = np.array(figure.axes).reshape(2, -1)
@@ -226,7 +226,7 @@ def test_picture_of_collisions_shows_every_member_at_the_collisions_time(series,
         assert len(markers(upper[column], "v")) == sum((t.astype(bool) & inside).sum() for t in touching) > 0
 
 
-def test_picture_of_contact_points_shows_film_and_pressure_against_viscosity(series, drawn):
+def test_contact_point_picture_shows_film_and_pressure_against_viscosity(series, drawn):
     assert plot.main([*(str(result.path) for result in series), "--points"]) == 0
     (figure,) = drawn
     upper, lower = figure.axes
@@ -242,7 +242,7 @@ def test_picture_of_contact_points_shows_film_and_pressure_against_viscosity(ser
     assert lower.get_xlabel() == "viscosity [Pa s]"
 
 
-def test_picture_of_an_entrapment_shows_four_instants_between_both_contacts(tmp_path, capsys, drawn):
+def test_entrapment_picture_shows_four_instants(tmp_path, capsys, drawn):
     dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
     make(tmp_path / "e.h5", 0.01, dips, bumps=[(-SPEED * 20e-6 / A, 6.0)]).close()
     assert plot.main([str(tmp_path / "e.h5"), "--entrapment"]) == 0
@@ -263,7 +263,7 @@ def test_picture_of_an_entrapment_shows_four_instants_between_both_contacts(tmp_
     assert "not a series" in capsys.readouterr().err
 
 
-def test_index_that_is_none(tmp_path, capsys):
+def test_foreign_json_is_no_series_index(tmp_path, capsys):
     (tmp_path / "x.series.json").write_text("[]")
     assert collisions.main([str(tmp_path / "x.series.json")]) == 2
     assert "not the index of a series" in capsys.readouterr().err

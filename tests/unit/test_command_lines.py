@@ -16,20 +16,20 @@ COMMANDS = {
 }
 
 
-def said(name, words, capsys):
+def message_of(name, words, capsys):
     """What a command line that argparse refuses prints; it prints nothing else."""
     with pytest.raises(SystemExit) as end:
         importlib.import_module(COMMANDS[name]).main(words)
     assert end.value.code == ExitStatus.BAD_INPUT
-    told = capsys.readouterr()
-    assert not told.out
-    return told.err
+    message = capsys.readouterr()
+    assert not message.out
+    return message.err
 
 
 @pytest.mark.parametrize("name", sorted(COMMANDS))
-def test_a_mistyped_option_ends_in_one_sentence(name, capsys):
+def test_mistyped_option_is_refused_in_one_line(name, capsys):
     files = ["case.toml"] if name == "ehlpetsc.study" else ["a.h5", "b.h5"]
-    assert said(name, [*files, "--deph"], capsys) == (
+    assert message_of(name, [*files, "--deph"], capsys) == (
         f"{name}: unrecognized arguments: --deph; python3 -m {name} -h lists the options\n"
     )
 
@@ -47,13 +47,13 @@ def test_a_mistyped_option_ends_in_one_sentence(name, capsys):
         ("ehlpetsc.compare", ["a.h5", "b.h5", "--rtol", "-1"], "argument --rtol: -1 is not a number >= 0"),
     ],
 )
-def test_what_is_wrong_is_said(name, words, what, capsys):
-    told = said(name, words, capsys)
-    assert told.startswith(f"{name}: {what}")
-    assert told.count("\n") == 1 and told.endswith("lists the options\n")
+def test_command_line_fault_is_named(name, words, what, capsys):
+    message = message_of(name, words, capsys)
+    assert message.startswith(f"{name}: {what}")
+    assert message.count("\n") == 1 and message.endswith("lists the options\n")
 
 
-def test_a_write_that_failed_names_the_file_where_it_is_known():
+def test_failed_write_names_its_file():
     full = "No space left on device"
     assert not_written(OSError(28, full, "a.png")) == f"a.png: not written, {full}"
     assert not_written(OSError(28, full), "a.h5") == f"a.h5: not written, {full}"

@@ -1,10 +1,10 @@
-"""Comparing results: what is the same, what is not, and what cannot be compared."""
+"""Comparing results: equal, different and incomparable ones."""
 
 import numpy as np
 import pytest
 from support.made_results import P0, A, make_result
 
-from ehlpetsc.analysis.compare import Line, compare, main
+from ehlpetsc.analysis.compare import LinearInterpolation, compare, main
 from ehlpetsc.results.reader import read_result
 
 
@@ -24,14 +24,14 @@ def run(capsys, *arguments):
     return status, *capsys.readouterr()
 
 
-def test_equal_results_are_the_same_to_the_bit(tmp_path, result, capsys):
+def test_equal_results_compare_bitwise_equal(tmp_path, result, capsys):
     status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5"), "--rtol", 0)
     assert status == 0
     assert text.splitlines()[-1].startswith("same")
     assert "steps/load" in text and "DIFFERENT" not in text
 
 
-def test_a_difference_is_measured_and_placed(tmp_path, result, capsys):
+def test_difference_has_size_and_position(tmp_path, result, capsys):
     other = make_result(tmp_path / "two.h5", factor=1 + 1e-4)
     found = differences(result, other)
     pressure = found["pressure"]
@@ -48,7 +48,7 @@ def test_a_difference_is_measured_and_placed(tmp_path, result, capsys):
     assert run(capsys, result, other, "--atol", 1e-5 * P0)[0] == 1
 
 
-def test_finer_mesh_and_time_step_are_aligned(tmp_path):
+def test_finer_mesh_and_time_step_are_compared_at_common_nodes(tmp_path):
     """Nodes and times of the coarser are among those of the finer, so nothing is lost by interpolation."""
     coarse = make_result(tmp_path / "one.h5", nodes=161, steps=41)
     found = differences(coarse, make_result(tmp_path / "two.h5", nodes=321, steps=81))
@@ -61,7 +61,7 @@ def test_finer_mesh_and_time_step_are_aligned(tmp_path):
     assert 0 < found["contact_count"].greatest < 0.03
 
 
-def test_meshes_without_common_nodes_differ_by_the_error_of_interpolation(tmp_path):
+def test_meshes_without_common_nodes_differ_by_interpolation_error(tmp_path):
     found = []
     for nodes in (100, 400, 1600):
         one = make_result(tmp_path / "a.h5", nodes=nodes, steps=6)
@@ -70,7 +70,7 @@ def test_meshes_without_common_nodes_differ_by_the_error_of_interpolation(tmp_pa
     assert 0.05 > found[0] > 3 * found[1] > 9 * found[2] > 0
 
 
-def test_sparser_storage_of_the_same_run_is_the_same(tmp_path, result):
+def test_sparser_storage_compares_equal(tmp_path, result):
     found = differences(result, make_result(tmp_path / "two.h5", every=4))
     assert all(d.greatest == 0 for d in found.values())
 
@@ -82,7 +82,7 @@ def test_steady_results_are_compared(tmp_path):
     assert differences(one, other)["pressure"].relative(P0) > 0.05
 
 
-def test_nan_on_one_side_is_a_difference(tmp_path, result, capsys):
+def test_nan_in_one_result_is_a_difference(tmp_path, result, capsys):
     """Friction is left out of both, which is the same; a nan in the pressure of one is not."""
     assert differences(result, result)["steps/friction"].greatest == 0
     status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
@@ -90,7 +90,7 @@ def test_nan_on_one_side_is_a_difference(tmp_path, result, capsys):
     assert "different: pressure;" in text
 
 
-def test_missing_field_and_unlike_end_are_differences(tmp_path, result, capsys):
+def test_missing_field_and_different_status_are_differences(tmp_path, result, capsys):
     other = make_result(tmp_path / "two.h5", fields=("pressure",), status="not converged")
     status, text, _ = run(capsys, result, other)
     assert status == 1
@@ -98,7 +98,7 @@ def test_missing_field_and_unlike_end_are_differences(tmp_path, result, capsys):
     assert "one run is done, the other not converged" in text
 
 
-def test_bad_input_is_told_in_words(tmp_path, result, capsys):
+def test_bad_input_to_compare_is_refused(tmp_path, result, capsys):
     status, _, text = run(capsys, result, tmp_path / "no.h5")
     assert (status, text) == (2, f"ehlpetsc.compare: {tmp_path / 'no.h5'}: no such file\n")
     with pytest.raises(SystemExit) as stop:
@@ -107,8 +107,8 @@ def test_bad_input_is_told_in_words(tmp_path, result, capsys):
     assert "-1 is not a number >= 0" in capsys.readouterr().err
 
 
-def test_interpolation_is_exact_for_straight_lines_and_at_the_ends():
+def test_interpolation_is_exact_for_linear_data_and_at_the_ends():
     grid = np.array([0.0, 1.0, 3.0])
-    line = Line(grid, np.array([0.0, 0.5, 2.0, 3.0]))
+    line = LinearInterpolation(grid, np.array([0.0, 0.5, 2.0, 3.0]))
     np.testing.assert_allclose(line(2 * grid + 1), [1, 2, 5, 7])
     np.testing.assert_array_equal(line(np.array([np.nan, 1.0, 2.0]))[[2, 3]], [1.5, 2.0])

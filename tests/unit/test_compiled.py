@@ -5,7 +5,7 @@ import os
 from ehlpetsc.compiled import drop_stale_code
 
 
-def test_code_of_other_sources_is_removed_and_that_of_these_kept(tmp_path):
+def test_compiled_code_of_changed_sources_is_removed(tmp_path):
     source, kept = tmp_path / "room" / "law.py", tmp_path / "room" / "__pycache__" / "law.f-1.nbi"
     kept.parent.mkdir(parents=True)
     source.write_text("def f(): return 1\n")

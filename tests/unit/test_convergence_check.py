@@ -31,13 +31,13 @@ def fault(simulation, change=lambda q, w, rows: None, h00=None, tolerance=None):
     return find_fault(solver.problem, q, w, state.h00 if h00 is None else h00, rows, tolerance)
 
 
-def test_a_solution_is_one(solved):
+def test_solution_passes_the_convergence_check(solved):
     assert solved.stepper.solver.tolerance == pytest.approx(1e-7)
     assert fault(solved) is None
 
 
 @pytest.mark.parametrize("model, tolerance", [("direct", 1e-5), ("mixed", 1e-7)])
-def test_mixed_contact_is_solved_to_less_by_default(model, tolerance):
+def test_mixed_contact_has_looser_default_tolerances(model, tolerance):
     simulation = ehlpetsc.Simulation(
         ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": model})
     )
@@ -65,11 +65,11 @@ def put(which, node, value):
         (lambda q, w, rows: rows.__setitem__(2, 2e-7), "load is 2.00e-07"),
     ],
 )
-def test_every_part_is_held_against_its_bound(solved, change, words):
+def test_every_residual_has_its_tolerance(solved, change, words):
     assert words in fault(solved, change)
 
 
-def test_solids_must_carry_where_they_touch():
+def test_contact_nodes_need_contact_pressure():
     case = ehlpetsc.load(CASES / "table1_smooth.toml", MESH)
     simulation = ehlpetsc.Simulation(case, options=TIGHT)
     simulation.advance()
@@ -85,11 +85,11 @@ def test_solids_must_carry_where_they_touch():
     assert "below its bound" in fault(simulation, put(1, CLOSED, -1e-6))
 
 
-def test_tolerances_that_are_no_numbers_pass_nothing(solved):
+def test_nan_tolerances_fail_the_check(solved):
     assert fault(solved, tolerance=np.nan) is not None
 
 
-def test_a_solver_that_takes_its_guess_for_the_solution_gets_nowhere(solved, monkeypatch):
+def test_unconverged_guess_is_rejected(solved, monkeypatch):
     def solve(q, w, h00, inputs, max_it=None, watch=None):
         solver = simulation.stepper.solver
         solver.tolerance = 1e-7
@@ -106,6 +106,6 @@ def test_a_solver_that_takes_its_guess_for_the_solution_gets_nowhere(solved, mon
     "options",
     [{"snes_convergence_test": "default"}, {"snes_convergence_test": "skip"}, {"snes_stol": "1e-3"}],
 )
-def test_what_a_users_test_lets_pass_is_the_solution(solved, options):
+def test_user_convergence_test_replaces_the_check(solved, options):
     simulation = ehlpetsc.Simulation(solved.case, options=options)
     assert simulation.advance().h_min == pytest.approx(solved.state.h_min, rel=1e-6)

@@ -19,7 +19,7 @@ N, DX = 137, 0.021
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_the_integral_fulfils_the_second_differences(seed):
+def test_integral_form_satisfies_second_differences(seed):
     """Any pressure, smooth or not: the film of the integral form leaves no residual in any row."""
     rng = np.random.default_rng(seed)
     p, approach = rng.uniform(-1.0, 3.0, N), -0.7
@@ -31,7 +31,7 @@ def test_the_integral_fulfils_the_second_differences(seed):
     assert sums.load[2] == pytest.approx(DX * p.sum(), rel=1e-14)
 
 
-def test_the_second_differences_fulfil_the_integral():
+def test_second_differences_satisfy_the_integral_form():
     """The rows solved for the separation give the film of the integral: nothing is lost in differencing."""
     rng = np.random.default_rng(3)
     p, approach = rng.uniform(0.0, 2.0, N), 0.4
@@ -42,7 +42,7 @@ def test_the_second_differences_fulfil_the_integral():
 
 
 @pytest.mark.parametrize("cuts", [(0, 64, N), (0, 48, 96, N), (0, 16, 32, 64, 80, 96, 112, N)])
-def test_ranks_have_the_rows_of_the_whole_mesh(cuts):
+def test_local_deflection_rows_equal_global_rows(cuts):
     """Each is given its window of the separation, and of the pressures beyond its own the messages alone."""
     rng = np.random.default_rng(4)
     g, p = rng.standard_normal((2, N))
@@ -61,7 +61,7 @@ def test_ranks_have_the_rows_of_the_whole_mesh(cuts):
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
-def test_the_problems_film_leaves_no_residual_in_its_deflection_rows(model):
+def test_film_equation_has_zero_deflection_residual(model):
     """Parabola, roughness, approach and deflection as `EHLProblem.film` has them, against its residual."""
     mesh = ["mesh.points_per_half_width=32", f"contact.model='{model}'"]
     case = load(CASE, mesh)

@@ -35,7 +35,7 @@ def waves(n, length, wavelengths, amplitude=1e-7):
 
 @pytest.mark.parametrize("even", [True, False])
 @pytest.mark.parametrize("cells, error", [(2.0, 3e-5), (4.0, 2e-5), (20.0, 5e-6)])
-def test_means_over_cells_stay(even, cells, error):
+def test_thinning_keeps_cell_means(even, cells, error):
     cell = 1.5e-6
     X, z = waves(400_001, 1e-3, [cells * cell])
     if not even:
@@ -52,13 +52,13 @@ def test_means_over_cells_stay(even, cells, error):
     np.testing.assert_allclose(means[1], means[0], rtol=0.0, atol=error * 1e-7)
 
 
-def test_what_is_not_dense_stays_as_it_is():
+def test_coarse_profile_is_not_thinned():
     for n, cell in ((MIN_THINNED_POINTS - 1, 1e-3), (2 * MIN_THINNED_POINTS, 1e-3 / 12_500)):
         X, z = waves(n, 1e-3, [1e-5])
         assert thinned(X, z, cell)[1] is z
 
 
-def test_a_line_goes_and_the_rest_stays():
+def test_levelling_of_a_dense_profile_removes_a_line_only():
     X, z = waves(10_001, 4e-3, [1e-4])
     np.testing.assert_allclose(filters.levelled(X, z + 3e-3 * X - 7e-6), filters.levelled(X, z), atol=1e-18)
     fit = np.polynomial.Polynomial.fit(X, z, 1)(X)
@@ -66,7 +66,7 @@ def test_a_line_goes_and_the_rest_stays():
 
 
 @pytest.mark.parametrize("cutoff", [2e-7, 1e-6, 1e-5, 3e-3])
-def test_the_filter_of_long_profiles_is_that_of_short_ones(monkeypatch, cutoff):
+def test_filter_of_long_profiles_equals_that_of_short_ones(monkeypatch, cutoff):
     """The length is brought to one without large prime factors, mirrored points behind the end."""
     z = np.random.default_rng(1).normal(size=100_004)
     X = 1e-7 * np.arange(z.size)
@@ -75,7 +75,7 @@ def test_the_filter_of_long_profiles_is_that_of_short_ones(monkeypatch, cutoff):
     np.testing.assert_allclose(long, filters.low_pass(X, z, cutoff), rtol=0.0, atol=1e-7)
 
 
-def test_medians_of_parts_are_nearly_those_of_all_points():
+def test_running_median_of_blocks_approximates_the_full_one():
     X, z = waves(60_000, 1e-3, [4e-4, 1.3e-4])
     z += 1e-9 * np.random.default_rng(2).normal(size=z.size)
     window = 601
@@ -83,7 +83,7 @@ def test_medians_of_parts_are_nearly_those_of_all_points():
     np.testing.assert_allclose(_running_median(z, window)[300:-300:97], slow, rtol=0.0, atol=2e-9)
 
 
-def test_a_spike_narrower_than_a_cell_is_found_among_many_points():
+def test_spike_narrower_than_a_cell_is_found_in_a_dense_profile():
     X, z = waves(1_000_000, 1e-3, [1e-4])
     spoiled = z.copy()
     spoiled[700_000:700_200] += 3e-6  # 0.2 um wide
@@ -109,7 +109,7 @@ def dense(folder, n, step):
 
 
 @pytest.mark.slow
-def test_a_million_points_a_nanometre_apart_load_filter_and_run(tmp_path):
+def test_profile_of_a_million_points_runs(tmp_path):
     """Ten million take 17 s and 1.8 GB. A running median of points times window once took 9 GB for one."""
     case = dense(tmp_path, 1_000_000, 1e-9)
     keys = [f"{key}={value}" for key, value in COARSE.items()]
@@ -130,9 +130,9 @@ def test_a_million_points_a_nanometre_apart_load_filter_and_run(tmp_path):
     assert user < 30.0  # s
 
 
-def test_a_tilt_that_nobody_took_off_is_a_warning(tmp_path):
+def test_unlevelled_profile_is_a_warning(tmp_path):
     X, z = waves(4001, 4e-3, [1e-4])
-    for slope, level, told in ((5e-6, False, True), (5e-6, True, False), (1e-8, False, False)):
+    for slope, level, n_warnings in ((5e-6, False, True), (5e-6, True, False), (1e-8, False, False)):
         (tmp_path / "p.csv").write_text(
             "".join(f"{x:.9e},{h + slope * x / 4e-3:.9e}\n" for x, h in zip(X, z, strict=True))
         )
@@ -140,14 +140,14 @@ def test_a_tilt_that_nobody_took_off_is_a_warning(tmp_path):
         (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", "p.csv"))
         case = load(tmp_path / "c.toml", {"surface.1.level": level, "surface.2": None})
         lines = [line for line in warnings(case, Scales.of(case)) if "straight line" in line]
-        assert len(lines) == told
-        if told:
+        assert len(lines) == n_warnings
+        if n_warnings:
             assert lines[0].startswith("surface.1: 100 % of") or "99 %" in lines[0]
             assert "5 um over 4 mm" in lines[0] and "level = true" in lines[0]
 
 
 @pytest.mark.parametrize("name", ["mine.png", "mine.toml", "r.h5"])
-def test_a_file_of_another_kind_is_no_profile(tmp_path, name):
+def test_foreign_file_is_no_profile(tmp_path, name):
     (tmp_path / name).write_bytes(b"\x89PNG")
     text = (ROOT / "cases" / "table1_rough.toml").read_text()
     (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", name))

@@ -39,7 +39,7 @@ def foreign(folder, name):
 @pytest.mark.parametrize(
     "name", ["other.h5", "other.restart.h5", "case.toml", "r.series.json", "r.passes.json", "profile.csv"]
 )
-def test_an_ensemble_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, name):
+def test_ensemble_overwrites_its_own_tables_only(tmp_path, capsys, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
     assert ensemble.main([str(result), "-o", str(other)]) == 2
@@ -49,7 +49,7 @@ def test_an_ensemble_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, n
 
 
 @pytest.mark.parametrize("ending", [".csv", ".json"])
-def test_a_table_of_an_ensemble_is_replaced_by_the_next(tmp_path, ending):
+def test_ensemble_table_is_replaced(tmp_path, ending):
     words = [str(make_result(tmp_path / "one.h5")), "-o", str(tmp_path / f"t{ending}")]
     assert ensemble.main(words) == 0
     first = Path(words[-1]).read_bytes()
@@ -69,7 +69,7 @@ def test_a_table_of_an_ensemble_is_replaced_by_the_next(tmp_path, ending):
         (["--movie"], "other.restart.h5"),
     ],
 )
-def test_a_picture_replaces_nothing_but_a_picture(tmp_path, capsys, words, name):
+def test_picture_overwrites_pictures_only(tmp_path, capsys, words, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
     assert plot([str(result), *words, "-o", str(other)]) == 2
@@ -78,21 +78,21 @@ def test_a_picture_replaces_nothing_but_a_picture(tmp_path, capsys, words, name)
     assert other.read_bytes() == before
 
 
-def test_a_picture_is_drawn_again(tmp_path):
+def test_picture_is_replaced(tmp_path):
     words = [str(make_result(tmp_path / "one.h5"))]
     assert plot(words) == 0 and plot(words) == 0
     assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("words", [["--extremes"], ["--random", "1"], [str(CASE)], [str(CASE), "--contact"]])
-def test_a_study_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, words):
+def test_study_overwrites_its_own_tables_only(tmp_path, capsys, words):
     other = foreign(tmp_path, "profile.csv")
     assert study([*words, "-o", str(tmp_path / "profile")]) == 2
     assert "profile.csv: exists and is not of that kind" in capsys.readouterr().err
     assert other.read_text() == PROFILE
 
 
-def test_a_name_without_a_format_is_refused(tmp_path):
+def test_picture_name_without_a_format_is_refused(tmp_path):
     with pytest.raises(OutputError, match=r"x\.xyz: allowed for -o: a name that ends in \.png, "):
         check_derived(tmp_path / "x.xyz", (), PICTURE_SIGNATURES)
 
@@ -100,7 +100,7 @@ def test_a_name_without_a_format_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "words, name", [([], "one.png"), (["--report"], "one.html"), (["--movie"], "one.gif")]
 )
-def test_a_full_disk_leaves_the_older_picture(tmp_path, capsys, words, name):
+def test_full_disk_keeps_the_older_picture(tmp_path, capsys, words, name):
     result = make_result(tmp_path / "one.h5", steps=3)
     assert plot([str(result), *words]) == 0
     before = (tmp_path / name).read_bytes()
@@ -114,7 +114,7 @@ def test_a_full_disk_leaves_the_older_picture(tmp_path, capsys, words, name):
 
 
 @pytest.mark.parametrize("name", ["t.csv", "t.json"])
-def test_a_full_disk_leaves_the_older_table(tmp_path, capsys, name):
+def test_full_disk_keeps_the_older_table(tmp_path, capsys, name):
     words = [str(make_result(tmp_path / "one.h5")), "-o", str(tmp_path / name)]
     assert ensemble.main(words) == 0
     before = (tmp_path / name).read_bytes()
@@ -125,7 +125,7 @@ def test_a_full_disk_leaves_the_older_table(tmp_path, capsys, name):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.h5", name]
 
 
-def test_a_movie_whose_encoder_fails_is_reported_in_one_line(tmp_path):
+def test_failed_movie_encoder_is_reported_in_one_line(tmp_path):
     result = make_result(tmp_path / "one.h5", steps=3)
     (tmp_path / "bin").mkdir()
     encoder = tmp_path / "bin" / "ffmpeg"
@@ -143,7 +143,7 @@ def test_a_movie_whose_encoder_fails_is_reported_in_one_line(tmp_path):
     assert not list(tmp_path.glob("*.mp4")) and not list(tmp_path.glob(".m.mp4*"))
 
 
-def test_a_file_in_the_making_is_gone_after_an_error(tmp_path):
+def test_temporary_file_is_removed_after_an_error(tmp_path):
     (tmp_path / "a.png").write_text("older")
     with pytest.raises(OSError) as failed, replacing(tmp_path / "a.png", keep_ending=True) as beside:
         assert beside.suffix == ".png" and beside.parent == tmp_path

@@ -48,25 +48,25 @@ def lived(tmp_path):
 
 def sentence(capsys, command, *words):
     """The one sentence that a command ends with, after notes."""
-    *notes, said = refused(capsys, command, *words).splitlines()
+    *notes, message = refused(capsys, command, *words).splitlines()
     assert all(re.search("note: |warning: |already there", line) for line in notes), notes
-    return said
+    return message
 
 
 @pytest.mark.parametrize(
     "option, ending", [("-o", ".png"), ("--csv", ".csv"), ("--csv", ".toml"), ("-o", ".h5")]
 )
-def test_gears_replaces_nothing_but_files_of_its_own(pair, tmp_path, capsys, option, ending):
+def test_gears_overwrites_its_own_files_only(pair, tmp_path, capsys, option, ending):
     other = foreign(tmp_path, f"other{ending}")
     before = other.read_bytes()
-    told = sentence(capsys, gears, pair, option, other)
-    assert f"{other}: " in told and option in told
+    message = sentence(capsys, gears, pair, option, other)
+    assert f"{other}: " in message and option in message
     assert other.read_bytes() == before
 
 
 @pytest.mark.parametrize("option", ["-o", "--csv"])
 @pytest.mark.parametrize("name", ["", "/", ".", "sub", "x.xyz", "pair.toml", "none/x.png"])
-def test_gears_refuses_nonsense_for_a_file(pair, tmp_path, capsys, option, name):
+def test_gears_refuses_invalid_file_names(pair, tmp_path, capsys, option, name):
     (tmp_path / "sub").mkdir()
     before = pair.read_bytes()
     assert sentence(capsys, gears, pair, option, name)
@@ -74,7 +74,7 @@ def test_gears_refuses_nonsense_for_a_file(pair, tmp_path, capsys, option, name)
     assert sorted(os.listdir(tmp_path)) == ["pair.toml", "sub"]
 
 
-def test_gears_writes_its_files_again_and_a_full_disk_leaves_them(pair, tmp_path, capsys):
+def test_gears_replaces_its_files_and_a_full_disk_keeps_them(pair, tmp_path, capsys):
     words = [str(pair), "--csv", "mesh.csv"]
     assert gears(words) == 0 and gears(words) == 0
     files = [tmp_path / "mesh.csv", tmp_path / "pair.gears.png"]
@@ -88,26 +88,26 @@ def test_gears_writes_its_files_again_and_a_full_disk_leaves_them(pair, tmp_path
 
 @pytest.mark.parametrize("command", [gears, life, summary])
 @pytest.mark.parametrize("name", ["", "/", "sub", "sub.h5", "a.png", "a.restart.h5", "none.h5", "/dev/zero"])
-def test_what_is_no_input_is_told_in_one_sentence(tmp_path, monkeypatch, capsys, command, name):
+def test_invalid_input_is_refused_in_one_line(tmp_path, monkeypatch, capsys, command, name):
     monkeypatch.chdir(tmp_path)
     for folder in ("sub", "sub.h5"):
         (tmp_path / folder).mkdir()
     (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0")
     save_restart(tmp_path / "a.restart.h5", {}, {"case": "a"})
-    told = sentence(capsys, command, name)
-    assert not told.startswith(" "), "an empty name is shown as such"
+    message = sentence(capsys, command, name)
+    assert not message.startswith(" "), "an empty name is shown as such"
     assert len(os.listdir(tmp_path)) == 4
 
 
 @pytest.mark.parametrize("name", ["other.h5", "other.restart.h5", "case.toml", "profile.csv", "a.png"])
-def test_a_summary_replaces_nothing_but_a_table_of_its_own(tmp_path, capsys, name):
+def test_summary_overwrites_its_own_tables_only(tmp_path, capsys, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
     assert f"{other}: " in sentence(capsys, summary, result, "-o", other)
     assert other.read_bytes() == before
 
 
-def test_the_picture_of_a_life_replaces_pictures_alone(lived, tmp_path, capsys):
+def test_life_picture_overwrites_pictures_only(lived, tmp_path, capsys):
     assert life([str(lived)]) == 0 and life([str(lived)]) == 0
     picture = tmp_path / "a.life.png"
     before = picture.read_bytes()
@@ -121,7 +121,7 @@ def test_the_picture_of_a_life_replaces_pictures_alone(lived, tmp_path, capsys):
     assert sorted(os.listdir(tmp_path)) == ["a.life.h5", "a.life.png"]
 
 
-def test_a_damaged_life_is_told_in_one_sentence(lived, capsys):
+def test_damaged_life_is_refused_in_one_line(lived, capsys):
     with h5py.File(lived, "a") as file:
         del file["figures"]
         file["figures"] = 1.0
@@ -129,7 +129,7 @@ def test_a_damaged_life_is_told_in_one_sentence(lived, capsys):
 
 
 @pytest.mark.parametrize("name", ["", "case.toml", "profile.csv", "a.png", "sub", "sub.h5"])
-def test_a_life_is_written_to_no_other_file(tmp_path, monkeypatch, capsys, name):
+def test_life_does_not_overwrite_another_file(tmp_path, monkeypatch, capsys, name):
     monkeypatch.chdir(tmp_path)
     for folder in ("sub", "sub.h5"):
         (tmp_path / folder).mkdir()
@@ -140,15 +140,15 @@ def test_a_life_is_written_to_no_other_file(tmp_path, monkeypatch, capsys, name)
     assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
 
 
-def test_a_life_keeps_a_result_in_the_place_of_its_pass(tmp_path):
+def test_life_keeps_a_result_named_as_its_pass(tmp_path):
     other = make_result(tmp_path / "x.life.pass.h5")
     before = other.read_bytes()
-    with pytest.raises(OutputError, match="is no pass of a life"):
+    with pytest.raises(OutputError, match="is not a pass of a life"):
         run_life(load(CASES / "life.toml"), tmp_path / "x.life.h5", most=1)
     assert other.read_bytes() == before
 
 
-def test_a_life_goes_over_the_passes_of_its_own_alone(tmp_path):
+def test_life_overwrites_its_own_passes_only(tmp_path):
     case, path = load(CASES / "life.toml"), tmp_path / "x.life.h5"
     first = run_life(case, path, most=1).done
     assert run_life(case, path, most=1).done > first, "continued, over the result of the pass before"
@@ -164,7 +164,7 @@ def crossing(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["run.stress.png", "run.stress.svg"])
-def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, monkeypatch, name):
+def test_damage_pictures_overwrite_pictures_only(crossing, tmp_path, capsys, monkeypatch, name):
     monkeypatch.setattr(gallery, "DPI", 20)
     other = tmp_path / "p" / name
     other.parent.mkdir()
@@ -176,7 +176,7 @@ def test_pictures_of_damage_replace_pictures_alone(crossing, tmp_path, capsys, m
 
 
 @pytest.mark.parametrize("folder", ["/proc", "file"])
-def test_post_tells_of_a_folder_that_cannot_be_written(crossing, tmp_path, capsys, folder):
+def test_post_reports_an_unwritable_folder(crossing, tmp_path, capsys, folder):
     (tmp_path / "file").write_text("")
     folder = tmp_path / folder  # /proc: of its own
     assert f"{folder}" in sentence(capsys, post, crossing, "-o", folder / "x.post.h5")
@@ -185,7 +185,7 @@ def test_post_tells_of_a_folder_that_cannot_be_written(crossing, tmp_path, capsy
 
 
 @pytest.mark.parametrize("left", [None, "a file"])
-def test_post_tells_of_a_folder_that_went_during_the_run(crossing, tmp_path, capsys, monkeypatch, left):
+def test_post_reports_a_folder_removed_during_the_run(crossing, tmp_path, capsys, monkeypatch, left):
     out, solve = tmp_path / "out", post_run.solve
     out.mkdir()
 

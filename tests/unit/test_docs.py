@@ -16,7 +16,7 @@ needs_generator = pytest.mark.skipif(
 )
 
 
-def test_every_page_is_in_the_site_once():
+def test_site_contains_every_page_once():
     paths = (path for path in ROOT.rglob("*.md") if not any(part.startswith(".") for part in path.parts))
     here = {str(path.relative_to(ROOT).with_suffix("")) for path in paths}
     assert sorted(PAGES) == sorted(here)
@@ -24,21 +24,21 @@ def test_every_page_is_in_the_site_once():
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_a_page_has_one_title_and_steps_down_one_level_at_a_time(page):
+def test_page_has_one_title_and_no_skipped_heading_level(page):
     text = re.sub(r"^```.*?^```", "", TEXTS[page], flags=re.DOTALL | re.MULTILINE)
     levels = [len(marks) for marks in re.findall(r"^(#+) ", text, re.MULTILINE)]
     assert levels[0] == 1 and levels.count(1) == 1
     assert all(below <= above + 1 for above, below in zip(levels, levels[1:], strict=False))
 
 
-def test_equations_of_the_theory_are_numbered_one_after_the_other():
+def test_theory_equations_are_numbered_consecutively():
     displayed = re.findall(r"\$\$(.*?)\$\$", TEXTS["ehlpetsc/model"], re.DOTALL)
     assert not re.search(r"\\[^a-zA-Z]", "".join(displayed))  # which Markdown would take for an escape
     numbers = [re.findall(r"\\tag\{(\d+)\}", equation) for equation in displayed]
     assert numbers == [[str(k)] for k in range(1, len(displayed) + 1)] and len(numbers) > 10
 
 
-def test_without_the_generator_one_sentence_names_its_packages(tmp_path, monkeypatch, capsys):
+def test_missing_site_generator_names_its_packages(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(docs, "has", lambda name: name != "furo")
     monkeypatch.setattr(docs, "mathjax_folder", lambda: None)
     assert docs.main([str(tmp_path)]) == 2
@@ -46,7 +46,7 @@ def test_without_the_generator_one_sentence_names_its_packages(tmp_path, monkeyp
     assert error == "ehlpetsc docs: packages are missing; type: sudo apt-get install furo libjs-mathjax\n"
 
 
-def test_a_folder_of_other_files_is_kept(tmp_path, monkeypatch, capsys):
+def test_docs_keep_a_folder_of_other_files(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(docs, "lacking", list)
     (tmp_path / "mine.txt").touch()
     assert docs.main([str(tmp_path)]) == 2
@@ -55,7 +55,7 @@ def test_a_folder_of_other_files_is_kept(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().err.endswith("a file, not a folder for the site\n")
 
 
-def test_an_installed_package_says_where_the_pages_are(tmp_path, monkeypatch, capsys):
+def test_installed_package_names_the_location_of_the_pages(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(docs, "ROOT", tmp_path)
     assert docs.main([]) == 2
     assert "an installed package has no pages" in capsys.readouterr().err
@@ -70,7 +70,7 @@ def site(tmp_path_factory):
 
 @needs_generator
 @pytest.mark.slow
-def test_the_site_has_every_page_with_search_and_equations_and_asks_no_network(site):
+def test_site_has_search_and_equations_without_network(site):
     assert all((site / f"{page}.html").exists() for page in (*PAGES, "index", "search"))
     model = (site / "ehlpetsc" / "model.html").read_text(encoding="utf-8")
     assert model.count(r"\[") > 10 and r"\frac{\partial" in model
@@ -88,7 +88,7 @@ def test_the_site_has_every_page_with_search_and_equations_and_asks_no_network(s
 
 @needs_generator
 @pytest.mark.slow
-def test_it_opens_what_it_has_built(tmp_path, monkeypatch, capsys):
+def test_docs_open_the_built_site(tmp_path, monkeypatch, capsys):
     opened = []
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(docs.webbrowser, "open", opened.append)

@@ -1,4 +1,4 @@
-"""Domain and mesh that do not hold the contact: told or refused before a run, an error after it."""
+"""Domain and mesh too small for the contact: a warning or refused before a run, an error after it."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def of(overrides, case=SMOOTH, about=domain_warnings):
     return about(case, Scales.of(case))
 
 
-def test_the_cases_are_within_their_domains():
+def test_cases_have_no_domain_warning():
     for path in CASES.glob("*.toml"):
         case = load(path)
         found = domain_warnings(case, Scales.of(case)) + domain_faults(case, Scales.of(case))
@@ -38,26 +38,26 @@ def film(**overrides):
 
 
 @pytest.mark.parametrize("inlet", [-1.05, -1.2, -1.5])
-def test_the_film_that_a_near_inlet_leaves_is_what_the_solver_finds(inlet):
+def test_film_of_a_near_inlet_equals_the_solver_result(inlet):
     case = load(SMOOTH)
     expected = film_left_by_inlet(expected_film(case, Scales.of(case)), -inlet)
     found = film(mesh__inlet=inlet) / film(mesh__inlet=-4.0)
     assert expected == pytest.approx(found, abs=0.08)
 
 
-def test_a_near_inlet_is_told_with_the_film_it_leaves_and_one_that_does_not():
+def test_near_inlet_warning_gives_film_and_sufficient_inlet():
     (line,) = of({"mesh.inlet": -1.05})
     assert line.startswith("mesh.inlet = -1.05 is too near: by Grubin's integral it leaves 43 % of the film")
     further = float(line.split("mesh.inlet = ")[2].split()[0])
     assert -2.5 < further < -1.8 and of({"mesh.inlet": further}) == []
 
 
-def test_a_starved_inlet_is_where_the_user_puts_it():
+def test_starved_case_has_no_inlet_warning():
     assert of({"mesh.inlet": -1.2, "fluid.inlet_film": 1e-7}) == []
 
 
-def test_the_film_on_a_mesh_too_coarse_for_the_inlet_is_as_thin_as_told():
-    """What the docstring says of openings of 0.25 and 1."""
+def test_film_on_a_mesh_too_coarse_for_the_inlet_is_as_predicted():
+    """Values of the docstring for openings of 0.25 and 1."""
     slow = {"motion__entrainment_speed": 0.1, "mesh__inlet": -1.5}
     case = load(SMOOTH, {"motion.entrainment_speed": 0.1})
     expected = expected_film(case, Scales.of(case))
@@ -68,14 +68,14 @@ def test_the_film_on_a_mesh_too_coarse_for_the_inlet_is_as_thin_as_told():
         assert low < 1.0 - film(**slow, mesh__points_per_half_width=points) / fine < high
 
 
-def test_a_coarse_mesh_is_told_with_the_mesh_that_would_do():
+def test_coarse_mesh_warning_gives_the_sufficient_mesh():
     (line,) = of(SLOW | {"mesh.points_per_half_width": 400})
     assert "the gap opens by 1.9 films" in line
     points = int(line.split("points_per_half_width = ")[1].split(";")[0])
     assert of(SLOW | {"mesh.points_per_half_width": points}) == []
 
 
-def test_a_mesh_that_leaves_no_film_is_refused():
+def test_mesh_without_a_film_is_refused():
     """At a/200 the film of this smooth contact is zero, at a/1600 1.06 nm."""
     (line,) = of(SLOW, about=domain_faults)
     assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: the mesh is too coarse")
@@ -83,12 +83,12 @@ def test_a_mesh_that_leaves_no_film_is_refused():
         ehlpetsc.Simulation(load(SMOOTH, SLOW))
 
 
-def test_a_boundary_film_needs_no_mesh_for_the_oil_below_it():
+def test_boundary_film_needs_no_mesh_for_thinner_films():
     mixed = SLOW | {"contact.model": "mixed"}
     assert of(mixed, about=domain_faults) == []
 
 
-def test_solids_too_soft_for_the_domain_are_refused():
+def test_contact_wider_than_the_domain_is_refused():
     soft = {"contact.model": "mixed", "contact.yield_pressure": 0.25e9}
     (line,) = of(soft | {"mesh.inlet": -3.0, "mesh.outlet": 3.0}, about=domain_faults)
     assert (
@@ -98,7 +98,7 @@ def test_solids_too_soft_for_the_domain_are_refused():
     assert of(soft | {"mesh.outlet": 4.0, "mesh.inlet": -4.0}, about=domain_faults) == []
 
 
-def test_a_contact_wider_than_the_domain_is_an_error():
+def test_contact_at_the_domain_ends_is_an_error():
     """A dent of 50 um: without oil its flanks carry at the ends of the mesh."""
     dent = {"kind": "dent", "amplitude": 50e-6, "wavelength": 600e-6, "position": 340e-6}
     changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"2": {"synthetic": dent}}}
@@ -106,7 +106,7 @@ def test_a_contact_wider_than_the_domain_is_an_error():
         ehlpetsc.solve(load(CASES / "dry_hertz.toml", changed))
 
 
-def test_pressure_at_the_outlet_is_cut_off():
+def test_pressure_at_the_outlet_is_an_error():
     x, dry = np.linspace(-2.0, 1.2, 5), np.zeros(5, bool)
     check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
     check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0099]), dry)

@@ -46,7 +46,7 @@ def rows_of(path):
         return list(csv.DictReader(file))
 
 
-def test_members_that_differ_in_seeds_alone_are_one_ensemble(tmp_path):
+def test_members_that_differ_in_seeds_form_one_ensemble(tmp_path):
     found = ensemble.ensembles(opened(made(tmp_path, (5.0, 1.0))))
     assert [one.values for one in found] == [
         {"motion.entrainment_speed": 5.0},
@@ -56,7 +56,7 @@ def test_members_that_differ_in_seeds_alone_are_one_ensemble(tmp_path):
     assert all(values.shape == (6,) for one in found for values in one.scalars.values())
 
 
-def test_figures_of_a_run_are_means_over_its_time_and_extremes(tmp_path):
+def test_run_statistics_are_time_means_and_extremes(tmp_path):
     (path, *_) = made(tmp_path, [50.0])
     with read_result(path) as result:
         figures = run_scalars(result)
@@ -69,7 +69,7 @@ def test_figures_of_a_run_are_means_over_its_time_and_extremes(tmp_path):
     assert "dt" not in figures and "wall" not in figures
 
 
-def test_the_interval_of_a_mean_is_that_of_theory():
+def test_bootstrap_interval_of_a_mean_follows_theory():
     """For 40 normal values the bootstrap's 95 % interval is 1.96 s/sqrt(n) either side, to a tenth."""
     values = np.random.default_rng(7).normal(3.0, 0.5, 40)
     low, high = ensemble.bootstrap(values)
@@ -81,7 +81,7 @@ def test_the_interval_of_a_mean_is_that_of_theory():
     assert np.isnan(ensemble.bootstrap([1.0])).all()
 
 
-def test_intervals_hold_the_mean_as_often_as_they_say():
+def test_bootstrap_intervals_have_their_nominal_coverage():
     random = np.random.default_rng(3)
     held = 0
     for seed in range(200):
@@ -90,7 +90,7 @@ def test_intervals_hold_the_mean_as_often_as_they_say():
     assert 0.85 < held / 200 < 0.99  # of skewed values the percentiles hold a little less than 95 %
 
 
-def test_the_table_of_a_series(tmp_path, capsys):
+def test_ensemble_table_of_a_series(tmp_path, capsys):
     made(tmp_path, (5.0, 1.0))
     files = [{"file": path.name} for path in sorted(tmp_path.glob("*.h5"))]
     index = tmp_path / "e.series.json"
@@ -107,7 +107,7 @@ def test_the_table_of_a_series(tmp_path, capsys):
     assert len(json.loads((tmp_path / "e.json").read_text())) == len(rows)
 
 
-def test_damage_gives_its_quantiles(tmp_path):
+def test_ensemble_has_damage_quantiles(tmp_path):
     (path, *_) = made(tmp_path, seeds=[1])
     with h5py.File(path) as result, h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
         file.attrs.update(a=1e-3, case=result.attrs["case"])
@@ -126,7 +126,7 @@ def test_damage_gives_its_quantiles(tmp_path):
     assert {row["units"] for row in ensemble.table([one]) if "flash" in row["figure"]} == {"K"}
 
 
-def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
+def test_labels_of_results_name_the_keys_that_differ(tmp_path):
     results = opened(made(tmp_path, (5.0, 1.0), [1, 2]))
     assert distinguishing_names(results)[2] == "entrainment_speed = 1, seed = 1"
     assert distinguishing_names(results[:1] * 2) is None
@@ -136,7 +136,7 @@ def test_results_of_several_keys_are_told_by_what_differs(tmp_path):
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])
-def test_every_run_and_every_mean_is_drawn(tmp_path, speeds, seeds):
+def test_every_run_and_mean_is_drawn(tmp_path, speeds, seeds):
     paths = made(tmp_path, speeds, seeds)
     axes = draw_ensemble(opened(paths), None).axes
     panel = next(one for one in axes if one.get_ylabel() == "share of the load\non the solids")
@@ -154,13 +154,13 @@ def test_every_run_and_every_mean_is_drawn(tmp_path, speeds, seeds):
     assert imread(picture).std() > 0.02  # not blank
 
 
-def test_what_is_no_result_is_refused(tmp_path, capsys):
+def test_foreign_files_are_refused(tmp_path, capsys):
     (tmp_path / "x.series.json").write_text("[]")
     assert ensemble.main([str(tmp_path / "x.series.json")]) == 2
     assert "not the index of a series" in capsys.readouterr().err
 
 
-def test_what_is_read_is_never_written_over(tmp_path, capsys):
+def test_input_is_never_overwritten(tmp_path, capsys):
     path = make_result(tmp_path / "one.h5")
     before = path.read_bytes()
     assert ensemble.main([str(path), "-o", str(path)]) == 2

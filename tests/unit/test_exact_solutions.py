@@ -29,7 +29,7 @@ def deflection(pressure, x, a):
     return -4.0 / (np.pi * E) * sum(parts)
 
 
-def test_hertz_pressure_carries_the_load():
+def test_hertz_pressure_integrates_to_the_load():
     total, _ = quad(hertz.hertz_pressure, -A, A, args=(A, P0))
     assert total == pytest.approx(LOAD, rel=1e-9)
 
@@ -86,7 +86,7 @@ def test_quartic_without_quartic_term_is_hertz():
     )
 
 
-def test_dowson_higginson_is_near_the_computed_newtonian_films():
+def test_dowson_higginson_approximates_newtonian_films():
     """Within 10 % of the dense solutions of a Barus fluid at the two Moes points."""
     for point in published_values.MOES_POINTS:
         two_u = 1e-11
@@ -95,7 +95,7 @@ def test_dowson_higginson_is_near_the_computed_newtonian_films():
         assert film == pytest.approx(point.h_min, rel=0.10)
 
 
-def test_moes_fit_is_near_the_computed_films_and_meets_its_asymptotes():
+def test_moes_fit_approximates_films_and_its_asymptotes():
     for point in published_values.MOES_POINTS:
         assert film_formulas.moes_central_film(point.M, point.L) == pytest.approx(point.h_central, rel=0.04)
     assert film_formulas.moes_central_film(1e-4, 1e-6) == pytest.approx(3e4, rel=0.01)
@@ -103,7 +103,7 @@ def test_moes_fit_is_near_the_computed_films_and_meets_its_asymptotes():
     assert film_formulas.moes_central_film(1e5, 30.0) == pytest.approx(elastic, rel=0.1)
 
 
-def test_expected_films_are_the_computed_ones_within_four_percent():
+def test_expected_films_within_four_percent():
     """Of the compressible Table 1 oil, and of the incompressible Barus one; further films by a/400."""
     for film in published_values.SMOOTH_FILMS:
         given = ["motion.slide_roll_ratio=0.25", f"fluid.viscosity={film.viscosity}"]
@@ -124,10 +124,10 @@ def test_expected_films_are_the_computed_ones_within_four_percent():
         assert minimum * 1e6 == pytest.approx(h_min, rel=0.04)
     for point in published_values.MOES_POINTS:
         film = film_formulas.moes_central_film(point.M, point.L)
-        assert film_formulas.MINIMUM * film == pytest.approx(point.h_min, rel=0.04)
+        assert film_formulas.MIN_OVER_CENTRAL_FILM * film == pytest.approx(point.h_min, rel=0.04)
 
 
-def test_smooth_films_follow_the_moes_fit():
+def test_smooth_films_are_below_the_moes_fit_by_less_than_a_quarter():
     """Table 1 films are thinner than the fit, by shear thinning and density, but by less than a quarter."""
     for film in published_values.SMOOTH_FILMS:
         m, length = moes_groups(film.viscosity, film.speed, 11.1e-9, LOAD, R, E)
@@ -135,7 +135,7 @@ def test_smooth_films_follow_the_moes_fit():
         assert 0.75 < film.h_central / (film_formulas.moes_central_film(m, length) * scale) < 1.0
 
 
-def test_waviness_fit_gives_the_table_it_was_fitted_to():
+def test_waviness_fit_reproduces_its_table():
     for wavelength in (1.0, 0.5, 0.25, 0.125):
         ratio = exact_solutions.waviness_ratio(wavelength * 100**0.75 / 11**0.5)
         assert ratio == pytest.approx(published_values.WAVINESS[wavelength], rel=0.05)
@@ -143,7 +143,7 @@ def test_waviness_fit_gives_the_table_it_was_fitted_to():
         assert linear == pytest.approx(published_values.WAVINESS[wavelength], rel=0.06)
 
 
-def test_finest_mesh_film_is_near_the_extrapolated_one():
+def test_finest_mesh_film_is_near_the_extrapolated_film():
     films = [film.h_min for film in published_values.SMOOTH_FILMS_BY_MESH]
     assert np.all(np.diff(films) > 0)
     assert films[-1] == pytest.approx(published_values.SMOOTH_FILMS[1].h_min, rel=4e-3)

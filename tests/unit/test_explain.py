@@ -1,4 +1,4 @@
-"""The scene in words: its figures, its size, what is switched off."""
+"""--explain: figures of a case, predicted size and run time, disabled effects, warnings."""
 
 import re
 
@@ -30,7 +30,7 @@ def starting(found, word):
     return [line for line in found if line.startswith(word)]
 
 
-def test_figures_of_the_main_case():
+def test_explain_figures_of_the_main_case():
     text = "\n".join(lines("table1_rough.toml"))
     for part in (
         "a = 0.335682 mm",
@@ -49,7 +49,7 @@ def test_figures_of_the_main_case():
 @pytest.mark.parametrize(
     ("eta0", "speed", "film"), [(0.01, 5, 0.22747), (0.005, 5, 0.14216), (0.005, 25, 0.43387)]
 )
-def test_the_expected_minimum_film_is_the_computed_one_within_four_percent(eta0, speed, film):
+def test_explained_minimum_film_within_four_percent(eta0, speed, film):
     c = case.load(
         CASES / "table1_smooth.toml", [f"fluid.viscosity={eta0}", f"motion.entrainment_speed={speed}"]
     )
@@ -57,7 +57,7 @@ def test_the_expected_minimum_film_is_the_computed_one_within_four_percent(eta0,
     assert smooth_films(c.fluid, scales.E, scales.conditions)[1] * 1e6 == pytest.approx(film, rel=0.04)
 
 
-def test_parts_switched_off_are_named():
+def test_disabled_effects_are_listed():
     assert starting(lines("dry_hertz.toml"), "Switched off") == [
         "Switched off: Reynolds equation (no [fluid]), time (no [time]), roughness (no [surface]), "
         "boundary friction at dry nodes"
@@ -80,7 +80,7 @@ def test_parts_switched_off_are_named():
         ],
     ],
 )
-def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides):
+def test_predicted_result_size_within_ten_percent(tmp_path, overrides):
     c = case.load(CASES / "table1_rough.toml", overrides)
     s = Scales.of(c)
     fields = [name for name in c.output.fields if name in of_case(FIELDS, c)]
@@ -94,13 +94,13 @@ def test_the_size_of_the_result_file_is_told_within_a_tenth(tmp_path, overrides)
     assert file_size(c, s) == pytest.approx((tmp_path / "r.h5").stat().st_size, rel=0.1)
 
 
-def test_a_series_names_its_members():
-    told = lines("fig6.toml")
-    assert "mesh.points_per_half_width = 100, 200, 300, 400" in told[1]
-    assert told[2].startswith("All members on one rank: about ")
+def test_explain_lists_series_members():
+    lines_shown = lines("fig6.toml")
+    assert "mesh.points_per_half_width = 100, 200, 300, 400" in lines_shown[1]
+    assert lines_shown[2].startswith("All members on one rank: about ")
 
 
-def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
+def test_coarse_mesh_and_stationary_roughness_are_warnings():
     c = case.load(CASES / "fig6.toml")
     assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.1", "surface.2"]
     still = starting(
@@ -121,14 +121,14 @@ def test_warnings_of_a_coarse_mesh_and_of_roughness_held_still():
         ("table1_rough.toml", ("mesh.points_per_half_width=50", "time.travel=4"), 1647),
     ],
 )
-def test_the_iterations_expected_are_those_taken_within_a_factor_of_one_and_a_half(name, overrides, newton):
+def test_predicted_iterations_within_a_factor_of_one_and_a_half(name, overrides, newton):
     c = case.load(CASES / name, overrides)
     scales = Scales.of(c)
     expected = forecast.iterations(c, scales, Roughness.of(c, scales))
     assert newton / 1.5 < expected < 1.5 * newton
 
 
-def test_the_run_time_expected_goes_with_the_speed_of_the_machine(monkeypatch):
+def test_predicted_run_time_scales_with_machine_speed(monkeypatch):
     c = case.load(CASES / "table1_rough.toml")
     scales = Scales.of(c)
     found = []
@@ -138,7 +138,7 @@ def test_the_run_time_expected_goes_with_the_speed_of_the_machine(monkeypatch):
     assert found[1] == pytest.approx(2.0 * found[0])
 
 
-def test_all_passes_are_expected(monkeypatch):
+def test_prediction_includes_all_passes(monkeypatch):
     monkeypatch.setattr(forecast, "probe", lambda: 0.02)
     one, five = (case.load(CASES / "running_in.toml", [f"time.passes={passes}"]) for passes in (1, 5))
     times = [forecast.work_time(c, Scales.of(c), None) for c in (one, five)]
@@ -155,20 +155,20 @@ def test_all_passes_are_expected(monkeypatch):
         ("fig4.toml", (), 2),
     ],
 )
-def test_a_case_is_worth_two_ranks_on_a_fine_mesh_or_as_a_series(name, overrides, ranks, monkeypatch):
+def test_fine_mesh_or_series_uses_two_ranks(name, overrides, ranks, monkeypatch):
     monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
     monkeypatch.setattr("os.getloadavg", lambda: (0.2, 0.0, 0.0))
     assert worthwhile_ranks(case.load(CASES / name, overrides)) == ranks
 
 
-def test_one_contact_gets_one_rank_beside_other_work(monkeypatch):
+def test_one_contact_on_a_busy_machine_uses_one_rank(monkeypatch):
     monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
     monkeypatch.setattr("os.getloadavg", lambda: (1.0, 0.0, 0.0))
     fine = case.load(CASES / "table1_rough.toml", ["mesh.points_per_half_width=2100"])
     assert worthwhile_ranks(fine) == 1
 
 
-def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp_path):
+def test_spike_warning_gives_its_height_on_the_mesh(tmp_path):
     """A point of 3 um on a flat: the spline through it, spread over a cell of 3.4 um, is 0.9 um high."""
     x = 0.5e-6 * np.arange(2000)
     z = np.where(np.arange(2000) == 1000, 3e-6, 0.0)
@@ -181,15 +181,15 @@ def test_a_spike_narrower_than_a_cell_is_told_beside_what_the_mesh_has_of_it(tmp
     assert seen == pytest.approx(1e6 * area / 3.357e-6, rel=0.3) and seen < 0.3 * given
 
 
-def test_the_part_of_a_profile_that_passes_is_that_of_its_travel():
+def test_explained_passing_length_follows_from_travel():
     """A body point X reaches x = -a after 1.5 a + X of its own travel and has passed x = a after 2 a more."""
-    told = starting(lines("fig1.toml"), "Surface 1")
+    lines_shown = starting(lines("fig1.toml"), "Surface 1")
     c = case.load(CASES / "fig1.toml")
     s = Scales.of(c)
     through = (c.time.travel - 1.5 - 2.0) * s.a
-    assert f"of 1.712 mm x = 0 to {1e3 * through:.3g} mm pass the contact" in told[2]
-    needed = int(told[2].rpartition("time.travel = ")[2].split()[0])
-    assert told[2].endswith("for all") and needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
+    assert f"of 1.712 mm x = 0 to {1e3 * through:.3g} mm pass the contact" in lines_shown[2]
+    needed = int(lines_shown[2].rpartition("time.travel = ")[2].split()[0])
+    assert lines_shown[2].endswith("for all") and needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
     whole = lines("fig1.toml", f"time.travel={needed}")
     assert any(line.startswith("Surface 1: continued by reflection") for line in whole)
 
@@ -205,13 +205,28 @@ def test_the_part_of_a_profile_that_passes_is_that_of_its_travel():
         (["fluid.law='barus'"], 'fluid.kappa, fluid.chi: not used by law = "barus"'),
     ],
 )
-def test_implausible_magnitudes_and_unused_constants_are_named(overrides, words):
+def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, words):
     c = case.load(CASES / "table1_smooth.toml", overrides)
     assert any(words in line for line in warnings(c, Scales.of(c)))
 
 
+@pytest.mark.parametrize(
+    ("overrides", "warned"),
+    [
+        (["contact.yield_pressure=0.9e9"], True),
+        (["contact.yield_pressure=[2e9, 0.9e9]"], True),
+        (["contact.yield_pressure=1.1e9"], False),
+        (["contact.yield_pressure=0.9e9", "time.pass_shift=0.0"], False),
+        (["contact.yield_pressure=0.9e9", "time.passes=1"], False),
+    ],
+)
+def test_passes_of_solids_that_yield_under_the_smooth_contact_are_named(overrides, warned):
+    c = case.load(CASES / "running_in.toml", overrides)
+    assert any("ahead of the profiles yields too" in line for line in warnings(c, Scales.of(c))) == warned
+
+
 @pytest.mark.parametrize("level", [False, True])
-def test_a_tilted_profile_is_named_with_its_cure(level):
+def test_tilted_profile_warning_names_the_key(level):
     x = 1e-6 * np.arange(4001)
     z = 5e-6 * x / x[-1] + 0.4e-6 * np.sin(x / 5e-6)
     surface = {"surface": {"1": {"x": x.tolist(), "z": z.tolist(), "level": level}}}
@@ -225,25 +240,25 @@ def test_a_tilted_profile_is_named_with_its_cure(level):
         assert "5 um over 4 mm" in found[0] and "level = true" in found[0]
 
 
-def test_a_mesh_at_the_brink_is_not_warned_of():
+def test_mesh_within_ten_percent_has_no_warning():
     """Where less than a tenth more points would do, the figure is noise."""
     base = ["motion.entrainment_speed=1"]
     for points, warned in ((300, False), (30, True)):
         c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={points}"])
         assert any("too coarse for the inlet" in line for line in warnings(c, Scales.of(c))) == warned
-    told = next(line for line in warnings(c, Scales.of(c)) if "too coarse for the inlet" in line)
-    needed = int(re.search(r"points_per_half_width = (\d+)", told)[1])
+    lines_shown = next(line for line in warnings(c, Scales.of(c)) if "too coarse for the inlet" in line)
+    needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
     c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
     assert not any("too coarse for the inlet" in line for line in warnings(c, Scales.of(c)))
 
 
-def test_each_surface_is_told_with_its_figures():
-    told = starting(lines("fig7.toml"), "Surface 2")
-    assert told[0].endswith("Rsk 0.080")
-    assert told[1] == "Surface 2: 1.712 mm long, 3425 points 0.5 um apart"
-    assert told[2] == "Surface 2: continued by reflection: 18.28 mm enter during the run"
-    assert told[3] == "Surface 2: reaches the contact at travel 1.93 a and fills it at 4.63 a"
-    assert told[4].endswith(
+def test_explain_describes_each_surface():
+    lines_shown = starting(lines("fig7.toml"), "Surface 2")
+    assert lines_shown[0].endswith("Rsk 0.080")
+    assert lines_shown[1] == "Surface 2: 1.712 mm long, 3425 points 0.5 um apart"
+    assert lines_shown[2] == "Surface 2: continued by reflection: 18.28 mm enter during the run"
+    assert lines_shown[3] == "Surface 2: reaches the contact at travel 1.93 a and fills it at 4.63 a"
+    assert lines_shown[4].endswith(
         "heights from -0.275 to 0.325 um; means over cells, as the mesh has them, -0.265 to 0.314 um"
     )
     assert not [line for line in lines("fig1.toml") if "reflection" in line]
@@ -253,7 +268,7 @@ def test_each_surface_is_told_with_its_figures():
 
 
 @pytest.mark.parametrize(
-    ("name", "travel", "told"),
+    ("name", "travel", "lines_shown"),
     [
         (
             "table1_rough.toml",
@@ -265,8 +280,8 @@ def test_each_surface_is_told_with_its_figures():
         ("ridge.toml", 3.0, ["middle of the profile is at x = 0 (3.73)"]),
     ],
 )
-def test_a_run_that_ends_before_its_roughness_is_there_warns(name, travel, told):
+def test_run_shorter_than_the_roughness_entry_is_a_warning(name, travel, lines_shown):
     found = starting(lines(name, f"time.travel={travel}"), "Warning")
-    assert len(found) == len(told)
-    for line, words in zip(found, told, strict=True):
+    assert len(found) == len(lines_shown)
+    for line, words in zip(found, lines_shown, strict=True):
         assert f"the run ends at time.travel = {travel:g}, before" in line and words in line

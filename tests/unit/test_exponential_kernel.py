@@ -8,7 +8,7 @@ from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponent
 
 
 @pytest.mark.parametrize("points, error", [(50, 0.15), (200, 0.11), (800, 0.3)])
-def test_exponentials_follow_the_kernel_over_half_a_half_width(points, error):
+def test_exponentials_approximate_the_kernel_within_half_a_half_width(points, error):
     kernel = curvature_kernel(4 * points + 1)
     rates, weights = exponentials(kernel, points)
     far = grouped_kernel(kernel)[2:]

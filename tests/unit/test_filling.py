@@ -8,7 +8,7 @@ from support.made_results import A, make_result
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.plot.series.running_in import draw_running_in
-from ehlpetsc.results.filling import RAMP, both_fill, filled_from, travelled
+from ehlpetsc.results.filling import RAMP_LENGTH, both_fill, filled_from, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces import roughness
 from ehlpetsc.surfaces.entry_times import entry_times
@@ -49,28 +49,28 @@ class Stored:
 
 @pytest.mark.parametrize("xi", [0.4, 0.0, 2.5])
 @pytest.mark.parametrize("surface", [{"1": WAVE}, {"2": WAVE}, {"1": WAVE, "2": WAVE}, {"1": RIDGE}])
-def test_it_is_the_travel_announced_before_the_run(surface, xi):
+def test_filling_time_equals_the_explained_travel(surface, xi):
     motion = CASE["motion"] | {"slide_roll_ratio": xi}
     result = Stored(load(CASE | {"surface": surface, "motion": motion}))
     s = result.scales
     fills = max(entry_times(p, s)[1] for p in (result.rough.surface_1, result.rough.surface_2) if p)
     assert filled_from(result) == pytest.approx(fills * s.a / s.u_max, rel=1e-12)
-    assert RAMP == roughness.RAMP_LENGTH
+    assert RAMP_LENGTH == roughness.RAMP_LENGTH
 
 
-def test_smooth_surfaces_fill_it_from_the_start_also_where_they_have_yielded(tmp_path):
+def test_smooth_surfaces_fill_the_contact_from_the_start(tmp_path):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     with h5py.File(path, "r+", libver="latest") as file:
         file["surface/2/z"][:] = 0.0
     with read_result(path) as result:
-        assert filled_from(result) == pytest.approx((3.5 + RAMP) * A / (1.12 * 50.0))
+        assert filled_from(result) == pytest.approx((3.5 + RAMP_LENGTH) * A / (1.12 * 50.0))
     with h5py.File(path, "r+", libver="latest") as file:
         file["surface/1/z"][:] = 0.0
     with read_result(path) as result:
         assert filled_from(result) == 0.0 and both_fill(result, result.steps("time")).all()
 
 
-def test_with_speeds_that_change_the_distance_travelled_counts(tmp_path):
+def test_filling_time_follows_distance_under_changing_speeds(tmp_path):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     with read_result(path) as result:
         begin = filled_from(result)
@@ -89,7 +89,7 @@ def test_with_speeds_that_change_the_distance_travelled_counts(tmp_path):
 
 
 @pytest.mark.parametrize("speed", [50.0, 5.0])
-def test_passes_without_load_on_the_solids_are_drawn(tmp_path, speed):
+def test_passes_without_solid_load_are_drawn(tmp_path, speed):
     """Share and length 0 in every pass, or no means since the run ends before the contact is filled."""
     paths = [make_result(tmp_path / f"pass{n}.h5", speed=speed, rough=True) for n in (1, 2)]
     for number, path in enumerate(paths):

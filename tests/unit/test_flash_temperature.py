@@ -19,11 +19,11 @@ def warned(name, *keys):
 
 def limited(name, friction, *keys):
     case = load(CASES / f"{name}.toml", keys)
-    told = limits(case, Scales.of(case), None, TOTALS | {"friction_coefficient": friction})
-    return [line for line in told if line.startswith("heat")]
+    found = limits(case, Scales.of(case), None, TOTALS | {"friction_coefficient": friction})
+    return [line for line in found if line.startswith("heat")]
 
 
-def test_the_damage_case_should_have_heat():
+def test_damage_case_has_a_heat_warning():
     [line] = warned("table1_damage")
     flash = float(line.split(" K ")[0].split()[-1])
     assert 60.0 < flash < 110.0  # the mean of its surfaces is 50 to 60 K above bulk
@@ -34,6 +34,6 @@ def test_the_damage_case_should_have_heat():
 
 
 @pytest.mark.parametrize("name", ["table1_smooth", "table1_rough", "waviness", "moes", "dry_hertz"])
-def test_slow_or_rolling_contacts_may_be_isothermal(name):
+def test_slow_or_rolling_contacts_have_no_heat_warning(name):
     assert warned(name) == []
     assert limited(name, 0.0114) == []

@@ -90,7 +90,7 @@ def test_fzg_type_c_has_the_published_angle_ratio_and_load():
     ("torque", "pressure"),
     [(70.0, 0.795), (98.9, 0.945), (132.5, 1.093), (171.6, 1.245), (215.6, 1.395), (265.1, 1.547)],
 )
-def test_load_stages_5_to_10_of_fva_54_7_have_their_pressures(torque, pressure):
+def test_fva_54_7_load_stages_have_published_pressures(torque, pressure):
     path = path_of_contact(FZG | {"torque": torque})
     p0 = hertz_line(at(path, "C", path.load), at(path, "C", path.radius), STEEL)[1]
     assert 1e-9 * p0 == pytest.approx(pressure, rel=1e-2)
@@ -104,7 +104,7 @@ def test_speeds_are_the_derivatives_of_the_arcs_on_both_flanks():
         np.testing.assert_allclose(arc[1:], swept, rtol=1e-9)
 
 
-def test_the_pitch_point_rolls_without_sliding_at_the_pitch_circles():
+def test_no_sliding_at_the_pitch_point():
     pair = path_of_contact(FZG).pair
     u_1, u_2 = pair.speeds(pair.points["C"])
     omega_1, pitch_radius = pair.angular_speeds[0], 91.5e-3 * 16 / 40
@@ -124,7 +124,7 @@ def test_without_relief_the_shared_load_rises_from_one_third_to_two_thirds():
 
 
 @pytest.mark.parametrize("relief", [1e-6, 20e-6, 45.5e-6, 80e-6])
-def test_with_tip_relief_the_load_comes_on_from_zero_and_both_pairs_carry_all(relief):
+def test_tip_relief_starts_the_load_at_zero(relief):
     path = path_of_contact(FZG | {"tip_relief": relief})
     pair = path.pair
     load = path.load / pair.normal_load
@@ -137,7 +137,7 @@ def test_with_tip_relief_the_load_comes_on_from_zero_and_both_pairs_carry_all(re
     assert steepest == pytest.approx(max(ratio, 1.0 / ratio), rel=1e-6)
 
 
-def test_a_third_of_the_deflection_as_relief_shares_as_thirds_do():
+def test_relief_of_a_third_of_the_deflection_shares_in_thirds():
     """c' C_a/w' = 1/3 is the elastic line from one third to two thirds."""
     pair = path_of_contact(FZG).pair
     relieved = path_of_contact(FZG | {"tip_relief": pair.normal_load / pair.mesh_stiffness / 3.0})
@@ -188,7 +188,7 @@ def test_hunting_teeth(teeth, partners):
         ({"load_sharing": "tip-relief"}, "tip_relief is missing"),
     ],
 )
-def test_impossible_geometry_is_one_sentence(change, sentence, case, capsys):
+def test_impossible_geometry_is_refused_in_one_line(change, sentence, case, capsys):
     with pytest.raises(CaseError) as error:
         path_of_contact(FZG | change)
     assert len(error.value.faults) == 1 and sentence in error.value.faults[0]
@@ -219,12 +219,12 @@ def test_bad_keys_are_named(change, sentence):
     assert len(error.value.faults) == 1
 
 
-def test_the_case_schema_has_the_same_pair(case):
+def test_case_schema_has_the_same_pair(case):
     gears = load(case(tip_relief=20e-6)).gears
     assert gears.pair == path_of_contact(FZG | {"tip_relief": 20e-6}).pair
 
 
-def test_the_command_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsys, monkeypatch):
+def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = case(tip_relief=20e-6)
     assert main([str(path), "--csv", "mesh.csv"]) == 0
@@ -241,7 +241,7 @@ def test_the_command_prints_the_table_and_writes_picture_and_csv(case, tmp_path,
     assert "cannot be read" in capsys.readouterr().err
 
 
-def test_damage_of_flanks_is_found_by_arc_length_and_depth(tmp_path):
+def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
     path = path_of_contact(FZG)
     with h5py.File(tmp_path / "run.post.h5", "w") as file:
         file.attrs["a"] = 0.25e-3
@@ -268,7 +268,7 @@ def test_damage_of_flanks_is_found_by_arc_length_and_depth(tmp_path):
         FlankDamage(tmp_path / "bad.post.h5", (0.0, 0.0))
 
 
-def test_points_of_a_flank_pass_the_contact_from_its_begin_to_its_end():
+def test_flank_points_pass_the_contact_over_the_whole_path():
     x, moved = np.linspace(-3.0, 1.5, 46), np.linspace(0.0, 20.0, 100)
     s = body_points(x, 0.1, [moved])
     through = s[passage(s, x, 0.1, moved).complete]
@@ -277,7 +277,7 @@ def test_points_of_a_flank_pass_the_contact_from_its_begin_to_its_end():
     assert (flank[0], flank[-1]) == pytest.approx((-20.0, 0.0))
 
 
-def test_the_package_offers_it_without_another_import():
+def test_package_exports_the_gear_pair():
     import ehlpetsc
 
     assert ehlpetsc.gears.path_of_contact(FZG).contact_ratio == pytest.approx(1.443, abs=5e-4)
@@ -285,7 +285,7 @@ def test_the_package_offers_it_without_another_import():
 
 
 @pytest.mark.parametrize(("after", "mean"), [(1.0, 0.0), (-1.0, 0.03)])
-def test_friction_of_a_run_whose_sliding_reverses_is_averaged_by_its_magnitude(tmp_path, after, mean):
+def test_friction_under_reversed_sliding_is_averaged_by_magnitude(tmp_path, after, mean):
     path = make_result(tmp_path / "run.h5")
     with h5py.File(path, "a") as file:
         steps, n = file["steps"], len(file["steps/time"])
@@ -298,7 +298,7 @@ def test_friction_of_a_run_whose_sliding_reverses_is_averaged_by_its_magnitude(t
         assert means(result)["friction_coefficient"] == pytest.approx(mean, abs=2e-3)
 
 
-def test_the_table_knows_the_moduli_of_a_steel(case, tmp_path, capsys):
+def test_gear_table_uses_the_moduli_of_a_steel(case, tmp_path, capsys):
     path = case()
     moduli = "youngs_modulus = [206e9, 206e9]\npoisson_ratio = [0.3, 0.3]\n"
     shown = []

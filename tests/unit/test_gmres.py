@@ -9,19 +9,19 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.nonlinear.collectives import collective
-from ehlpetsc.nonlinear.gmres import MOST, orthonormalise
+from ehlpetsc.nonlinear.gmres import MAX_IT, orthonormalise
 
 SIZE, VECTORS = 300, 4
 
 
 @pytest.mark.parametrize("left", [1.0, 1e-3, 1e-6, 1e-10, 1e-13])
-def test_what_is_left_of_a_vector_is_orthonormal_and_its_norm_is_right(left):
+def test_krylov_remainder_is_orthonormal_with_exact_norm(left):
     """A preconditioner that is nearly exact leaves little; by differences alone 1e-8 would be rounding."""
     rng = np.random.default_rng(1)
     basis = np.linalg.qr(rng.standard_normal((SIZE, VECTORS + 1)))[0].T
-    v, products = np.zeros((MOST + 1, SIZE)), rng.standard_normal(VECTORS)
+    v, products = np.zeros((MAX_IT + 1, SIZE)), rng.standard_normal(VECTORS)
     v[:VECTORS], v[VECTORS] = basis[:-1], products @ basis[:-1] + left * basis[-1]
-    column, sums = np.zeros(MOST + 1), np.zeros((1, MOST + 2))
+    column, sums = np.zeros(MAX_IT + 1), np.zeros((1, MAX_IT + 2))
     norm = orthonormalise(v, VECTORS, column, sums, 0, collective(PETSc.COMM_SELF.tompi4py()))
     assert norm == pytest.approx(left, rel=1e-7 + 1e-15 / left)
     np.testing.assert_allclose(column[:VECTORS], products, rtol=0, atol=1e-14)
@@ -31,8 +31,8 @@ def test_what_is_left_of_a_vector_is_orthonormal_and_its_norm_is_right(left):
 
 
 @pytest.mark.parametrize("value", [0.0, np.nan])
-def test_nothing_left_and_no_number_are_norms_too(value):
-    v, sums = np.zeros((MOST + 1, SIZE)), np.zeros((1, MOST + 2))
+def test_zero_and_nan_remainders(value):
+    v, sums = np.zeros((MAX_IT + 1, SIZE)), np.zeros((1, MAX_IT + 2))
     v[0, 0], v[1] = 1.0, value
-    norm = orthonormalise(v, 1, np.zeros(MOST + 1), sums, 0, collective(PETSc.COMM_SELF.tompi4py()))
+    norm = orthonormalise(v, 1, np.zeros(MAX_IT + 1), sums, 0, collective(PETSc.COMM_SELF.tompi4py()))
     np.testing.assert_equal(norm, value)

@@ -73,7 +73,7 @@ def test_moving_flux_in_time(peclet):
     np.testing.assert_allclose(moved.history + moved.response * flux, exact, atol=0.01 * exact.max())
 
 
-def test_heat_comes_in_from_the_side_that_a_body_moves_from():
+def test_heat_is_advected_from_upstream():
     dx, nodes, speed = 2e-6, 101, 5.0
     flux = np.zeros(nodes)
     flux[50] = FLUX
@@ -108,7 +108,7 @@ def test_a_sinusoid_along_the_surface(ratio):
     assert swing > 0.99 * exact
 
 
-def test_a_distance_counted_from_elsewhere_moves_no_heat():
+def test_shifted_distance_origin_moves_no_heat():
     """Before time 0 a run counts distances anew."""
     dx, speed = 2e-6, 5.0
     one, flux = body(speed, dx, 60), np.full(60, FLUX)

@@ -41,21 +41,21 @@ def fault(overrides):
         ("fluid.alpha", 1e-8, 'did you mean "pressure_viscosity"?'),
     ],
 )
-def test_a_fault_names_what_was_probably_meant(key, value, hint):
+def test_fault_suggests_the_probable_value(key, value, hint):
     assert hint in fault({key: value})
 
 
 @pytest.mark.parametrize("value", [10**400, float("nan"), float("inf"), 0, -206])
-def test_numbers_that_no_power_of_ten_mends_have_no_hint(value):
+def test_values_not_off_by_a_power_of_ten_have_no_hint(value):
     assert not re.search(r"; \S*e\d+\?$", fault({"contact.youngs_modulus": value}))
 
 
-def test_hints_are_tables_and_keys_there_are():
+def test_hints_name_existing_tables_and_keys():
     assert nearest("movement", Case) == 'did you mean "motion"?'
     assert nearest("oil", Case) == 'did you mean "fluid"?'
 
 
-def test_a_decimal_comma_is_recognised(tmp_path):
+def test_decimal_comma_is_recognised(tmp_path):
     path = tmp_path / "c.toml"
     path.write_text(re.sub(r"\nviscosity = [\d.]+", "\nviscosity = 0,015", SMOOTH.read_text()))
     assert "0,015" in path.read_text()
@@ -63,12 +63,12 @@ def test_a_decimal_comma_is_recognised(tmp_path):
         load(path)
 
 
-def test_one_value_for_both_solids():
+def test_single_value_applies_to_both_solids():
     contact = load(SMOOTH, {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.29}).contact
     assert contact.youngs_modulus == (206e9, 206e9) and contact.poisson_ratio == (0.29, 0.29)
 
 
-def test_roelands_constants_left_out_follow_from_viscosity_and_its_pressure_coefficient():
+def test_omitted_roelands_constants_follow_from_the_pressure_coefficient():
     """z = alpha pr/(ln eta0 + 9.67), and the slope of ln eta at ambient pressure is alpha."""
     fluid = load(SMOOTH, OIL | {"fluid.viscosity": 0.015, "fluid.pressure_viscosity": 18e-9}).fluid
     assert fluid.roelands_pressure == 1.96e8
@@ -79,13 +79,13 @@ def test_roelands_constants_left_out_follow_from_viscosity_and_its_pressure_coef
     assert "by viscosity and pressure_viscosity it is" in fault(OIL | {"fluid.viscosity": 65e-6})
 
 
-def test_kappa_and_chi_write_the_same_law():
+def test_kappa_and_chi_define_the_roelands_law():
     pair = {"fluid.kappa": 63.2e-6, "fluid.chi": 5.1e-9}
     seed, roelands = (load(SMOOTH, pair | {"fluid.law": law}).fluid for law in ("seed", "roelands"))
     p = np.array([1e8, 1e9, 3e9])
     assert viscosity(p, seed)[0] == pytest.approx(viscosity(p, roelands)[0], rel=1e-13)
 
 
-def test_the_density_left_out_is_that_of_textbooks():
+def test_default_density_is_dowson_higginson():
     fluid = load(SMOOTH, {"fluid.gamma": None, "fluid.lambda": None}).fluid
     assert (fluid.gamma, fluid.lambda_) == (2.3e-9, 1.7e-9)

@@ -114,14 +114,14 @@ def reached(module):
     return seen
 
 
-def test_the_table_names_every_room_once_and_has_no_cycle():
+def test_package_table_is_complete_and_acyclic():
     assert set(MAY_IMPORT) == {room(module) for module in FILES} - {"ehlpetsc"}
     assert all(below <= set(MAY_IMPORT) for below in MAY_IMPORT.values())
     tuple(TopologicalSorter(MAY_IMPORT).static_order())
 
 
 @pytest.mark.parametrize("name", sorted(MAY_IMPORT))
-def test_a_room_imports_only_what_it_may(name):
+def test_packages_import_allowed_packages_only(name):
     allowed = MAY_IMPORT[name] | {name} | (GROUND if name not in GROUND else set())
     wrong = [
         f"{module} imports {other}"
@@ -133,7 +133,7 @@ def test_a_room_imports_only_what_it_may(name):
     assert wrong == []
 
 
-def test_no_two_modules_import_each_other():
+def test_no_mutual_imports():
     try:
         tuple(TopologicalSorter({module: ours(module) for module in FILES}).static_order())
     except CycleError as error:
@@ -141,25 +141,25 @@ def test_no_two_modules_import_each_other():
 
 
 @pytest.mark.parametrize("library", sorted(LIBRARIES))
-def test_a_heavy_library_is_imported_only_where_it_belongs(library):
+def test_heavy_libraries_are_imported_where_allowed_only(library):
     users = [m for m in FILES if any(name.split(".")[0] == library for name in imported(m))]
     assert users and {room(module) for module in users} <= LIBRARIES[library]
 
 
 @pytest.mark.parametrize("name", ["post", "analysis", "plot", "compare", "case", "results", "gears"])
-def test_a_room_that_reads_or_checks_reaches_neither_solver_nor_petsc_nor_mpi(name):
+def test_reading_packages_reach_neither_solver_nor_petsc_nor_mpi(name):
     everything = set().union(*(reached(module) for module in FILES if room(module) == name))
     assert not {room(module) for module in everything} & SOLVER
     libraries = {lib.split(".")[0] for module in everything for lib in imported(module)}
     assert not libraries & {"petsc4py", "mpi4py"}
 
 
-def test_what_is_imported_exists():
+def test_imported_names_exist():
     unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
     assert unknown == set()
 
 
-def test_imports_inside_functions_and_relative_ones_are_seen():
+def test_local_and_relative_imports_are_found():
     module = "ehlpetsc.results.reader"
     source = "def f():\n    from . import writer\n    from ..run.simulation import run\n    import h5py\n"
     assert imports(module, source) == {"ehlpetsc.results.writer", "ehlpetsc.run.simulation", "h5py"}

@@ -21,9 +21,9 @@ from ehlpetsc.nonlinear.operators.jacobian_operator import (
     PIVOT_REGULARISATION,
     JacobianOperator,
     NearFieldMatrix,
+    python_matrix,
 )
-from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
-from ehlpetsc.nonlinear.systems.two_fields import TwoFields
+from ehlpetsc.nonlinear.two_fields import TwoFields
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -116,7 +116,7 @@ def columns_of(matrix, size):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_every_column_is_the_difference_of_residuals(name):
+def test_jacobian_columns_equal_residual_differences(name):
     at = scene(name)
     system, size = linearised(at), len(at.state)
     np.testing.assert_array_equal(np.flatnonzero(system.jacobian.state.contact_mask), at.touching)
@@ -131,7 +131,7 @@ def test_every_column_is_the_difference_of_residuals(name):
 
 
 @pytest.mark.parametrize("name", ["direct", "mixed", "dry"])
-def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
+def test_assembled_jacobian_equals_the_operator(name):
     """What other preconditioners get: with a near field as wide as the mesh, the Jacobian, regularised."""
     at = scene(name)
     system, size = linearised(at), len(at.state)
@@ -158,7 +158,7 @@ def test_the_assembled_matrix_of_the_whole_field_is_the_same(name):
 
 
 @pytest.mark.parametrize("name", ["direct", "mixed"])
-def test_a_restricted_operator_is_the_block_of_the_whole(name):
+def test_restricted_operator_is_a_block_of_the_jacobian(name):
     """What SNESVI keeps of the system."""
     at = scene(name)
     system, size = linearised(at), len(at.state)

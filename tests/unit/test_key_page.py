@@ -15,11 +15,11 @@ from ehlpetsc.errors import CaseError, UsageError
 from ehlpetsc.physics.rheology import density
 
 
-def test_the_page_is_what_the_schema_says():
+def test_key_page_equals_the_schema():
     assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == key_page.page()
 
 
-def test_every_key_of_the_cases_here_is_listed():
+def test_every_key_of_the_cases_is_listed():
     listed = key_page.keys()
     for path in (ROOT / "cases").glob("*.toml"):
         text = path.read_text(encoding="utf-8").partition("[petsc]")[0]
@@ -27,12 +27,12 @@ def test_every_key_of_the_cases_here_is_listed():
             assert f"\n  {key}: " in listed, (path.name, key)
 
 
-def test_a_table_alone_has_units_bounds_and_defaults():
-    told = key_page.keys("motion").splitlines()
-    assert told[0] == "[motion]" and len(told) == 5
-    assert told[1].startswith("  entrainment_speed: a number >= 1e-09 and <= 1000 [m/s] (mean of both")
-    assert told[2] == "      u = (u1 + u2)/2"
-    assert told[3].endswith("default: 0.0")
+def test_keys_of_one_table_have_units_bounds_and_defaults():
+    listed = key_page.keys("motion").splitlines()
+    assert listed[0] == "[motion]" and len(listed) == 5
+    assert listed[1].startswith("  entrainment_speed: a number >= 1e-09 and <= 1000 [m/s] (mean of both")
+    assert listed[2] == "      u = (u1 + u2)/2"
+    assert listed[3].endswith("default: 0.0")
     assert "[surface.1.synthetic (ridge)]" in key_page.keys("surface.1")
     assert "[surface.2]" in key_page.keys("surface")
     with pytest.raises(UsageError, match="--keys fluids: no such table or key; tables: contact, fluid"):
@@ -44,7 +44,7 @@ def test_a_table_alone_has_units_bounds_and_defaults():
     assert "a list of texts (several keys" in key_page.keys("series")
 
 
-def test_equations_are_those_of_keys():
+def test_equations_belong_to_existing_keys():
     models = {model.__name__: model for model in key_page.tables().values()}
     for name, equation in EQUATIONS.items():
         model, key = name.split(".")
@@ -52,7 +52,7 @@ def test_equations_are_those_of_keys():
         assert equation in key_page.keys(), name
 
 
-def test_the_density_of_textbooks_is_explained_where_its_constants_are_refused(tmp_path):
+def test_refused_density_constants_explain_the_textbook_form(tmp_path):
     """1 + 0.6e-9 p/(1 + 1.7e-9 p) is the program's law with the sum of both as gamma."""
     case = ROOT / "cases" / "table1_smooth.toml"
     with pytest.raises(CaseError, match=r"1 \+ 0.6e-9 p/\(1 \+ 1.7e-9 p\) of textbooks is gamma = 2.3e-9"):
@@ -62,7 +62,7 @@ def test_the_density_of_textbooks_is_explained_where_its_constants_are_refused(t
     np.testing.assert_allclose(density(p, fluid)[0], 1 + 0.6e-9 * p / (1 + 1.7e-9 * p), rtol=1e-14)
 
 
-def test_the_template_is_a_case_and_its_comments_are_keys(tmp_path):
+def test_template_is_a_case_and_its_comments_are_keys(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(key_page.template())
     case = load(path)
@@ -71,7 +71,7 @@ def test_the_template_is_a_case_and_its_comments_are_keys(tmp_path):
     assert {"minimum_film", "inlet_film", "file", "short_cutoff", "courant", "every"} <= set(commented)
 
 
-def test_the_command_prints_them(tmp_path):
+def test_commands_print_keys_and_template(tmp_path):
     def run(*words):
         command = [sys.executable, "-m", "ehlpetsc", *words]
         return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)

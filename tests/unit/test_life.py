@@ -12,7 +12,7 @@ from ehlpetsc.life import read_life
 from ehlpetsc.life.ageing import laws
 from ehlpetsc.life.ageing.body import LifeBody
 from ehlpetsc.life.ageing.jumps import Jumps
-from ehlpetsc.life.ageing.rates import LONGER, Rates
+from ehlpetsc.life.ageing.rates import MAX_EXTRAPOLATION, Rates
 from ehlpetsc.life.checks import check_case
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.passes.pass_result import OfBody
@@ -35,10 +35,10 @@ def jump(wear=0.0, added=0.0, damage=0.0, left=1000):
     """Length of a jump at these rates."""
     one = body()._replace(damage=np.full((3, 8), damage))
     rates = Rates(np.append(np.zeros(7), wear), np.full((3, 8), added), 0.0)
-    return jumps(passes=left, pits=False).take((one, one), round_of(lambda body: rates), 0)[1]
+    return jumps(passes=left, pits=False).jump((one, one), round_of(lambda body: rates), 0)[1]
 
 
-def test_a_jump_ends_where_wear_or_damage_reach_what_is_allowed():
+def test_jump_ends_at_the_allowed_wear_or_damage():
     assert jump(wear=0.05 / 64) == 64
     assert jump(added=0.1 / 32) == 32
     assert jump(wear=0.05 / 64, added=0.1 / 32) == 32
@@ -47,31 +47,31 @@ def test_a_jump_ends_where_wear_or_damage_reach_what_is_allowed():
     assert jump(added=0.01, damage=1.0) == 1000, "cells that have failed do not count"
 
 
-def test_a_jump_ends_where_wear_uncovers_cells_that_have_failed():
+def test_jump_ends_where_wear_exposes_failed_cells():
     damage = np.zeros((3, 8))
     damage[1] = 1.0
     one, rates = body()._replace(damage=damage), Rates(np.full(8, 1e-3), np.zeros((3, 8)), 0.0)
-    bodies, jump, _ = jumps(wear_jump=5.0, passes=1500).take((one, one), round_of(lambda body: rates), 0)
+    bodies, jump, _ = jumps(wear_jump=5.0, passes=1500).jump((one, one), round_of(lambda body: rates), 0)
     assert jump == 1001 and bodies[0].pit == pytest.approx(2.0 - 1.001)
 
 
 @pytest.mark.parametrize("slope", [-3e-4, 0.0, 2e-3])
-def test_a_sum_reaches_an_amount_after_the_passes_found(slope):
+def test_passes_to_reach_a_sum(slope):
     assert laws.sum_over(laws.passes_to(0.7, 0.05, slope), 0.05, slope) == pytest.approx(0.7, rel=1e-13)
 
 
-def test_a_sum_that_falls_short_never_reaches_it():
+def test_sum_below_the_amount_is_never_reached():
     assert laws.passes_to(0.7, 0.0, 0.0) == np.inf and laws.passes_to(0.7, 0.05, -2e-3) == np.inf
 
 
-def test_rates_go_on_as_they_changed_but_do_not_change_sign():
+def test_rates_are_extrapolated_without_change_of_sign():
     rates = Rates(np.array([3.0, 1.0, 1.0]), np.zeros((1, 3)), 2.0)
     found = rates.continued((np.array([2.0, 0.9, 9.0]), np.zeros((1, 3)), 2.0), 10)
-    assert found.slopes[0] == pytest.approx([0.1, 0.01, -1.0 / (LONGER * 10)])
+    assert found.slopes[0] == pytest.approx([0.1, 0.01, -1.0 / (MAX_EXTRAPOLATION * 10)])
     assert found.after(20)[0] == pytest.approx([80.0, 22.0, 10.0]) and found.after(20)[2] == 40.0
 
 
-def test_wear_and_damage_converge_with_the_square_of_the_jumps():
+def test_wear_and_damage_converge_at_second_order():
     """Rates that wear lets fall: dw/dt = exp(-w), hence w = ln(1 + t), and D = -ln(1 - w/3)."""
 
     def rates(one):
@@ -83,7 +83,7 @@ def test_wear_and_damage_converge_with_the_square_of_the_jumps():
         bodies, done, before = (body(), body()), 0, 0
         while done < 5000:
             all_jumps = jumps(0.2 * part, 0.1 * part, passes=5000, pits=False)
-            bodies, before, _ = all_jumps.take(bodies, round_of(rates), done, before)
+            bodies, before, _ = all_jumps.jump(bodies, round_of(rates), done, before)
             done += before
         exact = np.log(6.0)
         ends = bodies[0].wear[0] - exact, bodies[0].damage[2, 0] + np.log(1.0 - exact / 3.0)
@@ -92,7 +92,7 @@ def test_wear_and_damage_converge_with_the_square_of_the_jumps():
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(2.0, abs=0.4)
 
 
-def test_a_jump_ends_with_the_first_break_out_and_leaves_the_same_pit_whatever_is_allowed():
+def test_first_pit_is_independent_of_the_allowed_jump():
     def rates(one):
         added = 1e-5 * np.exp(-0.2 * laws.cell_depths(EDGES, one.recession)) * np.arange(1, 9)
         return Rates(np.zeros(8), np.nan_to_num(added), 0.0)
@@ -101,7 +101,7 @@ def test_a_jump_ends_with_the_first_break_out_and_leaves_the_same_pit_whatever_i
     for allowed in (0.1, 0.03):
         bodies, done = (body(), body()), 0
         while not bodies[0].pits:
-            bodies, jump, _ = jumps(damage_jump=allowed, passes=100_000).take(bodies, round_of(rates), done)
+            bodies, jump, _ = jumps(damage_jump=allowed, passes=100_000).jump(bodies, round_of(rates), done)
             done += jump
         ends.append((done, *bodies[0].pit))
     assert ends[0] == ends[1]
@@ -110,27 +110,27 @@ def test_a_jump_ends_with_the_first_break_out_and_leaves_the_same_pit_whatever_i
     assert bodies[0].failed[0, -1] == pytest.approx(np.exp(0.1) / 8e-5, rel=1e-12)
 
 
-def test_cells_reach_the_depth_and_grow_below_the_first_ones():
+def test_cells_reach_the_depth_and_grow_with_it():
     edges = laws.cell_edges(0.5, 100.0)
     assert edges[0] == 0.0 and edges[-1] >= 100.0 > edges[-2]
     assert np.diff(edges)[: laws.FINE_CELLS] == pytest.approx(0.5)
-    assert np.diff(edges)[-1] / np.diff(edges)[-2] == pytest.approx(laws.GROWTH)
+    assert np.diff(edges)[-1] / np.diff(edges)[-2] == pytest.approx(laws.CELL_GROWTH)
 
 
-def test_cells_come_nearer_to_a_surface_that_recedes_and_end_when_it_passes_them():
+def test_receding_surface_consumes_cells():
     depths = laws.cell_depths(EDGES, np.array([0.0, 0.5, 1.0, 3.0]))
     expected = [[0.5, 0.25, np.nan, np.nan], [1.5, 1.0, 0.5, np.nan], [3.0, 2.5, 2.0, 0.5]]
     assert depths == pytest.approx(np.array(expected), nan_ok=True)
 
 
-def test_damage_between_depths_is_exponential_and_exact_at_them():
+def test_damage_between_depths_is_exponential():
     depths, damage = np.array([0.0, 1.0, 3.0]), np.array([[1e-4], [1e-2], [0.0]])
     at = np.array([[0.0], [0.5], [1.0], [2.0], [3.0], [3.1], [np.nan]])
     found = laws.damage_at(depths, damage, at)
     assert found[:, 0] == pytest.approx([1e-4, 1e-3, 1e-2, 5e-3, 0.0, 0.0, 0.0], rel=1e-12)
 
 
-def test_failed_cells_break_out_only_with_those_that_reach_the_surface():
+def test_failed_cells_break_out_if_connected_to_the_surface():
     damage = np.zeros((3, 5))
     damage[0, 1] = damage[1, 1] = damage[1, 2] = 1.0  # at the surface, and beside it below
     damage[2, 4] = 1.0  # inside the body
@@ -156,7 +156,7 @@ def of_pass(damage, depth=0.01, columns=8):
     return OfBody(np.arange(columns) * 1.0, np.array([0.0, 4.0]), rows, (none, worn))
 
 
-def test_wear_faster_than_damage_leaves_no_cell_to_fail():
+def test_cells_worn_before_failure_do_not_fail():
     """A cell at Z fails before it is gone where the sum over its way to the surface reaches 1."""
     ends = {}
     for depth in (0.01, 0.2):
@@ -174,7 +174,7 @@ def test_wear_faster_than_damage_leaves_no_cell_to_fail():
     assert counted.is_pitted.all() and not counted.pit.any(), "failed cells are counted alone"
 
 
-def test_damage_ahead_is_that_of_a_cell_worn_down_to():
+def test_expected_damage_is_that_at_wear_out():
     one = body()
     wear, added = np.full(8, 0.5), np.array([[0.1], [0.05], [0.025]]) * np.ones(8)
     # over the edges 0, 1, 2, 4: (0.1 + 0.05 + 2 * 0.025)/0.5
@@ -185,14 +185,14 @@ def test_damage_ahead_is_that_of_a_cell_worn_down_to():
     assert one.damage_ahead(0.0 * wear, 0.0 * added) == 0.0
 
 
-def test_the_surfaces_beside_the_stretch_are_worn_as_its_mean():
+def test_surfaces_outside_the_computed_length_have_mean_wear():
     one = body()._replace(wear=np.arange(8.0))
     field = one.gap_field((2.0, 5.0), (-3.0, 12.0))
     faces = np.array([-3.0, 1.5, 2.5, 3.5, 4.5, 5.5, 12.0])
     assert field.means(faces) == pytest.approx([3.5, 2.0, 3.0, 4.0, 5.0, 3.5])
 
 
-def test_a_field_of_a_body_grows_by_the_cells_that_are_added_to_alone():
+def test_body_field_grows_by_added_cells_only():
     field = BodyField.zero(1.0).add(np.array([0.0, 1.0, 2.0]), np.ones(2))
     assert (field.spacing, field.first, len(field.depth)) == (0.25, -1, 10)
     assert len(field.add(np.array([0.0, 2.0]), np.ones(1)).depth) == 10
@@ -201,7 +201,7 @@ def test_a_field_of_a_body_grows_by_the_cells_that_are_added_to_alone():
     assert wider.means(np.arange(5.0)) == pytest.approx([1.0, 1.0, 0.0, 1.0])
 
 
-def test_a_life_is_read_as_it_was_stored(tmp_path):
+def test_life_file_round_trip(tmp_path):
     life, path = LifeHistory("text", "title"), tmp_path / "a.life.h5"
     for passes in (10, 30):
         life.add({"passes": passes, "jump": 10, "friction": 0.1}, (body(), body(5)), {"x.depth": np.ones(2)})
@@ -224,6 +224,6 @@ def test_a_life_is_read_as_it_was_stored(tmp_path):
         ("table1_mixed.toml", {"life.passes": 10.0, "output.every": 2}, "output.every = 1"),
     ],
 )
-def test_cases_without_a_life_are_refused(file, keys, text):
+def test_case_without_a_life_is_refused(file, keys, text):
     with pytest.raises(CaseError, match=text):
         check_case(load(CASES / file, keys))

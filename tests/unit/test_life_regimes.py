@@ -37,23 +37,23 @@ def life(pits=0, ahead=0.5, rows=2):
 
 
 @pytest.mark.parametrize("pits, ahead, wins", [(1, 0.5, "fatigue"), (0, 0.5, "wear"), (0, 1.5, "neither")])
-def test_the_winner_is_found_by_pits_and_by_the_damage_ahead(pits, ahead, wins):
+def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, wins):
     assert winner(life(pits, ahead)) == wins
     found = outcome(life(pits, ahead))
     assert found["worn_depth"] == pytest.approx(4e-8) and found["first_failure"] == (8e5 if pits else None)
     assert found["solved"] == 2 and found["ra_change"] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_lives_without_wear_are_stored_as_json():
+def test_lives_without_wear_are_valid_json():
     assert json.loads(json.dumps(outcome(life(ahead=np.inf)), allow_nan=False))["damage_ahead"] is None
 
 
 @pytest.mark.parametrize("output", ["a.life.h5", "a.h5", "a"])
-def test_the_index_is_named_as_the_lives(output, tmp_path):
+def test_index_is_named_after_the_lives(output, tmp_path):
     assert index_of(tmp_path / output).name == "a.life.series.json"
 
 
-def test_the_picture_of_regimes_is_drawn_from_the_index(tmp_path, capsys):
+def test_regime_picture_is_drawn_from_the_index(tmp_path, capsys):
     rows = [
         {"value": [k, friction], "file": "", "state": "done"} | outcome(life(pits, ahead))
         for k, pits, ahead in ((1e-19, 2, 9.0), (1e-17, 0, 0.1))
@@ -68,7 +68,7 @@ def test_the_picture_of_regimes_is_drawn_from_the_index(tmp_path, capsys):
     assert "not an index of lives" in refused(capsys, main, path)
 
 
-def test_the_movie_shows_every_round(tmp_path, capsys):
+def test_movie_has_a_frame_per_round(tmp_path, capsys):
     from PIL import Image
 
     path = tmp_path / "a.life.h5"
@@ -79,7 +79,7 @@ def test_the_movie_shows_every_round(tmp_path, capsys):
     assert "allowed for --movie" in refused(capsys, main, path, "--movie", tmp_path / "a.txt")
 
 
-def test_rounds_to_come_are_those_that_follow_if_all_are_alike():
+def test_remaining_rounds_are_extrapolated():
     body = LifeBody.new(np.arange(8) * 1e-5, np.zeros(8), EDGES)
     none = BodyField(0.25e-5, 0, np.zeros(0))
     worn = none.add((np.arange(9) - 0.5) * 1e-5, np.full(8, 0.9999e-11))
@@ -90,9 +90,9 @@ def test_rounds_to_come_are_those_that_follow_if_all_are_alike():
 
     one = SimpleNamespace(rates=rates, yielded=0.0, passes=[None])
     jumps = Jumps(SimpleNamespace(passes=1e5, wear_jump=0.05, damage_jump=0.1, pits=True), 2e-7)
-    bodies, jump, _ = jumps.take((body, body), one, 0)
+    bodies, jump, _ = jumps.jump((body, body), one, 0)
     assert jump == 1000 and bodies[0].wear == pytest.approx(0.9999e-8)
-    assert jumps.expected_rounds((body, body), one, 0) == 100
-    assert jumps.expected_rounds((body, body), one, 99_500) == 1
+    assert jumps.expected_rounds((body, body), one, 0) == (100, 100)
+    assert jumps.expected_rounds((body, body), one, 99_500) == (1, 1)
     # more rounds than are looked at one by one
-    assert Jumps(jumps.life, 2e-8).expected_rounds((body, body), one, 0) == 1000
+    assert Jumps(jumps.life, 2e-8).expected_rounds((body, body), one, 0) == (1000, 1000)

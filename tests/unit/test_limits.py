@@ -1,4 +1,4 @@
-"""What is said at the end of a run that went beyond the physics it computes with."""
+"""Lines at the end of a run about results outside the model's validity."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ WITHIN = {
 
 @dataclass
 class Solids:
-    """Stands in for [contact] of a case whose solids yield."""
+    """Stand-in for [contact] of a case with yielding solids."""
 
     yield_pressure: float
     model: str = "mixed"
@@ -32,17 +32,17 @@ class Yielding:
     fluid: object
 
 
-def told(name="table1_smooth", overrides=(), **changed):
+def limit_lines(name="table1_smooth", overrides=(), **changed):
     case = load(CASES / f"{name}.toml", overrides)
     scales = Scales.of(case)
     return limits(case, scales, Roughness.of(case, scales), WITHIN | changed)
 
 
-def test_nothing_is_said_within_the_limits():
-    assert told() == [] and told("table1_rough") == [] and told("dry_hertz") == []
+def test_no_limit_line_within_the_limits():
+    assert limit_lines() == [] and limit_lines("table1_rough") == [] and limit_lines("dry_hertz") == []
 
 
-def test_nothing_is_said_where_no_step_was_taken():
+def test_no_limit_line_without_a_step():
     case = load(CASES / "table1_smooth.toml")
     assert limits(case, Scales.of(case), None, {}) == []
 
@@ -58,27 +58,27 @@ def test_nothing_is_said_where_no_step_was_taken():
         ({"nodes_below_1nm": 1}, "film: 1 time a node"),
     ],
 )
-def test_each_limit_is_told_with_its_figure(changed, words):
-    (line,) = told(**changed)
+def test_each_limit_line_has_its_figure(changed, words):
+    (line,) = limit_lines(**changed)
     assert line.startswith(words)
 
 
-def test_a_viscosity_that_has_been_measured_is_none():
-    assert told(oil_pressure=5e9) == []  # 5e5 Pa s
+def test_measured_viscosity_range_has_no_limit_line():
+    assert limit_lines(oil_pressure=5e9) == []  # 5e5 Pa s
 
 
-def test_a_viscosity_beyond_all_numbers_is_told_by_its_decades():
+def test_overflowing_viscosity_is_given_in_decades():
     barus = ("fluid.law=barus", "fluid.pressure_viscosity=1e-6")
-    (line,) = told(overrides=barus, oil_pressure=4e9)
+    (line,) = limit_lines(overrides=barus, oil_pressure=4e9)
     assert line.startswith("viscosity: 1e1735 Pa s")
 
 
-def test_solids_that_yield_bear_what_they_are_given():
+def test_yielding_solids_have_no_pressure_limit():
     case = load(CASES / "table1_smooth.toml")
     yielding = Yielding(Solids(5e9), case.fluid)
     assert limits(yielding, Scales.of(case), None, WITHIN | {"p_max": 8e9}) == []
 
 
-def test_asperities_of_few_nodes_are_told_with_the_share_of_heights():
-    (line,) = told("table1_rough", ["mesh.points_per_half_width=50"])
+def test_unresolved_asperities_are_given_with_their_height_fraction():
+    (line,) = limit_lines("table1_rough", ["mesh.points_per_half_width=50"])
     assert line.startswith("mesh: of the height variance, 51.1 % of surface.1 and 51.1 % of surface.2")

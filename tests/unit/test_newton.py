@@ -28,7 +28,7 @@ def interrupt():
     raise Interruption
 
 
-def test_interruptions_leave_limits_and_answers_as_they_are():
+def test_interruptions_keep_tolerances_and_results():
     case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING | {"time.travel": 0.1})
     expected = list(ehlpetsc.Simulation(case))
     simulation = ehlpetsc.Simulation(case)
@@ -44,7 +44,7 @@ def test_interruptions_leave_limits_and_answers_as_they_are():
         np.testing.assert_array_equal(found.pressure, state.pressure)
 
 
-def test_a_film_that_reaches_its_bound_is_outside_the_domain_of_the_function(capfd):
+def test_film_at_its_bound_is_a_domain_error(capfd):
     """PETSc's line search ends there, no residual is nan, and the step is solved with the bound."""
     case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING)
     simulation = ehlpetsc.Simulation(case, options={"snes_converged_reason": None})
@@ -54,7 +54,7 @@ def test_a_film_that_reaches_its_bound_is_outside_the_domain_of_the_function(cap
     assert re.search("DIVERGED_(LINE_SEARCH|FUNCTION_DOMAIN)", lines) and "FNORM_NAN" not in lines
 
 
-def test_the_krylov_method_takes_the_iterations_of_petscs_own(capfd):
+def test_krylov_iterations_equal_those_of_petsc(capfd):
     """In contact and out of it; PETSc's monitor and tolerances hold for both."""
     case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING)
     found = []
@@ -71,7 +71,7 @@ def test_the_krylov_method_takes_the_iterations_of_petscs_own(capfd):
         np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-9 * one.pressure.max())
 
 
-def test_options_are_those_of_the_call_and_of_no_other():
+def test_options_belong_to_their_call():
     case = ehlpetsc.load(CASES / "table1_smooth.toml", {"mesh.points_per_half_width": 20})
     given = {"snes_vi_zero_tolerance": 1e-7, "snes_max_it": 12}
     ones, others = ehlpetsc.Simulation(case, options=given), ehlpetsc.Simulation(case)
@@ -83,7 +83,7 @@ def test_options_are_those_of_the_call_and_of_no_other():
         ehlpetsc.Simulation(case, options={"snes_vi_zero_tolerance": "much"})
 
 
-def test_a_failure_names_its_method_and_sums_up_iterations():
+def test_failure_names_its_method_and_total_iterations():
     error = SolveFailed("sweeps", "MAX_IT", 3)
     assert str(error) == "sweeps MAX_IT after 3 iterations"
     assert str(error.after(4)) == "sweeps MAX_IT after 7 iterations" and error.iterations == 3

@@ -50,7 +50,7 @@ def printed(outputs):
 
 
 @pytest.mark.slow
-def test_it_runs_and_prints_what_is_stored(monkeypatch):
+def test_notebook_prints_its_stored_outputs(monkeypatch):
     monkeypatch.chdir(NOTEBOOK.parent)
     cells = code_cells(json.loads(NOTEBOOK.read_text(encoding="utf-8")))
     pictures = 0
@@ -62,7 +62,7 @@ def test_it_runs_and_prints_what_is_stored(monkeypatch):
     assert pictures >= 4
 
 
-def test_it_is_a_small_notebook_of_the_current_format():
+def test_notebook_is_small_and_in_the_current_format():
     notebook = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
     assert (notebook["nbformat"], notebook["nbformat_minor"]) == (4, 5)
     assert len({cell["id"] for cell in notebook["cells"]}) == len(notebook["cells"])

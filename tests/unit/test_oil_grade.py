@@ -21,12 +21,12 @@ def test_viscosity_of_a_grade(celsius, nu):
     assert case.fluid.pressure_viscosity == pytest.approx(9.904e-9 * (1e6 * nu) ** 0.139, rel=1e-10)
 
 
-def test_what_the_case_gives_is_kept():
+def test_keys_of_the_case_override_the_grade():
     case = load(CASE, GRADE | {"fluid.temperature": 333.15})
     assert case.fluid.viscosity == 0.005 and case.fluid.pressure_viscosity == 11.1e-9
 
 
-def test_the_grade_gives_the_thermal_law():
+def test_grade_sets_the_thermal_law():
     case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"heat.bulk_temperature": 373.15})
     assert case.fluid.viscosity == pytest.approx(880.0 * 19e-6, rel=1e-10)
     assert case.heat.oil_density == 880.0

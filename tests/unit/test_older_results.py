@@ -40,7 +40,7 @@ def folder(tmp_path_factory):
         ("series_viscosity_0.01", 41, 1, 1.8892659271021292e-07, 992612951.3065178),
     ],
 )
-def test_results_are_read(folder, name, nodes, frames, h_min, p_max):
+def test_older_results_are_read(folder, name, nodes, frames, h_min, p_max):
     with read_result(folder / f"{name}.h5") as result:
         result.check()
         assert result.pressure.shape == (frames, nodes) and result.attrs["status"] == "done"
@@ -53,7 +53,7 @@ def test_results_are_read(folder, name, nodes, frames, h_min, p_max):
                 assert s.shape == z.shape and speed > 0.0 and (np.diff(s) > 0.0).all()
 
 
-def test_what_yielded_is_read(folder):
+def test_older_plastic_deformation_is_read(folder):
     with read_result(folder / "passes.pass1.h5") as result:
         assert result.steps("set_volume")[-1] == pytest.approx(5.1040340802532066e-11, rel=1e-12)
         row = json.loads((folder / "passes.passes.json").read_text())["passes"][0]
@@ -74,7 +74,7 @@ def test_scalars_are_read_under_current_and_former_names(folder):
         assert Totals.of_result(result).values["nodes_below_1nm"] == thin.sum()
 
 
-def test_a_result_of_post_processing_is_read(folder):
+def test_older_post_results_are_read(folder):
     found = PostResult(folder / "passes.pass1.post.h5")
     assert found.z.tolist() == [0.05] and set(found.surfaces) == {"2", "1"}
     assert np.nanmax(found.damage["2"]) == pytest.approx(1.979e-10, rel=1e-3)
@@ -95,12 +95,12 @@ def test_a_result_of_post_processing_is_read(folder):
         (ensemble.main, ["series.series.json"]),
     ],
 )
-def test_every_command_takes_them(folder, monkeypatch, capsys, command, words):
+def test_every_command_accepts_older_results(folder, monkeypatch, capsys, command, words):
     monkeypatch.chdir(folder)
     assert command(words) == 0, capsys.readouterr().err
 
 
-def test_a_restart_file_of_an_earlier_version_is_refused_by_its_number(folder):
+def test_older_restart_file_is_refused_by_version(folder):
     with pytest.raises(
         OutputError, match=r"direct\.restart\.h5: a restart file of version 2, this ehlpetsc reads \d"
     ):

@@ -32,7 +32,7 @@ def with_table(tmp_path):
     return write
 
 
-def test_a_table_gives_conditions_and_the_reference_state_of_its_case(with_table):
+def test_table_sets_conditions_and_reference_state(with_table):
     case = load(with_table(TABLE, repeat=2))
     assert (case.contact.load, case.contact.radius) == (527e3, 0.020)
     assert case.motion.entrainment_speed == pytest.approx(4.5)
@@ -45,7 +45,7 @@ def test_a_table_gives_conditions_and_the_reference_state_of_its_case(with_table
 
 
 @pytest.mark.parametrize("head", ["t,w,r,u1,u2", "time;load;radius;speed_1;speed_2", None])
-def test_columns_by_other_names_separators_or_in_order(with_table, head):
+def test_table_columns_by_alias_separator_or_order(with_table, head):
     lines = TABLE.replace("   # heaviest", "").splitlines()[1:]
     text = "\n".join([head] * bool(head) + lines) + "\n"
     case = load(with_table(text.replace(",", ";") if head and ";" in head else text))
@@ -53,7 +53,7 @@ def test_columns_by_other_names_separators_or_in_order(with_table, head):
     np.testing.assert_array_equal(case.conditions.u2, [4.0, 3.0, 4.5])
 
 
-def test_a_column_left_out_is_constant(with_table):
+def test_omitted_column_is_constant(with_table):
     case = load(with_table("time, load\n0, 527e3\n1e-4, 600e3\n"))
     assert set(case.conditions.radius) == {0.0191}
     u1, u2 = case.conditions.u1[0], case.conditions.u2[0]
@@ -80,7 +80,7 @@ def test_a_column_left_out_is_constant(with_table):
         ("", "no lines"),
     ],
 )
-def test_bad_tables_are_one_sentence_with_the_line(with_table, text, sentence):
+def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
     path = with_table(text)
     with pytest.raises(CaseError) as error:
         load(path)
@@ -88,14 +88,14 @@ def test_bad_tables_are_one_sentence_with_the_line(with_table, text, sentence):
     assert sentence in error.value.faults[0] and "mesh.csv" in error.value.faults[0]
 
 
-def test_a_table_that_is_not_there_is_named(with_table, tmp_path):
+def test_missing_table_is_named(with_table, tmp_path):
     path = with_table(TABLE)
     (tmp_path / "mesh.csv").unlink()
     with pytest.raises(CaseError, match="no such file"):
         load(path)
 
 
-def test_the_text_of_a_case_holds_the_table_of_its_file(with_table, tmp_path):
+def test_case_text_contains_its_table(with_table, tmp_path):
     path = with_table(TABLE, repeat=2)
     case = load(path, ["fluid.viscosity=0.004"])
     assert case.operation.file == "mesh.csv"
@@ -108,7 +108,7 @@ def test_the_text_of_a_case_holds_the_table_of_its_file(with_table, tmp_path):
     assert "# m" in case.text  # comments of the file stay
 
 
-def test_columns_may_stand_in_the_case_or_come_from_python():
+def test_columns_from_the_case_or_from_python():
     tables = {"operation": {"time": np.array([0.0, 1e-4]), "load": [5e5, 6e5]}}
     overrides = {f"operation.{key}": value for key, value in tables["operation"].items()}
     case = load(CASE, overrides)
@@ -117,7 +117,7 @@ def test_columns_may_stand_in_the_case_or_come_from_python():
         load(CASE, overrides | {"operation.time": [0.0, 0.0]})
 
 
-def test_reversing_entrainment_needs_as_long_an_outlet_as_an_inlet(with_table):
+def test_reversing_entrainment_needs_a_symmetric_domain(with_table):
     text = "time, speed 1, speed 2\n0, 1, 1\n1e-3, -1, -1\n"
     with pytest.raises(CaseError, match="mesh.outlet = 1.5: oil enters there"):
         load(with_table(text))
@@ -133,7 +133,7 @@ def make(repeat=1, courant=0.5, **columns):
     return VariableOperation(table, courant, 1e-6, 227e9)
 
 
-def test_distances_are_the_integrals_of_the_interpolated_speeds():
+def test_distances_are_integrals_of_speeds():
     operation = make(repeat=3, u1=[0.0, 2.0, 1.0, 0.0], u2=[-1.0, 1.0, 0.5, -1.0])
     for begin, end in ((0.0, 1.2e-3), (2.5e-3, 3.7e-3), (0.3e-3, 8.9e-3)):
         count = 10_000
@@ -169,7 +169,7 @@ def test_time_levels_end_with_the_run_and_follow_the_faster_surface():
 
 
 @pytest.mark.parametrize("column", [{"load": [1e5, 5e5, 5e5, 1e5]}, {"radius": [0.01, 0.05, 0.05, 0.01]}])
-def test_the_edges_of_the_contact_move_by_the_courant_number_at_most(column):
+def test_contact_edge_motion_is_limited_by_the_courant_number(column):
     operation = make(**column, u1=1e-4, u2=0.0)
     time, widest = 0.0, 0.0
     while operation.remaining(time, (0.0, 0.0)) > 0.0:

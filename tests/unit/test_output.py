@@ -1,4 +1,4 @@
-"""Result and restart files: what is in them, and that a fault leaves them whole."""
+"""Result and restart files: their content, and that faults leave them readable."""
 
 import contextlib
 import errno
@@ -62,7 +62,7 @@ def written(path, steps, every=1, **changes):
 
 
 def content(path):
-    """All that must agree between an interrupted and an uninterrupted run."""
+    """Content that must agree between an interrupted and an uninterrupted run."""
     with read_result(path) as result:
         data = {name: result[name][:] for name in [*result.fields, "time", "step", "contact_count"]}
         return data | {f"steps/{n}": result.steps(n) for n in STEP_SCALARS}
@@ -91,7 +91,7 @@ def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
         assert "2" not in file["surface"]
 
 
-def test_headers_alone_tell_what_is_stored(tmp_path):
+def test_headers_describe_stored_data(tmp_path):
     """`h5dump -H` shows comments, which h5py cannot read, and leaves out the values of attributes."""
     raw = written(tmp_path / "r.h5", range(3)).read_bytes()
     for name, field in {**{name: FIELDS[name] for name in STORED}, **FIGURES}.items():
@@ -112,7 +112,7 @@ def test_texts_are_of_fixed_length_and_fields_have_checksums(tmp_path):
         assert result.attrs["case"] == "c" * 100_000
 
 
-def test_a_damaged_field_is_named_and_never_read_as_numbers(tmp_path):
+def test_damaged_field_is_named_and_not_read(tmp_path):
     raw = bytearray(written(tmp_path / "r.h5", range(3)).read_bytes())
     frame = (1 + np.arange(NX) / 100).tobytes()  # of every field of step 1
     raw[raw.index(frame) + 11] ^= 4
@@ -131,7 +131,7 @@ def test_a_damaged_field_is_named_and_never_read_as_numbers(tmp_path):
         ("time", [0.0, 2.0, 1.0], "its times do not increase"),
     ],
 )
-def test_numbers_that_contradict_each_other_are_told(tmp_path, name, values, fault):
+def test_contradictory_numbers_are_refused(tmp_path, name, values, fault):
     path = written(tmp_path / "r.h5", range(3))
     with h5py.File(path, "r+") as file:
         file[name][:] = values
@@ -166,7 +166,7 @@ def test_xarray_reads_coordinates_and_units(tmp_path):
         assert fast["z"].dims == ("s",)
 
 
-def test_frames_are_thinned_and_counts_are_not(tmp_path):
+def test_frames_are_thinned_and_steps_are_not(tmp_path):
     with read_result(written(tmp_path / "r.h5", range(1, 101), every=10)) as result:
         np.testing.assert_array_equal(result.step, range(10, 101, 10))
         np.testing.assert_array_equal(result.steps("step"), range(1, 101))
@@ -192,7 +192,7 @@ def test_steady_result_is_small(tmp_path):
     assert path.stat().st_size < 600_000
 
 
-def test_long_runs_take_no_more_room_than_their_data(tmp_path):
+def test_file_size_of_long_runs_is_that_of_their_data(tmp_path):
     path = written(tmp_path / "r.h5", range(5000))
     assert path.stat().st_size < 1.15 * 5000 * NX * 8 * 6 + 1_000_000
 
@@ -208,7 +208,7 @@ def file_size_limit(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_older_result_survives_a_run_that_fails_at_its_start(tmp_path):
+def test_older_result_is_kept_if_the_start_fails(tmp_path):
     path = written(tmp_path / "r.h5", range(3))
     with file_size_limit(100_000), pytest.raises(OutputError, match="not created, File too large"):
         make_writer(path)
@@ -224,7 +224,7 @@ def test_resuming_on_a_full_disk_keeps_the_original(tmp_path):
     assert_same_content(path, written(tmp_path / "whole.h5", range(2000)))
 
 
-def test_reader_follows_a_file_being_written(tmp_path):
+def test_reader_follows_a_growing_file(tmp_path):
     path = tmp_path / "r.h5"
     writer = make_writer(path)
     for begin in (0, 10):
@@ -272,8 +272,8 @@ def test_killed_run_is_readable_up_to_its_last_flush(tmp_path, lost):
 
 
 @pytest.mark.parametrize("pace, steps", [(0.1, 45), (0.7, 15), (5.0, 6)])
-def test_a_kill_loses_no_more_than_two_seconds_of_whole_steps(tmp_path, monkeypatch, pace, steps):
-    """What another process reads after every step is what a kill in the step that follows would leave."""
+def test_kill_loses_two_seconds_of_steps_at_most(tmp_path, monkeypatch, pace, steps):
+    """The content read by another process after each step is that left by a kill in the next step."""
     now = [0.0]
     monkeypatch.setattr("ehlpetsc.results.writer.clock.monotonic", lambda: now[0])
     writer = make_writer(tmp_path / "r.h5")
@@ -341,7 +341,7 @@ def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
 
 
 @pytest.mark.parametrize("limit", [6_000_000, 6_543_210, 8_000_000])
-def test_full_disk_is_named_and_the_file_stays_whole(tmp_path, limit):
+def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, limit):
     writer = make_writer(tmp_path / "r.h5")
     with file_size_limit(limit):
         with pytest.raises(OutputError, match="File too large; the file is whole up to step") as fault:
@@ -359,11 +359,11 @@ def test_full_disk_is_named_and_the_file_stays_whole(tmp_path, limit):
         assert result.frame("pressure", -1)[1] == pytest.approx(last + 0.01)
 
 
-def test_a_disk_full_before_the_first_flush_leaves_a_file_without_steps(tmp_path):
+def test_disk_full_before_the_first_flush_leaves_no_steps(tmp_path):
     writer = make_writer(tmp_path / "r.h5")
     put(writer, range(3))
-    told = "not written on, File too large; no step is in it yet$"
-    with file_size_limit(100_000), pytest.raises(OutputError, match=told):
+    message = "not written on, File too large; no step is in it yet$"
+    with file_size_limit(100_000), pytest.raises(OutputError, match=message):
         writer.flush()
     with read_result(tmp_path / "r.h5") as result:
         assert len(result.time) == len(result.steps("step")) == 0
@@ -380,7 +380,7 @@ def test_a_disk_full_before_the_first_flush_leaves_a_file_without_steps(tmp_path
         (lambda path: without_rows(path), "pressure: damaged, it has no rows"),
     ],
 )
-def test_other_files_are_refused_in_words(tmp_path, make, message):
+def test_foreign_result_files_are_refused(tmp_path, make, message):
     path = tmp_path / "r.h5"
     make(path)
     with pytest.raises(OutputError, match=message):
@@ -401,7 +401,7 @@ def without_rows(path):
 
 
 @pytest.mark.parametrize(
-    "act, told",
+    "act, message",
     [
         (lambda path: check_output_path(path, []), "cannot be read"),
         (lambda path: check_index(path, "members"), "cannot be read"),
@@ -409,16 +409,16 @@ def without_rows(path):
         (load_restart, "not read"),
     ],
 )
-def test_a_folder_of_others_is_told_in_words(tmp_path, monkeypatch, act, told):
+def test_inaccessible_folder_is_reported(tmp_path, monkeypatch, act, message):
     def forbidden(self, **_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
 
     monkeypatch.setattr(Path, "stat", forbidden)
-    with pytest.raises(OutputError, match=f"r.h5: {told}, Permission denied$"):
+    with pytest.raises(OutputError, match=f"r.h5: {message}, Permission denied$"):
         act(tmp_path / "r.h5")
 
 
-def test_restart_gives_back_what_was_saved(tmp_path):
+def test_restart_content_round_trip(tmp_path):
     path = tmp_path / "r.restart.h5"
     for step in (4, 5):  # the second replaces the first
         save_restart(path, {"p": X, "h": 2 * X}, {"step": step, "case": "text", "time": 0.1})
@@ -429,7 +429,7 @@ def test_restart_gives_back_what_was_saved(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-def test_restart_faults_are_told_in_words(tmp_path):
+def test_restart_faults_are_reported(tmp_path):
     result = written(tmp_path / "r.h5", range(2))
     with pytest.raises(OutputError, match="not a restart file of this ehlpetsc, but a result file"):
         load_restart(result)

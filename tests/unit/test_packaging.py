@@ -1,4 +1,4 @@
-"""What pip makes of the project: what the wheel holds, and that its commands work from any folder."""
+"""Packaging: content of the wheel, and commands that work in any folder."""
 
 import email
 import re
@@ -65,7 +65,7 @@ def environment(wheel, tmp_path_factory):
     return folder
 
 
-def test_the_wheel_holds_the_package_and_nothing_else(wheel):
+def test_wheel_contains_the_package_only(wheel):
     parts = {".py", ".html", ".css", ".js", ".toml"}
     inside = [path for path in (ROOT / "ehlpetsc").rglob("*") if path.suffix in parts]
     modules = {str(path.relative_to(ROOT)) for path in inside}
@@ -77,7 +77,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel):
     assert wheel.stat().st_size < 600_000
 
 
-def test_petsc_and_mpi_are_asked_for_by_the_solver_alone(wheel):
+def test_petsc_and_mpi_are_requirements_of_the_solver_extra_only(wheel):
     with zipfile.ZipFile(wheel) as archive:
         (name,) = [name for name in archive.namelist() if name.endswith("/METADATA")]
         needed = email.message_from_bytes(archive.read(name)).get_all("Requires-Dist")
@@ -88,7 +88,7 @@ def test_petsc_and_mpi_are_asked_for_by_the_solver_alone(wheel):
         assert not [line for line in needed if line.startswith(module) and "solver" not in line]
 
 
-def test_an_installation_brings_the_commands_and_replaces_nothing(environment):
+def test_installation_adds_the_commands_and_keeps_packages(environment):
     there = sorted(path.name for path in (environment / "bin").glob("ehlpetsc*"))
     assert there == COMMANDS
     (packages,) = environment.glob("lib/python3*/site-packages")
@@ -96,7 +96,7 @@ def test_an_installation_brings_the_commands_and_replaces_nothing(environment):
 
 
 @pytest.mark.slow
-def test_the_commands_work_from_any_folder(environment, tmp_path):
+def test_installed_commands_work_in_any_folder(environment, tmp_path):
     def call(name, *words):
         done = subprocess.run(
             [environment / "bin" / name, *words],
@@ -117,8 +117,8 @@ def test_the_commands_work_from_any_folder(environment, tmp_path):
         "time.travel=3.5",
         "time.courant=2",
     ]
-    said = call("ehlpetsc", case, *(word for key in short for word in ("-ehl_set", key)))
-    assert said.splitlines()[-1].startswith("ehlpetsc: done steps=")
+    message = call("ehlpetsc", case, *(word for key in short for word in ("-ehl_set", key)))
+    assert message.splitlines()[-1].startswith("ehlpetsc: done steps=")
     assert "ridge.post.h5" in call("ehlpetsc-post", "ridge.h5", "--depths", "0.1")
     assert call("ehlpetsc-plot", "ridge.h5") == "ridge.png\n"
     assert "same" in call("ehlpetsc-compare", "ridge.h5", "ridge.h5")
@@ -148,7 +148,7 @@ def test_help_names_the_command_as_it_was_called(monkeypatch, capsys, name, by_n
         assert is_line_with(printed, f"{called} CASE.toml", f"{called} -help")
 
 
-def test_the_names_of_the_commands_are_those_that_pip_makes():
+def test_command_names_equal_entry_points():
     with open(ROOT / "pyproject.toml", "rb") as file:
         scripts = tomllib.load(file)["project"]["scripts"]
     modules, functions = zip(*(target.split(":") for target in scripts.values()), strict=True)
@@ -163,7 +163,7 @@ def test_the_names_of_the_commands_are_those_that_pip_makes():
 @pytest.mark.parametrize(
     "name, lacks", [("ehlpetsc-post", "numpy, scipy, h5py"), ("ehlpetsc-plot", "matplotlib")]
 )
-def test_a_command_says_what_it_lacks(environment, tmp_path, name, lacks):
+def test_command_reports_missing_packages(environment, tmp_path, name, lacks):
     (packages,) = environment.glob("lib/python3*/site-packages")
     done = subprocess.run(
         [environment / "bin" / "python", "-S", environment / "bin" / name, "result.h5"],

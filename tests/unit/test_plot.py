@@ -1,4 +1,4 @@
-"""Pictures: each kind is drawn, the right instant is chosen, and faults are told."""
+"""Pictures: every kind is drawn, the default instant is chosen, and faults are reported."""
 
 import subprocess
 import sys
@@ -81,9 +81,7 @@ MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
         ),
     ],
 )
-def test_what_a_picture_of_one_result_shows(
-    tmp_path, result, drawn, capsys, options, name, title, window, panels
-):
+def test_picture_of_one_result(tmp_path, result, drawn, capsys, options, name, title, window, panels):
     assert draw(result, *options) == 0
     assert capsys.readouterr().out == f"{tmp_path / name}\n"
     (figure,) = drawn
@@ -99,7 +97,7 @@ def test_what_a_picture_of_one_result_shows(
     assert [axes.get_ylabel() for axes in figure.axes] == panels
 
 
-def test_a_picture_is_written_in_the_format_of_its_name(tmp_path, result, monkeypatch):
+def test_picture_format_follows_its_name(tmp_path, result, monkeypatch):
     monkeypatch.setattr(plot, "DPI", 80)
     assert draw(result, "-o", tmp_path / "out.png") == 0
     assert colours_in(tmp_path / "out.png") > 30
@@ -112,7 +110,7 @@ def test_a_picture_is_written_in_the_format_of_its_name(tmp_path, result, monkey
     assert sum(line.count("L") > 50 for line in lines) >= 3  # curves over the nodes in view
 
 
-def test_drawing_leaves_matplotlib_as_it_was(tmp_path, result):
+def test_drawing_keeps_matplotlib_state(tmp_path, result):
     """A notebook that draws with these modules keeps its backend, its settings and its open figures."""
     code = (
         "import matplotlib, sys\n"
@@ -140,14 +138,14 @@ def test_series_is_overlaid(series, drawn, kind, panels, curves):
     assert len({line.get_color() for line in film.lines}) == 3
 
 
-def test_maps_of_a_series_stand_side_by_side(series, drawn):
+def test_maps_of_a_series_are_side_by_side(series, drawn):
     assert draw(*series, "--map") == 0
     (figure,) = drawn
     titles = [axes.get_title() for axes in figure.axes]
     assert titles == [*(f"fluid.viscosity = {v}" for v in ("0.002", "0.005", "0.01")), ""]  # last the colours
 
 
-def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
+def test_movie_has_every_frame(tmp_path, monkeypatch):
     monkeypatch.setattr(movies, "MAX_FRAMES", 4)
     monkeypatch.setattr(movies, "DPI", 40)
     assert draw(make_result(tmp_path / "one.h5", nodes=41, steps=9), "--movie") == 0
@@ -155,7 +153,7 @@ def test_movie_has_a_picture_each_frame(tmp_path, monkeypatch):
         assert movie.n_frames == 4
 
 
-def test_a_steady_result_without_contacts_is_drawn(tmp_path, drawn):
+def test_steady_result_without_contacts_is_drawn(tmp_path, drawn):
     fields = ("pressure", "film_thickness")
     path = make_result(tmp_path / "one.h5", steps=1, fields=fields)
     assert draw(path) == 0
@@ -166,7 +164,7 @@ def test_a_steady_result_without_contacts_is_drawn(tmp_path, drawn):
             np.testing.assert_allclose(line.get_ydata(), steady[name][0] / unit)
 
 
-def test_the_instant_shown_has_the_largest_share_on_the_solids_or_the_highest_pressure(tmp_path, result):
+def test_default_instant_has_largest_solid_load_or_pressure(tmp_path, result):
     with read_result(result) as r:
         chosen = drawing.frame_to_show(r)
         assert r.steps("p_max")[chosen] == r.steps("p_max").max()
@@ -178,7 +176,7 @@ def test_the_instant_shown_has_the_largest_share_on_the_solids_or_the_highest_pr
             assert r.steps(name)[chosen] == r.steps(name).max()
 
 
-def test_the_edge_of_a_profile_that_enters_is_not_shown_by_default(tmp_path):
+def test_default_instant_excludes_the_entering_profile_edge(tmp_path):
     with read_result(make_result(tmp_path / "r.h5", speed=50.0, rough=True)) as r:
         filled = both_fill(r, r.time)
         assert 0 < filled.sum() < 41
@@ -186,7 +184,7 @@ def test_the_edge_of_a_profile_that_enters_is_not_shown_by_default(tmp_path):
         assert filled[chosen] and r.steps("p_max")[chosen] == r.steps("p_max")[filled].max()
 
 
-def test_the_instant_shown_is_a_stored_one(tmp_path):
+def test_default_instant_is_stored(tmp_path):
     x = np.linspace(-1, 1, 11)
     layout = Layout(x * A, ["pressure", "film_thickness"])
     attributes = {"title": "", "case": "", "a": A, "p0": 1e9, "u1": 5.0, "u2": 5.0}
@@ -210,7 +208,7 @@ def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
         drawing.choose_frames([fast, slow], step=40)
 
 
-def test_two_results_are_told_apart_and_do_not_overwrite_the_picture_of_one(tmp_path, drawn, capsys):
+def test_two_results_are_distinguished_in_a_picture_of_their_own(tmp_path, drawn, capsys):
     """The second curve is dashed, and a key that one of the cases leaves out has its default."""
     paths = [make_result(tmp_path / name) for name in ("mine.h5", "mine_mixed.h5")]
     with h5py.File(with_solids(paths[1]), "r+", libver="latest") as file:
@@ -225,21 +223,21 @@ def test_two_results_are_told_apart_and_do_not_overwrite_the_picture_of_one(tmp_
     assert plot._stem(["a.series.json"]) == "a"
 
 
-def test_defaults_that_tell_results_apart_are_those_of_the_cases():
+def test_labels_use_case_defaults():
     for key, value in swept.DEFAULTS.items():
         table, name = key.split(".")
         fields = Case.__fields__[table].type_.__fields__
         assert fields[name].default == value
 
 
-def test_files_beside_results_are_left_out_or_named(tmp_path, result, drawn, capsys):
+def test_derived_files_are_skipped_or_named(tmp_path, result, drawn, capsys):
     """Patterns of a shell match them too: NAME*.h5."""
     beside = [tmp_path / "one.post.h5", tmp_path / "one.restart.h5"]
     assert draw(result, *beside) == 0
     capsys.readouterr()
     assert draw(beside[0]) == 2
-    told = capsys.readouterr().err
-    assert "a file of post-processing" in told and f"give the result, {tmp_path / 'one.h5'}" in told
+    message = capsys.readouterr().err
+    assert "a file of post-processing" in message and f"give the result, {tmp_path / 'one.h5'}" in message
 
 
 def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
@@ -249,7 +247,7 @@ def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
         assert drawing.choose_frames([a, b], step=5) == [5, 20]
 
 
-def test_series_is_sorted_and_labelled_by_its_swept_value(series):
+def test_series_is_sorted_and_labelled_by_its_key(series):
     results = [read_result(path) for path in series]
     ordered = swept.in_order(results)
     colours, names, key = labels.series_colours(ordered)
@@ -270,7 +268,7 @@ def test_polynomial_and_mean_follow_the_counts(tmp_path, result):
         assert np.mean(fit) == pytest.approx(mean, rel=0.02)
 
 
-def test_the_running_mean_keeps_the_count(result):
+def test_running_mean_conserves_the_count(result):
     _, axes = figures.two_panels()
     with read_result(result) as r:
         over_time.contact_rates(axes, [r], ["k"])
@@ -278,7 +276,7 @@ def test_the_running_mean_keeps_the_count(result):
         assert smooth.sum() == pytest.approx(raw.sum(), rel=1e-9) and smooth.max() < raw.max()
 
 
-def test_a_rough_result_is_drawn_with_both_deformed_surfaces(tmp_path, drawn):
+def test_rough_result_shows_both_deformed_surfaces(tmp_path, drawn):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     assert draw(path, "--step", 30) == 0
     (figure,) = drawn
@@ -289,7 +287,7 @@ def test_a_rough_result_is_drawn_with_both_deformed_surfaces(tmp_path, drawn):
     np.testing.assert_allclose(upper - lower, film, atol=1e-9)
 
 
-def test_a_view_without_contacts_has_panels_of_equal_height(tmp_path, drawn):
+def test_view_without_contacts_has_equal_panels(tmp_path, drawn):
     path = with_solids(make_result(tmp_path / "r.h5", speed=50.0, rough=True))
     assert draw(path, "--step", 30, "--around", -1.2, "--width", 0.2) == 0
     (figure,) = drawn
@@ -300,7 +298,7 @@ def test_a_view_without_contacts_has_panels_of_equal_height(tmp_path, drawn):
     assert legend == ["film"]
 
 
-def test_a_dry_contact_has_a_gap_and_no_flow(tmp_path, drawn):
+def test_dry_contact_shows_gap_and_no_flow(tmp_path, drawn):
     path = make_result(tmp_path / "dry.h5")
     with h5py.File(path, "r+", libver="latest") as file:
         file.attrs["case"] = file.attrs["case"].replace(b"[fluid]", b"[post]")
@@ -310,7 +308,7 @@ def test_a_dry_contact_has_a_gap_and_no_flow(tmp_path, drawn):
     assert lower.get_legend().texts[0].get_text() == "gap"
 
 
-def test_the_gap_beside_a_closed_contact_is_in_view(tmp_path):
+def test_gap_beside_a_closed_contact_is_in_view(tmp_path):
     path = make_result(tmp_path / "closed.h5")
     with h5py.File(path, "r+", libver="latest") as file:
         inside = np.abs(file["x"][:]) <= A
@@ -322,7 +320,7 @@ def test_the_gap_beside_a_closed_contact_is_in_view(tmp_path):
     assert beside > 0.0 and figure.axes[1].get_ylim() == pytest.approx((0.0, 1.15 * beside))
 
 
-def test_no_solids_no_entry_of_theirs(tmp_path):
+def test_legend_without_solids_has_no_solid_entry(tmp_path):
     path = with_solids(make_result(tmp_path / "m.h5"))
     with h5py.File(path, "r+", libver="latest") as file:
         file["contact_pressure"][:] = 0.0
@@ -332,7 +330,7 @@ def test_no_solids_no_entry_of_theirs(tmp_path):
         assert [t.get_text() for t in axes[0].get_legend().texts] == ["pressure", "Hertz"]
 
 
-def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
+def test_map_includes_contacts_of_skipped_frames(result):
     with read_result(result) as r:
         touching = over_time._contacts(r, slice(0, len(r.x)), 7)
         assert touching.shape == (6, len(r.x))
@@ -353,7 +351,7 @@ def test_map_keeps_contacts_of_frames_it_does_not_draw(result):
         (["-o", "picture.xyz"], "xyz"),
     ],
 )
-def test_faults_are_told_in_words(result, options, message, capsys):
+def test_plot_faults_are_reported(result, options, message, capsys):
     assert draw(result, *options) == 2
     fault = capsys.readouterr().err
     assert fault.startswith("ehlpetsc.plot: ") and message in fault
@@ -362,7 +360,7 @@ def test_faults_are_told_in_words(result, options, message, capsys):
 @pytest.mark.parametrize(
     "name, kind", [("one.png", []), ("one.html", ["--report"]), ("one.gif", ["--movie"])]
 )
-def test_what_is_read_is_never_drawn_over(tmp_path, result, name, kind, capsys):
+def test_picture_never_overwrites_its_input(tmp_path, result, name, kind, capsys):
     path = result.rename(tmp_path / name)
     before = path.read_bytes()
     (tmp_path / "link.gif").symlink_to(path)
@@ -371,7 +369,7 @@ def test_what_is_read_is_never_drawn_over(tmp_path, result, name, kind, capsys):
         assert "is read by this run" in capsys.readouterr().err and path.read_bytes() == before
 
 
-def test_what_cannot_be_drawn_is_told(tmp_path, capsys):
+def test_undrawable_result_is_reported(tmp_path, capsys):
     steady = make_result(tmp_path / "one.h5", steps=1)
     assert draw(steady, "--map") == 2
     assert "more than one stored frame" in capsys.readouterr().err
@@ -381,7 +379,7 @@ def test_what_cannot_be_drawn_is_told(tmp_path, capsys):
     assert "does not store film_thickness" in capsys.readouterr().err
 
 
-def test_what_the_solids_carry_is_drawn_under_the_total(tmp_path):
+def test_contact_pressure_is_drawn_under_the_total(tmp_path):
     path = with_solids(make_result(tmp_path / "mixed.h5", viscosity=0.002))
     assert draw(path, "--step", 12) == 0
     with read_result(path) as r:
@@ -398,7 +396,7 @@ def test_what_the_solids_carry_is_drawn_under_the_total(tmp_path):
         ]
 
 
-def test_legends_stand_beside_the_axes(tmp_path, series, result):
+def test_legends_are_beside_the_axes(tmp_path, series, result):
     options = plot._parser().parse_args(["x"])
     for paths in ([result], series):
         results = swept.in_order([read_result(path) for path in paths])
@@ -409,7 +407,7 @@ def test_legends_stand_beside_the_axes(tmp_path, series, result):
                 assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
 
 
-def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
+def test_different_contacts_have_their_title_and_hertz_pressure(tmp_path):
     paths = [
         make_result(tmp_path / f"{n}.h5", title=f"case {n}", p0=n * P0, nodes=81, steps=3) for n in (1, 2)
     ]
@@ -418,11 +416,11 @@ def test_results_of_different_contacts_have_their_title_and_hertz(tmp_path):
     upper = figure.axes[0]
     dotted = [line for line in upper.lines if line.get_linestyle() == ":"]
     assert [line.get_ydata().max() for line in dotted] == pytest.approx([1.0, 2.0], rel=1e-3)
-    told = [text.get_text() for text in upper.get_legend().texts]
-    assert told[0].startswith("case 1\n") and told[1].endswith("p0 = 2 GPa")
+    message = [text.get_text() for text in upper.get_legend().texts]
+    assert message[0].startswith("case 1\n") and message[1].endswith("p0 = 2 GPa")
 
 
-def test_panels_of_a_map_share_their_colours(tmp_path, series):
+def test_panels_of_a_map_share_a_colour_scale(tmp_path, series):
     results = swept.in_order([read_result(path) for path in series])
     figure = figures.draw_map(results, plot._parser().parse_args(["x", "--map"]))
     limits = {axes.collections[0].get_clim() for axes in figure.axes[:3]}
@@ -442,7 +440,7 @@ def test_movies_by_ffmpeg(tmp_path, monkeypatch, ending, capsys):
 
 
 @pytest.mark.slow
-def test_the_axes_of_a_movie_stand_still(tmp_path, monkeypatch):
+def test_movie_axes_are_fixed(tmp_path, monkeypatch):
     seen = []
 
     class Writer(movies.PillowWriter):
@@ -475,7 +473,7 @@ def stribeck_series(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
+def test_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
     results = [read_result(path) for path in stribeck_series]
     points, short = stribeck.stribeck_points(results)
     assert [p.speed for p in points] == list(SPEEDS) and short == []
@@ -493,7 +491,7 @@ def test_the_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
 
 
 @pytest.mark.parametrize("share", [0.0, 1e-3])
-def test_friction_is_over_the_hersey_number_and_the_share_logarithmic(tmp_path, share):
+def test_stribeck_axes_are_hersey_number_and_logarithmic_fraction(tmp_path, share):
     paths = [make_result(tmp_path / f"u{u:g}.h5", speed=u, nodes=41, steps=81) for u in (1.0, 10.0)]
     for path in paths:
         with h5py.File(with_solids(path, share, 0.05), "r+", libver="latest") as file:
@@ -506,7 +504,7 @@ def test_friction_is_over_the_hersey_number_and_the_share_logarithmic(tmp_path, 
     assert figure.axes[1].get_yscale() == ("log" if share else "linear")
 
 
-def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, capsys):
+def test_stribeck_means_start_when_the_contact_is_filled(tmp_path, capsys):
     paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in (5.0, 40.0)]
     slow, fast = (read_result(path) for path in paths)
     # the slower surface, 0.88 u, from -2.5 a to a, and the ramp
@@ -522,7 +520,7 @@ def test_a_stribeck_curve_begins_where_both_surfaces_fill_the_contact(tmp_path, 
         stribeck.stribeck_points([slow, read_result(make_result(tmp_path / "4.h5", speed=4.0, rough=True))])
 
 
-def test_means_over_time_weigh_each_step_by_its_length():
+def test_time_means_are_weighted_by_step_length():
     found = time_statistics(np.array([1.0, 2.0, np.nan, 9.0]), np.array([1.0, 3.0, 1.0, 0.0]))
     assert found.mean == pytest.approx(1.75)
     assert 1.0 <= found.low < found.high <= 2.0

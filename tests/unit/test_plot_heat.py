@@ -65,7 +65,7 @@ def test_one_series_alone(series):
     assert axes.get_legend_handles_labels()[1] == ["friction"]
 
 
-def test_no_series_over_the_ratio_is_refused(tmp_path):
+def test_traction_curve_needs_a_series_over_the_ratio(tmp_path):
     with pytest.raises(OutputError, match="slide_roll_ratio"):
         drawn("traction", [member(tmp_path / "a.h5", 0.5, 0.01)])
 
@@ -92,7 +92,7 @@ def test_temperatures(steps, panels, tmp_path):
         assert figure.axes[-1].get_ylabel() == "temperature of\nsurface 2 [K]"
 
 
-def test_temperatures_of_others_are_refused(tmp_path):
+def test_temperatures_of_isothermal_results_are_refused(tmp_path):
     cold, warm = make_result(tmp_path / "cold.h5"), heated(tmp_path / "warm.h5", 1)
     with pytest.raises(OutputError, match="table \\[heat\\]"):
         drawn("temperatures", [cold])

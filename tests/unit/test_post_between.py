@@ -23,7 +23,7 @@ def load(values):
 
 
 @pytest.mark.parametrize("length, error", [(20, 2.6e-5), (10, 4.3e-4), (8, 1.1e-3)])
-def test_smooth_ripples_keep_their_peaks(length, error):
+def test_interpolated_ripples_keep_their_peaks(length, error):
     """Fourth order, wherever the peaks lie between the nodes."""
     worst = 0.0
     for shift in np.linspace(0, 1, 21):
@@ -41,7 +41,7 @@ def test_steep_peaks_do_not_overshoot(peak):
     assert CubicSpline(NODES, values)(BETWEEN).min() < -0.02
 
 
-def test_one_node_and_a_step_do_not_overshoot_at_all():
+def test_single_node_and_step_do_not_overshoot():
     one, step = np.zeros(64), np.zeros(64)
     one[30], step[32:] = 1, 1
     for values in (one, step):
@@ -49,7 +49,7 @@ def test_one_node_and_a_step_do_not_overshoot_at_all():
     assert CubicSpline(NODES, one)(BETWEEN).min() == pytest.approx(-0.136, abs=0.001)
 
 
-def test_random_loads_swing_less_than_a_spline():
+def test_random_loads_overshoot_less_than_a_spline():
     rng = np.random.default_rng(0)
     ours, spline = [], []
     for _ in range(500):
@@ -77,7 +77,7 @@ def test_kernels_equal_direct_integration(depth):
 
 
 @pytest.mark.parametrize("depth, kept", [(12.0, 0.75), (20.0, 0.55), (200.0, 0.2)])
-def test_ripples_left_out_at_depth_are_not_felt(monkeypatch, depth, kept):
+def test_ripples_omitted_at_depth_are_negligible(monkeypatch, depth, kept):
     """Under a load with ripples of all lengths."""
     x = np.linspace(-2.5, 1.5, 801)
     rough = 1 + 0.2 * np.random.default_rng(1).normal(size=(2, x.size))

@@ -56,7 +56,7 @@ def test_pure_shear(tau):
     )
 
 
-def test_pure_shear_opens_a_plane_beside_that_of_the_largest_shear():
+def test_pure_shear_has_an_open_plane_beside_the_largest_shear():
     tau, k = 5e8, Criteria().sensitivity(STEEL)
     turned = np.radians(np.linspace(0, 45, 400))
     lives = [shear_life(tau * np.cos(2 * t), 1 + k * tau * np.sin(2 * t), STEEL) for t in turned]
@@ -89,7 +89,7 @@ def test_uniaxial_fatemi_socie_is_the_worst_of_all_planes():
     assert critical_plane(NONE, sigma * WAVE, NONE, bar).damage == pytest.approx(1 / worst, rel=5e-3)
 
 
-def test_hydrostatic_stress_moves_nothing_but_the_limit():
+def test_hydrostatic_stress_affects_dang_van_only():
     fluid, size = Material(poisson_ratio=0.5), 4e8
     for criterion in KINDS:
         assert critical_plane(size * WAVE, size * WAVE, NONE, fluid, criterion).damage < 1e-30
@@ -99,7 +99,7 @@ def test_hydrostatic_stress_moves_nothing_but_the_limit():
     assert dang_van(-size * PULSE, -size * PULSE, NONE, 0.5, limits) == pytest.approx(0, abs=1e-12)
 
 
-def test_surface_under_pressure_fails_on_planes_out_of_the_section():
+def test_pressure_at_the_surface_damages_out_of_plane():
     """At z = 0 sx = sz = -p: no shear in the section, (1 - 2 nu) p/2 half way out of it."""
     p = 4e9
     found = critical_plane(-p * PULSE, -p * PULSE, NONE, STEEL)
@@ -129,7 +129,7 @@ def contact_like(seed, samples=300):
 
 
 @pytest.mark.parametrize("criterion", KINDS)
-def test_search_finds_what_trying_all_planes_finds(criterion):
+def test_plane_search_equals_exhaustive_search(criterion):
     grid = planes(6.0) if criterion == "swt" else planes_and_directions(9.0)
     for seed in range(3):
         parts = contact_like(seed)
@@ -138,7 +138,7 @@ def test_search_finds_what_trying_all_planes_finds(criterion):
         assert found.damage >= 0.98 * tried > 0
 
 
-def test_the_worst_planes_may_be_pressed_together_all_the_time():
+def test_critical_planes_may_be_closed_at_all_times():
     """Static stress closes the planes of the largest shear and opens others, which promise more at first."""
     constants = Criteria(normal_sensitivity=0.3)
     tau, unit, turned = 3e8, 1.0 / constants.sensitivity(STEEL), np.radians(6.0)
@@ -151,7 +151,7 @@ def test_the_worst_planes_may_be_pressed_together_all_the_time():
 
 
 @pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 2, 2), (1, 1, -2)])
-def test_of_a_straight_path_the_ends_are_kept_and_of_a_bent_one_the_bend(direction):
+def test_path_reduction_keeps_ends_and_bends(direction):
     path, places = np.outer(direction, np.linspace(0.0, 1.0, 21)), np.empty(21, np.int64)
     assert turning_samples(path, 21, places) == 2
     assert places[:2].tolist() == [0, 20]
@@ -160,7 +160,7 @@ def test_of_a_straight_path_the_ends_are_kept_and_of_a_bent_one_the_bend(directi
     assert 8 in places[:count] and count <= 5
 
 
-def test_the_same_forwards_and_backwards():
+def test_criteria_are_time_reversible():
     for criterion in KINDS:
         parts = np.array(contact_like(7))
         forwards = critical_plane(*parts, STEEL, criterion).damage
@@ -205,7 +205,7 @@ def test_tension_and_residual_stress():
     assert 0 < relieved.damage < 0.5 * along.damage
 
 
-def test_dang_van_stands_at_one_at_both_limits():
+def test_dang_van_is_one_at_both_limits():
     limits = Criteria(torsion_limit=4e8, bending_limit=6e8)
     assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits) == pytest.approx(1, rel=1e-9)
     assert dang_van(NONE, 6e8 * WAVE, NONE, 0.0, limits) == pytest.approx(1, rel=1e-9)
@@ -215,7 +215,7 @@ def test_dang_van_stands_at_one_at_both_limits():
     assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=-3e8) == pytest.approx(1)
 
 
-def test_dang_van_under_hertz_uses_the_limit_up_where_the_standard_says():
+def test_dang_van_under_hertz_reaches_one_at_the_iso_281_limit():
     """The default limit is read from 1.5 GPa of ISO 281: half a half width below the contact U is 1."""
     x = np.linspace(-6, 6, 1201)
     pressure = 1.5e9 * np.sqrt(np.clip(1 - x**2, 0, None))
@@ -244,7 +244,7 @@ def test_smallest_ball():
     assert radius == pytest.approx(4.5) and centre == pytest.approx([0.5, 1, 1])
 
 
-def test_strain_rule_reaches_the_planes():
+def test_strain_rule_applies_on_planes():
     direct = critical_plane(NONE, NONE, 9e8 * WAVE, STEEL, "shear").damage
     neuber = critical_plane(NONE, NONE, 9e8 * WAVE, STEEL, "shear", strain="neuber").damage
     uniaxial = Material(youngs_modulus=1.5 * 207e9 / 1.3)

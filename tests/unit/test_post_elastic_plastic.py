@@ -23,18 +23,18 @@ def curve_strain(stress):
     )
 
 
-def test_a_loop_extends_over_samples_that_equal_its_ends():
+def test_loop_extends_over_samples_equal_to_its_ends():
     series = np.array([0.0, 1.0, 0.0, 3.0, 3.0, -1.0])
     assert loop_of(series, series.size, 2, 3, False) == (0, 5)
 
 
-def test_neuber_keeps_the_product():
+def test_neuber_rule_conserves_the_product():
     local = local_range(RANGES, STEEL, "neuber")
     assert local * curve_strain(local) == pytest.approx(RANGES**2 / STEEL.youngs_modulus, rel=1e-12)
     assert strain_range(RANGES, STEEL, "neuber") == pytest.approx(curve_strain(local), rel=1e-14)
 
 
-def test_glinka_keeps_the_strain_energy():
+def test_glinka_rule_conserves_the_strain_energy():
     for elastic, local in zip(RANGES, local_range(RANGES, STEEL, "glinka"), strict=True):
         share = np.linspace(0, 1, 20001) ** 0.25  # fine where the curve bends
         stress = local * share
@@ -44,7 +44,7 @@ def test_glinka_keeps_the_strain_energy():
         assert energy / 2 == pytest.approx((elastic / 2) ** 2 / (2 * STEEL.youngs_modulus), rel=1e-6)
 
 
-def test_elastic_ranges_stay_and_the_rules_keep_their_order():
+def test_elastic_ranges_are_unchanged_and_rules_are_ordered():
     low = np.array([1e6, 1e8])
     for rule in ("neuber", "glinka"):
         assert local_range(low, STEEL, rule) == pytest.approx(low, rel=1e-7)
@@ -52,7 +52,7 @@ def test_elastic_ranges_stay_and_the_rules_keep_their_order():
     assert strains == sorted(strains) and strains[0] < strains[1] < strains[2]
 
 
-def test_what_the_direct_entry_adds_to_damage():
+def test_damage_by_direct_entry_over_neuber_and_glinka():
     """The figures of the README: the direct entry is too high against Neuber's rule and against Glinka's."""
     ranges = np.array([1.0, 1.5, 2.0, 3.0]) * 1e9
     direct = cycles_to_failure(ranges, STEEL)
@@ -76,7 +76,7 @@ def test_unknown_rule():
             call(1e9, STEEL, strain="esed")
 
 
-def test_rules_reach_the_damage_of_a_history_with_and_without_morrow():
+def test_strain_rules_apply_with_and_without_morrow():
     sz = -2e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
     parts, dsv = (0 * sz, sz, 0 * sz), 2e9 * np.sqrt(0.79)
     for rule in ("neuber", "glinka"):
@@ -125,7 +125,7 @@ def test_loops_of_a_reversed_history_are_the_same_instants():
     assert backwards == set(loops(series))
 
 
-def test_neubers_rule_is_the_default():
+def test_neuber_rule_is_the_default():
     """Of the function, of a case and of the command; the case of the paper keeps the direct entry."""
     wave = 1e9 * np.sin(np.linspace(0, 2 * np.pi, 41))
     found = [damage(0 * wave, wave, 0 * wave, STEEL, **rule).damage for rule in ({}, {"strain": "neuber"})]
@@ -134,7 +134,7 @@ def test_neubers_rule_is_the_default():
     assert load("cases/table1_damage.toml").post.strain == "direct"
 
 
-def test_the_command_changes_the_rule_and_the_steel_of_a_case(tmp_path, capsys):
+def test_command_overrides_rule_and_steel(tmp_path, capsys):
     path, worst = str(write(tmp_path / "a.h5", Scene(per_width=20, travel=9.0), depths=(0.0,))), {}
     for options in ((), ("--strain", "direct"), ("--set", "contact.material=16MnCr5")):
         assert main([path, *options]) == 0
@@ -151,12 +151,12 @@ def test_the_command_changes_the_rule_and_the_steel_of_a_case(tmp_path, capsys):
     assert "post.b = 0.3: allowed: a number > -2 and < 0" in capsys.readouterr().err
 
 
-def test_few_points_are_warned_of(tmp_path, capsys):
+def test_few_points_are_a_warning(tmp_path, capsys):
     """Of 6.05 half widths of travel surface 2 covers 4.03: one node more than the mesh is wide."""
     scene = Scene(per_width=20, ratio=0.4, travel=6.05)
     path = write(tmp_path / "a.h5", scene, depths=(0.0,))
     assert main([str(path)]) == 0
-    said = capsys.readouterr()
-    assert "only 1 point of surface 2 passed the whole contact" in said.err
-    assert "time.travel = 7.6 or more" in said.err and "of the fast" not in said.err
-    assert "nan" not in said.out
+    message = capsys.readouterr()
+    assert "only 1 point of surface 2 passed the whole contact" in message.err
+    assert "time.travel = 7.6 or more" in message.err and "of the fast" not in message.err
+    assert "nan" not in message.out

@@ -101,14 +101,14 @@ def test_max3_is_the_largest_of_its_counts():
     assert len(set(single.argmax(axis=0))) == 3
 
 
-def test_turned_shear_counts_though_von_mises_does_not_see_it():
+def test_rotating_shear_is_counted_at_constant_von_mises_stress():
     t = np.linspace(0, 2 * np.pi, 81)
     parts = np.zeros(81), np.zeros(81), 5e8 * np.sin(t)
     assert damage(*parts, STEEL).peak_range == pytest.approx(np.sqrt(3) * 1e9, rel=1e-6)
     assert damage(*parts, STEEL, count="von_mises").peak_range == pytest.approx(np.sqrt(3) * 5e8, rel=1e-6)
 
 
-def test_window_is_the_widest_distance_of_the_loop():
+def test_range_is_the_widest_distance_of_the_loop():
     parts = np.array([0.0, 0, 0, 0, 0]), np.array([0.0, -1, -2, -1, 0]) * 1e9, np.array([0.0, 1.5e9, 0, 0, 0])
     by_reversals = damage(*parts, STEEL, count="sz")
     by_window = damage(*parts, STEEL, count="sz", ranges="window")
@@ -118,7 +118,7 @@ def test_window_is_the_widest_distance_of_the_loop():
     )  # either end to the second
 
 
-def test_window_keeps_the_signs_of_a_pair():
+def test_range_keeps_the_signs_of_a_stress_pair():
     """sx and sz in step, as at a surface under pressure: the distance is that of the one pair there is."""
     size = -1e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
     window = damage(size, size, 0 * size, STEEL, ranges="window")
@@ -126,7 +126,7 @@ def test_window_keeps_the_signs_of_a_pair():
     assert window.damage == pytest.approx(damage(size, size, 0 * size, STEEL).damage, rel=1e-12)
 
 
-def test_window_is_the_same_forwards_and_backwards():
+def test_range_is_time_reversible():
     parts = np.cumsum(np.random.default_rng(4).normal(scale=2e8, size=(3, 30, 150)), axis=-1)
     for residue in ("closed", "half"):
         forwards = damage(*parts, STEEL, ranges="window", residue=residue)
@@ -147,7 +147,7 @@ def test_morrow_lengthens_life_under_compression_to_a_floor():
     assert np.isfinite(beyond) and 0 < beyond < cycles_to_failure(1e9, STEEL)
 
 
-def test_pressure_of_the_contact_is_no_benefit_without_end():
+def test_benefit_of_contact_pressure_is_limited():
     """Ten times the hydrostatic pressure about the same cycle gives the same damage."""
     sx, sz, txz = pulse(1e9)
     lives = [damage(sx - p, sz - p, txz, STEEL, mean_stress="morrow").damage for p in (2e9, 2e10)]
@@ -210,7 +210,7 @@ print(rainflow(parts[0, 0]).tobytes().hex())
 """
 
 
-def test_without_numba_to_the_last_bit():
+def test_results_without_numba_are_bitwise_equal():
     import numba  # noqa: F401 - without it there would be nothing to compare
 
     outputs = [

@@ -1,4 +1,4 @@
-"""What a result file must not be: in wrong units, of another case, with frames missing, not real numbers."""
+"""Result files refused by post-processing: wrong units, another case, missing frames, non-numbers."""
 
 import h5py
 import numpy as np
@@ -56,7 +56,7 @@ def replaced(name, change):
 
 
 @pytest.mark.parametrize(
-    "edit, said",
+    "edit, message",
     [
         (scaled("pressure", by=1e-6), "dataset pressure: its integral over x at frame 0"),
         (scaled("pressure", by=1 / 0.999455e9), "dataset pressure: its integral over x at frame 0"),
@@ -86,8 +86,8 @@ def replaced(name, change):
         (lambda file: file["pressure"].__setitem__((40, 30), 1e300), "its integral over x at frame 40"),
     ],
 )
-def test_what_does_not_fit_is_named(edit, said, scene, tmp_path):
-    assert said in refused(write(tmp_path / "a.h5", scene, edit=edit))
+def test_inconsistent_result_file_is_refused(edit, message, scene, tmp_path):
+    assert message in refused(write(tmp_path / "a.h5", scene, edit=edit))
 
 
 def with_steps(spoil):
@@ -108,7 +108,7 @@ def with_steps(spoil):
 
 
 @pytest.mark.parametrize(
-    "spoil, said",
+    "spoil, message",
     [
         (scaled("shear_stress_2", by=1e-6), "dataset shear_stress_2: its integral over x at frame 0"),
         (
@@ -118,11 +118,11 @@ def with_steps(spoil):
         (scaled("steps/p_max", by=1.001), "as steps/p_max has it"),
     ],
 )
-def test_frames_must_fit_the_figures_of_their_steps(spoil, said, scene, tmp_path):
+def test_frames_must_agree_with_step_scalars(spoil, message, scene, tmp_path):
     prepare_whole = write(tmp_path / "whole.h5", scene, edit=with_steps(lambda file: None))
     with Loads(prepare_whole) as loads:
         prepare(loads, ("2",), print)
-    assert said in refused(write(tmp_path / "a.h5", scene, edit=with_steps(spoil)))
+    assert message in refused(write(tmp_path / "a.h5", scene, edit=with_steps(spoil)))
 
 
 def without(first, last, numbers=True):
@@ -141,16 +141,16 @@ def without(first, last, numbers=True):
 
 
 @pytest.mark.parametrize("numbers", [True, False], ids=["by step", "by time"])
-def test_points_that_miss_frames_have_no_damage(numbers, tmp_path):
+def test_points_with_missing_frames_have_no_damage(numbers, tmp_path):
     scene = Scene(per_width=20, ratio=0.5, travel=14.0)
     whole, cut = tmp_path / "whole.h5", tmp_path / "cut.h5"
     write(whole, scene)
     frame = 60
     write(cut, scene, edit=without(frame, frame + 40, numbers))
-    said = []
+    message = []
     for path in (whole, cut):
-        run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)), said.append)
-    assert any("40 frames are missing in one place, after" in line for line in said)
+        run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)), message.append)
+    assert any("40 frames are missing in one place, after" in line for line in message)
     with h5py.File(f"{whole}.post") as a, h5py.File(f"{cut}.post") as b:
         for surface, speed in (("2", scene.u2), ("1", scene.u1)):
             passed, left = (file[f"damage/{surface}_complete"][:].astype(bool) for file in (a, b))
@@ -163,17 +163,19 @@ def test_points_that_miss_frames_have_no_damage(numbers, tmp_path):
             np.testing.assert_allclose(found[:, left], a[f"damage/{surface}"][:, left], rtol=1e-6)
 
 
-def test_refused_where_no_point_kept_all_its_frames(scene, tmp_path):
+def test_refused_if_every_point_misses_frames(scene, tmp_path):
     def every_tenth(file):
         keep = np.arange(scene.time.size) % 10 != 9
         for name in ("time", "step", "pressure", "shear_stress_2", "shear_stress_1"):
             replaced(name, lambda values: values[keep])(file)
 
-    said = refused(write(tmp_path / "a.h5", scene, edit=every_tenth))
-    assert f"{(scene.time.size - 1) // 10} frames are missing in" in said and "no damage is given" in said
+    message = refused(write(tmp_path / "a.h5", scene, edit=every_tenth))
+    assert (
+        f"{(scene.time.size - 1) // 10} frames are missing in" in message and "no damage is given" in message
+    )
 
 
-def test_history_has_every_sample_of_every_point(scene, tmp_path):
+def test_history_contains_every_sample_of_every_point(scene, tmp_path):
     """As many as the sweep counts, also where a frame finds the point at the first node but for rounding."""
     from ehlpetsc.post.stresses.body_stress import history_at
 
@@ -188,7 +190,7 @@ def test_history_has_every_sample_of_every_point(scene, tmp_path):
             assert time[0] == loads.time[motion.enter[j]]
 
 
-def test_a_point_of_a_picture_must_have_passed(scene, tmp_path):
+def test_picture_point_must_have_passed(scene, tmp_path):
     from ehlpetsc.post.pictures.gallery import history_picture
 
     path = write(tmp_path / "a.h5", scene)
@@ -214,7 +216,7 @@ def of_fixed_length(file):
     file["surface/2/set"] = 1e-9 * np.ones(file["surface/2/z"].shape)
 
 
-def test_texts_of_any_kind_and_check_sums_are_read(scene, tmp_path):
+def test_text_types_and_checksums_are_read(scene, tmp_path):
     paths = [write(tmp_path / f"{k}.h5", scene, edit=edit) for k, edit in enumerate((None, of_fixed_length))]
     digests = []
     for path in paths:
@@ -228,7 +230,7 @@ def test_texts_of_any_kind_and_check_sums_are_read(scene, tmp_path):
 
 
 @pytest.mark.parametrize("table", ["file", "columns"])
-def test_under_changing_speeds_points_are_where_the_surfaces_have_got_to(table, scene, tmp_path):
+def test_points_follow_surface_positions_under_changing_speeds(table, scene, tmp_path):
     """Damage is of the positions alone: the same frames at other times give the same."""
     count = scene.time.size
     warped = scene.time[-1] * (scene.time / scene.time[-1]) ** 1.3
@@ -258,7 +260,7 @@ def test_under_changing_speeds_points_are_where_the_surfaces_have_got_to(table, 
         np.testing.assert_allclose(found[1][side], found[0][side], rtol=1e-9)
 
 
-def test_flanks_of_gears_have_damage_where_their_teeth_met(tmp_path):
+def test_gear_flanks_have_damage_along_the_path_of_contact(tmp_path):
     """Hertz's pressure along the path of contact of the FZG pair: both flanks from its begin to its end."""
     case = load("cases/fzg.toml", {"mesh.points_per_half_width": 20})
     scales = Scales.of(case)

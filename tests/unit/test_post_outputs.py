@@ -46,7 +46,7 @@ def left_over(folder):
     return [path.name for path in folder.iterdir() if ".parts" in path.name or ".tmp" in path.name]
 
 
-def test_the_input_is_never_the_output(result, tmp_path, capsys):
+def test_input_is_never_the_post_output(result, tmp_path, capsys):
     before = result.read_bytes()
     assert "is read by this run" in refused(capsys, main, result, "-o", result)
     link = tmp_path / "link.h5"
@@ -55,10 +55,10 @@ def test_the_input_is_never_the_output(result, tmp_path, capsys):
     assert result.read_bytes() == before and not left_over(tmp_path)
 
 
-def test_the_output_of_one_file_is_never_another_input(result, scene, capsys):
+def test_output_of_one_file_is_never_another_input(result, scene, capsys):
     assert main([str(result)]) == 0
-    said = refused(capsys, main, result, result.with_name("run.post.h5"))
-    assert "run.post.h5: is read by this run" in said and "a result of post-processing; give" in said
+    message = refused(capsys, main, result, result.with_name("run.post.h5"))
+    assert "run.post.h5: is read by this run" in message and "a result of post-processing; give" in message
 
 
 def test_other_files_are_not_overwritten(result, scene, tmp_path, capsys):
@@ -73,7 +73,7 @@ def test_other_files_are_not_overwritten(result, scene, tmp_path, capsys):
     assert "does not exist" in refused(capsys, main, result, "-o", tmp_path / "none" / "a.h5")
 
 
-def test_a_folder_of_another_kind_is_not_emptied(result, tmp_path, capsys):
+def test_foreign_folder_is_kept(result, tmp_path, capsys):
     mine = tmp_path / "run.post.h5.parts" / "thesis.tex"
     mine.parent.mkdir()
     mine.write_text("mine")
@@ -81,13 +81,13 @@ def test_a_folder_of_another_kind_is_not_emptied(result, tmp_path, capsys):
     assert mine.read_text() == "mine"
 
 
-def test_an_earlier_result_is_replaced(result, tmp_path):
+def test_earlier_post_result_is_replaced(result, tmp_path):
     output = tmp_path / "run.post.h5"
     assert main([str(result)]) == 0 == main([str(result), "--depths", "0.3"])
     assert PostResult(output).z.tolist() == [0.3] and not left_over(tmp_path)
 
 
-def test_an_edit_of_the_same_size_and_time_is_seen(result, tmp_path, capsys):
+def test_edit_with_the_same_size_and_time_is_detected(result, tmp_path, capsys):
     output, stamp = tmp_path / "run.post.h5", os.stat(result)
     assert main([str(result)]) == 0
     first = PostResult(output).damage["2"]
@@ -101,7 +101,7 @@ def test_an_edit_of_the_same_size_and_time_is_seen(result, tmp_path, capsys):
     assert main([str(result)]) == 0 and "already there" in capsys.readouterr().err
 
 
-def test_two_runs_with_one_output(result, tmp_path, capsys):
+def test_output_is_locked_by_one_run(result, tmp_path, capsys):
     with Lock(tmp_path / "run.post.h5"):
         assert "is being written by" in refused(capsys, main, result)
     assert main([str(result)]) == 0 and not left_over(tmp_path)
@@ -130,7 +130,7 @@ def catches(process, number):
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_while_everything_is_being_imported(number, result, tmp_path):
+def test_signal_during_imports_of_post(number, result, tmp_path):
     process = subprocess.Popen([*COMMAND, result], cwd=ROOT, stderr=subprocess.PIPE, text=True)
     while not catches(process, signal.SIGTERM):
         time.sleep(0.001)
@@ -140,7 +140,7 @@ def test_a_signal_while_everything_is_being_imported(number, result, tmp_path):
 
 
 @pytest.mark.slow
-def test_sigterm_at_work_and_going_on(scene, tmp_path):
+def test_sigterm_keeps_finished_depths(scene, tmp_path):
     depths = tuple(0.05 * k for k in range(10))
     path, output = write(tmp_path / "run.h5", scene, depths=depths), tmp_path / "run.post.h5"
     process = subprocess.Popen([*COMMAND, path], cwd=ROOT, stderr=subprocess.PIPE, text=True)
@@ -157,14 +157,14 @@ def test_sigterm_at_work_and_going_on(scene, tmp_path):
     assert not left_over(tmp_path)
 
 
-def test_a_bad_file_does_not_stop_the_others(result, scene, tmp_path, capsys):
+def test_bad_file_does_not_stop_the_others(result, scene, tmp_path, capsys):
     bad = tmp_path / "bad.h5"
     bad.write_text("no HDF5")
     good = write(tmp_path / "good.h5", Scene(per_width=20, ratio=0.5, travel=9.0, seed=7))
     assert main([str(result), str(bad), str(good)]) == ExitStatus.BAD_INPUT
-    told = capsys.readouterr()
-    assert f"ehlpetsc.post: {bad}: not an HDF5 file" in told.err
-    assert told.out.count("ehlpetsc.post: done") == 2 and good.with_name("good.post.h5").exists()
+    captured = capsys.readouterr()
+    assert f"ehlpetsc.post: {bad}: not an HDF5 file" in captured.err
+    assert captured.out.count("ehlpetsc.post: done") == 2 and good.with_name("good.post.h5").exists()
 
 
 def test_points_above_the_surface_are_refused(result, capsys):
@@ -174,14 +174,14 @@ def test_points_above_the_surface_are_refused(result, capsys):
 
 
 @pytest.mark.parametrize("name", ["/", "", ".", "//"])
-def test_a_name_that_is_none(name, capsys):
+def test_invalid_result_name_is_refused(name, capsys):
     with pytest.raises(SystemExit) as ended:
         main([name])
     assert ended.value.code == ExitStatus.BAD_INPUT
     assert "not the name of a result file" in capsys.readouterr().err
 
 
-def test_a_restart_file_and_a_folder_are_no_results(tmp_path, capsys):
+def test_restart_file_and_folder_are_refused_as_results(tmp_path, capsys):
     packed = ROOT / "tests" / "data" / "older" / "direct.restart.h5.gz"
     (tmp_path / "r.restart.h5").write_bytes(gzip.decompress(packed.read_bytes()))
     assert "not a result of ehlpetsc" in refused(capsys, main, tmp_path / "r.restart.h5")
@@ -195,16 +195,16 @@ def test_results_of_earlier_versions_are_processed(name, tmp_path, capsys):
     for packed in (ROOT / "tests" / "data" / "older").glob(f"{name}.h5.gz"):
         (tmp_path / f"{name}.h5").write_bytes(gzip.decompress(packed.read_bytes()))
     status = main([str(tmp_path / f"{name}.h5"), "--depths", "0.05"])
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     if name == "first":
-        assert status == ExitStatus.BAD_INPUT and "raise time.travel" in said
+        assert status == ExitStatus.BAD_INPUT and "raise time.travel" in message
     else:
         assert status == ExitStatus.DONE
         assert PostResult(tmp_path / f"{name}.post.h5").passed("2").max() == pytest.approx(2e-10, rel=0.1)
 
 
 @pytest.mark.parametrize("title", ["lone \udc80 surrogate", np.bytes_(b"raw byte \xff")])
-def test_a_title_that_is_no_utf_8(title, scene, tmp_path, capsys):
+def test_title_that_is_not_utf_8(title, scene, tmp_path, capsys):
     def edit(file):
         raw = title if isinstance(title, bytes) else title.encode(errors="surrogateescape")
         file.attrs["title"] = np.bytes_(raw)
@@ -215,7 +215,7 @@ def test_a_title_that_is_no_utf_8(title, scene, tmp_path, capsys):
     capsys.readouterr().out.encode()
 
 
-def test_a_contact_one_node_wide(tmp_path, capsys):
+def test_contact_of_one_node_has_damage(tmp_path, capsys):
     """All of the load on one node that travels with surface 2: damage where it passes."""
     scene = Scene(per_width=20, ratio=0.5, travel=9.0)
 
@@ -232,7 +232,7 @@ def test_a_contact_one_node_wide(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_full_disk_at_the_pictures_leaves_whole_ones(result, tmp_path):
+def test_full_disk_leaves_complete_pictures_only(result, tmp_path):
     """Pictures are written beside and renamed: what is there can be opened."""
     assert main([str(result)]) == 0
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (150_000, 150_000))
@@ -246,25 +246,25 @@ def test_full_disk_at_the_pictures_leaves_whole_ones(result, tmp_path):
 
 @pytest.fixture
 def supervisor():
-    """What it says goes into `.said`."""
-    said = []
-    made = SubprocessGuard(said.append)
-    made.said = said
+    """A guard that collects its messages."""
+    messages = []
+    made = SubprocessGuard(messages.append)
+    made.messages = messages
     return made
 
 
-def test_a_crash_in_reading_names_what_was_read(supervisor):
+def test_crash_while_reading_names_the_dataset(supervisor):
     def crash():
         faulthandler.disable()  # pytest's, which would tell of it at length
         with reading("a.h5", "pressure"):
             os.kill(os.getpid(), signal.SIGSEGV)
 
     assert supervisor("a.h5", crash) == ExitStatus.BAD_INPUT
-    assert supervisor.said == ["a.h5: pressure: HDF5 crashes on it (SIGSEGV), the file is damaged"]
+    assert supervisor.messages == ["a.h5: pressure: HDF5 crashes on it (SIGSEGV), the file is damaged"]
     assert supervisor("b.h5", lambda: ExitStatus.DONE) == ExitStatus.DONE
 
 
-def test_a_read_that_never_returns(supervisor, monkeypatch):
+def test_hanging_read_is_refused(supervisor, monkeypatch):
     monkeypatch.setattr(subprocess_guard, "MAX_READ_SECONDS", 1)
 
     def hang():
@@ -272,10 +272,10 @@ def test_a_read_that_never_returns(supervisor, monkeypatch):
             time.sleep(60)
 
     assert supervisor("a.h5", hang) == ExitStatus.BAD_INPUT
-    assert "a.h5: time: HDF5 does not return" in supervisor.said[0]
+    assert "a.h5: time: HDF5 does not return" in supervisor.messages[0]
 
 
-def test_a_crash_of_our_own_is_a_bug(supervisor):
+def test_crash_outside_reading_is_a_bug(supervisor):
     def crash():
         faulthandler.disable()
         os.kill(os.getpid(), signal.SIGFPE)
@@ -284,7 +284,7 @@ def test_a_crash_of_our_own_is_a_bug(supervisor):
 
 
 @pytest.mark.slow
-def test_damaged_files():
+def test_damaged_files_are_refused_or_read():
     """A few of `tests/fuzz/post.py`: every one is refused with its reason, or read."""
     spec = importlib.util.spec_from_file_location("fuzz_post", ROOT / "tests" / "fuzz" / "post.py")
     fuzz = importlib.util.module_from_spec(spec)

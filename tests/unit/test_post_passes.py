@@ -30,7 +30,7 @@ def test_miners_sum_reaches_one_after_the_expected_passes():
     assert np.searchsorted(drawn, 1.0) == pytest.approx(known.life[0], rel=0.1)
 
 
-def test_no_pass_is_nan_and_bad_ones_are_refused():
+def test_no_pass_gives_nan_and_bad_passes_are_refused():
     assert np.isnan(pass_statistics([[np.nan]]).mean).all()
     with pytest.raises(ValueError, match="negative"):
         pass_statistics([-1.0])
@@ -39,7 +39,7 @@ def test_no_pass_is_nan_and_bad_ones_are_refused():
             pass_statistics(none)
 
 
-def test_fold_puts_the_same_points_below_each_other():
+def test_fold_aligns_equal_points():
     s = 1e-6 * np.arange(10)
     damage = np.arange(20.0).reshape(2, 10)
     damage[:, 0] = np.nan  # the last that entered has not left
@@ -53,7 +53,7 @@ def test_fold_puts_the_same_points_below_each_other():
             fold(s, damage, stretch)
 
 
-def test_largest_near_a_peak():
+def test_largest_damage_near_a_peak():
     s = np.linspace(0, 1, 11)
     damage = np.array([[0, 5, 0, 1, 0, 0, 9, 0, 0, np.nan, np.nan]], float)
     places = [0.31, 0.95]
@@ -81,7 +81,7 @@ def index(tmp_path):
 
 def test_damage_of_every_pass_is_added_to_the_index(index, capsys):
     assert main([str(index)]) == ExitStatus.DONE
-    said = capsys.readouterr().out
+    message = capsys.readouterr().out
     rows = json.loads(index.read_text())["passes"]
     for number, row in enumerate(rows, 1):
         known = PostResult(index.with_name(f"run.pass{number}.post.h5"))
@@ -90,12 +90,12 @@ def test_damage_of_every_pass_is_added_to_the_index(index, capsys):
             passed = known.damage[side][:, known.complete[side]]
             assert row["damage"][side]["largest"] == passed.max(axis=1).tolist()
             assert row["damage"][side]["median"] == np.median(passed, axis=1).tolist()
-        assert f"pass {number}: 1 D_max={max(row['damage']['1']['largest']):.3e}" in said
+        assert f"pass {number}: 1 D_max={max(row['damage']['1']['largest']):.3e}" in message
     assert rows[1]["damage"]["2"]["largest"][0] < rows[0]["damage"]["2"]["largest"][0]
-    assert f"done {index} passes=2" in said
+    assert f"done {index} passes=2" in message
 
 
-def test_damage_of_another_case_is_not_taken_for_that_of_a_pass(index):
+def test_damage_of_another_case_is_not_that_of_a_pass(index):
     pass_file = index.with_name("run.pass1.h5")
     assert main([str(pass_file)]) == ExitStatus.DONE
     with read_result(pass_file) as result:
@@ -104,7 +104,7 @@ def test_damage_of_another_case_is_not_taken_for_that_of_a_pass(index):
         assert damage_beside(result) is None
 
 
-def test_an_index_that_is_none_is_refused(tmp_path, capsys):
+def test_foreign_json_is_no_pass_index(tmp_path, capsys):
     bad = tmp_path / "run.passes.json"
     for text, words in (("{", "not the index"), ('{"passes": [{}]}', "not the index")):
         bad.write_text(text)
@@ -114,7 +114,7 @@ def test_an_index_that_is_none_is_refused(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("shift", [7.0, 7.4], ids=["whole spacings", "between points"])
-def test_passes_that_are_shifted_against_each_other(shift, tmp_path):
+def test_shifted_passes_are_aligned(shift, tmp_path):
     """Surface 2 enters further on in the second pass: the same points lie elsewhere in s."""
     scenes = [Scene(per_width=20, ratio=0.5, travel=12.0) for _ in range(2)]
     step = shift * scenes[0].dx
@@ -142,6 +142,6 @@ def test_passes_that_are_shifted_against_each_other(shift, tmp_path):
         same_points([results[0], PostResult(tmp_path / "1.post.h5")], "1")
 
 
-def test_the_line_of_a_pass_with_heat_has_flash_temperatures():
+def test_pass_line_with_heat_has_flash_temperatures():
     known = {"2": {"largest": [0.1, 0.3], "median": [0.0, 0.0], "flash_temperature": 123.44}}
     assert " ".join(command._pass_figures(known)) == "2 D_max=3.000e-01 flash_max=123.4 K"

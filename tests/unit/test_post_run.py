@@ -1,4 +1,4 @@
-"""The command, its result file, its faults, and going on after an interruption."""
+"""The command post: its result file, faults, and continuing after an interruption."""
 
 import errno
 import os
@@ -35,7 +35,7 @@ def scene():
 
 @pytest.fixture
 def legends(monkeypatch):
-    """Legends of all pictures saved, each held to stand beside its axes, where no curve runs."""
+    """Legends of all saved pictures; each must be beside its axes."""
     seen, save = [], Figure.savefig
 
     def saved(figure, *arguments, **named):
@@ -80,7 +80,7 @@ def test_result_has_the_fixed_names(result, scene, capsys):
 
 
 @pytest.mark.slow
-def test_imports_no_petsc_mpi_or_solver_and_without_pictures_no_matplotlib(result):
+def test_post_imports_no_petsc_mpi_solver_or_matplotlib(result):
     code = (
         f"import sys; from ehlpetsc.post.command import main; assert main([{str(result)!r}]) == 0; "
         "assert 'matplotlib' not in sys.modules; import ehlpetsc.post.pictures.gallery; "
@@ -95,7 +95,7 @@ def arrays(path):
         return {name: file[name][:] for name in ("damage/2", "damage/1", "damage/cycles", "weibull/beta")}
 
 
-def test_two_threads_and_small_memory_give_the_same(result, tmp_path, monkeypatch):
+def test_threads_and_memory_limit_do_not_change_results(result, tmp_path, monkeypatch):
     run(Job(str(result), str(tmp_path / "one.h5")))
     run(Job(str(result), str(tmp_path / "two.h5"), jobs=2))
     monkeypatch.setattr(runner, "MAX_HISTORY_BYTES", 2e5)  # some tens of histories at a time
@@ -109,7 +109,7 @@ def test_two_threads_and_small_memory_give_the_same(result, tmp_path, monkeypatc
 
 
 @pytest.mark.parametrize("done", [2, 3], ids=["within a surface", "between surfaces"])
-def test_goes_on_after_an_interruption(done, result, tmp_path, monkeypatch):
+def test_post_continues_after_an_interruption(done, result, tmp_path, monkeypatch):
     whole, output = tmp_path / "whole.h5", tmp_path / "out.h5"
     run(Job(str(result), str(whole)))
     monkeypatch.setattr(runner, "DEPTHS_AT_ONCE", 1)
@@ -135,7 +135,7 @@ def test_goes_on_after_an_interruption(done, result, tmp_path, monkeypatch):
     assert len(again) == 6 - done
 
 
-def test_parts_of_other_choices_are_not_used(result, tmp_path):
+def test_parts_of_other_settings_are_not_used(result, tmp_path):
     output = tmp_path / "out.h5"
     parts = tmp_path / "out.h5.parts"
     parts.mkdir()
@@ -146,7 +146,7 @@ def test_parts_of_other_choices_are_not_used(result, tmp_path):
         assert np.nanmax(file["damage/2"]) < 1
 
 
-def test_killed_writer(scene, tmp_path):
+def test_result_of_a_killed_run_is_processed(scene, tmp_path):
     """A file left in SWMR state, its datasets flushed unequally."""
     path = write(tmp_path / "killed.h5", scene)
     code = f"""
@@ -160,9 +160,9 @@ with h5py.File({str(path)!r}) as old, h5py.File({str(path) + ".new"!r}, "w", lib
     new.flush(); new.swmr_mode = True; new["time"].flush(); os._exit(9)
 """
     assert subprocess.run([sys.executable, "-c", code]).returncode == 9
-    said = []
-    run(Job(str(path) + ".new", str(tmp_path / "out.h5")), said.append)
-    assert any("running" in line for line in said)
+    message = []
+    run(Job(str(path) + ".new", str(tmp_path / "out.h5")), message.append)
+    assert any("running" in line for line in message)
     run(Job(str(path), str(tmp_path / "whole.h5")))
     with h5py.File(tmp_path / "out.h5") as cut, h5py.File(tmp_path / "whole.h5") as whole:
         assert 0 < cut["damage/2_complete"][:].sum() < whole["damage/2_complete"][:].sum()
@@ -182,17 +182,17 @@ def test_missing_dataset(name, words, scene, tmp_path, capsys):
     assert words in refused(capsys, main, path)
 
 
-def test_nan_in_pressure_is_placed(scene, tmp_path, capsys):
+def test_nan_in_pressure_is_located(scene, tmp_path, capsys):
     def spoil(file):
         file["pressure"][300, 70] = np.nan
 
-    said = refused(capsys, main, write(tmp_path / "a.h5", scene, edit=spoil))
-    assert "dataset pressure is nan at frame 300" in said and "x/a = -0.75" in said
+    message = refused(capsys, main, write(tmp_path / "a.h5", scene, edit=spoil))
+    assert "dataset pressure is nan at frame 300" in message and "x/a = -0.75" in message
     assert not list(tmp_path.glob("a.post.h5*"))
 
 
 @pytest.mark.parametrize("name, value", [("a", np.nan), ("p0", 0.0), ("u1", np.inf), ("u2", "1")])
-def test_attributes_that_are_no_numbers(name, value, scene, tmp_path, capsys):
+def test_non_numeric_attributes_are_refused(name, value, scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.attrs.__setitem__(name, value))
     assert f"attribute {name}" in refused(capsys, main, path)
 
@@ -216,8 +216,8 @@ def test_not_a_result(tmp_path, capsys):
     assert "not a result of ehlpetsc" in refused(capsys, main, tmp_path / "c.h5")
 
 
-def test_a_file_in_a_folder_of_others_is_not_read(tmp_path, capsys, monkeypatch):
-    """No word of the output, which was never come to."""
+def test_file_in_an_inaccessible_folder_is_refused(tmp_path, capsys, monkeypatch):
+    """The message does not mention the output."""
 
     def forbidden(self, **_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
@@ -251,17 +251,20 @@ def test_bad_depths(result, capsys):
     assert "post.depths = " in refused(capsys, main, result, "--depths", "nan")
 
 
-def test_every_is_warned_of(scene, tmp_path, capsys):
+def test_thinned_frames_are_a_warning(scene, tmp_path, capsys):
     assert main([str(write(tmp_path / "a.h5", scene, every=4))]) == 0
-    said = capsys.readouterr().err
-    assert "output.every = 4" in said and "16 % of a typical point's damage at z = 0 and 14 % at z/a" in said
+    message = capsys.readouterr().err
+    assert (
+        "output.every = 4" in message
+        and "16 % of a typical point's damage at z = 0 and 14 % at z/a" in message
+    )
 
 
 def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
     frames = int(1.1 * 4 * 40 / 0.5)  # surface 1 has passed, the slow one not
     assert main([str(write(tmp_path / "a.h5", scene, frames=frames))]) == 0
-    said = capsys.readouterr().err
-    assert "no point of surface 2" in said and "time.travel = 6.8 or more lets some through" in said
+    message = capsys.readouterr().err
+    assert "no point of surface 2" in message and "time.travel = 6.8 or more lets some through" in message
     with h5py.File(tmp_path / "a.post.h5") as file:
         assert np.isnan(file["damage/2"]).all() and np.isfinite(file["damage/1"]).any()
         assert file["asperities"].attrs["surface"] == "1"
@@ -276,7 +279,7 @@ def test_smooth_surfaces(scene, tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
+def test_pictures_for_two_slide_roll_ratios(tmp_path, legends, capsys, monkeypatch):
     """In both formats; of the second result those beside the first alone."""
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
@@ -303,12 +306,12 @@ def test_pictures_of_two_ratios(tmp_path, legends, capsys, monkeypatch):
     for drawn_already in ("damage_picture", "depth_picture", "_save"):
         monkeypatch.setattr(gallery, drawn_already, lambda *_: [])
     assert "frames 0 to" in refused(capsys, main, paths[0], "--pictures", "--frame", "99999")
-    said = refused(capsys, main, paths[0], "--pictures", "--point", "400", "0.1")
-    assert "passed the whole contact" in said and "s/a = -5.1 to -2.5 is allowed" in said
+    message = refused(capsys, main, paths[0], "--pictures", "--point", "400", "0.1")
+    assert "passed the whole contact" in message and "s/a = -5.1 to -2.5 is allowed" in message
 
 
 @pytest.mark.slow
-def test_passes_of_one_surface(tmp_path, legends, capsys, monkeypatch):
+def test_picture_of_repeated_passes_of_one_surface(tmp_path, legends, capsys, monkeypatch):
     """Surface 2 is one; that it meets is another in each pass. Drawn are the passes alone."""
     monkeypatch.setattr(gallery, "_of_one", lambda *_: [])
     scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
@@ -356,7 +359,7 @@ def judged(scene, tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_criteria_stand_beside_the_papers_damage(judged, scene, tmp_path):
+def test_criteria_are_stored_beside_the_default_damage(judged, scene, tmp_path):
     plain = write(tmp_path / "a.h5", scene, depths=(0.0, 0.5))
     run(Job(str(plain), str(tmp_path / "plain.h5"), surfaces=("2",)))
     with h5py.File(judged) as file, h5py.File(tmp_path / "plain.h5") as other:
@@ -381,7 +384,7 @@ def test_criteria_stand_beside_the_papers_damage(judged, scene, tmp_path):
         assert file.attrs["residual_stress"].tolist() == [[0.0, -4e8], [1.0, 0.0]]
 
 
-def test_asperities_and_the_sureness_of_their_distribution(judged):
+def test_asperity_distribution_has_confidence_bounds(judged):
     with h5py.File(judged) as file:
         assert file.attrs["within"] == 0.05
         assert (file["asperities/largest"][:] >= file["asperities/damage"][:]).all()
@@ -393,7 +396,7 @@ def test_asperities_and_the_sureness_of_their_distribution(judged):
             assert (best > low / 2).all() and (best < 2 * high).all()
 
 
-def test_residual_stress_without_a_mean_stress_term_is_told(scene, tmp_path, capsys):
+def test_residual_stress_without_a_mean_stress_term_is_a_note(scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, depths=(0.5,), post="residual_stress = [[0.0, -4e8]]")
     assert main([str(path), "--surface", "1"]) == 0
     assert "residual_stress changes nothing without" in capsys.readouterr().err
@@ -424,7 +427,7 @@ def test_faults_in_residual_stress_and_criteria(post, text, scene, tmp_path, cap
     assert text in refused(capsys, main, write(tmp_path / "a.h5", scene, post=post))
 
 
-def test_pictures_are_drawn_over_the_surfaces_own_abscissa(result, capsys):
+def test_pictures_use_the_body_abscissa(result, capsys):
     """In mm from the point that was at the inlet at time 0, where a profile begins, and in um deep."""
     assert main([str(result), "--depths", "0", "0.05", "0.5"]) == 0
     found = PostResult(result.with_name("run.post.h5"))
@@ -445,7 +448,7 @@ def test_pictures_are_drawn_over_the_surfaces_own_abscissa(result, capsys):
     assert plots.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
 
 
-def test_the_depth_of_the_largest_von_mises_stress_is_marked(result):
+def test_depth_of_the_largest_von_mises_stress_is_marked(result):
     """Under Hertz's pressure with friction 0.05 and a small ripple: at 0.79 a in a smooth contact."""
     assert main([str(result)]) == 0
     found = PostResult(result.with_name("run.post.h5"))
@@ -457,7 +460,7 @@ def test_the_depth_of_the_largest_von_mises_stress_is_marked(result):
     assert 0 < z < 1.0 and abs(x) < 1.0 and f"{1e6 * z * found.a:.3g} µm deep" in axes.get_title("left")
 
 
-def test_a_smooth_surface_has_no_panel_for_its_profile(scene, tmp_path):
+def test_smooth_surface_has_no_profile_panel(scene, tmp_path):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface/2"))
     run(Job(str(path), str(tmp_path / "o.h5")))
     found = PostResult(tmp_path / "o.h5")
@@ -465,7 +468,7 @@ def test_a_smooth_surface_has_no_panel_for_its_profile(scene, tmp_path):
     assert counts == [2, 3]  # with the scale of colours
 
 
-def test_cycles_that_add_nothing_are_left_out_of_their_picture():
+def test_cycles_without_damage_are_not_drawn():
     axes = Figure().subplots()
     cycles = np.array([[2.0, 0, 1, 0, 1], [1.0, 0, 1, 0, 1], [1e-3, 0, 1, 0, 1]])
     plots.cycle_histogram(axes, cycles, np.array([1e-3, 1e-9, 1e-30]))

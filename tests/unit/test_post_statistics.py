@@ -23,14 +23,14 @@ def test_recovers_its_own_quantiles():
     assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
 
 
-def test_undamaged_are_censored_not_dropped():
+def test_undamaged_values_are_censored():
     ranks = benard_ranks(25)
     values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
     values[20:] = log_life(np.zeros(5))  # no damage: infinite
     assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
 
 
-def test_failed_at_once_keep_their_ranks():
+def test_immediate_failures_keep_their_ranks():
     ranks = benard_ranks(25)
     values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
     values[:3] = log_life(np.array([1.0, 3.0, 40.0]))  # damage of 1 and more: no logarithm of -log10 D

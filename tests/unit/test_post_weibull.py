@@ -34,7 +34,7 @@ def test_textbook_likelihood():
     assert (fit.alpha, fit.beta) == pytest.approx((73.526, 1.933), rel=5e-4)
 
 
-def test_censored_values_stand_at_the_ends():
+def test_censored_values_are_at_the_ends():
     exact = sample(30, 1)
     values = np.concatenate([exact, [np.inf] * 4, [-0.5, 0.0]])
     fit = weibull_likelihood(values)
@@ -45,7 +45,7 @@ def test_censored_values_stand_at_the_ends():
     assert fit.alpha > weibull_likelihood(exact).alpha * 0.99
 
 
-def test_likelihood_finds_what_it_is_given():
+def test_likelihood_recovers_its_parameters():
     fit = weibull_likelihood(sample(20000, 2))
     assert fit == pytest.approx((7.0, 9.0), rel=0.02)
     scaled = weibull_likelihood(1e-3 * sample(20000, 2))
@@ -60,7 +60,7 @@ def test_resampled_fits_are_those_of_weibull_fit():
         assert _fits(rows, regression) == pytest.approx(np.array(expected), rel=1e-9)
 
 
-def test_bounds_hold_the_truth_as_often_as_they_say():
+def test_weibull_bounds_have_their_nominal_coverage():
     inside = 0
     for seed in range(120):
         low, high = weibull_bounds(sample(69, seed), draws=200).beta
@@ -70,7 +70,7 @@ def test_bounds_hold_the_truth_as_often_as_they_say():
     assert narrow[1] - narrow[0] < (wide[1] - wide[0]) / 3
 
 
-def test_bounds_are_the_same_again_and_enclose_the_fit():
+def test_bounds_are_reproducible_and_enclose_the_fit():
     values = sample(69, 3)
     fit, bounds = weibull_fit(values), weibull_bounds(values)
     again = weibull_bounds(values)
@@ -80,7 +80,7 @@ def test_bounds_are_the_same_again_and_enclose_the_fit():
 
 
 @pytest.mark.parametrize("spread", [0.0, 1e-12, 1e-7])
-def test_values_too_alike_have_no_shape(spread):
+def test_nearly_equal_values_have_no_shape(spread):
     values = 7.0 * (1 + spread * np.linspace(0, 1, 20))
     assert np.isnan(weibull_fit(values)).all() and np.isnan(weibull_likelihood(values)).all()
     assert np.isnan(weibull_bounds(values).beta).all()

@@ -33,7 +33,7 @@ def smooth_and_rough(problem, seed=0):
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
-def test_a_ripple_on_a_uniform_film_is_moved_along_by_whole_nodes(model):
+def test_ripple_on_a_uniform_film_is_advected_by_whole_nodes(model):
     problem = problem_of(model)
     smooth, rough = smooth_and_rough(problem)
     q, w = predict(problem, smooth, [rough], [3.0])
@@ -41,7 +41,7 @@ def test_a_ripple_on_a_uniform_film_is_moved_along_by_whole_nodes(model):
     np.testing.assert_allclose(w[3:], rough.w[:-3], rtol=1e-9)
 
 
-def test_the_smooth_solution_is_its_own_guess():
+def test_smooth_solution_is_its_own_prediction():
     """Nothing moves where there is nothing but the smooth film, however uneven that is."""
     problem = problem_of()
     film, x = problem.film_scale, problem.x
@@ -52,7 +52,7 @@ def test_the_smooth_solution_is_its_own_guess():
     np.testing.assert_allclose(w, smooth.w, rtol=1e-12)
 
 
-def test_no_cavity_is_carried_where_there_was_oil():
+def test_cavity_is_not_advected_into_oil():
     """A cavity of the smooth film in which the layer keeps the gap full stays full; one of both stays one."""
     problem = problem_of("mixed")
     smooth, _ = smooth_and_rough(problem)
@@ -64,7 +64,7 @@ def test_no_cavity_is_carried_where_there_was_oil():
     assert (q[x > 0.6] < 0.0).all() and q.min() >= -1.0
 
 
-def test_the_level_nearest_to_a_whole_number_of_nodes_is_taken():
+def test_prediction_uses_the_level_nearest_to_whole_nodes():
     problem = problem_of()
     smooth, _ = smooth_and_rough(problem)
     levels = [smooth_and_rough(problem, seed)[1] for seed in (1, 2, 3)]
@@ -75,7 +75,7 @@ def test_the_level_nearest_to_a_whole_number_of_nodes_is_taken():
 
 
 @pytest.mark.parametrize("way", [0.3, 1.5, 2.9])
-def test_films_stay_within_their_bound_oil_stays_oil_and_voids_keep_some(way):
+def test_predicted_films_and_voids_stay_within_bounds(way):
     problem = problem_of()
     smooth, rough = smooth_and_rough(problem)
     rough.q[40] = 5.0  # a spike beside which a cubic undershoots
@@ -90,7 +90,7 @@ def test_films_stay_within_their_bound_oil_stays_oil_and_voids_keep_some(way):
 
 
 @pytest.mark.parametrize("way, moved", [(2.0, 2), (1.6, 2), (2.4, 2)])
-def test_solids_that_carry_move_along_as_they_are(way, moved):
+def test_contact_pressure_is_advected_unchanged(way, moved):
     """In mixed contact: their pressure neither spreads nor fades between nodes."""
     problem = problem_of("mixed")
     smooth, rough = smooth_and_rough(problem)
@@ -100,7 +100,7 @@ def test_solids_that_carry_move_along_as_they_are(way, moved):
     assert (np.delete(w, np.arange(50 + moved, 53 + moved)) >= 0.0).all()
 
 
-def test_carried_values_lie_between_their_neighbours():
+def test_advected_values_lie_between_their_neighbours():
     v = np.zeros(30)
     v[12] = 1.0
     for nodes in (0.25, 0.5, 3.75):

@@ -56,7 +56,7 @@ READABLE = {
 
 @pytest.mark.parametrize(("text", "layout"), READABLE.values(), ids=READABLE)
 @pytest.mark.parametrize("encoding", ["utf-8", "latin-1", "utf-16"])
-def test_layouts_give_the_same_profile(tmp_path, text, layout, encoding):
+def test_file_layouts_give_the_same_profile(tmp_path, text, layout, encoding):
     path = tmp_path / "p.txt"
     path.write_bytes(text.lstrip("\ufeff" if encoding != "utf-8" else "").encode(encoding))
     x, z, notes = read_profile(path, Layout(**layout))
@@ -65,7 +65,7 @@ def test_layouts_give_the_same_profile(tmp_path, text, layout, encoding):
     assert notes == ()
 
 
-def test_falling_x_is_read_from_its_end(tmp_path):
+def test_decreasing_x_is_reversed(tmp_path):
     path = tmp_path / "p.csv"
     path.write_text("".join(reversed(lines("{},{}\n").splitlines(keepends=True))))
     x, z, notes = read_profile(path)
@@ -94,8 +94,8 @@ def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
     assert notes == ("6 missing heights filled or, at the ends, cut off; longest gap 4 um",)
 
 
-def test_lines_that_a_measurement_leaves_out_are_missing_heights(tmp_path):
-    """The spline would bridge them without a word, and the spacing told would be a mean."""
+def test_omitted_lines_are_missing_heights(tmp_path):
+    """The spline would bridge them without a warning, and the spacing printed would be a mean."""
     x = np.arange(400) * 1e-6
     z = 1e-7 * np.sin(x / 3e-5)
     path = tmp_path / "p.csv"
@@ -105,21 +105,21 @@ def test_lines_that_a_measurement_leaves_out_are_missing_heights(tmp_path):
         path.write_text("".join(f"{x[k]:.7e};{z[k]:.12e}\n" for k in kept))
 
     write([50, 51, 52, 200])
-    told = "4 heights missing, the longest gap 4e-06 m behind x = 4.9e-05; write fill_gaps = 4e-06"
-    with pytest.raises(ProfileError, match=told):
+    message = "4 heights missing, the longest gap 4e-06 m behind x = 4.9e-05; write fill_gaps = 4e-06"
+    with pytest.raises(ProfileError, match=message):
         read_profile(path)
     X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
     np.testing.assert_allclose(X, x, atol=1e-15)
     np.testing.assert_allclose(filled, z, atol=1e-12)
     assert notes == ("4 missing heights filled or, at the ends, cut off; longest gap 4 um",)
     write(np.arange(60, 399))
-    told = "points 1e-06 m apart, and none for 0.00034 m behind x = 5.9e-05; allowed: no more than half"
-    with pytest.raises(ProfileError, match=told):
+    message = "points 1e-06 m apart, and none for 0.00034 m behind x = 5.9e-05; allowed: no more than half"
+    with pytest.raises(ProfileError, match=message):
         read_profile(path, Layout(fill_gaps=1.0))
 
 
 @pytest.mark.parametrize("x", [np.r_[0, 100:120, 220], np.cumsum(1.0 + np.arange(400) % 3)])
-def test_points_at_uneven_places_are_no_gaps(tmp_path, x):
+def test_uneven_spacing_is_no_gap(tmp_path, x):
     """A shape made by hand, and one whose spacing varies all along."""
     path = tmp_path / "p.csv"
     path.write_text("".join(f"{1e-6 * place:.7e};{1e-7 * np.sin(place):.9e}\n" for place in x))
@@ -149,11 +149,11 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("text", "layout", "told"), REFUSED.values(), ids=REFUSED)
-def test_a_refusal_says_how_to_write_it(tmp_path, text, layout, told):
+@pytest.mark.parametrize(("text", "layout", "message"), REFUSED.values(), ids=REFUSED)
+def test_refused_profile_names_the_layout_key(tmp_path, text, layout, message):
     path = tmp_path / "p.csv"
     path.write_text(text)
-    with pytest.raises(ProfileError, match=told) as caught:
+    with pytest.raises(ProfileError, match=message) as caught:
         read_profile(path, Layout(**layout))
     assert "\n" not in str(caught.value)
 
@@ -168,7 +168,7 @@ def measured(tmp_path, x=1.0, z=1.0):
 
 
 @pytest.mark.parametrize(
-    ("x", "z", "keys", "told"),
+    ("x", "z", "keys", "message"),
     [
         (1e3, 1e3, (), 'unit = "mm"'),
         (1e3, 1e6, (), 'unit = "um" and x_unit = "mm"'),
@@ -179,33 +179,33 @@ def measured(tmp_path, x=1.0, z=1.0):
         (1, 1, ("scale=1e4",), "not a profile of this contact"),
     ],
 )
-def test_a_profile_absurd_beside_the_contact_names_the_likely_unit(tmp_path, x, z, keys, told):
+def test_implausible_profile_names_the_likely_unit(tmp_path, x, z, keys, message):
     path = measured(tmp_path, x, z)
-    with pytest.raises(CaseError, match=told) as caught:
+    with pytest.raises(CaseError, match=message) as caught:
         case.load(path, [f"surface.2.{key}" for key in keys])
     (fault,) = caught.value.faults
     assert "surface.2.file" in fault
 
 
 @pytest.mark.parametrize(
-    "rq, told", [(0.0, None), (0.9e-11, "less than an atom"), (1.1e-11, None), (2.2e-7, "Rq 0.22 um")]
+    "rq, message", [(0.0, None), (0.9e-11, "less than an atom"), (1.1e-11, None), (2.2e-7, "Rq 0.22 um")]
 )
-def test_a_flat_profile_is_plausible_and_one_of_less_than_an_atom_is_not(rq, told):
+def test_flat_profile_is_plausible_and_sub_atomic_roughness_is_not(rq, message):
     """Beside a film of 7 nm, of which 30 are allowed."""
     z = rq * np.where(np.arange(200) % 2, 1.0, -1.0)
     fault = absurd(Samples(1e-6 * np.arange(200), z, repeats=False), 100e-6, 1e-6, 0.001e-6, 0.007e-6)
-    assert fault is None if told is None else told in fault
+    assert fault is None if message is None else message in fault
 
 
 @pytest.mark.parametrize("rq, unit", [(19.5e-3, "mm"), (20.5e-3, "um")])
-def test_the_likely_unit_makes_a_profile_as_they_are_measured(rq, unit):
+def test_suggested_unit_gives_plausible_roughness(rq, unit):
     """Rq of 20 um at most."""
     z = rq * np.where(np.arange(200) % 2, 1.0, -1.0)
     given = Samples(0.01 * np.arange(200), z, repeats=False)
     assert likely_unit(given, Layout(), 1.0) == f'unit = "{unit}"'
 
 
-def test_the_unit_named_is_the_one_to_write(tmp_path):
+def test_suggested_unit_is_accepted(tmp_path):
     path = measured(tmp_path, 1e3, 1e6)
     case.load(path, ["surface.2.unit='um'", "surface.2.x_unit='mm'"])
     case.load(measured(tmp_path))
@@ -221,7 +221,7 @@ def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
         read_profile(path)
 
 
-def test_other_formats_come_through_surface_topography(tmp_path, monkeypatch):
+def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
     class Topography:
         dim = 2
 
@@ -244,12 +244,12 @@ def test_other_formats_come_through_surface_topography(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("error", "message"),
     [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of its formats")],
 )
-def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeypatch, said, told):
+def test_surface_topography_errors_are_one_line(tmp_path, monkeypatch, error, message):
     def read_topography(path):
-        raise RuntimeError(said)
+        raise RuntimeError(error)
 
     package = type(sys)("SurfaceTopography")
     package.read_topography = read_topography
@@ -258,10 +258,10 @@ def test_a_file_surface_topography_refuses_is_told_in_one_line(tmp_path, monkeyp
     path.write_bytes(b"PK nonsense")
     with pytest.raises(ProfileError) as caught:
         read_profile(path)
-    assert str(caught.value) == f"SurfaceTopography cannot read it: {told}"
+    assert str(caught.value) == f"SurfaceTopography cannot read it: {message}"
 
 
-def test_a_package_that_does_not_start_is_told_in_one_line(tmp_path, monkeypatch):
+def test_failing_package_import_is_one_line(tmp_path, monkeypatch):
     package = tmp_path / "SurfaceTopography"
     package.mkdir()
     (package / "__init__.py").write_text("import numpy\nnumpy.no_such_thing\n")
@@ -296,12 +296,12 @@ def drawn_text(draw):
     return "".join(text)
 
 
-def test_blocks_of_numbers_are_read_as_lines_are(tmp_path, monkeypatch):
+def test_block_reading_equals_line_reading(tmp_path, monkeypatch):
     """However a file is cut, and whether numpy reads a block: the same numbers, or the same refusal."""
     path, draw, refused = tmp_path / "p.csv", random.Random(5), 0
 
     def outcome(size, fast, *layout):
-        monkeypatch.setattr(text_columns, "BLOCK", size)
+        monkeypatch.setattr(text_columns, "CHARACTERS_PER_BLOCK", size)
         monkeypatch.setattr(text_columns._Words, "table", table if fast else lambda *_: None)
         try:
             columns, header = text_columns.text_columns(path, *layout)

@@ -89,7 +89,7 @@ def _scaled(word, factor):
 
 
 @pytest.mark.filterwarnings("error")
-def test_corrupted_profiles_end_in_words_or_in_finite_heights(tmp_path):
+def test_corrupted_profiles_are_refused_or_finite(tmp_path):
     rng = random.Random(SEED)
     lines = (CASES / "profiles" / "alicona_meander_profile.csv").read_text().splitlines()[1:401]
     text = (CASES / "table1_rough.toml").read_text().replace("profiles/alicona_meander_profile.csv", "p.csv")

@@ -32,7 +32,7 @@ def table():
     return PETSc.Options().getAll()
 
 
-def test_a_case_from_a_dict_is_that_of_the_file():
+def test_case_from_a_dict_equals_the_file():
     path = CASES / "table1_smooth.toml"
     data = tomllib.loads(path.read_text())
     one = ehlpetsc.load(data, {"fluid.viscosity": np.float64(0.003)})
@@ -40,7 +40,7 @@ def test_a_case_from_a_dict_is_that_of_the_file():
     assert ehlpetsc.load(tomllib.loads(one.text)) == one  # the text of the result runs the same case
 
 
-def test_none_leaves_a_key_out():
+def test_none_omits_a_key():
     assert ehlpetsc.load(CASES / "table1_rough.toml", {"time": None, "surface": None}).time is None
 
 
@@ -68,20 +68,20 @@ def test_profiles_may_be_arrays():
         ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "x falls after"),
     ],
 )
-def test_arrays_that_are_no_profile_are_refused(surface, fault):
+def test_invalid_profile_arrays_are_refused(surface, fault):
     with pytest.raises(ehlpetsc.CaseError) as caught:
         ehlpetsc.load(CASES / "table1_rough.toml", {"surface.1": surface})
     assert fault in str(caught.value)
 
 
-def test_all_faults_come_as_one_exception():
+def test_all_faults_are_one_exception():
     with pytest.raises(ehlpetsc.CaseError) as caught:
         ehlpetsc.solve({"title": "x", "mesh": {"inlet": 3}})
     assert len(caught.value.faults) >= 4
     assert all(fault.startswith("case: ") for fault in caught.value.faults)
 
 
-def test_a_result_in_memory_has_fields_figures_and_attributes(case, result, tmp_path):
+def test_result_in_memory_has_fields_scalars_and_attributes(case, result, tmp_path):
     assert result.pressure.shape == result.film_thickness.shape == (len(result.time), len(result.x))
     assert len(result.time) == len(result.steps.h_min) == 5
     assert result.steps.h_min[-1] == result.film_thickness[-1].min()
@@ -92,7 +92,7 @@ def test_a_result_in_memory_has_fields_figures_and_attributes(case, result, tmp_
     assert not list(tmp_path.iterdir())
 
 
-def test_a_result_on_disk_is_that_in_memory(case, result, tmp_path):
+def test_result_on_disk_equals_that_in_memory(case, result, tmp_path):
     stored = ehlpetsc.solve(case, output=tmp_path / "run.h5")
     assert [p.name for p in tmp_path.iterdir()] == ["run.h5"]
     np.testing.assert_array_equal(stored.pressure, result.pressure)
@@ -107,7 +107,7 @@ def test_xarray_has_units_and_steps(result):
     assert float(data.film_thickness.isel(time=-1).min()) == result.steps.h_min[-1]
 
 
-def test_states_can_be_left_and_gone_on_with(case, result):
+def test_iteration_over_states_can_be_resumed(case, result):
     simulation = ehlpetsc.Simulation(case)
     for state in simulation:
         if state.step == 2:
@@ -120,7 +120,7 @@ def test_states_can_be_left_and_gone_on_with(case, result):
     assert rest[-1].scalars["h_min"] == rest[-1].h_min == result.steps.h_min[-1]
 
 
-def test_options_are_used_and_given_back(case, capfd):
+def test_petsc_options_are_restored(case, capfd):
     from petsc4py import PETSc
 
     options = PETSc.Options()
@@ -136,7 +136,7 @@ def test_options_are_used_and_given_back(case, capfd):
     assert "step 4 from" in out
 
 
-def test_runs_that_take_turns_do_not_disturb_each_other(case, result):
+def test_interleaved_runs_are_independent(case, result):
     thick = ehlpetsc.load(CASES / "table1_rough.toml", QUICK | {"fluid.viscosity": 0.01})
     alone = [state.h_min for state in ehlpetsc.Simulation(thick)]
     pairs = list(zip(ehlpetsc.Simulation(case), ehlpetsc.Simulation(thick), strict=True))
@@ -144,7 +144,7 @@ def test_runs_that_take_turns_do_not_disturb_each_other(case, result):
     np.testing.assert_array_equal([other.h_min for _, other in pairs], alone)
 
 
-def test_no_convergence_is_an_exception_with_the_last_good_state(case, result, tmp_path, monkeypatch):
+def test_divergence_raises_with_the_last_good_state(case, result, tmp_path, monkeypatch):
     from ehlpetsc.errors import SolveFailed
 
     def fail(*_, **__):
@@ -163,21 +163,21 @@ def test_no_convergence_is_an_exception_with_the_last_good_state(case, result, t
     assert caught.value.state is None and not list(tmp_path.iterdir())
 
 
-def test_options_that_cannot_be_are_exceptions(case):
+def test_invalid_options_raise(case):
     before = table()
     with pytest.raises(ehlpetsc.UsageError, match="nosuch"):
         ehlpetsc.solve(case, options={"pc_type": "nosuch"})
     assert table() == before
 
 
-def test_a_series_is_solved_member_by_member():
+def test_series_is_solved_member_by_member():
     case = ehlpetsc.load(CASES / "fig4.toml")
     with pytest.raises(ehlpetsc.CaseError, match="members"):
         ehlpetsc.solve(case)
     assert [value for value, _ in ehlpetsc.members(case)][0] == 0.01
 
 
-def test_a_run_goes_on_from_a_restart_file(case, result, tmp_path):
+def test_run_continues_from_a_restart_file(case, result, tmp_path):
     recorded = tmp_path / "run.h5"
     from ehlpetsc.run.outputs.recorder import Recorder
 
@@ -191,7 +191,7 @@ def test_a_run_goes_on_from_a_restart_file(case, result, tmp_path):
     np.testing.assert_allclose(whole.pressure, result.pressure, rtol=1e-9)
 
 
-def test_an_error_in_the_middle_leaves_a_whole_file(case, tmp_path):
+def test_error_during_a_run_leaves_a_readable_file(case, tmp_path):
     from ehlpetsc.run.outputs.recorder import Recorder
 
     simulation = ehlpetsc.Simulation(case)
@@ -202,7 +202,7 @@ def test_an_error_in_the_middle_leaves_a_whole_file(case, tmp_path):
     assert left.attrs["status"] == "stopped" and len(left.time) == 1
 
 
-def test_the_picture_shows_the_frame_asked_for(result):
+def test_picture_shows_the_requested_frame(result):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -221,7 +221,7 @@ assert "petsc4py" in sys.modules and "matplotlib" not in sys.modules
 """
 
 
-def test_importing_is_light_and_finds_petsc_by_itself(tmp_path):
+def test_import_is_light_and_finds_petsc(tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", LIGHT],
         cwd=tmp_path,
@@ -235,7 +235,7 @@ def test_importing_is_light_and_finds_petsc_by_itself(tmp_path):
 @pytest.mark.parametrize(
     "module", ["ehlpetsc.api", "ehlpetsc.case.loading", "ehlpetsc.run.simulation", "ehlpetsc.results.reader"]
 )
-def test_examples_in_docstrings_work(module, monkeypatch):
+def test_docstring_examples_run(module, monkeypatch):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -245,7 +245,7 @@ def test_examples_in_docstrings_work(module, monkeypatch):
 
 
 @pytest.mark.slow
-def test_the_page_shows_what_works(monkeypatch, capsys):
+def test_examples_of_the_python_page_run(monkeypatch, capsys):
     import matplotlib
 
     matplotlib.use("Agg")

@@ -94,7 +94,7 @@ def test_a_time_step_is_a_number_within_the_time_left(case, dt):
     assert simulation.advance(1e-6).time == pytest.approx(1e-6)
 
 
-def test_nothing_comes_behind_the_end(case):
+def test_no_step_after_the_end(case):
     simulation = Simulation(case)
     list(simulation)
     with pytest.raises(UsageError, match="at its end"):
@@ -104,7 +104,7 @@ def test_nothing_comes_behind_the_end(case):
 
 
 @pytest.mark.parametrize(
-    "changes, told",
+    "changes, message",
     [
         ({"mesh__points_per_half_width": 30}, "other nodes"),
         ({"contact__load": 400e3}, "other nodes"),
@@ -114,13 +114,13 @@ def test_nothing_comes_behind_the_end(case):
         ),
     ],
 )
-def test_a_pass_follows_one_of_the_same_contact(first, changes, told):
-    with pytest.raises(UsageError, match=told):
+def test_pass_follows_a_pass_of_the_same_contact(first, changes, message):
+    with pytest.raises(UsageError, match=message):
         Simulation(running_in(**changes), after=first)
     assert Simulation(running_in(fluid__viscosity=0.003), after=first).pass_number == 2
 
 
-def test_a_pass_follows_one_that_is_over(first):
+def test_pass_follows_a_complete_pass(first):
     half = Simulation(running_in())
     with pytest.raises(UsageError, match="not at its end"):
         Simulation(running_in(), after=half)
@@ -142,48 +142,48 @@ def test_passes_are_counted_onwards(first):
         Simulation(running_in(), after=first, pass_number=1)
 
 
-def test_members_are_those_of_a_series(case):
+def test_members_need_a_series(case):
     with pytest.raises(CaseError, match=r"ridge.toml: no \[series\]"):
         ehlpetsc.members(case)
     assert len(ehlpetsc.members("cases/stribeck.toml")) > 2
 
 
 @pytest.mark.parametrize("window", [(1,), (1, 2, 3), "ab", 5, (2, -2), (float("nan"), 1.0), (5, 6)])
-def test_a_window_holds_nodes(result, window):
+def test_window_must_contain_nodes(result, window):
     with pytest.raises(UsageError, match="window = .*: allowed: two limits of x/a .* from -2.5 to 1.5"):
         result.plot(window=window)
 
 
 @pytest.mark.parametrize("options", [["-a"], {5: 1}, {"": 1}, {"snes_rtol": "a\0"}, {"snes_rtol": "\udcff"}])
-def test_options_are_texts_by_name(case, options):
+def test_options_must_be_text_by_name(case, options):
     with pytest.raises(UsageError, match="^options"):
         ehlpetsc.solve(case, options=options)
 
 
 @pytest.mark.parametrize("name", ["a\0b", "", "/tmp"])
-def test_an_output_is_the_name_of_a_file(case, name):
+def test_output_must_be_a_file_name(case, name):
     with pytest.raises(OutputError):
         ehlpetsc.solve(case, output=name)
 
 
 @pytest.mark.parametrize("given", [5, None, 0, 1.5])
-def test_a_case_is_a_file_or_a_dict(given):
+def test_case_must_be_a_file_or_a_dict(given):
     """A number would be taken for an open file: 0 is what is typed."""
     with pytest.raises(CaseError, match="allowed: the name of a TOML file"):
         ehlpetsc.load(given)
 
 
 @pytest.mark.parametrize("given", [5, [5], {5: 1}, ["contact.load"], [("contact.load", 1, 2)]])
-def test_overrides_are_settings(given):
+def test_overrides_must_be_settings(given):
     with pytest.raises(CaseError, match="allowed: table.key=value"):
         ehlpetsc.load("cases/ridge.toml", given)
 
 
-def test_one_override_may_be_a_text():
+def test_single_override_may_be_text():
     assert ehlpetsc.load("cases/ridge.toml", "contact.load=5e5").contact.load == 5e5
 
 
-def test_the_nearest_frame_is_near_to_something(result):
+def test_nearest_frame_needs_one_criterion(result):
     assert result.nearest_frame(step=3) == 3
     for given in ({}, {"step": 1, "time": 0.0}):
         with pytest.raises(OutputError, match="either time or step"):
@@ -202,12 +202,12 @@ def test_the_nearest_frame_is_near_to_something(result):
         ("comm", 0),
     ],
 )
-def test_an_argument_of_another_kind_is_named(case, name, value):
+def test_argument_of_wrong_type_is_named(case, name, value):
     with pytest.raises(UsageError, match=rf"^{name} = {value!r}: allowed: "):
         ehlpetsc.solve(case, **{name: value})
 
 
 @pytest.mark.parametrize("path", [5, None, b"x.h5"])
-def test_a_result_that_is_read_has_a_name(path):
+def test_read_result_needs_a_name(path):
     with pytest.raises(OutputError, match="allowed: the name of a result file"):
         ehlpetsc.read_result(path)

@@ -1,4 +1,4 @@
-"""What the README pages show is there and works: links, modules, the case file, the lines of a run."""
+"""README pages: links, modules, the case file and the output shown are current."""
 
 import re
 from pathlib import Path
@@ -22,7 +22,7 @@ def anchors(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_links_of_a_page_lead_somewhere(page):
+def test_page_links_exist(page):
     dead = []
     for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
         if target.startswith(("http://", "https://")):
@@ -35,14 +35,14 @@ def test_links_of_a_page_lead_somewhere(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_commands_of_a_page_are_modules(page):
+def test_commands_on_pages_are_modules(page):
     named = set(re.findall(r"python3 -m (ehlpetsc[\w.]*\w)", page.read_text(encoding="utf-8")))
     for module in named:
         path = ROOT.joinpath(*module.split("."))
         assert path.with_suffix(".py").exists() or (path / "__main__.py").exists(), module
 
 
-def test_files_that_the_map_names_exist():
+def test_files_of_the_program_map_exist():
     package = ROOT / "ehlpetsc"
     text = (package / "README.md").read_text(encoding="utf-8")
     folder = package
@@ -52,7 +52,7 @@ def test_files_that_the_map_names_exist():
         assert (folder / Path(name).name).exists() or (package / name).exists(), name
 
 
-def test_functions_that_the_map_names_exist():
+def test_functions_of_the_program_map_exist():
     """`module.function`, `Class.method`: both in one file."""
     package = ROOT / "ehlpetsc"
     sources = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
@@ -63,7 +63,7 @@ def test_functions_that_the_map_names_exist():
         assert any(re.search(rf"\b(def|class) {last}\b", text) for text in homes), name
 
 
-def test_every_case_is_told_with_its_picture():
+def test_every_case_is_described_with_its_picture():
     text, paper = ((ROOT / "cases" / page).read_text(encoding="utf-8") for page in ("README.md", "paper.md"))
     for case in sorted((ROOT / "cases").glob("*.toml")):
         if re.fullmatch(r"fig[1-7]", case.stem):
@@ -73,11 +73,11 @@ def test_every_case_is_told_with_its_picture():
             assert re.search(r"\(pictures/\w+\.png\)", row), case.name
 
 
-def test_the_main_page_is_one_page():
+def test_main_page_length_is_limited():
     assert len(MAIN.splitlines()) <= 150
 
 
-def test_the_case_file_shown_is_a_case(tmp_path):
+def test_case_file_on_the_page_is_valid(tmp_path):
     shown = re.search(r"```toml\n(.*?)```", MAIN, re.DOTALL)[1]
     path = tmp_path / "shown.toml"
     path.write_text(shown.replace("profiles/", f"{ROOT}/cases/profiles/"))
@@ -86,7 +86,7 @@ def test_the_case_file_shown_is_a_case(tmp_path):
     assert case.contact.model == "mixed" and "100 nodes per half-width" in MAIN
 
 
-def test_a_run_begins_with_the_lines_shown():
+def test_output_on_the_page_is_current():
     case = load(ROOT / "cases" / "mixed.toml", ())
     scales = Scales.of(case)
     lines = banner(case, scales, Roughness.of(case, scales), 1)

@@ -15,7 +15,7 @@ SCALARS = dict(dt=1.5e-7, newton=4, contacts=2, h_min=0.1234e-6, p_max=1.25e9)
 
 
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
+    """A stream with isatty() true."""
 
     def isatty(self):
         return True
@@ -38,7 +38,7 @@ def run(stream, clock, seconds_a_step, steps=100):
     return stream.getvalue()
 
 
-def test_lines_have_fixed_columns_and_are_few(clock):
+def test_progress_lines_are_few_with_fixed_columns(clock):
     lines = run(io.StringIO(), clock, seconds_a_step=1.0).splitlines()
     assert len(lines) == 1 + 20 + 1  # heading, one each five seconds, last
     assert len({len(line) for line in lines}) == 1
@@ -48,17 +48,17 @@ def test_lines_have_fixed_columns_and_are_few(clock):
     assert lines[-1].split()[::7] == ["100", "0s"]
 
 
-def test_time_to_go_is_not_told_before_it_can_be(clock):
-    """The first step waits 3 s for the compiler, those behind it take 10 ms: neither tells the rate of it."""
+def test_no_remaining_time_before_the_second_step(clock):
+    """The first step includes 3 s of compiling, the next take 10 ms: neither gives the rate."""
     progress = report.Progress(0.0, 1.0, stream := io.StringIO())
     for step in range(1, 601):
         clock.append(clock[-1] + (3.0 if step == 1 else 0.01))
         progress.step(SCALARS | {"step": step, "time": step * 1e-3})
-    told = [line.split()[-1] for line in stream.getvalue().splitlines()[1:]]
-    assert told == ["?", "5s"]  # of the latter 4.99 s
+    remaining = [line.split()[-1] for line in stream.getvalue().splitlines()[1:]]
+    assert remaining == ["?", "5s"]  # of the latter 4.99 s
 
 
-def test_time_to_go_follows_the_rate_of_late(clock):
+def test_remaining_time_follows_the_recent_rate(clock):
     """Smooth steps of 10 ms, then rough ones of 100 ms: at half of the run 50 s are left, not 27 s."""
     progress = report.Progress(0.0, 1.0, stream := io.StringIO())
     for step in range(1, 501):
@@ -69,22 +69,22 @@ def test_time_to_go_follows_the_rate_of_late(clock):
     assert last in ("49s", "50s", "51s")
 
 
-def test_a_quick_run_shows_its_first_and_last_step(clock):
+def test_quick_run_shows_first_and_last_step(clock):
     steps = [line.split()[0] for line in run(io.StringIO(), clock, seconds_a_step=1e-3).splitlines()[1:]]
     assert steps == ["1", "100"]
 
 
-def test_a_single_step_is_shown_once(clock):
+def test_single_step_is_shown_once(clock):
     assert len(run(io.StringIO(), clock, 1.0, steps=1).splitlines()) == 2
 
 
-def test_nothing_is_written_if_nothing_happened():
+def test_no_progress_line_without_steps():
     stream = io.StringIO()
     report.Progress(0.0, 1.0, stream).close()
     assert stream.getvalue() == ""
 
 
-def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
+def test_progress_bar_stays_on_one_line(clock, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("OMPI_COMM_WORLD_RANK", raising=False)
     monkeypatch.setenv("COLUMNS", "100")
@@ -100,7 +100,7 @@ def test_terminal_gets_a_bar_on_one_line(clock, monkeypatch):
 
 
 @pytest.mark.parametrize("where, watched", [("/dev/pts/3", True), ("/a/log", False), ("pipe:[17]", False)])
-def test_under_mpirun_its_own_output_tells_whether_someone_watches(monkeypatch, where, watched):
+def test_progress_bar_under_mpirun_needs_a_terminal(monkeypatch, where, watched):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "0")
     monkeypatch.setattr(report.os, "readlink", lambda path: where)
@@ -108,7 +108,7 @@ def test_under_mpirun_its_own_output_tells_whether_someone_watches(monkeypatch, 
     assert not report.on_terminal(io.StringIO())
 
 
-def test_narrow_terminal_is_not_overrun(clock, monkeypatch):
+def test_progress_bar_fits_a_narrow_terminal(clock, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("OMPI_COMM_WORLD_RANK", raising=False)
     monkeypatch.setenv("COLUMNS", "40")
@@ -129,11 +129,11 @@ def test_progress_of_a_restarted_run_counts_from_its_restart(clock):
     "seconds, text",
     [(0.4, "0s"), (59.4, "59s"), (59.6, "1m00s"), (725, "12m05s"), (12000, "3h20m"), (187200, "2d04h")],
 )
-def test_durations_read_well(seconds, text):
+def test_durations_are_formatted(seconds, text):
     assert report.duration(seconds) == text
 
 
-def test_summary_line_can_be_grepped_and_read_back():
+def test_summary_line_is_parsable():
     totals = Totals(
         dict(
             step=120,
@@ -167,7 +167,7 @@ def test_summary_line_can_be_grepped_and_read_back():
     )
 
 
-def test_a_notebook_has_one_bar_that_is_replaced(monkeypatch):
+def test_notebook_replaces_its_progress_bar(monkeypatch):
     """A carriage return would leave a line for each update in an executed notebook."""
     shown = []
 

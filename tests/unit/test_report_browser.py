@@ -41,22 +41,22 @@ def found(tmp_path_factory):
     return json.loads(answer)
 
 
-def test_it_opens_at_the_highest_pressure_without_an_error(found):
+def test_report_opens_at_the_highest_pressure(found):
     assert found["errors"] == []
     assert found["first"]["pressure"] == pytest.approx(1.4)
     assert found["first"]["when"] == "step 0, 0.000 µs, travel 0.00 a"
 
 
-def test_the_slider_shows_its_instant_and_marks_it_in_the_map(found):
+def test_slider_selects_the_instant_and_marks_the_map(found):
     assert found["second"]["when"].startswith("step 1, ") and found["second"]["line"] == 1.0
     assert found["second"]["pressure"] < found["first"]["pressure"]
 
 
-def test_a_click_into_the_map_shows_that_instant(found):
+def test_click_in_the_map_selects_the_instant(found):
     assert found["clicked"]["when"].startswith("step 20, ") and found["clicked"]["line"] == 20.0
 
 
-def test_dragging_zooms_and_charts_over_time_share_it(found):
+def test_zoom_is_shared_by_time_charts(found):
     (low, high), (first, second) = found["zoomed"], found["linked"]
     assert -1.0 < low < -0.5 < 0.5 < high < 1.0  # the middle half of -1.6 to 1.4
     assert first == second and first == pytest.approx([10.0, 30.0], abs=1.0)

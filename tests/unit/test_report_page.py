@@ -47,7 +47,7 @@ def page(tmp_path, capsys):
     return made
 
 
-def test_the_page_holds_the_fields_and_needs_no_network(tmp_path, page):
+def test_report_contains_fields_and_needs_no_network(tmp_path, page):
     path = with_solids(make_result(tmp_path / "r.h5", title="a <b> & </script>"))
     found, data = page(path)
     assert not [a for a in found.attributes if a[1] in ("src", "href", "srcset", "action")]
@@ -96,7 +96,7 @@ def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
         assert unpacked(highest["y"]).max() == pytest.approx(1e-9 * r.steps("p_max")[1:].max())
 
 
-def test_damage_of_the_file_beside_is_shown_in_decades(tmp_path, page):
+def test_report_shows_damage_in_decades(tmp_path, page):
     path = make_result(tmp_path / "r.h5", nodes=41, steps=3)
     with h5py.File(path) as result, h5py.File(tmp_path / "r.post.h5", "w") as file:
         file.attrs.update(a=2.0, case=result.attrs["case"])
@@ -110,7 +110,7 @@ def test_damage_of_the_file_beside_is_shown_in_decades(tmp_path, page):
     np.testing.assert_allclose(rows, [[-3, np.nan, -5], [np.nan, -7, -8]], rtol=1e-6)
 
 
-def test_steady_results_have_a_page_and_several_results_none(tmp_path, page, capsys):
+def test_report_accepts_one_steady_result_and_refuses_several(tmp_path, page, capsys):
     steady = make_result(tmp_path / "s.h5", steps=1)
     _, data = page(steady)
     assert data["steps"]["figures"] == [] and len(data["frames"]["step"]) == 1
@@ -118,7 +118,7 @@ def test_steady_results_have_a_page_and_several_results_none(tmp_path, page, cap
     assert "2 results; allowed: --report of one" in capsys.readouterr().err
 
 
-def test_without_plotly_one_sentence_names_its_package(tmp_path, monkeypatch, capsys):
+def test_missing_plotly_names_its_package(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(report, "has", lambda _: False)
     path = make_result(tmp_path / "r.h5")
     assert plot.main([str(path), "--report"]) == 2

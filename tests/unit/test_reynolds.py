@@ -67,7 +67,7 @@ def test_derivatives(extra, transient):
             np.testing.assert_allclose(found, expected, rtol=2e-6, atol=1e-7 * np.abs(values[column]).max())
 
 
-def test_a_part_has_the_rows_of_the_whole():
+def test_reynolds_rows_of_a_part_equal_the_whole():
     reynolds, inputs, n = rows_of([])
     q, h = state(n)
     inputs = with_history(inputs, reynolds, q, h)
@@ -80,7 +80,7 @@ def test_a_part_has_the_rows_of_the_whole():
         np.testing.assert_array_equal(part.columns, reynolds.columns[first:last])
 
 
-def test_a_part_without_oil_has_the_rows_of_the_whole():
+def test_reynolds_rows_of_a_part_without_oil_equal_the_whole():
     q = np.random.default_rng(7).uniform(-1.0, 1.0, 40)
     whole, part = NoOil(0, 40), NoOil(12, 30, start=10)
     (rows, entries), (some, of_part) = whole.evaluate(q, q, None), part.evaluate(q[10:], q[10:], None)
@@ -89,7 +89,7 @@ def test_a_part_without_oil_has_the_rows_of_the_whole():
     np.testing.assert_array_equal(part.columns, whole.columns[12:30])
 
 
-def test_the_sign_of_rounding_does_not_matter():
+def test_derivatives_do_not_depend_on_the_sign_of_rounding():
     """At ambient pressure, give or take rounding, a node is full of oil: derivatives as from above."""
     reynolds, inputs, n = rows_of([])
     q, h = state(n)

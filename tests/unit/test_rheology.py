@@ -37,7 +37,7 @@ GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
         (0.001, [0.001, 0.113767, 6.14164, 7115.26, 1.63311e9]),
     ],
 )
-def test_seed_viscosity(eta0, values):
+def test_roelands_viscosity_by_reference_constants(eta0, values):
     ln_eta, _ = rheology.viscosity(GPA, oil(viscosity=eta0))
     np.testing.assert_allclose(eta0 * np.exp(ln_eta), values, rtol=5e-6)
 

@@ -32,7 +32,7 @@ def rough(name, *overrides):
     return Roughness.of(c, scales), scales
 
 
-def test_measured_profiles_have_the_roughness_their_readme_gives():
+def test_measured_profiles_have_their_published_roughness():
     X, z, _ = read_profile(ALICONA)
     assert np.abs(z - z.mean()).mean() == pytest.approx(0.157e-6, abs=0.0005e-6)
     assert np.diff(X) == pytest.approx(0.5e-6)
@@ -41,7 +41,7 @@ def test_measured_profiles_have_the_roughness_their_readme_gives():
     assert np.abs(high_pass(X, z, 0.8e-3)).mean() == pytest.approx(0.018e-6, abs=0.0005e-6)
 
 
-def test_levelling_removes_a_line_and_nothing_else():
+def test_levelling_removes_a_line_only():
     x = np.linspace(0, 1e-3, 401)
     wave = 1e-7 * np.cos(2 * np.pi * x / 1e-4)
     flat = levelled(x, wave + 2e-6 + 1e-3 * x)
@@ -68,13 +68,13 @@ def test_the_short_cutoff_has_the_transmission_of_iso_16610_21(cutoff, ratio, le
     np.testing.assert_allclose(low_pass(x, wave, cutoff), left * wave, atol=1e-12)
 
 
-def test_both_filters_share_what_there_is():
+def test_long_and_short_filters_are_complementary():
     x = np.arange(500) * 1e-6
     z = np.random.default_rng(1).standard_normal(500)
     np.testing.assert_allclose(high_pass(x, z, 30e-6) + low_pass(x, z, 30e-6), z, atol=1e-14)
 
 
-def test_the_short_cutoff_tells_ra_before_and_after():
+def test_short_cutoff_note_gives_ra_before_and_after():
     base, _ = rough("table1_rough.toml")
     smoothed, _ = rough("table1_rough.toml", "surface.1.short_cutoff=10e-6")
     (note,) = smoothed.surface_1.given.notes
@@ -84,7 +84,7 @@ def test_the_short_cutoff_tells_ra_before_and_after():
     assert base.surface_1.given.notes == ()
 
 
-def test_the_filter_refuses_what_it_cannot_filter():
+def test_invalid_filter_input_is_refused():
     x = np.array([0, 1, 3, 4, 5]) * 1e-6
     with pytest.raises(ProfileError, match="equally spaced"):
         high_pass(x, x, 2e-6)
@@ -94,7 +94,7 @@ def test_the_filter_refuses_what_it_cannot_filter():
         low_pass(np.arange(5) * 1e-6, np.zeros(5), 1.9e-6)
 
 
-def test_keys_of_a_surface_act_in_their_order():
+def test_surface_keys_are_applied_in_order():
     base, _ = rough("table1_rough.toml")
     flipped, _ = rough("table1_rough.toml", "surface.1.flip=true")
     np.testing.assert_array_equal(flipped.surface_1.heights, base.surface_1.heights[::-1])
@@ -105,7 +105,7 @@ def test_keys_of_a_surface_act_in_their_order():
     assert filtered.surface_1.rq < 0.7 * base.surface_1.rq
 
 
-def test_body_points_carry_their_heights_with_them():
+def test_heights_move_with_body_points():
     x = np.linspace(-2.5, 1.5, 801) * A
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=2.0, duration=3e-3)
@@ -117,7 +117,7 @@ def test_body_points_carry_their_heights_with_them():
     np.testing.assert_allclose(later, at, atol=1e-17)
 
 
-def test_the_mean_over_a_cell_is_that_of_the_polynomial():
+def test_cell_mean_of_a_polynomial():
     # a clamped cubic spline is exact for a cubic level at both ends; beside x = 0 and l it is mirrored
     X = np.linspace(0.0, 1.0, 6) * A
     p = profile(X, 1e-7 * (3 * (X / A) ** 2 - 2 * (X / A) ** 3), moving=False)
@@ -137,7 +137,7 @@ def _cubic_integral(x):
 
 
 @pytest.mark.parametrize("nodes", [2.3, 8.0, 64.0])  # a wavelength
-def test_the_mean_over_a_cell_of_a_wave_is_the_wave_times_its_sinc(nodes):
+def test_cell_mean_of_a_wave_is_its_sinc(nodes):
     X = np.linspace(0.0, 0.5e-4, 2001)  # half a wave: mirrored it is whole
     p = profile(X, 1e-7 * np.cos(2 * np.pi * X / 1e-4), speed=3.0, duration=1.0)
     dx = 1e-4 / nodes
@@ -148,7 +148,7 @@ def test_the_mean_over_a_cell_of_a_wave_is_the_wave_times_its_sinc(nodes):
     )
 
 
-def test_the_mean_over_cells_keeps_the_volume_of_a_lone_ridge():
+def test_cell_means_conserve_the_volume_of_a_ridge():
     X = np.linspace(0.4, 0.6, 101) * A
     z = 1e-7 * np.exp(-(((X / A - 0.5) / 0.02) ** 2))
     p = profile(X, z, speed=1.0, repeats=False)
@@ -158,7 +158,7 @@ def test_the_mean_over_cells_keeps_the_volume_of_a_lone_ridge():
         assert volume == pytest.approx(1e-7 * 0.02 * A * np.sqrt(np.pi), rel=1e-6)
 
 
-def test_the_mean_over_a_cell_has_its_ramp_and_goes_to_the_value():
+def test_cell_mean_has_a_ramp_and_converges():
     X, z, _ = read_profile(ALICONA)
     for speed in (2.0, -2.0):
         p = profile(X, z, speed=speed)
@@ -169,7 +169,7 @@ def test_the_mean_over_a_cell_has_its_ramp_and_goes_to_the_value():
     assert (profile(X, z).mean_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
 
 
-def test_the_profile_enters_at_the_inlet_from_its_first_point():
+def test_profile_enters_at_the_inlet_with_its_first_point():
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=2.0)
     inlet, t = -2.5 * A, 4e-4
@@ -180,7 +180,7 @@ def test_the_profile_enters_at_the_inlet_from_its_first_point():
     assert (Roughness(p, p).phi(np.linspace(-2.5, 1.5, 100) * A, 0.0) == 0.0).all()
 
 
-def test_nothing_jumps_where_the_profile_begins():
+def test_height_is_continuous_where_the_profile_begins():
     X = np.arange(4000) * 0.5e-6
     p = profile(X, np.full(X.size, 1e-6))
     s = -2.5 * A - np.linspace(-0.01, 0.11, 12001) * A
@@ -193,7 +193,7 @@ def test_nothing_jumps_where_the_profile_begins():
     assert np.abs(np.diff(curvature)).max() < 0.02 * np.abs(curvature).max()
 
 
-def test_a_short_profile_continues_mirrored_without_kink():
+def test_short_profile_is_mirrored_smoothly():
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=1.0)
     d = np.linspace(0, 1e-5, 50)
@@ -204,7 +204,7 @@ def test_a_short_profile_continues_mirrored_without_kink():
         assert abs(np.diff(beside)[0]) < 2e-3 * 1e-9  # level at the end, where slopes elsewhere reach 0.2
 
 
-def test_a_surface_moving_backwards_enters_at_the_outlet():
+def test_backward_moving_surface_enters_at_the_outlet():
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=-2.0)
     t, at = 4e-4, np.arange(0.2e-3, 0.8e-3, 0.5e-6)
@@ -214,14 +214,14 @@ def test_a_surface_moving_backwards_enters_at_the_outlet():
 
 
 @pytest.mark.parametrize(("speed", "moving"), [(0.0, True), (3.0, False)])
-def test_at_rest_or_steady_it_lies_under_the_whole_domain(speed, moving):
+def test_stationary_profile_covers_the_domain(speed, moving):
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=speed, moving=moving)
     np.testing.assert_allclose(p.height(-2.5 * A + X), z, atol=1e-15)
     assert (p.s[0], p.s[-1]) == pytest.approx((-2.5 * A, 1.5 * A))
 
 
-def test_stored_samples_are_the_heights_used():
+def test_stored_profile_equals_the_heights_used():
     r, scales = rough("table1_rough.toml")
     for p in (r.surface_1, r.surface_2):
         assert np.diff(p.s) == pytest.approx(0.5e-6)
@@ -239,7 +239,7 @@ def test_smooth_surfaces_have_no_roughness_and_load_no_spline():
     assert r.surface_1 is None and r.surface_2 is not None
 
 
-def test_the_ridge_case_is_the_gaussian_of_its_description():
+def test_ridge_case_is_its_gaussian():
     r, s = rough("ridge.toml")
     t = (2.5 + 0.4) * s.a / s.u2  # centre at x = 0
     x = np.linspace(-0.5, 0.5, 401) * s.a
@@ -247,14 +247,14 @@ def test_the_ridge_case_is_the_gaussian_of_its_description():
     assert np.abs(r.phi(s.x * s.a, t)).max() == pytest.approx(0.1e-6)
 
 
-def test_a_dent_is_a_ridge_turned_over():
+def test_dent_is_a_negative_ridge():
     ridge, s = rough("ridge.toml")
     dent, _ = rough("ridge.toml", "surface.2.synthetic.kind='dent'")
     x, t = s.x * s.a, 2.9 * s.a / s.u2
     np.testing.assert_array_equal(dent.phi(x, t), -ridge.phi(x, t))
 
 
-def test_a_wave_goes_on_for_ever_with_its_amplitude():
+def test_wave_continues_with_its_amplitude():
     wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, wavelength=2e-5}"
     r, s = rough("table1_smooth.toml", wave, "time.travel=30")
     t = 20 * s.a / s.u2
@@ -264,7 +264,7 @@ def test_a_wave_goes_on_for_ever_with_its_amplitude():
     assert r.surface_2.rq == pytest.approx(1e-7 / np.sqrt(2), rel=0.02)
 
 
-def test_a_square_wave_stays_within_its_amplitude():
+def test_square_wave_stays_within_its_amplitude():
     r, s = rough("table1_smooth.toml", "surface.2.synthetic={kind='square', amplitude=1e-7, wavelength=1e-4}")
     z = r.phi(np.linspace(-4, 1.5, 20001) * s.a, 0.0)
     assert np.abs(z).max() <= 1e-7 * (1 + 1e-6)
@@ -272,7 +272,7 @@ def test_a_square_wave_stays_within_its_amplitude():
 
 
 @pytest.mark.parametrize("skewness", [-1.5, -0.5, 0.0, 1.0])
-def test_ground_heights_have_what_is_asked_for(skewness):
+def test_ground_heights_have_their_specified_statistics(skewness):
     spec = f"{{kind='ground', ra=0.3e-6, correlation=25e-6, skewness={skewness}, seed=4}}"
     r, _ = rough("table1_smooth.toml", f"surface.2.synthetic={spec}")
     assert r.surface_2.ra == pytest.approx(0.3e-6)
@@ -281,7 +281,7 @@ def test_ground_heights_have_what_is_asked_for(skewness):
     assert z[10:] @ z[:-10] / (z @ z) == pytest.approx(np.exp(-1), abs=0.1)  # one correlation length apart
 
 
-def test_ground_heights_depend_on_their_seed_alone():
+def test_ground_heights_depend_on_their_seed_only():
     spec = "surface.2.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
     first, again, other = (
         rough("table1_smooth.toml", spec.format(seed), travel)[0].surface_2.heights
@@ -291,7 +291,7 @@ def test_ground_heights_depend_on_their_seed_alone():
     assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
 
 
-def test_a_coarse_mesh_is_told_with_its_figure():
+def test_coarse_mesh_note_has_its_figure():
     for points, share in ((200, None), (100, "7.3 %"), (50, "51.1 %")):
         c = case.load(CASES / "table1_rough.toml", [f"mesh.points_per_half_width={points}"])
         scales = Scales.of(c)
@@ -300,7 +300,7 @@ def test_a_coarse_mesh_is_told_with_its_figure():
     assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
 
 
-def test_the_share_of_short_waves_is_that_of_the_variance():
+def test_fraction_of_short_waves_is_that_of_the_variance():
     X = np.arange(8193) * 1e-6
     z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)
     p = profile(X, z)
@@ -308,7 +308,7 @@ def test_the_share_of_short_waves_is_that_of_the_variance():
     assert p.unresolved_variance(3.9e-6) < 1e-3
 
 
-def test_a_constant_offset_is_taken_off_and_told(tmp_path):
+def test_constant_offset_is_removed_with_a_note(tmp_path):
     X, z, _ = read_profile(ALICONA)
     np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
     spec = SurfaceProfile(file="p.csv", scale=0.5)
@@ -318,7 +318,7 @@ def test_a_constant_offset_is_taken_off_and_told(tmp_path):
     assert samples(ALICONA.parent, SurfaceProfile(file=ALICONA.name)).notes == ()
 
 
-def test_spikes_narrower_than_a_cell_are_told_and_asperities_are_not():
+def test_spikes_narrower_than_a_cell_are_a_warning():
     X, z, _ = read_profile(ALICONA)
     assert spikes(Samples(X, z, True, True), 3.4e-6)[0] == 0
     z = z.copy()
@@ -329,7 +329,7 @@ def test_spikes_narrower_than_a_cell_are_told_and_asperities_are_not():
     assert spikes(Samples(X, z, True, True), 0.2e-6)[0] == 0  # a mesh finer than the profile carries it
 
 
-def test_the_travel_at_which_a_profile_comes_and_fills():
+def test_travel_to_entry_and_filling():
     r, s = rough("table1_rough.toml")  # inlet -2.5 a, slide/roll ratio 0.25: 5.625 and 4.375 m/s
     assert entry_times(r.surface_1, s) == pytest.approx((1.5, 3.5 + RAMP_LENGTH))
     assert entry_times(r.surface_2, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP_LENGTH) * 9 / 7))

@@ -1,4 +1,4 @@
-"""run_mpi.sh: what it refuses, what it hands on, and how, with a stand-in for mpirun's program."""
+"""run_mpi.sh: refused arguments, arguments and signals passed on, with a stand-in for the program."""
 
 import os
 import re
@@ -55,7 +55,7 @@ def script(tmp_path):
 
 
 @pytest.mark.parametrize("worth", [1, 2])
-def test_the_ranks_that_a_case_is_worth_in_the_callers_folder_with_debians_python(script, worth):
+def test_default_ranks_folder_and_python(script, worth):
     done = script("my case.toml", WORTH=str(worth))
     assert done.returncode == 0
     assert f"ARGS ['my case.toml'] SIZE {worth}" in done.stdout
@@ -64,26 +64,26 @@ def test_the_ranks_that_a_case_is_worth_in_the_callers_folder_with_debians_pytho
     assert done.stderr == ""
 
 
-def test_options_after_the_case_are_petscs(script):
+def test_options_after_the_case_are_passed_on(script):
     options = ["-n", "7", "-h", "-snes_monitor", "-options_left", "-ehl_set", "title=two words"]
     done = script("-n", "1", "case.toml", *options)
     assert f"ARGS {['case.toml', *options]} SIZE 1" in done.stdout
 
 
-def test_more_ranks_than_cores_run(script):
+def test_oversubscribed_ranks_run(script):
     ranks = len(os.sched_getaffinity(0)) + 1
     assert f"SIZE {ranks}" in script("-n", str(ranks), "case.toml").stdout
 
 
 @pytest.mark.parametrize("status", [1, 4])
-def test_the_exit_status_is_that_of_the_run_without_comment(script, status):
+def test_exit_status_is_passed_on_silently(script, status):
     done = script("case.toml", STATUS=str(status), **AT_ONCE)
     assert done.returncode == status
     assert done.stderr == ""
 
 
-def test_a_reader_that_goes_does_not_end_the_run(script, tmp_path):
-    """As `| head -1`: mpirun would end the ranks, with a status of its own."""
+def test_closed_reader_does_not_end_the_run(script, tmp_path):
+    """As with `| head -1`: mpirun would end the ranks with a status of its own."""
     talk = "for k in range(20000):\n    print(f'line {k}', flush=True)\nopen('end', 'w').close()\n"
     (tmp_path / "ehlpetsc" / "__main__.py").write_text(talk)
     line = f"set -o pipefail; {tmp_path}/run_mpi.sh -n 1 case.toml | head -1"
@@ -97,21 +97,21 @@ def test_a_reader_that_goes_does_not_end_the_run(script, tmp_path):
 WAITING = """\
 import os, pathlib, signal, sys, time
 from mpi4py import MPI
-told = []
-signal.signal(signal.SIGUSR1, lambda number, frame: told.append(number))
+received = []
+signal.signal(signal.SIGUSR1, lambda number, frame: received.append(number))
 pathlib.Path(f"ready{MPI.COMM_WORLD.rank}").touch()
-while not MPI.COMM_WORLD.allreduce(len(told)) or "deaf" in sys.argv:
+while not MPI.COMM_WORLD.allreduce(len(received)) or "deaf" in sys.argv:
     time.sleep(0.05)
-print("RANK", MPI.COMM_WORLD.rank, "TOLD", flush=True)
+print("RANK", MPI.COMM_WORLD.rank, "SIGNALLED", flush=True)
 sys.exit(4)
 """
 
 
 @pytest.mark.parametrize("name, ranks", [("SIGINT", 1), ("SIGUSR1", 1), ("SIGTERM", 2)])
-def test_a_signal_is_handed_on_to_every_rank_and_the_status_is_theirs(script, tmp_path, name, ranks):
+def test_signal_reaches_every_rank(script, tmp_path, name, ranks):
     done = signalled(script, tmp_path, ranks, [name], "case.toml")
     assert done.returncode == 4, done.stderr
-    assert sorted(done.stdout.splitlines()) == [f"RANK {rank} TOLD" for rank in range(ranks)]
+    assert sorted(done.stdout.splitlines()) == [f"RANK {rank} SIGNALLED" for rank in range(ranks)]
     assert done.stderr == ""
 
 
@@ -119,29 +119,29 @@ NOT_BEGUN = "run_mpi.sh: stopped before the run had begun; nothing to continue f
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_signal_before_the_run_has_begun(script, tmp_path, name):
-    """To the script while it looks for what there is, and to ranks that do not listen yet."""
+def test_signal_before_the_start_ends_with_status_4(script, tmp_path, name):
+    """To the script while it looks for packages, and to ranks without a signal handler."""
     for wait in (False, True):
         program = "import pathlib, time\npathlib.Path('ready0').touch()\ntime.sleep(30)\n"
         done = signalled(script, tmp_path, 1, [name], "case.toml", program=program, wait=wait)
         assert (done.returncode, done.stdout, done.stderr) == (4, "", NOT_BEGUN)
 
 
-def test_a_signal_that_mpirun_loses_is_said_again(script, tmp_path):
-    """It loses those that come before its ranks are there; here a rank that takes the second one alone."""
-    program = WAITING.replace("while not MPI.COMM_WORLD.allreduce(len(told))", "while len(told) < 2")
+def test_lost_signal_is_repeated(script, tmp_path):
+    """mpirun loses signals sent before its ranks start; this rank ends at its second signal."""
+    program = WAITING.replace("while not MPI.COMM_WORLD.allreduce(len(received))", "while len(received) < 2")
     done = signalled(script, tmp_path, 1, ["SIGTERM"], "case.toml", program=program)
-    assert (done.returncode, done.stdout, done.stderr) == (4, "RANK 0 TOLD\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (4, "RANK 0 SIGNALLED\n", "")
 
 
-def test_a_second_signal_ends_ranks_that_do_not_listen(script, tmp_path):
+def test_second_signal_kills_unresponsive_ranks(script, tmp_path):
     done = signalled(script, tmp_path, 2, ["SIGTERM", "SIGTERM"], "deaf")
     assert done.returncode == 143
     assert done.stderr.endswith("run_mpi.sh: a rank was ended by signal 15\n")
 
 
 def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=True):
-    """Run the script and send it signals, once all ranks are there or as soon as it listens."""
+    """Run the script and send it signals, once all ranks have started or as soon as it has a handler."""
     (tmp_path / "ehlpetsc" / "__main__.py").write_text(program)
     command = [tmp_path / "run_mpi.sh", "-n", str(ranks), *arguments]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
@@ -165,12 +165,12 @@ def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=
 
 
 def catches(pid, number):
-    """Whether a process has said what a signal is to do."""
+    """Whether a process has a handler of a signal."""
     status = Path(f"/proc/{pid}/status").read_text()
     return int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16) >> (number - 1) & 1
 
 
-def test_leftovers_of_another_python_do_not_matter(script):
+def test_environment_of_another_python_is_ignored(script):
     done = script(
         "case.toml",
         PYTHONHOME="/nowhere",
@@ -201,7 +201,7 @@ def test_usage(script):
 
 @pytest.fixture
 def machine(script, tmp_path):
-    """The same without a package, on a system of any name; apt-get and id of our own."""
+    """The script without a package on a system of any name, with stand-ins for apt-get and id."""
     tools, log = tmp_path / "tools", tmp_path / "log"
     tools.mkdir()
     for name, body in (("apt-get", f'echo "$@" >>{log}'), ("id", 'echo "$USER_ID"')):
@@ -225,7 +225,7 @@ ELSEWHERE = 'ID=rocky\nVERSION_ID="9.4"\nPRETTY_NAME="Rocky Linux 9.4"\n'
 
 
 @pytest.mark.parametrize("system", [DEBIAN, DEBIAN.replace("13", "12"), "ID=debian\n"])
-def test_a_user_is_shown_the_command(machine, system):
+def test_user_without_root_gets_the_install_command(machine, system):
     done, typed = machine(1000, system)
     install = "apt-get install -y --no-install-recommends python3-nonesuch"
     assert done.returncode == 2
@@ -233,7 +233,7 @@ def test_a_user_is_shown_the_command(machine, system):
     assert typed == []
 
 
-def test_root_runs_it_and_waits_for_a_lock(machine):
+def test_root_installs_and_waits_for_the_apt_lock(machine):
     done, (update, install) = machine(0, DEBIAN)
     assert "installing python3-nonesuch" in done.stderr
     assert update == "-o DPkg::Lock::Timeout=600 update"
@@ -244,7 +244,7 @@ def test_root_runs_it_and_waits_for_a_lock(machine):
 
 
 @pytest.mark.parametrize("system", [ELSEWHERE, DEBIAN.replace("13", "11"), ""])
-def test_another_machine_is_told_what_was_found_and_what_is_needed(machine, system):
+def test_other_system_lists_found_and_required_packages(machine, system):
     done, typed = machine(0, system)
     assert done.returncode == 2
     assert done.stdout == "" and typed == []
@@ -261,14 +261,14 @@ def test_another_machine_is_told_what_was_found_and_what_is_needed(machine, syst
     assert ("Rocky Linux 9.4" in done.stderr) == (system == ELSEWHERE)
 
 
-def test_what_is_there_is_used_wherever_it_is(machine):
+def test_installed_packages_are_used_on_any_system(machine):
     done, typed = machine(0, ELSEWHERE, wanted="")
     assert done.returncode == 0
     assert "SIZE 2" in done.stdout
     assert typed == []
 
 
-def test_a_python_on_the_path_that_has_everything_is_used_as_it_is(script, tmp_path):
+def test_complete_python_on_the_path_is_used(script, tmp_path):
     debians = next(Path("/usr/lib/petscdir").glob("petsc*/*-real/lib/python3/dist-packages/petsc4py"))
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "petsc4py").symlink_to(debians)  # as of another PETSc: not on Debian's path
@@ -286,7 +286,7 @@ def test_a_python_on_the_path_that_has_everything_is_used_as_it_is(script, tmp_p
 
 
 @pytest.mark.parametrize("nodes, alone", [("1", True), ("2", False)])
-def test_mpi_is_kept_on_the_machine_only_where_it_is_the_only_one(script, nodes, alone):
+def test_mpi_uses_shared_memory_only_on_a_single_node(script, nodes, alone):
     done = script("-n", "1", "case.toml", SLURM_JOB_NUM_NODES=nodes)
     assert ("'OMPI_MCA_btl'" in done.stdout, "'PMIX_MCA_psec'" in done.stdout) == (alone, alone)
 
@@ -294,7 +294,7 @@ def test_mpi_is_kept_on_the_machine_only_where_it_is_the_only_one(script, nodes,
 COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
 
 
-def test_the_commands_are_put_into_a_folder_and_called_by_name_from_any(script, tmp_path):
+def test_command_links_work_in_any_folder(script, tmp_path):
     folder = tmp_path / "some where" / "bin"
     for _ in range(2):  # the second time they are there
         done = script("--commands", str(folder))
@@ -315,7 +315,7 @@ def test_the_commands_are_put_into_a_folder_and_called_by_name_from_any(script, 
         assert called.stdout == f"{[name, '-n', 'a b']} {tmp_path}/elsewhere\n", called.stderr
 
 
-def test_the_commands_replace_nothing_else_of_their_names(script, tmp_path):
+def test_command_links_replace_no_other_file(script, tmp_path):
     (tmp_path / "ehlpetsc-post").write_text("another program")
     (tmp_path / "ehlpetsc-plot").symlink_to("nowhere/run_mpi.sh")  # of a clone that was moved
     done = script("--commands", str(tmp_path))
@@ -334,7 +334,7 @@ def test_the_commands_replace_nothing_else_of_their_names(script, tmp_path):
 
 
 @pytest.mark.parametrize("folder", [[], [""], ["/proc/nonesuch"], ["/etc/hostname"]])
-def test_a_folder_that_cannot_be_written_to_is_refused(script, folder):
+def test_unwritable_link_folder_is_refused(script, folder):
     done = script("--commands", *folder)
     assert done.returncode == 2
     assert done.stderr.startswith(

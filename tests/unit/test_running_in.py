@@ -14,12 +14,12 @@ from ehlpetsc.results.running_in import passes_to_run_in
         ([0.0, 0.0], None),
     ],
 )
-def test_surfaces_have_run_in_where_no_later_pass_adds_more(added, number):
+def test_running_in_ends_where_no_later_pass_adds_more(added, number):
     rows = [{"pass": k, "added": value} for k, value in enumerate(added, 1)]
     assert passes_to_run_in(rows) == number
 
 
-def test_one_shifted_pass_that_adds_little_says_nothing():
+def test_one_small_shifted_pass_does_not_end_running_in():
     rows = [{"pass": k, "added": value} for k, value in enumerate([10.0, 1.0, *12 * [0.05]], 1)]
     assert passes_to_run_in(rows[:3], 10) is None
     assert passes_to_run_in(rows, 10) == 3

@@ -14,23 +14,23 @@ def scales(name, *overrides):
     return Scales.of(case.load(CASES / name, overrides))
 
 
-def test_table_1_gives_its_modulus_half_width_and_pressure():
+def test_table_1_modulus_half_width_and_pressure():
     s = scales("table1_smooth.toml")
     assert s.E == pytest.approx(227.4725e9, rel=1e-6)
     assert s.a == pytest.approx(0.335682e-3, rel=2e-6)
     assert s.p0 == pytest.approx(0.999455e9, rel=1e-6)
 
 
-def test_hertz_pressure_carries_the_load():
+def test_hertz_pressure_integrates_to_the_load():
     s = scales("table1_smooth.toml")
     assert math.pi / 2 * s.a * s.p0 == pytest.approx(s.load, rel=1e-14)
 
 
-def test_a_rigid_solid_leaves_the_other_one_to_deflect():
+def test_rigid_solid_leaves_the_modulus_of_the_other():
     assert reduced_modulus((207e9, 1e30), (0.3, 0.3)) == pytest.approx(2 * 207e9 / 0.91, rel=1e-12)
 
 
-def test_the_moes_case_has_the_groups_of_its_title():
+def test_moes_case_has_the_groups_of_its_title():
     s = scales("moes.toml")
     assert (s.moes_m, s.moes_l) == pytest.approx((20, 10), rel=1e-9)
     s = scales("moes.toml", "contact.load=2.09915459e6", "fluid.viscosity=0.01014206817")
@@ -69,7 +69,7 @@ def test_nodes_run_from_inlet_to_outlet():
     assert s.dx == pytest.approx(s.a / 200)
 
 
-def test_a_dry_case_has_no_lubricant_groups_and_a_steady_one_no_step():
+def test_dry_case_has_no_lubricant_groups_and_steady_case_no_step():
     s = scales("dry_hertz.toml")
     assert (s.eta0, s.moes_m, s.moes_l, s.dt, s.duration) == (None,) * 5
     assert (s.u, s.u1, s.u2) == (0, 0, 0)

@@ -37,7 +37,7 @@ def test_files_are_named_after_output_and_value(tmp_path):
     assert last.restart == tmp_path / "out_viscosity_0.001.restart.h5"
 
 
-def test_tables_are_named_by_what_differs_in_them(tmp_path):
+def test_table_values_are_named_by_differing_keys(tmp_path):
     key = "series.key='surface.2.synthetic'"
     one, two = (f"{{kind='sine',amplitude={z},wavelength=1e-4}}" for z in ("1e-7", "2e-7"))
     values = f"series.values=[{one},{two}]"
@@ -45,7 +45,7 @@ def test_tables_are_named_by_what_differs_in_them(tmp_path):
     assert names == ["out_amplitude_1e-07.h5", "out_amplitude_2e-07.h5"]
 
 
-def test_values_that_make_no_name_are_numbered(tmp_path):
+def test_values_without_a_short_name_are_numbered(tmp_path):
     key, values = "series.key='contact.youngs_modulus'", "series.values=[[2e11,2e11],[2e11,3e11]]"
     names = [m.output.name for m in series(tmp_path, key, values)]
     assert names == ["out_youngs_modulus_1.h5", "out_youngs_modulus_2.h5"]
@@ -71,7 +71,7 @@ def test_several_keys_make_a_grid(tmp_path):
     assert len({m.output for m in found}) == 6
 
 
-def test_several_keys_go_in_step(tmp_path):
+def test_several_keys_vary_together(tmp_path):
     found = several(tmp_path, [[0.01, 0.002, 0.002], [5.0, 5.0, 5.0]], "step")
     assert [m.value for m in found] == [(0.01, 5.0), (0.002, 5.0), (0.002, 5.0)]
     # only viscosity differs, and that makes one name twice
@@ -99,14 +99,14 @@ def test_faulty_series_of_several_keys_are_refused(changed, words):
         load("cases/fig4.toml", good | changed)
 
 
-def test_the_longest_runs_come_first(tmp_path):
+def test_longest_members_run_first(tmp_path):
     thin, thick = (next(m for m in series(tmp_path) if m.value == value) for value in (0.001, 0.01))
     assert thin.weight() > thick.weight()
     fine = series(tmp_path, "series.key='mesh.points_per_half_width'", "series.values=[100,200]")
     assert fine[1].weight()[0] == pytest.approx(4 * fine[0].weight()[0], rel=0.01)
 
 
-def test_a_whole_file_of_the_same_case_is_done(tmp_path, monkeypatch):
+def test_complete_result_of_the_same_case_is_done(tmp_path, monkeypatch):
     member = series(tmp_path)[0]
     assert member.state_of_files() == "waiting" and member.totals().values == {}
     make_result(member.output)
@@ -125,7 +125,7 @@ def test_a_whole_file_of_the_same_case_is_done(tmp_path, monkeypatch):
     assert member.state_of_files() == "waiting"  # and no restart file to go on with
 
 
-def test_sums_and_extremes_of_the_whole():
+def test_series_sums_and_extremes():
     one = dict(step=3, newton=10, h_min=1e-7, p_max=1e9, contacts=2, load_error=1e-9, mass_error=0.1)
     two = dict(step=4, newton=20, h_min=0.0, p_max=2e9, contacts=5, load_error=1e-8, mass_error=0.0)
     whole = Totals.of_series([Totals(one), Totals(), Totals(two)])
@@ -135,7 +135,7 @@ def test_sums_and_extremes_of_the_whole():
     assert str(Totals.of_series([Totals()])).startswith("steps=0 newton=0 ")
 
 
-def test_a_series_has_no_value_of_one_members_last_step():
+def test_series_summary_has_no_last_step_values():
     one = Totals(
         dict(step=3, friction_coefficient=0.05, set_volume=1e-12, contact_share=0.1), dict(contact_share=0.02)
     )
@@ -162,7 +162,7 @@ def test_means_are_over_the_time_in_which_both_surfaces_fill_the_contact(tmp_pat
         assert steady["contact_share"] == result.steps("contact_share")[0]
 
 
-def test_totals_of_steps_are_those_of_their_file(tmp_path):
+def test_step_totals_equal_those_of_the_file(tmp_path):
     totals = Totals()
     with read_result(make_result(tmp_path / "r.h5")) as result:
         for row in range(len(result.steps("step"))):
@@ -173,13 +173,13 @@ def test_totals_of_steps_are_those_of_their_file(tmp_path):
 
 
 @pytest.mark.parametrize("every", [1, 7, 10**9])
-def test_frames_are_those_of_every_so_many_steps(every):
+def test_stored_frames_follow_output_every(every):
     nominal = 0.37e-6
     stored = [k for k in range(50) if on_level(k * nominal / nominal, every)]
     assert stored == list(range(0, 50, every)) and not on_level(7.5, every)
 
 
-def test_lines_are_named(capsys):
+def test_member_lines_are_labelled(capsys):
     import sys
 
     stream = PrefixedStream("xi=1", sys.stdout)
@@ -188,7 +188,7 @@ def test_lines_are_named(capsys):
 
 
 @pytest.mark.parametrize("halvings", [1, 2, 5, 9])
-def test_halved_steps_come_back_to_the_levels_of_the_nominal_step(halvings):
+def test_halved_steps_return_to_nominal_levels(halvings):
     nominal = 0.37e-6
     operation = ConstantOperation(Conditions(1.0, 1.0, 1.0, 1.0), 1.0)
     time, dt, retries = 7 * nominal, nominal, 0

@@ -18,13 +18,13 @@ def warned(times, ranks=2):
 
 
 @pytest.mark.parametrize("ranks, cure", [(1, "other work"), (2, "-n 1")])
-def test_a_run_that_slows_down_is_warned_of_once(ranks, cure):
+def test_slow_run_is_warned_of_once(ranks, cure):
     begun, later = [0.004] * MEDIAN_STEPS, [0.004 * 1.5 * SLOWDOWN] * (4 * MEDIAN_STEPS)
     (line,) = warned(begun + later, ranks)
     assert line.startswith("warning: an iteration takes 4.5 ms, 4.5 times") and cure in line
 
 
-def test_contact_and_single_slow_steps_are_no_reason():
+def test_contact_and_single_slow_steps_are_no_warning():
     begun = [0.004] * MEDIAN_STEPS
     assert warned(begun + [0.8 * SLOWDOWN * 0.004] * (4 * MEDIAN_STEPS)) == []
     assert warned((begun + [1.0]) * 5) == []

@@ -12,7 +12,7 @@ def pairs(*values):
     return np.array(values, dtype=float)
 
 
-def test_largest_change_is_of_pressures_in_oil():
+def test_pressure_change_is_limited_in_oil():
     now = pairs((0.5, 1.0), (-0.5, 1.0), (0.2, 0.0), (0.2, 0.0))
     step = pairs((0.2, 0.0), (-0.6, 0.0), (-5.0, 0.0), (-0.4, -1.0))
     # a cavity counts from zero on; contact that stays does not count, contact that opens does
@@ -31,20 +31,20 @@ def test_largest_change_is_of_pressures_in_oil():
         (-0.5, -0.1, 1.0, 1.0, PRESSURE_AFTER_REFILL),  # a void that closes
     ],
 )
-def test_cavities_keep_oil(q, dq, h, dh, expected):
+def test_cavities_keep_a_minimum_of_oil(q, dq, h, dh, expected):
     now, step = pairs((q, h)), pairs((dq, dh))
     clip_cavities(now, step, 0.0)
     assert now[0, 0] - step[0, 0] == pytest.approx(expected, rel=1e-6)
     assert step[0, 1] == dh
 
 
-def test_overlaps_touch():
+def test_overlaps_are_clipped_to_contact():
     now, step = pairs((0.0, 1.0), (0.0, 1.0)), pairs((0.0, 0.5), (0.0, 1.5))
     close_overlaps(now, step, 0.0)
     assert (now - step)[:, 0] == pytest.approx([0.0, PRESSURE_AFTER_REFILL])
 
 
-def test_a_node_begins_to_touch_before_it_yields():
+def test_contact_precedes_yielding_in_a_step():
     """A step to both at once stops where solids begin to carry, at the yield pressure."""
     stiffness, limit = 10.0, 1.0
     now = np.array([[0.2, 0.1], [0.2, -0.02], [0.2, 0.1]])

@@ -38,23 +38,23 @@ def table_1(tmp_path):
 
 
 @pytest.mark.parametrize("words", [[], ["--contact"]])
-def test_a_folder_that_cannot_be_written_is_told_before_anything_is_run(table_1, words, capsys, monkeypatch):
+def test_unwritable_folder_is_refused_before_any_run(table_1, words, capsys, monkeypatch):
     monkeypatch.setattr("os.access", lambda path, mode: False)
     assert study([str(table_1), *words, "-o", "somewhere"]) == ExitStatus.BAD_INPUT
-    said = capsys.readouterr()
-    assert is_line_with(said.err, "somewhere.csv: ", "another -o")
-    assert said.out == ""
+    message = capsys.readouterr()
+    assert is_line_with(message.err, "somewhere.csv: ", "another -o")
+    assert message.out == ""
 
 
 @pytest.mark.parametrize("words", [["--extremes"], ["--random", "2"]])
-def test_a_table_that_cannot_be_written_ends_in_words(tmp_path, words, capsys):
+def test_unwritable_table_is_reported(tmp_path, words, capsys):
     stem = tmp_path / "none" / "table"
     assert study([*words, "-o", str(stem)]) == ExitStatus.BAD_INPUT
     assert is_line_with(capsys.readouterr().err, f"{stem}.csv: ", "No such file or directory")
 
 
 @pytest.mark.parametrize("words", [[], ["--contact"]])
-def test_a_table_is_never_written_over_what_the_case_is_read_from(tmp_path, words, capsys):
+def test_study_table_never_overwrites_case_input(tmp_path, words, capsys):
     profile = tmp_path / "gear.csv"
     profile.write_text("".join(f"{0.5e-6 * k},{1e-7 * (k % 7)}\n" for k in range(4000)))
     case = tmp_path / "case.toml"
@@ -84,7 +84,7 @@ def test_uncertainty_is_the_error_of_a_reference_of_known_order(order):
     assert estimate["h_min"] == pytest.approx(error, rel=0.01)
 
 
-def test_plan_varies_one_setting_at_a_time_and_ends_in_a_finer_reference(table_1):
+def test_study_varies_one_setting_and_ends_with_a_finer_reference(table_1):
     case = load(table_1, ["time.travel=1.0"])
     references, runs = plan(case, (50, 100), (0.5, 1.0), (2,))
     assert references[0].values[MESH] == 200 and references[0].values[STEP] == 0.25
@@ -102,7 +102,7 @@ def test_a_steady_case_has_no_time_steps_to_vary(table_1):
     assert NAMES[STEP] == "time step"
 
 
-def test_inlet_floods_and_is_further_out_for_thicker_films():
+def test_inlet_is_flooded_and_grows_with_film_thickness():
     assert inlet_of(527e3, 0.002, 5.0) == -2.5
     assert inlet_of(527e3, 1.0, 5.0) < inlet_of(527e3, 0.1, 5.0) < -2.5
 
@@ -111,7 +111,7 @@ def test_load_of_table_1_from_its_pressure():
     assert load_of(0.999455e9) == pytest.approx(527e3, rel=1e-4)
 
 
-def test_the_last_message_is_the_solvers():
+def test_last_message_is_the_solver_message():
     words = "step 3: no. Last good state: x"
     printed = f"a\nehlpetsc: not converged: {words}\nresult: f.h5\nehlpetsc: not converged steps=2\n"
     assert last_message(printed) == words
@@ -119,7 +119,7 @@ def test_the_last_message_is_the_solvers():
 
 
 @pytest.mark.parametrize("words", [[], ["--contact"]])
-def test_a_travel_too_short_for_damage_is_refused_before_anything_is_run(table_1, words, capsys, monkeypatch):
+def test_short_travel_for_damage_is_refused_before_any_run(table_1, words, capsys, monkeypatch):
     for place in ("accuracy.table", "contact"):
         monkeypatch.setattr(f"ehlpetsc.study.{place}.run", lambda *_, **__: pytest.fail("it ran"))
     short = ["--damage", "--set", "mesh.inlet=-1.2", "--set", "mesh.outlet=1.3", "--set", "time.travel=1.0"]
@@ -131,7 +131,7 @@ def test_a_travel_too_short_for_damage_is_refused_before_anything_is_run(table_1
     )
 
 
-def test_damage_takes_time_and_a_surface_that_moves(table_1):
+def test_damage_study_needs_time_and_a_moving_surface(table_1):
     with pytest.raises(PostError, match="the case is steady"):
         check_damage(load(table_1), "2", 100)
     with pytest.raises(PostError, match="surface 2 is at rest"):
@@ -140,7 +140,7 @@ def test_damage_takes_time_and_a_surface_that_moves(table_1):
 
 @pytest.mark.parametrize("mesh", [13, 50, 200])
 @pytest.mark.parametrize("ratio", [0.0, 0.25, -1.0, 3.0])
-def test_the_least_travel_for_damage_lets_a_point_pass(table_1, mesh, ratio):
+def test_minimum_travel_for_damage_passes_one_point(table_1, mesh, ratio):
     """As post-processing has it, which counts from the frame at time 0; a tenth less lets none."""
     for share, passes in ((1.0, True), (0.9, False)):
         width, slow = 2.53, abs(1.0 - ratio / 2.0)
@@ -158,7 +158,7 @@ def test_the_least_travel_for_damage_lets_a_point_pass(table_1, mesh, ratio):
                 check_damage(case, "2", mesh)
 
 
-def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, monkeypatch):
+def test_uncounted_damage_is_reported(table_1, tmp_path, capsys, monkeypatch):
     """A file that is damaged, say: post-processing says why."""
     result = tmp_path / "run.h5"
     with h5py.File(result, "w") as file:
@@ -169,18 +169,18 @@ def test_damage_that_cannot_be_counted_ends_in_words(table_1, tmp_path, capsys, 
     )
     command = [str(table_1), "--set", "time.travel=9.0", "--damage", "-o", str(tmp_path / "table")]
     assert study(command) == ExitStatus.BAD_INPUT
-    (told,) = capsys.readouterr().err.splitlines()
-    assert told.startswith("ehlpetsc.study: no damage: ") and "run.h5" in told
+    (message,) = capsys.readouterr().err.splitlines()
+    assert message.startswith("ehlpetsc.study: no damage: ") and "run.h5" in message
 
 
-def test_a_reference_that_does_not_converge_ends_in_words(table_1, tmp_path, capsys, monkeypatch):
+def test_diverged_reference_is_reported(table_1, tmp_path, capsys, monkeypatch):
     failed = Outcome(ExitStatus.NOT_CONVERGED, "step 3: no")
     monkeypatch.setattr("ehlpetsc.study.accuracy.table.run", lambda *_, **__: failed)
     assert study([str(table_1), "-o", str(tmp_path / "table")]) == ExitStatus.NOT_CONVERGED
     assert is_line_with(capsys.readouterr().err, "reference", "step 3: no")
 
 
-def test_a_diagnosis_names_the_properties_of_the_contact(table_1):
+def test_diagnosis_names_contact_properties(table_1):
     outcome = Outcome(ExitStatus.NOT_CONVERGED, "SNES stopped", steps=4, h_min=5e-10, p_max=9e9)
     found = diagnosis(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
     for part in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
@@ -192,7 +192,7 @@ def test_a_diagnosis_names_the_properties_of_the_contact(table_1):
 
 
 @pytest.mark.parametrize("model", [None, "direct", "mixed", "compliant"])
-def test_forty_lines_lie_far_beyond_the_ranges(tmp_path, model):
+def test_forty_rows_are_far_out_of_range(tmp_path, model):
     path, found = tmp_path / "case.toml", cases(far=True, model=model)
     assert len(found) == len({(line.axis, line.value) for line in found}) == 40
     for line in found:
@@ -205,12 +205,12 @@ def test_forty_lines_lie_far_beyond_the_ranges(tmp_path, model):
     assert axes == {"load", "speed", "oil", "solids", "films", "mesh", "rough", "sliding"}
 
 
-def test_draws_are_of_both_contact_models():
+def test_random_cases_use_both_contact_models():
     drawn = [draw(random.Random(seed))[1][-1] for seed in range(40)]
     assert {"contact.model=direct", "contact.model=mixed"} == set(drawn)
 
 
-def test_drawn_cases_load_and_come_again(tmp_path):
+def test_random_cases_load_and_are_reproducible(tmp_path):
     path = tmp_path / "case.toml"
     for seed in range(60):
         text, overrides = draw(random.Random(seed))
@@ -220,7 +220,7 @@ def test_drawn_cases_load_and_come_again(tmp_path):
         assert 0.0005 <= case.fluid.viscosity <= 1.0 and 0.01 <= case.motion.entrainment_speed <= 50.0
 
 
-def test_picture_of_a_table_shows_errors_against_both_costs(tmp_path, monkeypatch):
+def test_study_picture_shows_errors_over_both_costs(tmp_path, monkeypatch):
     """Runs that failed are left out; the case as it is has a star, the reference's own error a line."""
     figures, save = [], Figure.savefig
     monkeypatch.setattr(Figure, "savefig", lambda *args, **how: (figures.append(args[0]), save(*args, **how)))
@@ -255,13 +255,13 @@ def test_picture_of_a_table_shows_errors_against_both_costs(tmp_path, monkeypatc
         (100.2, 100.9, [100.2, 100.4, 100.6, 100.8]),
     ],
 )
-def test_labels_of_an_axis_are_few_and_round(low, high, expected):
+def test_axis_labels_are_few_and_round(low, high, expected):
     found = picture.ticks(low, high)
-    assert 2 <= len(found) <= picture.TICKS
+    assert 2 <= len(found) <= picture.MAX_TICKS
     assert found == pytest.approx(expected)
 
 
-def test_labels_of_an_axis_do_not_overlap(tmp_path, monkeypatch):
+def test_axis_labels_do_not_overlap(tmp_path, monkeypatch):
     from matplotlib.figure import Figure
 
     drawn = []  # laid out, not written

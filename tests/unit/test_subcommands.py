@@ -26,7 +26,7 @@ def call(*words, cwd):
 
 @pytest.mark.parametrize("name", commands.SUBCOMMANDS)
 @pytest.mark.parametrize("called", ["/usr/local/bin/ehlpetsc", "/work/ehlpetsc/__main__.py"])
-def test_a_subcommand_names_itself_in_its_help(monkeypatch, capsys, name, called):
+def test_subcommand_help_has_its_name(monkeypatch, capsys, name, called):
     monkeypatch.setattr(sys, "argv", [called, name, "-h"])
     with pytest.raises(SystemExit) as end:
         commands.dispatch(lambda: pytest.fail("ran a case"))
@@ -46,24 +46,24 @@ def test_a_subcommand_names_itself_in_its_help(monkeypatch, capsys, name, called
         ([], []),
     ],
 )
-def test_other_words_are_those_of_a_run(monkeypatch, words, left):
+def test_other_arguments_start_a_run(monkeypatch, words, left):
     monkeypatch.setattr(sys, "argv", ["ehlpetsc", *words])
     assert commands.dispatch(lambda: sys.argv[1:]) == left
 
 
-def test_the_package_can_be_imported_by_a_script_of_any_folder(tmp_path):
+def test_package_is_importable_from_any_folder(tmp_path):
     (tmp_path / "x.py").write_text("import sys, ehlpetsc; print(ehlpetsc.__version__, sys.argv[1:])")
     done = call("python", "x.py", "a", cwd=tmp_path)
     assert done.returncode == 0 and done.stdout.endswith("['a']\n"), done.stderr
 
 
-def test_a_mistyped_option_of_a_subcommand_ends_in_one_sentence(tmp_path):
+def test_mistyped_subcommand_option_is_refused_in_one_line(tmp_path):
     done = call("plot", "a.h5", "--mpa", cwd=tmp_path)
     assert done.returncode == 2
     assert is_line_with(done.stderr, "--mpa", "ehlpetsc plot -h")
 
 
-def test_completion_names_every_subcommand(monkeypatch, capsys):
+def test_completion_lists_every_subcommand(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["ehlpetsc", "completion"])
     assert commands.dispatch(None) == 0
     script = capsys.readouterr().out
@@ -71,7 +71,7 @@ def test_completion_names_every_subcommand(monkeypatch, capsys):
     assert subprocess.run(["bash", "-n"], input=script, text=True).returncode == 0
 
 
-def test_the_script_knows_the_subcommands():
+def test_run_script_has_every_subcommand():
     text = (ROOT / "run_mpi.sh").read_text()
     (line,) = [line for line in text.splitlines() if line.strip().startswith("plot | post |")]
     assert {*commands.SUBCOMMANDS, *commands.OF_A_CASE} <= {word.strip(" )") for word in line.split("|")}
@@ -104,7 +104,7 @@ def test_weighted_percentiles_are_those_of_repeated_values():
     assert found == pytest.approx(np.percentile(repeated, (30.0, 70.0, 90.0)), abs=0.3)
 
 
-def test_program_is_named_as_it_was_called(monkeypatch):
+def test_program_name_is_that_of_the_call(monkeypatch):
     monkeypatch.setattr(sys, "argv", ["ehlpetsc post"])
     assert command_parser.program("ehlpetsc.post") == "ehlpetsc post"
     monkeypatch.setattr(sys, "argv", ["/home/my ehlpetsc dir/x"])

@@ -29,7 +29,7 @@ def test_derivatives_of_the_viscosity(law, pressure, p):
     assert function(0.0, 363.0, pressure, law)[0] == pytest.approx(0.0, abs=1e-14)
 
 
-def test_walther_meets_the_data_sheet_and_iso_vg_220_at_70_degrees():
+def test_walther_law_at_data_sheet_and_iso_vg_220():
     a, b = thermal.walther_constants(V40, V100)
     assert thermal.walther(313.15, a, b)[0] == pytest.approx(220.0, rel=1e-12)
     assert thermal.walther(373.15, a, b)[0] == pytest.approx(19.0, rel=1e-12)

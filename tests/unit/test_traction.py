@@ -46,7 +46,7 @@ def shear(case, scales, p, h, void=0.0, touching=()):
 
 @pytest.mark.parametrize("ratio", [0.5, -0.5])
 @pytest.mark.parametrize("eyring", [EYRING, NEWTONIAN])
-def test_the_faster_surface_is_held_back_and_the_slower_one_dragged_along(ratio, eyring):
+def test_shear_opposes_the_faster_and_drives_the_slower_surface(ratio, eyring):
     """Also where the surface called fast is the slower one: slide/roll ratio below zero."""
     case, scales, p, h = scene(ratio, eyring)
     fast, slow = shear(case, scales, np.full_like(p, 0.3e9), h)
@@ -75,7 +75,7 @@ def test_the_film_is_in_balance(ratio, eyring):
     np.testing.assert_allclose(fast + slow, -h * np.gradient(p, scales.dx), rtol=1e-9, atol=1e-3)
 
 
-def test_in_pure_rolling_oil_flowing_down_the_pressure_drags_both_walls_with_it():
+def test_pressure_flow_drags_both_walls_in_pure_rolling():
     case, scales, p, h = scene(0.0)
     fast, slow = shear(case, scales, p, h)
     before, behind = (scales.x < -0.1) & (scales.x > -1.4), scales.x > 0.1
@@ -83,7 +83,7 @@ def test_in_pure_rolling_oil_flowing_down_the_pressure_drags_both_walls_with_it(
         assert (side[before] < 0.0).all() and (side[behind] > 0.0).all()
 
 
-def test_a_newtonian_film_shears_by_its_viscosity():
+def test_newtonian_shear_stress():
     """Couette flow: eta (u1 - u2) / h, at the ambient pressure of 0.005 Pa s."""
     case, scales, p, h = scene(0.5, NEWTONIAN)
     _, slow = shear(case, scales, np.zeros_like(p), h)
@@ -91,7 +91,7 @@ def test_a_newtonian_film_shears_by_its_viscosity():
     assert scales.u1 - scales.u2 == pytest.approx(2.5)
 
 
-def test_void_carries_no_shear():
+def test_void_has_no_shear_stress():
     case, scales, p, h = scene(0.5)
     full, empty, half = (shear(case, scales, p, h, void=void) for void in (0.0, 1.0, 0.5))
     for side in (0, 1):
@@ -99,7 +99,7 @@ def test_void_carries_no_shear():
         np.testing.assert_allclose(half[side], 0.5 * full[side], rtol=1e-12)
 
 
-def test_a_cavity_shears_by_the_oil_that_fills_it():
+def test_cavity_shear_is_proportional_to_its_oil():
     """Eyring shear of the full gap times the fraction of oil, in the fields of an accepted state."""
     case, scales, _, h = scene(0.5)
     problem = EHLProblem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)
@@ -116,7 +116,7 @@ def test_a_cavity_shears_by_the_oil_that_fills_it():
     np.testing.assert_allclose(fields["shear_stress_1"][4:], -expected, rtol=1e-9)
 
 
-def test_in_mixed_contact_the_oil_drags_beside_the_solids():
+def test_mixed_contact_adds_oil_and_solid_shear():
     case, scales, p, h = scene(0.5)
     mixed = case.copy(update={"contact": case.contact.copy(update={"model": "mixed"})})
     touching = np.zeros(scales.nx, bool)
@@ -132,7 +132,7 @@ def test_in_mixed_contact_the_oil_drags_beside_the_solids():
         np.testing.assert_allclose(both - oil, sign * FRICTION * solids, atol=1e-6)
 
 
-def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
+def test_film_of_rounding_size_has_solid_shear():
     """Whether rounding leaves 0 or 1e-17 of it must not matter: runs continued and not differed there."""
     case, scales, p, h = scene(0.5)
     problem = EHLProblem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)  # as SNES has it
@@ -150,6 +150,6 @@ def test_a_film_that_is_zero_but_for_rounding_shears_as_solids_do():
         np.testing.assert_allclose(one, found[0], rtol=1e-12)
 
 
-def test_the_mean_film_is_that_of_the_middle_half_of_the_contact():
+def test_mean_film_is_over_the_central_half():
     scales = SimpleNamespace(x=np.array([-1.0, -0.5, 0.0, 0.5, 1.0]), h=2e-6)
     assert mean_film(scales, np.array([9.0, 1.0, 2.0, 3.0, 9.0])) == pytest.approx(4e-6, rel=1e-14)

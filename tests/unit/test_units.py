@@ -38,7 +38,7 @@ def test_values_are_converted_exactly(text, unit, value):
     assert units.converted(text, unit) == value
 
 
-def test_a_case_with_units_is_the_same_case_in_si(tmp_path):
+def test_case_with_units_equals_the_case_in_si(tmp_path):
     overrides = {
         "contact.radius": "19.1 mm",
         "contact.load": "527 N/mm",
@@ -67,7 +67,7 @@ def test_a_case_with_units_is_the_same_case_in_si(tmp_path):
     assert "# N/m" in case.text  # comments are kept
 
 
-def test_a_series_takes_units():
+def test_series_accepts_units():
     series = {"series.key": "fluid.viscosity", "series.values": ["5 mPa s", "10 mPa s"]}
     assert [value for value, _ in members(load(SMOOTH, series))] == [0.005, 0.01]
     both = {
@@ -89,14 +89,14 @@ def test_a_series_takes_units():
         ("contact.load", "-1 N/mm", "contact.load = -1000.0: allowed: a number"),
     ],
 )
-def test_a_wrong_unit_is_one_line(key, value, words):
+def test_wrong_unit_is_refused_in_one_line(key, value, words):
     with pytest.raises(CaseError) as refused:
         load(SMOOTH, {key: value})
     (line,) = refused.value.faults
     assert words in line
 
 
-def test_without_pint_a_unit_names_it(monkeypatch):
+def test_unit_without_pint_names_the_package(monkeypatch):
     units._registry.cache_clear()
     monkeypatch.setitem(sys.modules, "pint", None)
     with pytest.raises(CaseError, match="needs the package pint"):
@@ -104,7 +104,7 @@ def test_without_pint_a_unit_names_it(monkeypatch):
     units._registry.cache_clear()
 
 
-def test_a_case_without_units_does_not_load_pint():
+def test_case_without_units_does_not_import_pint():
     code = f"import sys, ehlpetsc; ehlpetsc.load({str(SMOOTH)!r}); assert 'pint' not in sys.modules"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -31,46 +31,46 @@ def at_the_root(monkeypatch, request):
         ["--explain", "cases"],
     ],
 )
-def test_the_command_refuses_in_one_line(capfd, words):
+def test_unusual_input_is_refused_in_one_line(capfd, words):
     assert main(["ehlpetsc", *words]) == 2
-    told = capfd.readouterr().err
-    assert told.count("\n") == 1 and ": " in told
+    message = capfd.readouterr().err
+    assert message.count("\n") == 1 and ": " in message
 
 
 @pytest.mark.parametrize(
     "words",
     [["--resamples", "0"], ["--resamples", "-1"], ["--resamples", "1e3"], ["--seed", "-1"], ["--seed", ""]],
 )
-def test_numbers_of_the_bootstrap_have_ranges(tmp_path, capsys, words):
+def test_bootstrap_numbers_have_ranges(tmp_path, capsys, words):
     with pytest.raises(SystemExit) as ended:
         ensemble.main([str(make_result(tmp_path / "one.h5")), *words])
     assert ended.value.code == 2 and words[0] in capsys.readouterr().err
 
 
-def test_a_result_without_frames_has_no_contact_statistics(tmp_path, capsys):
+def test_result_without_frames_has_no_contact_statistics(tmp_path, capsys):
     path = make_result(tmp_path / "one.h5", steps=0)
     assert contact_statistics.main([str(path)]) == 2
     assert f"{path}: " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("title", ["\ud800", NO_TEXT])
-def test_a_title_that_is_no_text_is_refused(title):
+def test_non_text_title_is_refused(title):
     with pytest.raises(CaseError, match=": title = "):
         load("cases/dry_hertz.toml", {"title": title})
 
 
-def test_the_bound_of_the_film_is_of_direct_contact():
+def test_film_bound_belongs_to_direct_contact():
     assert load("cases/ridge.toml", {"contact.minimum_film": 1e-9}).contact.minimum_film == 1e-9
     with pytest.raises(CaseError, match="contact.minimum_film = 1e-09: needs contact.model = .direct"):
         load("cases/running_in.toml", {"contact.minimum_film": 1e-9})
 
 
-def test_a_series_has_at_most_ten_thousand_members():
+def test_series_has_at_most_ten_thousand_members():
     with pytest.raises(CaseError, match="10001 members; allowed: at most 10000"):
         load(STRIBECK, {"series.values": [0.1 + 1e-4 * k for k in range(10_001)]})
 
 
-def test_a_series_of_many_is_explained_without_the_texts_of_its_members(monkeypatch):
+def test_long_series_is_explained_quickly(monkeypatch):
     """Each member's text was edited with all values in it: the time grew as the square of their number."""
     parsed, parse = [], tomlkit.parse
     monkeypatch.setattr(tomlkit, "parse", lambda text: parsed.append(len(text)) or parse(text))
@@ -82,7 +82,7 @@ def test_a_series_of_many_is_explained_without_the_texts_of_its_members(monkeypa
     assert parsed[-1] < parsed[0]
 
 
-def test_a_hint_does_not_name_what_was_asked_for(tmp_path):
+def test_hint_never_repeats_the_given_value(tmp_path):
     (tmp_path / "dent.toml").mkdir()
     with pytest.raises(CaseError) as refused:
         load(tmp_path / "dent.toml")

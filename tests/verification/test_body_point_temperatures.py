@@ -68,7 +68,7 @@ def heated(tmp_path_factory):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("surface", ["1", "2"])
-def test_against_a_quadrature_of_the_stored_fluxes(heated, surface):
+def test_temperatures_equal_a_quadrature_of_stored_fluxes(heated, surface):
     found = PostResult(heated.with_suffix(".post.h5"))
     known = found.temperatures[surface]
     with Loads(heated) as loads:

@@ -152,7 +152,7 @@ def test_rough_solids_under_the_layer_yield():
     assert yielded > 20 and state.set_volume > 0.0
 
 
-def test_the_measured_height_is_what_the_short_cutoff_removes():
+def test_layer_height_is_that_removed_by_the_short_cutoff():
     alone = {"surface.1.short_cutoff": 8e-6, "surface.2": None}
     given = case(alone | {"surface.1.scale": 0.5}, "measured")
     spec = given.surface.body_1

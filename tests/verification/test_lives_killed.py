@@ -12,7 +12,7 @@ import pytest
 from support import CASES
 
 from ehlpetsc.life import read_life, run_life
-from ehlpetsc.life.life_file import VOUCHING
+from ehlpetsc.life.life_file import COMMIT_DATASET
 
 KEYS = {
     "time.travel": 3.6,
@@ -76,7 +76,7 @@ def test_a_row_that_a_kill_cut_short_is_dropped(written, whole, tmp_path):
                 growing.append(name)
 
         file.visititems(look)
-        growing.remove(f"figures/{VOUCHING}")
+        growing.remove(f"figures/{COMMIT_DATASET}")
         for name in growing[:written]:
             file[name].resize(len(file[name]) + 1, axis=0)
     equal(read_life(path), life.up_to(2))

@@ -43,7 +43,7 @@ def test_load_and_oil_balance_hold_at_every_step(rough):
 
 
 @pytest.mark.slow
-def test_steps_are_few_and_none_is_halved(rough):
+def test_no_step_is_halved(rough):
     _, states = rough
     assert sum(s.retries for s in states) == 0
     assert np.mean([s.newton for s in states[1:]]) < 7.0
@@ -74,7 +74,7 @@ def test_in_full_film_both_models_give_the_same(name, overrides):
 
 
 @pytest.mark.parametrize("speed", [5.0, 0.1, 0.01, 1e-3, 1e-4])
-def test_smooth_starts_from_full_film_to_boundary_lubrication(speed):
+def test_smooth_starts_converge_in_every_regime(speed):
     scene = Scene(
         "table1_smooth.toml", MIXED, f"motion.entrainment_speed={speed}", "mesh.points_per_half_width=100"
     )
@@ -115,7 +115,7 @@ def stored(state):
 
 
 @pytest.mark.slow
-def test_oil_in_less_oil_out_is_what_is_stored(rough):
+def test_oil_inflow_minus_outflow_equals_storage(rough):
     """Over a whole run with contact, to 1e-8 of what has passed, from the flows at both ends."""
     simulation, states = rough
     case, scales = simulation.case, simulation.scales
@@ -156,7 +156,7 @@ POCKET = (
 
 
 @pytest.mark.slow
-def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
+def test_pocket_between_two_contacts_conserves_its_oil(tmp_path):
     """Two flat ridges, 1 um high, 90 um apart, in pure rolling: one node a step, as windows travel along."""
     x, first, apart = np.arange(0.0, 600e-6, 0.5e-6), 100e-6, 90e-6
     z = 1e-6 * sum(np.exp(-(((x - place) / 15e-6) ** 6)) for place in (first, first + apart))
@@ -187,7 +187,7 @@ def test_a_pocket_between_two_contacts_keeps_its_oil(tmp_path):
 
 
 @pytest.mark.slow
-def test_vinewtonrsls_finds_no_bound_and_takes_the_same_iterations(rough):
+def test_vinewtonrsls_takes_the_iterations_of_newtonls(rough):
     simulation, states = rough
     bounded = iter(Simulation(simulation.case, options={"snes_type": "vinewtonrsls"}))
     assert any(state.in_contact.any() for state in states[:80])

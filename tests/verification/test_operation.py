@@ -65,7 +65,7 @@ WAVE = {"synthetic": {"kind": "sine", "amplitude": 1e-7, "wavelength": 3e-4}}
 BOTH_WAVY = {"surface.1": WAVE, "surface.2": WAVE, "time": None}
 
 
-def test_the_profile_of_a_flank_is_met_by_its_arc_length_from_the_first_contact():
+def test_flank_profile_is_indexed_by_arc_length():
     simulation = Simulation(load(CASES / "table1_mixed.toml", COARSE | {"gears": FZG} | BOTH_WAVY))
     path, roughness = path_of_contact(FZG), simulation.roughness
     started = np.interp(0.05 * path.load.max(), path.load[:50], path.time[:50])
@@ -81,7 +81,7 @@ def test_the_profile_of_a_flank_is_met_by_its_arc_length_from_the_first_contact(
     assert offsets == pytest.approx((0.0, shift))
 
 
-def test_a_body_that_reverses_shows_the_same_points_on_its_way_back():
+def test_reversed_body_passes_the_same_points_back():
     table = {
         "operation.time": [0.0, 1e-4, 2e-4],
         "operation.speed_1": [2.0, 0.0, -2.0],
@@ -98,7 +98,7 @@ def test_a_body_that_reverses_shows_the_same_points_on_its_way_back():
     assert fast.height(x).std() > 0.5e-7 and fast.s[0] <= x[0] - moved(1e-4)[0]
 
 
-def test_a_load_step_is_a_restart_under_the_other_load():
+def test_load_step_equals_a_restart_under_the_other_load():
     """On one mesh, the state after some steps under one load continues under the other."""
     heavy, light, dt, before, after = 527e3, 0.64 * 527e3, 5e-7, 12, 25
     step = dt * before
@@ -120,7 +120,7 @@ def test_a_load_step_is_a_restart_under_the_other_load():
         np.testing.assert_allclose(one.pressure, other.pressure, atol=1.0)
 
 
-def test_after_a_load_step_the_contact_settles_as_after_a_restart_from_a_file(tmp_path):
+def test_load_step_settles_as_a_restart_from_a_file(tmp_path):
     """A restart file scales the film with the contact; once that film has left, both agree."""
     heavy, light, a, u_1 = 527e3, 0.64 * 527e3, 0.33568e-3, 5.625
     mesh = {"mesh.points_per_half_width": 32, "mesh.inlet": -3.5, "mesh.outlet": 2.0}
@@ -264,7 +264,7 @@ def test_squeeze_film_of_an_approaching_cylinder():
     assert grown == pytest.approx(1.0, rel=1e-2)
 
 
-def test_a_gear_run_that_was_stopped_resumes_as_if_it_had_not_been(tmp_path, capsys):
+def test_stopped_gear_run_resumes_identically(tmp_path, capsys):
     short = {"mesh.points_per_half_width": 25, "time.travel": 2.0, "output.every": 10}
     case = load(CASES / "fzg.toml", short)
     whole = ehlpetsc.solve(case)

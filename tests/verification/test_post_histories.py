@@ -131,7 +131,7 @@ def test_exact_at_nodes_and_offsets_for_a_smooth_load():
     assert errors[0] < 3e-4
 
 
-def test_skipped_frames_lose_damage(tmp_path):
+def test_skipped_frames_reduce_damage(tmp_path):
     """The more the fewer frames: why results stored with every > 1 are warned of."""
     scene = Ripples(per_width=50, ratio=1.0, travel=14.5)
     found = []
@@ -145,7 +145,7 @@ def test_skipped_frames_lose_damage(tmp_path):
     assert (np.diff(kept) < 0).all()
 
 
-def test_only_points_that_entered_and_left(scene):
+def test_points_need_entry_and_exit(scene):
     time = scene.time
     s = scene.x[0] + scene.dx * np.arange(-900, scene.x.size)
     for speed in (scene.u1, scene.u2, -scene.u2):
@@ -161,12 +161,12 @@ def test_only_points_that_entered_and_left(scene):
             assert (motion.enter[j], motion.leave[j]) == (inside[0], inside[-1])
 
 
-def test_at_rest_no_point_passes(scene):
+def test_no_point_passes_at_rest(scene):
     motion = passage(scene.x, scene.x, scene.dx, 0.0 * scene.time)
     assert not motion.complete.any()
 
 
-def test_counting_choices_reach_the_result(loads, tmp_path):
+def test_counting_settings_change_the_result(loads, tmp_path):
     values = {}
     for name, counting in {
         "max3": Counting(),

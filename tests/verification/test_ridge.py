@@ -25,7 +25,7 @@ from ehlpetsc.case.loading import load
 
 
 @pytest.mark.slow
-def test_ridge_in_the_centre_of_the_contact():
+def test_ridge_at_the_contact_centre():
     scene = Scene("ridge.toml", "mesh.points_per_half_width=150", "time.courant=0.75").start()
     s = scene.scales
     position = load(CASES / "ridge.toml").surface.body_2.synthetic.position

@@ -35,7 +35,7 @@ def test_flow_out_of_contact_nodes_is_not_negative(states):
         assert np.linalg.norm(state.reynolds_residual[~touching]) <= TOLERANCE
 
 
-def test_what_the_default_tolerance_leaves(states):
+def test_error_of_the_default_tolerance(states):
     """Pressures to 1e-5 p0, films to 1e-5 of the expected one, at every node and step; the same contacts."""
     tight, found = states
     for (_, state), looser in zip(found, Scene("table1_rough.toml", *SHORT).start().simulation, strict=True):
@@ -45,13 +45,13 @@ def test_what_the_default_tolerance_leaves(states):
         np.testing.assert_allclose(state_by_default.h, state.h, rtol=0, atol=1e-5 * tight.problem.film_scale)
 
 
-def test_solids_in_contact_do_not_pull(states):
+def test_contact_pressure_is_not_negative(states):
     scene, found = states
     for _, state in found:
         assert state.p.min() >= 0.0
 
 
-def test_load_is_carried_at_every_step(states):
+def test_load_balance_at_every_step(states):
     scene, found = states
     for _, state in found:
         carried = scene.problem.dx * state.p.sum()

@@ -16,7 +16,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import steady_start, time_stepping
-from ehlpetsc.stepping.first_guess import DIRECT, smoothed
+from ehlpetsc.stepping.first_guess import MAX_DIRECT_REACH, smoothed
 
 GROUND = {"kind": "ground", "ra": 0.1e-6, "correlation": 25e-6, "skewness": -1.0, "seed": 1}
 MESH = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
@@ -28,7 +28,7 @@ def rough(side, xi, travel, **more):
     return load(CASES / "table1_smooth.toml", MESH | {"time": {"travel": travel}} | changed | more)
 
 
-def test_iterations_of_attempts_that_failed_count(monkeypatch):
+def test_iterations_include_failed_attempts(monkeypatch):
     def solve(solver, *_):
         raise SolveFailed("SNES", "diverged", 7)
 
@@ -39,7 +39,7 @@ def test_iterations_of_attempts_that_failed_count(monkeypatch):
 
 
 @pytest.mark.parametrize("xi", [2.0, -2.0, 8.0, -8.0])
-def test_names_of_the_surfaces_do_not_matter(xi):
+def test_results_are_independent_of_surface_names(xi):
     """The rough fast surface at xi is the rough slow one at -xi, to the last digit of Newton's method."""
     one, other = (list(Simulation(rough(side, ratio, 1.0))) for side, ratio in (("1", xi), ("2", -xi)))
     assert len(one) == len(other) > 40
@@ -50,7 +50,7 @@ def test_names_of_the_surfaces_do_not_matter(xi):
 
 
 @pytest.mark.slow
-def test_roughness_at_rest_is_marched_to_where_no_steady_solution_is_found(monkeypatch):
+def test_stationary_roughness_is_reached_by_time_stepping(monkeypatch):
     """After the oil has passed the domain it is the steady film that continuation finds."""
     known = next(iter(Simulation(rough("1", -2.0, 1.0))))
     found = time_stepping.steady
@@ -69,10 +69,10 @@ def test_roughness_at_rest_is_marched_to_where_no_steady_solution_is_found(monke
         assert difference < tolerance * scale, tolerance
 
 
-def test_a_wide_kernel_smooths_as_a_narrow_one_does():
+def test_wide_and_narrow_smoothing_kernels_agree():
     x = np.linspace(-1.5, 1.5, 12_001)
     p = np.sqrt(np.maximum(1.0 - x**2, 0.0))
-    wide = 1.2 * DIRECT / 4.0
+    wide = 1.2 * MAX_DIRECT_REACH / 4.0
     reach = int(4.0 * wide + 0.5)
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / wide) ** 2)
     direct = np.convolve(p, weights / weights.sum())[reach : reach + len(p)]
@@ -80,7 +80,7 @@ def test_a_wide_kernel_smooths_as_a_narrow_one_does():
     assert smoothed(p, 1e9).shape == p.shape
 
 
-def test_next_to_no_load_takes_no_more_memory_than_any_other():
+def test_memory_at_small_load_is_bounded():
     code = (
         "import ehlpetsc\n"
         f"case = ehlpetsc.load({str(CASES / 'table1_smooth.toml')!r}, {{'contact.load': 0.3}})\n"
@@ -98,7 +98,7 @@ def test_next_to_no_load_takes_no_more_memory_than_any_other():
     assert done.returncode == 0, done.stderr
 
 
-def test_a_start_that_finds_nothing_gives_up_after_so_many_attempts(monkeypatch):
+def test_failed_start_stops_after_its_attempts(monkeypatch):
     monkeypatch.setattr(steady_start, "MAX_ATTEMPTS", 3)
     simulation = Simulation(load(CASES / "table1_smooth.toml", MESH), options={"snes_max_it": 1})
     with pytest.raises(NotConverged, match="given up after 3 attempts and 3 Newton iterations"):
@@ -106,7 +106,7 @@ def test_a_start_that_finds_nothing_gives_up_after_so_many_attempts(monkeypatch)
 
 
 @pytest.mark.parametrize("share", [1.25, 2.0, 4.0])
-def test_oil_between_solids_that_yield_as_a_whole(share):
+def test_fully_plastic_start_converges(share):
     """Hertz' pressure above the yield pressure: few iterations, from the dry contact."""
     keys = {
         "contact.model": "mixed",

@@ -131,7 +131,7 @@ def test_times_and_steps(run):
     np.testing.assert_array_equal(result.steps.step, np.arange(len(result.time)))
 
 
-def test_a_flag_of_contact_is_a_film_at_its_bound(run):
+def test_contact_flag_equals_film_at_its_bound(run):
     case, result, _ = run
     touching = result.in_contact.astype(bool)
     if "contact_pressure" in result:
@@ -143,18 +143,18 @@ def test_a_flag_of_contact_is_a_film_at_its_bound(run):
 
 def test_oil_balance_of_every_step(run):
     case, result, of = run
-    told = result.steps.mass_error
+    stored_error = result.steps.mass_error
     if case.fluid is None:
-        assert (told == 0.0).all()
+        assert (stored_error == 0.0).all()
         return
     lost = oil_lost(case, result, of)
     some = lost > 1e-3
     assert some.any() == (result.in_contact.any() and case.contact.model == "direct")
-    np.testing.assert_allclose(told[some], lost[some], rtol=1e-3)
+    np.testing.assert_allclose(stored_error[some], lost[some], rtol=1e-3)
     # Newton's tolerance alone: both are nothing
-    assert told[~some].max() < 1e-3 and (~some).any()
+    assert stored_error[~some].max() < 1e-3 and (~some).any()
     if not some.any():
-        assert told.max() < 2e-6
+        assert stored_error.max() < 2e-6
 
 
 def test_friction_and_films(run):
@@ -189,7 +189,7 @@ def test_figures_of_the_oil_and_of_thin_films(run):
     np.testing.assert_array_equal(steps.nodes_below_1nm, thin.sum(axis=1))
 
 
-def test_shares_and_lengths_of_mixed_contact(run):
+def test_fractions_and_lengths_of_mixed_contact(run):
     case, result, _ = run
     if case.contact.model == "direct":
         assert "contact_share" not in result.scalars
@@ -204,7 +204,7 @@ def test_shares_and_lengths_of_mixed_contact(run):
     np.testing.assert_allclose(steps.thin_share, dx * (result.pressure * thin).sum(axis=1) / load, rtol=1e-9)
 
 
-def test_approach_is_that_of_the_film_at_the_inlet(run):
+def test_approach_follows_from_the_inlet_film(run):
     """h = h00 + x^2/2R + phi - (4/pi E') int p ln|x-s| ds, smooth at step 0."""
     case, result, of = run
     deflection = -4.0 / (np.pi * of.E) * (result.pressure @ logarithms(result.x))
@@ -215,7 +215,7 @@ def test_approach_is_that_of_the_film_at_the_inlet(run):
     np.testing.assert_allclose(result.steps.approach[few], gap[few], rtol=0, atol=1e-6 * of.a**2 / of.R)
 
 
-def test_nodes_that_the_solver_leaves_out_are_flagged_and_their_oil_is_counted():
+def test_excluded_nodes_are_flagged_and_their_oil_counted():
     """PETSc takes a film under its zero tolerance, here a wide one, for none where oil would leave."""
     file, changed = SCENES["direct"]
     case = ehlpetsc.load(CASES / file, changed)

@@ -1,6 +1,6 @@
 """The paper's sweeps against Newton's method: two iterations that share nothing but the equations agree.
 
-The three time steps, two with contacts, are of cases/table1_rough.toml as it stands; what goes before each is
+The three time steps, two with contacts, are of cases/table1_rough.toml as it stands; the state before each is
 stored in rough_contacts.npz. After a change of that case ``python3 tests/verification/test_sweep.py`` writes
 it anew, in five minutes.
 """
@@ -47,7 +47,7 @@ def assert_same(problem, newton, swept, rtol):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("step", CONTACTS)
-def test_same_film_pressure_and_contacts_as_newton(rough, step):
+def test_sweeps_equal_newton(rough, step):
     found = []
     with np.load(STORED) as stored:
         q, h, m, m_older = stored[f"levels_{step}"].astype(float)
@@ -66,7 +66,7 @@ def test_same_film_pressure_and_contacts_as_newton(rough, step):
     assert found[1][2] == pytest.approx(found[0][2], rel=1e-5)
 
 
-def test_sweeps_march_from_their_own_start():
+def test_sweeps_step_from_their_own_start():
     states = []
     for simulation in simulations("table1_rough.toml", "mesh.points_per_half_width=50"):
         for state in itertools.islice(simulation, 6):
@@ -75,7 +75,7 @@ def test_sweeps_march_from_their_own_start():
     assert_same(simulation.stepper.problem, *states, rtol=1e-5)
 
 
-def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
+def test_load_balance_at_an_exit_film_of_150_nm():
     coarse = "mesh.points_per_half_width=50"
     both = simulations("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
     states = [simulation.advance().solution for simulation in both]
@@ -88,8 +88,8 @@ def test_load_is_met_where_the_exit_film_is_held_at_150_nm():
     assert load == pytest.approx(0.5 * np.pi, rel=1e-7)
 
 
-def test_gives_up_after_so_many_evaluations(monkeypatch):
-    monkeypatch.setattr(sweep, "EVALUATIONS", 2)
+def test_sweeps_stop_at_the_evaluation_limit(monkeypatch):
+    monkeypatch.setattr(sweep, "MAX_EVALUATIONS", 2)
     stepper = simulations("table1_smooth.toml", "mesh.points_per_half_width=50")[1].stepper
     with pytest.raises(SolveFailed, match="MAX_IT after 2 "):
         stepper.solver.solve(
@@ -104,7 +104,7 @@ def test_gives_up_after_so_many_evaluations(monkeypatch):
         ("dry_hertz.toml", "sweep", "a dry contact has no Reynolds equation"),
     ],
 )
-def test_schemes_that_cannot_be(name, value, message):
+def test_invalid_schemes_are_refused(name, value, message):
     with pytest.raises(UsageError, match=message):
         Simulation(load(CASES / name), options={"ehl_scheme": value})
 

@@ -16,7 +16,7 @@ def test_film_in_pure_rolling(point):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("point", published.POINTS)
-def test_friction_and_least_film(point):
+def test_friction_and_minimum_film(point):
     """At 25 m/s the film's own heating and what its inlet carries in, left out by theory, count most."""
     cold, warm = (published.solve(*point, heated, 50) for heated in (False, True))
     theory = published.friction_by_theory(cold, False), published.friction_by_theory(warm, True)

@@ -43,7 +43,7 @@ def amplitude_left(ratio, points, nodes, half_periods):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("ratio", SETTINGS)
-def test_amplitude_within_four_percent(ratio):
+def test_waviness_amplitude_within_four_percent(ratio):
     fourier, peaks = amplitude_left(ratio, *SETTINGS[ratio])
     print(f"{ratio} b: Fourier {fourier:.4f}, half peak to peak {peaks:.4f}, published {WAVINESS[ratio]}")
     assert fourier == pytest.approx(WAVINESS[ratio], rel=0.04)

@@ -30,7 +30,7 @@ def test_worn_volume_is_the_integral_of_the_solids_pressure_times_sliding(scale)
     assert one.volume == pytest.approx(K * work, rel=1e-10)
 
 
-def test_wear_widens_the_gap_and_the_next_pass_begins_with_it():
+def test_wear_is_passed_on_to_the_next_pass():
     first, states = worn(f"wear.coefficient={K}", "time.passes=2")
     second, again = worn(f"wear.coefficient={K}", "time.passes=2", after=first)
     assert again[0].wear_volume == pytest.approx(states[-1].wear_volume, rel=1e-14)
@@ -40,7 +40,7 @@ def test_wear_widens_the_gap_and_the_next_pass_begins_with_it():
     assert second.pass_number == 2
 
 
-def test_no_sliding_no_wear():
+def test_no_wear_without_sliding():
     assert wear_depth(K, np.ones(3) * 1e9, 0.0, 1e-6).tolist() == [0.0, 0.0, 0.0]
     assert wear_depth(K, np.array([1e9]), -2.0, 1e-6)[0] == pytest.approx(2e-12)
 
@@ -54,6 +54,6 @@ def test_no_sliding_no_wear():
         ("table1_mixed.toml", [K]),
     ],
 )
-def test_wear_that_cannot_be_is_refused(case, coefficient):
+def test_invalid_wear_is_refused(case, coefficient):
     with pytest.raises(CaseError, match="wear"):
         load(CASES / case, [f"wear.coefficient={coefficient}"])

@@ -8,7 +8,7 @@ from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import read_life, run_life
 from ehlpetsc.life.ageing import laws
-from ehlpetsc.life.passes.positions import CELL
+from ehlpetsc.life.passes.positions import CELL_SIZE
 from ehlpetsc.post.run import Job
 from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult
@@ -26,10 +26,10 @@ def scaled(scale):
     return {"surface.1.scale": scale, "surface.2.scale": scale}
 
 
-def test_without_wear_cells_fail_after_the_passes_of_the_damage_of_one_pass(tmp_path):
+def test_cells_without_wear_fail_after_one_over_damage_passes(tmp_path):
     keys = {"wear": None, "life.pits": False, "life.damage_jump": 0.5, "life.passes": 1e12}
     scene = Simulation(case(keys)).scene
-    edges = laws.cell_edges(CELL * scene.rq, 6 * CELL * scene.rq)
+    edges = laws.cell_edges(CELL_SIZE * scene.rq, 6 * CELL_SIZE * scene.rq)
     depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]
     life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", most=3)
     post(Job(str(tmp_path / "a.life.pass.h5"), str(tmp_path / "a.post.h5")))
@@ -47,7 +47,7 @@ def test_without_wear_cells_fail_after_the_passes_of_the_damage_of_one_pass(tmp_
 
 
 @pytest.mark.parametrize("scale", [0.5, 1.0])
-def test_the_worn_volume_is_k_times_load_times_sliding_whatever_the_roughness(scale, tmp_path):
+def test_worn_volume_is_k_times_load_times_sliding(scale, tmp_path):
     passes, k = 40_000, (1e-18, 3e-18)
     one = case(scaled(scale) | {"wear.coefficient": list(k), "life.passes": passes, "life.wear_jump": 0.02})
     life = run_life(one, tmp_path / "a.life.h5")
@@ -59,7 +59,7 @@ def test_the_worn_volume_is_k_times_load_times_sliding_whatever_the_roughness(sc
         assert body.volume == pytest.approx(coefficient * one.contact.load * sliding, rel=1e-6)
 
 
-def test_wear_wins_at_a_high_rate_and_fatigue_at_a_low_one(tmp_path):
+def test_wear_dominates_at_a_high_rate_and_fatigue_at_a_low_rate(tmp_path):
     """As in Morales-Espejel and Brizmer (2011): mild wear takes off the layer in which micropits begin."""
     ends = {}
     for k in (1e-15, 1e-20):
@@ -74,7 +74,46 @@ def test_wear_wins_at_a_high_rate_and_fatigue_at_a_low_one(tmp_path):
     assert pitted.rows[-1]["pits_1"] >= 1 and pitted.rows[-1]["pitted_share_1"] > 0.0
 
 
-def test_half_the_allowed_jump_leaves_pits_and_wear_as_they_are(tmp_path):
+def first_round(keys, path):
+    """Largest damage of a pass in each body, and k at which wear would just win on each."""
+    life = run_life(load(CASES / "life.toml", {"life.wear_jump": 0.2, **keys}), path, most=1)
+    coefficients = load(CASES / "life.toml", keys).wear.coefficient
+    row, bodies = life.rows[0], life.bodies[0]
+    borders = [k * row[f"damage_ahead_{n}"] for n, k in enumerate(coefficients, 1)]
+    return [body.damage_rate.max() for body in bodies], borders
+
+
+def test_rough_partner_damages_the_smoother_surface(tmp_path):
+    """Figure 7 of Morales-Espejel and Brizmer (2011): the smooth surface of the pair (b) suffers most.
+
+    Heights in the proportions of their figure 8: 1.0 and 0.05, 0.26 and 0.05, 0.5 and 0.5.
+    """
+    pairs = {"unequal": (0.18, 0.009), "smooth": (0.0468, 0.009), "rough": (0.09, 0.09)}
+    found, borders = {}, {}
+    for name, (one, other) in pairs.items():
+        keys = {"surface.1.scale": one, "surface.2.scale": other}
+        found[name], borders[name] = first_round(keys, tmp_path / f"{name}.life.h5")
+    (rough, smooth), others = found["unequal"], found["smooth"] + found["rough"]
+    assert smooth > 2.0 * rough, "7b against 7c"
+    assert smooth > 3.0 * max(others), "7b against 7a and 7d"
+    assert borders["unequal"][1] > 3.0 * max(borders["smooth"][1], borders["rough"][1])
+
+
+def test_thicker_film_protects_and_moves_the_border(tmp_path):
+    """Figure 10 of Morales-Espejel and Brizmer (2011): damage without wear falls with the film over Rq."""
+    fluid = {"viscosity": 0.004, "law": "roelands", "pressure_viscosity": 15e-9}
+    fluid |= {"density": "dowson-higginson", "eyring_stress": 6e6}
+    keys = {"fluid": fluid, "mesh.inlet": -2.0, "contact.asperity_height": 20e-9}
+    found = []
+    for speed in (0.2, 1.0, 2.0):
+        found.append(first_round(keys | {"motion.entrainment_speed": speed}, tmp_path / f"{speed}.life.h5"))
+    damage, borders = zip(*found, strict=True)
+    assert max(damage[0]) > 2.0 * max(damage[1]) > 8.0 * max(damage[2])
+    for k in range(2):
+        assert borders[0][k] > 1.5 * borders[1][k] > 3.0 * borders[2][k]
+
+
+def test_pits_and_wear_are_independent_of_the_jump(tmp_path):
     ends = []
     for part in (1.0, 0.5):
         keys = {"life.wear_jump": 0.2 * part, "life.damage_jump": 0.4 * part, "wear.coefficient": 1e-19}
@@ -89,7 +128,7 @@ def test_half_the_allowed_jump_leaves_pits_and_wear_as_they_are(tmp_path):
     assert other.first_failure == pytest.approx(life.first_failure, rel=0.01)
 
 
-def test_a_life_continued_is_the_one_that_was_not_stopped(tmp_path):
+def test_continued_life_equals_an_uninterrupted_one(tmp_path):
     keys = {"wear.coefficient": 1e-18, "life.passes": 1e9, "time.pass_shift": 50e-6, "life.partners": 2}
     one = case(keys | {"contact.yield_pressure": 2e9, "life.damage_jump": 0.5})
     once = run_life(one, tmp_path / "once.life.h5", most=4)

@@ -35,7 +35,7 @@ def added(simulation, state):
 
 
 @pytest.mark.slow
-def test_every_step_passes_the_convergence_check(rough):
+def test_yielding_steps_pass_the_convergence_check(rough):
     simulation, states = rough
     bound, film = simulation.case.contact.yield_pressure[0], simulation.case.contact.boundary_film
     assert sum(state.yielding for state in states) > 30
@@ -49,7 +49,7 @@ def test_every_step_passes_the_convergence_check(rough):
 
 
 @pytest.mark.slow
-def test_both_bodies_take_what_the_steps_add(rough):
+def test_plastic_deformation_is_added_to_both_bodies(rough):
     simulation, states = rough
     scales, sets = simulation.scales, simulation.solution.records["plastic_deformation"].depth
     total = sum(added(simulation, state).sum() for state in states) * scales.h * scales.dx
@@ -57,7 +57,7 @@ def test_both_bodies_take_what_the_steps_add(rough):
     assert sets[0].volume == pytest.approx(sets[1].volume, rel=1e-12)
 
 
-def test_the_softer_surface_takes_all():
+def test_softer_surface_takes_all_plastic_deformation():
     keys = [*ROUGH, "contact.yield_pressure=[9e9, 2.5e9]", "time.travel=1.6"]
     case = load(CASES / "table1_mixed.toml", keys)
     *_, last = Simulation(case)
@@ -67,7 +67,7 @@ def test_the_softer_surface_takes_all():
 
 
 @pytest.mark.slow
-def test_above_every_pressure_the_result_is_the_elastic_one():
+def test_unreached_yield_pressure_gives_the_elastic_result():
     elastic, yielding = (
         list(Simulation(load(CASES / "table1_mixed.toml", [*ROUGH, "time.travel=1.6", *more])))
         for more in ((), ("contact.yield_pressure=100e9",))
@@ -117,7 +117,7 @@ def bounded_reference(x, limit):
 
 
 @pytest.mark.parametrize("share", [1.25, 2.0])
-def test_a_dry_cylinder_is_the_minimum_of_the_bounded_energy(share):
+def test_dry_cylinder_minimises_the_bounded_energy(share):
     simulation, state = pressed(share, 40)
     expected = bounded_reference(simulation.scales.x, 1.0 / share)
     np.testing.assert_allclose(state.pressure / simulation.scales.p0, expected, atol=2e-3)
@@ -125,7 +125,7 @@ def test_a_dry_cylinder_is_the_minimum_of_the_bounded_energy(share):
 
 
 @pytest.mark.parametrize("share, mesh", [(2.0, 60), (4.0, 50), (4.0, 60), (4.0, 200)])
-def test_pressure_is_flat_over_the_width_that_the_load_asks_for(share, mesh):
+def test_fully_plastic_pressure_is_uniform_over_the_load_width(share, mesh):
     """Far beyond yield the elastic rest at the edges is next to nothing: p_y over W/p_y."""
     simulation, state = pressed(share, mesh)
     bound = simulation.case.contact.yield_pressure[0]
@@ -152,7 +152,7 @@ def test_pressure_converges_with_the_mesh_far_beyond_yield():
     assert order > 0.9 and errors[-1] < 1e-4, (order, errors)
 
 
-def test_the_set_converges_with_the_mesh():
+def test_plastic_deformation_converges_with_the_mesh():
     """Volume and greatest depth at p0 = 1.25 p_y, against the finest mesh: first order or better."""
     found = []
     for mesh in (25, 50, 100, 400):
@@ -162,7 +162,7 @@ def test_the_set_converges_with_the_mesh():
     assert (errors[-1] < 2e-3).all() and (errors[-1] < 0.5 * errors[0]).all(), errors
 
 
-def test_pressed_again_nothing_yields_further():
+def test_reloading_adds_no_plastic_deformation():
     simulation, state = pressed(2.0, 50)
     _, again = pressed(2.0, 50, simulation)
     assert again.set_volume - state.set_volume < 2e-4 * state.set_volume
@@ -170,7 +170,7 @@ def test_pressed_again_nothing_yields_further():
 
 
 @pytest.mark.slow
-def test_a_second_pass_over_a_ridge_adds_next_to_nothing():
+def test_second_pass_over_a_ridge_is_nearly_elastic():
     case = load(CASES / "ridge.toml", [*RIDGE, "contact.yield_pressure=2e9"])
     before, volumes = None, []
     for _ in range(2):

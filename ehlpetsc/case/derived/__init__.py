@@ -1,1 +1,1 @@
-"""Values of a case that follow from others: steels, oil grades, layers of profiles, conditions over time."""
+"""Values of a case derived from others: steels, oil grades, layers of profiles, conditions over time."""

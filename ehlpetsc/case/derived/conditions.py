@@ -1,4 +1,4 @@
-"""Conditions that change with time: of an `[operation]` table or a `[gears]` pair.
+"""Conditions that change with time, from `[operation]` or `[gears]`.
 
 A case with either has a reference state, from which its scales come: the load and radius of the widest
 contact and the fastest entrainment. It is filled in under the keys of constant cases.
@@ -15,13 +15,13 @@ from ehlpetsc.gears import path_of_contact
 from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
-MIN_LOAD = 0.05  # of the load of the mesh, with which the contact of two teeth begins and ends
+MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
 PLACEHOLDER = {"radius": 1.0, "load": 1.0}
 MOTION = {"entrainment_speed": 1.0}
 
 
 def conditions_of(tables, folder):
-    """Conditions over time of a case's tables.
+    """Conditions over time from the tables of a case.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def conditions_of(tables, folder):
     Returns
     -------
     ConditionsTable or None
-        None: constant conditions, or a table with faults of its keys, which the schema names.
+        None: constant conditions, or a table with faults that the schema reports.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def conditions_of(tables, folder):
         try:
             Gears(**gears)
             return of_gears(path_of_contact(gears))
-        except (ValidationError, CaseError):  # the schema names both
+        except (ValidationError, CaseError):  # reported by the schema
             return None
     if not isinstance(operation, dict):
         return None
@@ -60,7 +60,7 @@ def conditions_of(tables, folder):
 
 
 def with_columns(tables, folder):
-    """Tables of a case with the columns of its table's file in place of its name, as results store them.
+    """Tables of a case with the columns of the file of `[operation]` in place of its name, as in results.
 
     Returns
     -------
@@ -79,13 +79,13 @@ def with_columns(tables, folder):
 
 
 def of_gears(path):
-    """Conditions along a path of contact, from where a pair of teeth carries `MIN_LOAD` of the load.
+    """Conditions along a path of contact, where teeth carry at least `MIN_LOAD_FRACTION` of the load.
 
     Parameters
     ----------
     path : ehlpetsc.gears.Path
     """
-    least = MIN_LOAD * path.load.max()
+    least = MIN_LOAD_FRACTION * path.load.max()
     carries = np.flatnonzero(path.load >= least)
     first, last = carries[0], carries[-1]
     begin, end = path.time[first], path.time[last]
@@ -109,7 +109,7 @@ def of_gears(path):
 
 
 def _checked(columns, lines, tables, repeat):
-    """Conditions of the columns, constants of the case where one is left out."""
+    """Conditions of the columns; for missing columns the constants of the case."""
     if "time" not in columns:
         raise TableFault("no column time; allowed: one, increasing")
     if len(columns) == 1:
@@ -155,7 +155,7 @@ def _checked(columns, lines, tables, repeat):
 
 
 def _constants(tables):
-    """Constant conditions of a case's other tables, as far as there are any."""
+    """Constant conditions in the other tables of a case."""
     found = {}
     contact, motion = tables.get("contact"), tables.get("motion")
     for key in ("load", "radius"):
@@ -186,7 +186,7 @@ def with_reference_state(tables, table):
     ----------
     tables : dict
     table : ConditionsTable or None
-        None: constant conditions; with faulty ones placeholders keep the schema from naming keys that come
+        None: constant conditions; if they are faulty, placeholders prevent reports of keys that follow
         from the table.
 
     Returns
@@ -196,7 +196,7 @@ def with_reference_state(tables, table):
     named = ("contact", "motion", "time")
     if not ("gears" in tables or "operation" in tables):
         return tables
-    if any(not isinstance(tables.get(name, {}), dict) for name in named):  # a fault that the schema names
+    if any(not isinstance(tables.get(name, {}), dict) for name in named):  # reported by the schema
         return tables
     contact, motion, time = (tables.get(name, {}) for name in named)
     if table is None:
@@ -217,7 +217,7 @@ def with_reference_state(tables, table):
 
 
 def reversal_faults(case, table):
-    """Fault of a domain whose ends differ under an entrainment speed that is negative at a time.
+    """Fault of a domain that is not symmetric although the entrainment speed becomes negative.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""CSV tables of conditions over time: columns by name, faults with their line."""
+"""CSV tables of conditions over time, read by the names of the columns."""
 
 import re
 
 from ehlpetsc.case.tables.operation import COLUMNS
 
-MAX_TABLE_BYTES = 2**26  # of a table
+MAX_TABLE_BYTES = 2**26
 
 
 class TableFault(Exception):
@@ -49,7 +49,7 @@ def read_table(path):
 
 
 def shown(line):
-    """A line of a file, shortened."""
+    """Line of a file, shortened for messages."""
     return line if len(line) <= 40 else line[:37] + "..."
 
 
@@ -67,7 +67,7 @@ def _text(path):
 
 
 def _numbers(line, separator):
-    """Numbers of a line; empty where a word is not a number."""
+    """Numbers of a line; empty if an entry is not a number."""
     words = [word.strip() for word in line.split(separator)]
     if separator == ";":
         words = [word.replace(",", ".") for word in words]
@@ -78,7 +78,7 @@ def _numbers(line, separator):
 
 
 def _keys_of(number, line, separator):
-    """Keys of the columns that a line names, units in brackets left out."""
+    """Keys of the columns named in a line, without units in brackets."""
     known = {name: key for key, names in COLUMNS.items() for name in names}
     keys = []
     for word in re.sub(r"\[[^\]]*\]|\([^)]*\)", "", line).split(separator):

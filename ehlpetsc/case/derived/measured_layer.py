@@ -22,14 +22,14 @@ def resolve_measured_layer(path, data):
     Parameters
     ----------
     path : path-like
-        Of the case file; profile files lie beside it.
+        Path of the case file, in whose folder profile files are.
     data : dict
         Tables; changed in place.
 
     Returns
     -------
     settings : list of (list of str, value)
-        What was replaced: keys taken apart and the number.
+        Replaced settings: split keys and numbers.
     faults : list of str
     """
     contact = data.get("contact")
@@ -45,7 +45,7 @@ def resolve_measured_layer(path, data):
         return [], [f'contact.{KEY} = "measured": needs short_cutoff in [surface.1] or [surface.2]']
     try:
         removed = [_removed(Path(path).parent, SurfaceProfile(**table)) for table in tables]
-    except (ProfileError, ValidationError):  # named with its key by the checks of the profiles
+    except (ProfileError, ValidationError):  # reported by the checks of the profiles
         contact[KEY] = None
         return [], []
     contact[KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")

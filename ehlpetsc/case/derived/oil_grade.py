@@ -1,4 +1,4 @@
-"""Keys of `[fluid]` that follow from the grade of an oil, as data sheets give it."""
+"""Keys of `[fluid]` derived from an oil grade of data sheets."""
 
 from ehlpetsc.case.schema.table import is_of
 
@@ -6,9 +6,9 @@ MM2 = 1e6  # mm^2/s in m^2/s
 
 
 def with_grade(tables):
-    """Tables of a case with the viscosity of its oil grade, where the case gives none.
+    """Tables of a case with the viscosity of its oil grade, unless the case has a viscosity.
 
-    Walther's equation (ASTM D341) at `fluid.temperature`, else at the reference temperature of `[heat]`,
+    Walther's equation (ASTM D341) at `fluid.temperature`, default: the reference temperature of `[heat]`,
     times the density; `pressure_viscosity` by Gold et al. (2001). Argument and result as of
     :func:`ehlpetsc.case.derived.solids.with_material`; a grade needs a temperature.
     """

@@ -1,4 +1,4 @@
-"""Keys of `[contact]` that follow from named steels."""
+"""Keys of `[contact]` derived from named steels."""
 
 from ehlpetsc.materials import DEFAULT, STEELS, cyclic_strength, flow_pressure
 
@@ -7,7 +7,7 @@ BY_MATERIAL = "material"
 
 
 def named_steels(material):
-    """Steel of each surface; the default steel where none is named.
+    """Steel of each surface; by default the default steel.
 
     Parameters
     ----------
@@ -29,26 +29,26 @@ def named_steels(material):
 
 
 def fatigue_constants(steel, post):
-    """Fatigue constants by key: those of a steel, single ones replaced by those of `[post]`.
+    """Fatigue constants of a steel by key, overridden by the keys of `[post]`.
 
-    K' left out in `[post]` follows from the others.
+    If `[post]` has no K', it follows from the other constants.
 
     Parameters
     ----------
     steel : ehlpetsc.materials.Steel
     post : dict
-        Keys of `[post]`; None counts as left out.
+        Keys of `[post]`; None counts as missing.
     """
-    found = {key: getattr(steel, key) for key in FATIGUE_KEYS if key != "cyclic_strength"}
-    found |= {key: post[key] for key in FATIGUE_KEYS if post.get(key) is not None}
+    constants = {key: getattr(steel, key) for key in FATIGUE_KEYS if key != "cyclic_strength"}
+    constants |= {key: post[key] for key in FATIGUE_KEYS if post.get(key) is not None}
     strength, ductility, hardening = (
-        found[key] for key in ("fatigue_strength", "fatigue_ductility", "cyclic_hardening")
+        constants[key] for key in ("fatigue_strength", "fatigue_ductility", "cyclic_hardening")
     )
-    return {"cyclic_strength": cyclic_strength(strength, ductility, hardening)} | found
+    return {"cyclic_strength": cyclic_strength(strength, ductility, hardening)} | constants
 
 
 def with_material(tables):
-    """Tables of a case with the elastic constants of its steels, and with their limit of pressure.
+    """Tables of a case with the elastic constants of its steels, and with their yield pressure.
 
     Elastic constants that the case gives are kept; ``yield_pressure = "material"`` becomes the pressure at
     which the steel flows. Tables without a known steel, or with faults that the schema names, stay as they

@@ -1,4 +1,4 @@
-"""Base class of the tables of a case file: frozen, no unknown keys, the types of TOML as they are."""
+"""Base class of the tables of a case file: frozen, no unknown keys, the types of TOML."""
 
 import re
 
@@ -6,23 +6,23 @@ from ehlpetsc.case.schema.validation import BaseModel, Extra, validator
 
 
 class Needs(ValueError):
-    """A key is allowed only beside others; the text names them."""
+    """A key requires other keys, which the message names."""
 
 
 def is_of(kind, value):
-    """TOML's own types: an integer is a number, true and false are not."""
+    """Whether a value has a type of TOML: an integer is a number, true and false are not."""
     if isinstance(value, bool):
         return kind is bool
     return isinstance(value, (int, float) if kind is float else kind)
 
 
 def is_plain(text):
-    """Whether a text is one line of UTF-8 without control characters: HDF5 and PETSc end theirs at a nul."""
+    """Whether a text is one line of UTF-8 without control characters, as HDF5 and PETSc need."""
     return text.isprintable() or not re.search(r"[\x00-\x1f\x7f\ud800-\udfff]", text)
 
 
 class Table(BaseModel):
-    """A table of the case file: frozen, no unknown keys, no silent conversions."""
+    """Table of the case file: frozen, no unknown keys, no silent conversions."""
 
     class Config:
         extra = Extra.forbid
@@ -32,7 +32,7 @@ class Table(BaseModel):
     @validator("*", pre=True)
     def _no_conversion(cls, value, field):
         kind = next((k for k in (bool, int, float, str, dict) if _subclass(item_type(field), k)), None)
-        if value is None or kind is None:  # None: left out
+        if value is None or kind is None:  # None: key is missing
             return value
         for item in value if isinstance(value, list) and kind is not dict else [value]:
             if not is_of(kind, item):
@@ -49,5 +49,5 @@ def _subclass(type_, kind):
 
 
 def item_type(field):
-    """Type of a key, of its items where it takes several."""
+    """Type of a key, or of the items of a list."""
     return field.sub_fields[0].type_ if field.sub_fields and field.shape != 1 else field.type_

@@ -1,8 +1,8 @@
-"""Pydantic's first interface, which its second release includes: one schema for both."""
+"""Interface of pydantic 1, which pydantic 2 includes: one schema for both releases."""
 
 try:
     from pydantic import v1 as pydantic
-except ImportError:  # before 1.10.17 there is no such name
+except ImportError:  # before 1.10.17
     import pydantic
 
 BaseModel, Extra, Field = pydantic.BaseModel, pydantic.Extra, pydantic.Field

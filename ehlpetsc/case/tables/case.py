@@ -1,4 +1,4 @@
-"""The case: every table of a case file, checked, with its text."""
+"""Case: all tables of a case file, checked, with the text."""
 
 from functools import partial
 from pathlib import Path
@@ -18,14 +18,14 @@ from ehlpetsc.case.tables.surface import Surface
 
 
 class Case(Table):
-    """A case as the user wrote it; a section left out of the file is None.
+    """Case; a missing table is None.
 
     Attributes
     ----------
     text : str
-        The TOML text with the overrides in it: saved beside its profiles, it runs the same case again.
+        TOML text including the overrides, which in the same folder defines the same case.
     path : pathlib.Path
-        Where it was read; profile files are sought beside it.
+        Path of the case file, in whose folder profile files are.
     """
 
     title: str = Field(
@@ -58,7 +58,7 @@ class Case(Table):
         ----------
         tables : dict
         text : str or functools.partial
-            Or what returns it, where it is seldom needed.
+            Text, or a function that returns it.
         path : pathlib.Path
         conditions : physics.conditions_table.ConditionsTable or None
         """
@@ -81,7 +81,7 @@ class Case(Table):
 
     @validator("petsc")
     def _options(cls, options):
-        """PETSc takes text; TOML's true, false and numbers are written out for it."""
+        """Options as strings, as PETSc requires."""
         for name, value in options.items():
             number = isinstance(value, int | float) and abs(value) < 1e300
             text = isinstance(value, str) and is_plain(value)
@@ -91,7 +91,7 @@ class Case(Table):
 
     @property
     def text(self):
-        if isinstance(self._text, partial):  # of a member of a series: made at first use
+        if isinstance(self._text, partial):  # member of a series: generated at first use
             self._text = self._text()
         return self._text
 
@@ -103,6 +103,6 @@ class Case(Table):
     def conditions(self):
         """Load, radius and speeds over time: a `physics.conditions_table.ConditionsTable`; None: constant.
 
-        The reference state of its scales is then in `contact` and `motion`.
+        `contact` and `motion` then contain the reference state of the scales.
         """
         return self._conditions

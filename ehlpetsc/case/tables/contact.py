@@ -7,7 +7,7 @@ from ehlpetsc.case.schema.validation import Field, confloat, validator
 from ehlpetsc.materials import STEELS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
-ASPERITIES = {"asperity_stiffness": 1.0, "asperity_slope": 0.1}  # of ground and superfinished steel
+ASPERITY_DEFAULTS = {"asperity_stiffness": 1.0, "asperity_slope": 0.1}  # ground and superfinished steel
 SteelName = Literal[tuple(STEELS)]
 Modulus = confloat(ge=1e6, le=1e18)
 Ratio = confloat(ge=0.0, le=0.5)
@@ -81,12 +81,12 @@ class Contact(Table):
 
     @property
     def has_contact_pressure(self):
-        """Whether the solids have a pressure of their own beside that of the oil."""
+        """Whether the pressure of the solids is separate from that of the oil."""
         return self.model == "mixed"
 
     @property
     def law(self):
-        """Name of the law of contact: "direct", "mixed" (rigid from the boundary film on) or "compliant"."""
+        """Contact law: "direct", "mixed" (rigid below the boundary film) or "compliant"."""
         return self.model if self.asperity_height is None else "compliant"
 
     @validator("boundary_film", always=True)
@@ -113,7 +113,7 @@ class Contact(Table):
             if value is not None:
                 raise Needs("asperity_height")
             return None
-        return ASPERITIES[field.name] if value is None else value
+        return ASPERITY_DEFAULTS[field.name] if value is None else value
 
     @validator("minimum_film")
     def _of_direct_contact(cls, value, values):
@@ -133,7 +133,7 @@ class Contact(Table):
 
 
 class Wear(Table):
-    """`[wear]`: left out, surfaces do not wear."""
+    """`[wear]`; without it surfaces do not wear."""
 
     coefficient: tuple[WearRate, WearRate] = Field(
         ..., unit="m^2/N", one_for_both=True, description="specific wear rate k, of both or of each surface"

@@ -3,7 +3,7 @@
 from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.schema.validation import Field, validator
 
-MAX_NODES = 200_000  # beyond it the work of a step is hours: more likely a slip of the pen
+MAX_NODES = 200_000  # with more a time step would take hours; more likely a typing error
 
 
 class Mesh(Table):
@@ -22,12 +22,12 @@ class Mesh(Table):
 
     @property
     def nodes(self):
-        """Number of nodes; the last one lies at the outlet to the nearest whole spacing."""
+        """Number of nodes; the outlet is rounded to a whole number of spacings."""
         return round((self.outlet - self.inlet) * self.points_per_half_width) + 1
 
 
 class Time(Table):
-    """`[time]`: left out, the case is steady."""
+    """`[time]`; without it the case is steady."""
 
     travel: float = Field(
         ...,

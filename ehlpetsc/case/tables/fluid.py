@@ -15,7 +15,7 @@ ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
 
 
 class Grade(Table):
-    """`fluid.grade`: an oil as data sheets give it."""
+    """`fluid.grade`: oil grade of data sheets."""
 
     v40: float = Field(..., gt=2e-6, le=0.1, unit="m^2/s", description="kinematic viscosity at 40 C")
     v100: float = Field(..., gt=2e-6, le=0.1, unit="m^2/s", description="at 100 C, below v40")
@@ -88,7 +88,7 @@ class Fluid(Table):
 
     @validator("kappa", "lambda_")
     def _below(cls, value, values, field):
-        # kappa >= eta0 turns the seed law's exponent round; lambda > gamma thins the oil under pressure
+        # kappa >= eta0 reverses the sign of the exponent; lambda > gamma makes the density fall with pressure
         limit = values.get("viscosity" if field.name == "kappa" else "gamma")
         equal_too = field.name == "kappa"
         if value is not None and limit is not None and (value > limit or equal_too and value == limit):
@@ -97,7 +97,7 @@ class Fluid(Table):
 
     @root_validator(skip_on_failure=True)
     def _roelands(cls, values):
-        """Constants left out: from kappa and chi, which write the same law, or from eta0 and alpha."""
+        """Missing constants from kappa and chi of the equivalent law, or from eta0 and alpha."""
         if values["law"] != "roelands":
             return values
         eta0, alpha, kappa, chi = (values[k] for k in ("viscosity", "pressure_viscosity", "kappa", "chi"))

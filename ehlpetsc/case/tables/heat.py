@@ -11,7 +11,7 @@ PAIRS = ("bulk_temperature", "conductivity", "density", "heat_capacity")
 
 
 class Heat(Table):
-    """`[heat]`: left out, the case is isothermal. Defaults: steel and mineral oil."""
+    """`[heat]`; without it the case is isothermal. Defaults: steel and mineral oil."""
 
     bulk_temperature: tuple[Temperature, Temperature] = Field(
         ..., unit="K", one_for_both=True, description="of both bodies far from the contact, or of each"

@@ -3,7 +3,7 @@
 from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.schema.validation import Field, confloat, root_validator
 
-COLUMNS = {  # of the table, by key, with the names that a file may give them
+COLUMNS = {  # allowed names of the columns of a file, by key
     "time": ("time", "t"),
     "load": ("load", "w"),
     "radius": ("radius", "r"),
@@ -26,7 +26,7 @@ class Motion(Table):
 
 
 class Operation(Table):
-    """`[operation]`: conditions over time; those left out are constant, from `[contact]` and `[motion]`."""
+    """`[operation]`: conditions over time; others are constant, from `[contact]` and `[motion]`."""
 
     file: str | None = Field(
         None,

@@ -1,4 +1,4 @@
-"""Tables `[output]` and `[series]`: stored quantities, and keys swept over values."""
+"""Tables `[output]` and `[series]`: stored quantities, and keys varied over values."""
 
 import math
 from typing import Any, Literal
@@ -8,12 +8,12 @@ from ehlpetsc.case.schema.validation import Field, constr, root_validator, valid
 from ehlpetsc.names import current_name
 from ehlpetsc.quantities import FIELDS, STORED
 
-DOTTED = r"^[A-Za-z_]+(\.[A-Za-z_0-9]+)+$"  # a key below a table
+DOTTED_KEY = r"^[A-Za-z_]+(\.[A-Za-z_0-9]+)+$"
 MAX_MEMBERS = 10_000  # of a series
 
 
 class Output(Table):
-    """`[output]`: what the result file holds."""
+    """`[output]`: content of the result file."""
 
     every: int = Field(1, ge=1, le=10**9, description="steps between stored fields")
     fields: list[Literal[tuple(FIELDS)]] = Field(STORED, min_items=1, description="stored fields")
@@ -31,10 +31,10 @@ class Output(Table):
 
 
 class Series(Table):
-    """`[series]`: a key swept over values, or several, one member a value or a combination of values."""
+    """`[series]`: one or several varied keys; one member for each value or combination of values."""
 
-    key: str | None = Field(None, regex=DOTTED, description='as in "fluid.viscosity"; or keys')
-    keys: list[constr(regex=DOTTED)] | None = Field(None, min_items=2, description="several keys at once")
+    key: str | None = Field(None, regex=DOTTED_KEY, description='as in "fluid.viscosity"; or keys')
+    keys: list[constr(regex=DOTTED_KEY)] | None = Field(None, min_items=2, description="several keys at once")
     values: list[Any] = Field(
         ..., min_items=1, description="a list of values of the key; of keys, such a list for each"
     )

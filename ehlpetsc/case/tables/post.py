@@ -10,7 +10,7 @@ Residual = confloat(ge=-1e10, le=1e10)
 
 
 class Post(Table):
-    """`[post]`: read by `ehlpetsc.post` alone; checked here so that a slip shows before the run."""
+    """`[post]`: used only by `ehlpetsc.post`, but checked before the run."""
 
     depths: list[Depth] | None = Field(None, min_items=1, unit="half widths", description="z/a")
     b: float | None = Field(None, gt=-2, lt=0, description="fatigue strength exponent")

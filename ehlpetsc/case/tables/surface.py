@@ -13,7 +13,7 @@ UNITS = ("m", "mm", "um", "nm")  # of profile files
 
 
 class Ground(Table):
-    """A random profile of given Ra, correlation length and skewness."""
+    """Random profile with prescribed Ra, correlation length and skewness."""
 
     kind: Literal["ground"]
     ra: float = Field(..., ge=1e-12, le=1e-3, unit="m", description="mean height deviation")
@@ -23,7 +23,7 @@ class Ground(Table):
 
 
 class Wave(Table):
-    """A cosine or square wave with a crest at profile abscissa 0."""
+    """Cosine or square wave with a crest at profile abscissa 0."""
 
     kind: Literal["sine", "square"]
     amplitude: Height = Field(..., unit="m", description="half of the peak to valley height")
@@ -31,7 +31,7 @@ class Wave(Table):
 
 
 class Bump(Table):
-    """One ridge or dent of Gaussian section."""
+    """Single ridge or dent of Gaussian shape."""
 
     kind: Literal["ridge", "dent"]
     amplitude: Height = Field(..., unit="m", description="height of the ridge, depth of the dent")
@@ -45,7 +45,7 @@ SYNTHETIC = {"ground": Ground, "sine": Wave, "square": Wave, "ridge": Bump, "den
 
 
 class SurfaceProfile(Table):
-    """`[surface.1]`, `[surface.2]`: a measured or a synthetic profile."""
+    """`[surface.1]`, `[surface.2]`: measured or synthetic profile."""
 
     file: str | None = Field(None, min_length=1, description="profile file, beside the case file")
     unit: Literal[UNITS] | None = Field(None, description="of the heights in the file; left out: m")
@@ -84,7 +84,7 @@ class SurfaceProfile(Table):
 
     @validator("synthetic")
     def _kind(cls, value):
-        """The keys of a synthetic profile are those of its kind."""
+        """Check the keys of a synthetic profile with the table of its kind."""
         if value is None:
             return None
         model = SYNTHETIC.get(value.get("kind")) if isinstance(value.get("kind"), str) else None
@@ -113,12 +113,12 @@ class SurfaceProfile(Table):
 
 
 def with_current_sides(surface):
-    """The table `[surface]` with the names 1 and 2 for fast and slow.
+    """Table `[surface]` with the names 1 and 2 in place of fast and slow.
 
     Raises
     ------
     ValueError
-        One surface is given under both names.
+        A surface has both names.
     """
     for former, side in FORMER.items():
         if former in surface and side in surface:
@@ -127,7 +127,7 @@ def with_current_sides(surface):
 
 
 class Surface(Table):
-    """`[surface]`: a side left out is smooth."""
+    """`[surface]`: a missing surface is smooth."""
 
     body_1: SurfaceProfile | None = Field(
         None, alias="1", description="profile of the surface moving at u (1 + xi/2)"

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.compiled import compiled
+
 
 class BandEntries(NamedTuple):
     """Derivatives of a state in the unknowns of the band.
@@ -26,6 +28,11 @@ class BandEntries(NamedTuple):
     separation_second: np.ndarray
     reynolds_derivatives: np.ndarray
 
-    def same_deflection(self, other):
-        """Whether the deflection rows of another state are the same."""
-        return all((one == two).all() for one, two in zip(self[:3], other[:3], strict=True))
+
+@compiled
+def same_deflection(pressure, depth, film, old_pressure, old_depth, old_film):
+    """Whether the deflection rows of two states have the same entries."""
+    for i in range(len(pressure)):
+        if pressure[i] != old_pressure[i] or depth[i] != old_depth[i] or film[i] != old_film[i]:
+            return False
+    return True

@@ -64,6 +64,7 @@ class Body:
         longest = min(length / speed + LONGEST * chi / speed**2, slow) if speed > 0.0 else slow
         self.rates, self.weights = map(np.array, exponentials(dt, max(longest, 2.0 * dt)))
         self.dt = dt
+        self._weights_of = None, None, None  # rates and step, and the weights of the step
         reach = PADDING * chi / speed / self.dx if speed > 0.0 else self.n
         self.padding = int(min(np.ceil(reach), self.n)) + 2
 
@@ -128,7 +129,11 @@ class Body:
         return BodyStep(body, history, step.response, step.end, fraction)
 
     def _step_weights(self, body, dt):
-        return StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
+        rates, step, _ = self._weights_of
+        if rates is not body.rates or step != dt:
+            weights = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
+            self._weights_of = body.rates, dt, weights
+        return self._weights_of[2]
 
     def accept(self, step, flux):
         """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""

@@ -1,15 +1,7 @@
-r"""Heat in the film: its temperature in the Reynolds equation, dissipation, and transport along the film.
+r"""Heat in the film: its temperature in the Reynolds equation, and the dissipation of a solution.
 
 In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.physics.heat.film`, whose derivatives are
-part of those of the viscosity. Of an accepted solution the transport with the surfaces' mean speed u is
-upwind and implicit,
-
-.. math:: m_o(T_i-T_i^{old})\frac{\Delta x}{\Delta t}+(um)_{i-1/2}(T_i-T_{i-1})
-   =\frac{\Delta x}{\rho c}[\ldots],
-
-:math:`m_o` the mass per area that the mass balance carries over. It produces no new extremes. With the mass
-balance it is a balance of heat in which oil that the pressure turns back in the inlet leaves with the
-temperature at which it turns.
+part of those of the viscosity. Transport along the film: :mod:`.transport`.
 """
 
 import numpy as np
@@ -31,12 +23,9 @@ from ehlpetsc.discretisation.finite_volumes import (
 from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
 from ehlpetsc.physics.rheology import mobilities
 
-SWEEPS = 50
-SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the sweeps
-
 
 @compiled
-def heated_nodal(q, h, density, p0, film, unit, heat, at):
+def heated_nodal(q, h, density, p0, film, unit, heat, again, at):
     """Fill in what faces need of nodes, the viscosity at the film's temperature with its derivatives.
 
     Parameters
@@ -45,16 +34,22 @@ def heated_nodal(q, h, density, p0, film, unit, heat, at):
         As of :func:`.reynolds.nodal`; at the node beyond the outlet the temperature is that of the last one.
     heat : FilmHeat
         Of these nodes; `guess` becomes their temperature.
+    again : bool
+        Whether nodes whose unknowns are those of the last evaluation get its viscosity, without derivatives.
     """
-    nodes, law = len(q), heat.law
+    nodes, law, kept = len(q), heat.law, heat.kept
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
+        if again and q[i] == kept[0, i] and h[i] == kept[1, i]:
+            at[FLUIDITY, i], at[THERMAL, i] = kept[2, i], kept[3, i]
+            continue
         walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
         of_node = heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
         left = 1.0 + min(q[i], 0.0)
         t, t_p, t_h, _, _, _, viscosity = film_temperature(heat.guess[i], p, at[H, i], left, *of_node)
-        heat.guess[i] = t
         _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
+        heat.guess[i], kept[0, i], kept[1, i] = t, q[i], h[i]
+        kept[2, i], kept[3, i] = at[FLUIDITY, i], at[THERMAL, i]
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
         t = heat.guess[nodes - 1]
@@ -127,55 +122,3 @@ def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
             else sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)
         )
     couette[0] = couette[1]
-
-
-@compiled
-def transport(t, p, h, left, old, stored, flow, inlet, heat, t_new, q1, q2, shear_heat):
-    """Temperatures of the film and heat fluxes of a solution, sweeping along the film and back.
-
-    Parameters
-    ----------
-    t : ndarray, shape (nodes,)
-        First guess [K].
-    p, h, left : ndarray, shape (nodes,)
-        Pressure of the oil [Pa], film [m], fraction of the gap full of oil.
-    old : ndarray, shape (nodes,)
-        Temperatures of the previous level [K].
-    stored : ndarray, shape (nodes,)
-        Heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
-    flow : ndarray, shape (nodes + 1,)
-        Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
-    inlet : float
-        Temperature of the oil that enters [K].
-    heat : FilmHeat
-        Its `a` and `b` are not used.
-    t_new, q1, q2, shear_heat : ndarray, shape (nodes,)
-        Filled in.
-
-    Returns
-    -------
-    int
-        Sweeps.
-    """
-    nodes, law = len(t), heat.law
-    t_new[:] = t
-    for sweep in range(SWEEPS):
-        change, backward = 0.0, sweep % 2 == 1
-        back_flow = False
-        for k in range(nodes):
-            i = nodes - 1 - k if backward else k
-            from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
-            back_flow = back_flow or from_right > 0.0
-            before = t_new[i - 1] if i > 0 else inlet
-            after = t_new[i + 1] if i < nodes - 1 else inlet
-            a = stored[i] + from_left + from_right
-            b = stored[i] * old[i] + from_left * before + from_right * after
-            walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
-            value, _, _, q1[i], q2[i], shear_heat[i], _ = film_temperature(
-                t_new[i], p[i], h[i], left[i], a, b, heat.g[i], heat.spread[i], walls, law
-            )
-            change = max(change, abs(value - t_new[i]))
-            t_new[i] = value
-        if not back_flow or change < SWEEP_TOLERANCE * inlet:
-            return sweep + 1
-    return SWEEPS

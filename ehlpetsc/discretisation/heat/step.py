@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.discretisation.heat.bodies import Body
-from ehlpetsc.discretisation.heat.film import faces, transport
+from ehlpetsc.discretisation.heat.film import faces
 from ehlpetsc.discretisation.heat.mixing import mixing
+from ehlpetsc.discretisation.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.physics.heat.body_heat import Solid
 from ehlpetsc.physics.heat.film import FilmHeat
@@ -20,41 +21,15 @@ MAX_FLOW_RATIO = 2.0  # pressure flow beside direct contact, over that of the me
 MIN_RESPONSE = 0.01  # of the largest one
 
 
-class Film(NamedTuple):
-    """Film of a solution; arrays of shape (nx,).
-
-    Attributes
-    ----------
-    pressure, thickness
-        Of the oil [Pa]; [m], 0 where the solids are in direct contact.
-    left
-        Fraction of the gap that is full of oil.
-    old
-        Temperature at the begin of the step [K].
-    stored
-        Heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
-    couette : ndarray, shape (nx + 1,)
-        Heat capacity that the mean speed of the surfaces moves through the faces, per cell [W/(m^2 K)].
-    rubbing
-        Heat of solids in direct contact [W/m^2], for which the law of the next solve has that of a thin film.
-    """
-
-    pressure: np.ndarray
-    thickness: np.ndarray
-    left: np.ndarray
-    old: np.ndarray
-    stored: np.ndarray
-    couette: np.ndarray
-    rubbing: np.ndarray
-
-
 class Temperatures(NamedTuple):
-    """Temperatures [K], heat fluxes and heat of shear [W/m^2] at the nodes, and records of both bodies."""
+    """Temperatures [K], heat fluxes, heat of shear and `extrapolated` of :class:`.transport.Film` at its end
+    [W/m^2] at the nodes, and records of both bodies."""
 
     film: np.ndarray
     walls: list
     fluxes: list
     shear: np.ndarray
+    extrapolated: np.ndarray
     bodies: list
     responses: list
 
@@ -78,6 +53,8 @@ class HeatStep:
         # of films that close the shear would heat without limit, and not at all once they are closed
         self.thinnest = MOLECULES if case.contact.model == "direct" else 0.0
         self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
+        self.coldest = min(self.inlet, *self.bulk)
+        self._film_law = None, None
         self._inputs = self._heat = self._stored = self._moved = None
 
     def prepare(self, record, inputs, step):
@@ -100,16 +77,19 @@ class HeatStep:
             responses = [np.full(n, one.response) for one in self._moved]
             if inputs.history is not None:
                 self._stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-        flow, t = record.flow, record.film
-        left, right = np.maximum(flow[:-1], 0.0), np.maximum(-flow[1:], 0.0)
-        a = self._stored + left + right
-        b = self._stored * t + left * np.append(self.inlet, t[:-1]) + right * np.append(t[1:], self.inlet)
-        law = film_law(self.fluid, self.heat, step.conditions.sliding, self.thinnest)
-        self._heat = FilmHeat(law, a, b, record.source, record.spread, *walls, *responses, t.copy())
+        t = record.film
+        known = *explicit_transport(self._stored, record.flow, t, self.inlet), record.source, record.spread
+        law = self._law(step.conditions.sliding)
+        self._heat = FilmHeat.begun(law, *known, *walls, *responses, t.copy())
         if record.solved and self.fluid is not None:
             inputs = replace(inputs, heat=self._heat)
         self._inputs = inputs
         return inputs
+
+    def _law(self, sliding):
+        if self._film_law[0] != sliding:
+            self._film_law = sliding, film_law(self.fluid, self.heat, sliding, self.thinnest)
+        return self._film_law[1]
 
     def solve(self, record, solution, step):
         """Temperatures and heat of an accepted solution.
@@ -127,7 +107,7 @@ class HeatStep:
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            film = Film(blank, thickness, np.ones(s.nx), record.film, blank, np.zeros(s.nx + 1), blank)
+            film = Film(blank, thickness, np.ones(s.nx), record.film, *[blank] * 3, np.zeros(s.nx + 1), blank)
             spread = blank
         else:
             q = solution.nodes.reynolds_unknown
@@ -136,7 +116,8 @@ class HeatStep:
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
             left = 1.0 + np.minimum(q, 0.0)
             part = rubbing if self.thinnest else blank
-            film = Film(pressure, thickness, left, record.film, self._stored, unit * couette, part)
+            then = (record.rate * step.dt, record.extrapolated / step.dt) if step.dt else (blank, blank)
+            film = Film(pressure, thickness, left, record.film, self._stored, *then, unit * couette, part)
             source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
         heat = self._heat._replace(law=self._heat.law._replace(thinnest=0.0), g=source, spread=spread)
@@ -151,7 +132,7 @@ class HeatStep:
             inputs, q, h, oil = inputs.mirrored(), q[::-1], h[::-1], np.ascontiguousarray(oil[::-1])
         couette = np.zeros(n + 1)
         pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
-        at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs)
+        at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs, again=True)
         faces(
             at,
             self.reynolds.face_law(inputs),
@@ -163,6 +144,8 @@ class HeatStep:
             gradient,
         )
         if backward:
+            if inputs.heat is not None:
+                self._heat.guess[:] = inputs.heat.guess[::-1]
             return -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
         return couette, pressure_heat, spread, gradient
 
@@ -183,17 +166,17 @@ class HeatStep:
         return self.heat.thermal_expansion * film.old * film.thickness * film.left * rate
 
     def _nodes(self, heat, film, guess):
-        """Film temperatures, both fluxes and the heat of shear."""
-        out = [np.empty(len(guess)) for _ in range(4)]
-        transport(guess, *film[:-1], self.inlet, heat, *out)
+        """Film temperatures, both fluxes, the heat of shear and e."""
+        out = [np.empty(len(guess)) for _ in range(5)]
+        transport(guess, tuple(film), self.inlet, self.coldest, heat, *out)
         return out
 
     def _moving(self, heat, film):
-        t, *fluxes, shear = self._nodes(heat, film, heat.guess)
+        t, *fluxes, shear, extrapolated = self._nodes(heat, film, heat.guess)
         responses = [heat.r1, heat.r2]
         walls = [w + r * q for w, r, q in zip((heat.w1, heat.w2), responses, fluxes, strict=True)]
-        kept = zip(self.bodies, self._moved, fluxes, strict=True)
-        return Temperatures(t, walls, fluxes, shear, [b.accept(one, q) for b, one, q in kept], responses)
+        bodies = [b.accept(one, q) for b, one, q in zip(self.bodies, self._moved, fluxes, strict=True)]
+        return Temperatures(t, walls, fluxes, shear, extrapolated, bodies, responses)
 
     def _steady(self, record, heat, film, step):
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
@@ -210,9 +193,10 @@ class HeatStep:
             walls = [bulk + rise for bulk, (rise, _) in zip(self.bulk, risen, strict=True)]
             known = [w - r * one for w, r, one in zip(walls, responses, q, strict=True)]
             now = heat._replace(w1=known[0], w2=known[1], r1=responses[0], r2=responses[1])
-            t, *new, shear = self._nodes(now, film, record.film if found is None else found.film)
+            guess = record.film if found is None else found.film
+            t, *new, shear, extrapolated = self._nodes(now, film, guess)
             bodies = [b.record(one, terms) for b, one, (_, terms) in zip(self.bodies, q, risen, strict=True)]
-            found = Temperatures(t, walls, new, shear, bodies, responses)
+            found = Temperatures(t, walls, new, shear, extrapolated, bodies, responses)
             return np.concatenate(new)
 
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
@@ -220,10 +204,7 @@ class HeatStep:
 
     def balance(self, found, film, source):
         """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it."""
-        # oil that the pressure moves takes its heat along from where it turns: the Couette flow alone carries
-        rise, carried = found.film - self.inlet, film.couette
-        out = max(carried[-1], 0.0) * rise[-1] + max(-carried[0], 0.0) * rise[0]
-        storage = film.stored @ (found.film - film.old) - np.diff(carried) @ rise
         total = (found.shear + source).sum()
-        missing = total - sum(q.sum() for q in found.fluxes) - storage - out
+        taken = heat_taken(tuple(film), self.inlet, found.film, found.extrapolated)
+        missing = total - found.fluxes[0].sum() - found.fluxes[1].sum() - taken
         return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0

@@ -93,7 +93,7 @@ class LifeBody(NamedTuple):
         """Of the cells that are not gone."""
         return float(np.max(self.damage, initial=0.0, where=self.is_there))
 
-    def met(self, stretch):
+    def columns_within(self, stretch):
         """Columns within a stretch of the abscissa [m], with half a column either side."""
         slack = 0.25 * (self.s[1] - self.s[0])
         return (self.s >= stretch[0] - slack) & (self.s <= stretch[1] + slack)
@@ -117,7 +117,7 @@ class LifeBody(NamedTuple):
         -------
         surfaces.body_field.BodyField
         """
-        width, met = self.s[1] - self.s[0], self.met(stretch)
+        width, met = self.s[1] - self.s[0], self.columns_within(stretch)
         depth = self.recession[met]
         first, last = self.s[met][[0, -1]]
         before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)
@@ -140,7 +140,7 @@ class LifeBody(NamedTuple):
         ----------
         of_pass : pass_result.OfBody
         """
-        met = self.met((of_pass.s[0], of_pass.s[-1]))
+        met = self.columns_within((of_pass.s[0], of_pass.s[-1]))
         worn = np.diff([field.means(self.faces()) for field in of_pass.depth], axis=0)[0]
         wear = np.where(met, np.maximum(worn, 0.0), 0.0)
         at = np.where(met, self.s, np.nan)
@@ -195,7 +195,7 @@ class LifeBody(NamedTuple):
 
         if not breaks(most):
             return most
-        levels = np.array([1.0, laws.WEAKENED])[:, None, None] - self.damage
+        levels = np.array([1.0, laws.WEAKENED_DAMAGE])[:, None, None] - self.damage
         reached = rates.passes_to_damage(np.maximum(levels, 0.0))
         uncovered = rates.passes_to_wear(np.maximum(self.edges[1:, None] - self.recession, 0.0))
         times = np.floor(np.append(reached, uncovered)) + 1.0

@@ -1,9 +1,9 @@
-"""Jumps: both bodies after many passes like those of a solved round, and how many rounds are to come."""
+"""Length of a jump, both bodies after it, and the number of rounds expected until the end of the life."""
 
-from ehlpetsc.life.ageing.rates import LONGER
+from ehlpetsc.life.ageing.rates import MAX_EXTRAPOLATION
 
-AWAITED = 1.1  # times what is allowed: a break-out so late still ends the jump
-MOST_EXPECTED = 200  # rounds looked ahead one by one
+BREAK_OUT_DELAY = 1.1  # longest jump over the allowed one, where it then ends with a break-out
+MAX_LOOKAHEAD = 200  # rounds simulated one by one
 
 
 class Jumps:
@@ -21,11 +21,11 @@ class Jumps:
         self.wear_allowed = life.wear_jump * rq
 
     def is_yielding(self, yielded):
-        """Whether passes yield so much [m] that each is solved: plastic deformation is not multiplied."""
+        """Whether a pass yields more [m] than a jump may wear: plastic deformation is not multiplied."""
         return yielded > self.wear_allowed
 
-    def take(self, bodies, one, done, before=0):
-        """Jump with a solved round, until the allowed wear or damage is reached or a cell breaks out.
+    def jump(self, bodies, one, done, before=0):
+        """Jump with the rates of a solved round, up to the allowed wear or damage or the next break-out.
 
         Parameters
         ----------
@@ -34,13 +34,13 @@ class Jumps:
         done : int
             Passes before it.
         before : int
-            Passes of the jump before, where rates go on from it smoothly.
+            Passes of the previous jump if the rates are continuous since; else 0.
 
         Returns
         -------
         bodies : pair of body.LifeBody
         jump : int
-            Passes of the jump, those of the round among them.
+            Passes of the jump, including the solved ones.
         rates : pair of rates.Rates
         """
         rates, most = one.rates(bodies), self.passes - done
@@ -49,7 +49,7 @@ class Jumps:
                 rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before)
                 for rate, body in zip(rates, bodies, strict=True)
             )
-            most = min(most, int(LONGER * before))
+            most = min(most, int(MAX_EXTRAPOLATION * before))
         jump = self._allowed(bodies, rates, one, most)
         return self._after(bodies, rates, jump, done), jump, rates
 
@@ -65,28 +65,39 @@ class Jumps:
             most = min(most, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
         most = max(int(most), 1)
         if self.life.pits:
-            late = min(left, int(AWAITED * most))
+            late = min(left, int(BREAK_OUT_DELAY * most))
             ends = min(body.passes_to_break_out(rate, late) for body, rate in zip(bodies, rates, strict=True))
             most = ends if ends < late else most
         return min(left, max(most, len(one.passes)))
 
     def expected_rounds(self, bodies, one, done):
-        """Rounds to be solved until the life is over, if all are like this one.
+        """Least and largest expected number of rounds until the end of the life, at the rates of this one.
 
-        Columns that break out on the way are taken to carry no more: a pit relieves them.
+        In one count columns that break out carry no load, in the other they carry as before: a pit unloads
+        its own column and loads the neighbours.
 
         Parameters
         ----------
         bodies : pair of body.LifeBody
         one : rounds.Round
         done : int
+
+        Returns
+        -------
+        (int, int)
         """
+        counts = [self._rounds_to_come(bodies, one, done, are_relieved) for are_relieved in (True, False)]
+        return min(counts), max(counts)
+
+    def _rounds_to_come(self, bodies, one, done, are_relieved):
         rounds, jump, begin = 0, 1, bodies
-        while done < self.passes and rounds < MOST_EXPECTED:
-            rates = tuple(
-                rate.without(body.pit > new.pit)
-                for rate, body, new in zip(one.rates(bodies), bodies, begin, strict=True)
-            )
+        while done < self.passes and rounds < MAX_LOOKAHEAD:
+            rates = one.rates(bodies)
+            if are_relieved:
+                rates = tuple(
+                    rate.without(body.pit > new.pit)
+                    for rate, body, new in zip(rates, bodies, begin, strict=True)
+                )
             jump = self._allowed(bodies, rates, one, self.passes - done)
             bodies = self._after(bodies, rates, jump, done)
             rounds, done = rounds + 1, done + jump

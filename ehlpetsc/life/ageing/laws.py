@@ -9,9 +9,9 @@ the cells in which damage accumulates (Morales-Espejel and Brizmer, Tribology Tr
 import numpy as np
 
 FINE_CELLS = 12  # cells of equal thickness below the surface as made
-GROWTH = 1.25  # of the thickness of the cells below them
+CELL_GROWTH = 1.25  # of the thickness of the cells below them
 
-WEAKENED = 0.95  # damage from which cells break out with a failed one
+WEAKENED_DAMAGE = 0.95  # damage from which cells break out with a failed one
 
 
 def sum_over(passes, rate, slope):
@@ -49,7 +49,7 @@ def cell_edges(thickness, deepest):
     edges = [0.0]
     while edges[-1] < deepest or len(edges) < 2:
         number = max(len(edges) - FINE_CELLS, 0)
-        edges.append(edges[-1] + thickness * GROWTH**number)
+        edges.append(edges[-1] + thickness * CELL_GROWTH**number)
     return np.array(edges)
 
 
@@ -73,7 +73,7 @@ def cell_depths(edges, recession):
 
 
 def damage_at(depths, damage, at):
-    """Damage of a pass at depths between those computed, in each column.
+    """Damage of a pass at given depths, interpolated between the computed ones in each column.
 
     Straight lines of ln D over depth, of D where one end is 0; 0 below the deepest.
 
@@ -99,10 +99,10 @@ def damage_at(depths, damage, at):
 
 
 def broken_out(damage, edges, recession):
-    """Depths to which columns break out: failed cells connected with the surface, and all above them.
+    """Depths to which columns break out: failed cells connected with the surface, and all cells above.
 
-    A crack takes the weakened cells with it that are connected with the failed one: they carry on alone
-    for few passes, and a pit is as deep as they reach, however long the jump in which it appears.
+    Weakened cells connected with a failed one break out with it: left alone, they would fail within few
+    passes. The depth of a pit is therefore independent of the length of the jump.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def broken_out(damage, edges, recession):
     failed = there & (damage >= 1.0)
     if not failed.any():
         return np.array(recession, float)
-    numbers, _ = label(there & (damage >= WEAKENED))
+    numbers, _ = label(there & (damage >= WEAKENED_DAMAGE))
     top = there.argmax(axis=0)
     columns = np.arange(damage.shape[1])
     at_surface = numbers[top, columns][there.any(axis=0)]

@@ -1,7 +1,7 @@
 r"""Rates of wear and damage over a jump: of the round solved at its begin, and how they change.
 
 Rates change smoothly as wear changes the surface, and at once where cells break out. Between two break-outs
-they are taken as straight lines through those of the last two rounds,
+they are extrapolated linearly from the last two rounds,
 
 .. math:: f(t) = f_n + t\,\frac{f_n-f_{n-1}}{h_{n-1}},\qquad y_{n+1} = y_n + \int_0^{h_n} f\,dt
 
@@ -15,11 +15,11 @@ import numpy as np
 
 from ehlpetsc.life.ageing import laws
 
-LONGER = 2.0  # times as many passes as in the jump before: so far lines are continued
+MAX_EXTRAPOLATION = 2.0  # length of a jump over the previous one, up to which rates are extrapolated
 
 
 class Rates(NamedTuple):
-    """What a pass adds to a body at the begin of a jump, and by how much that changes from pass to pass.
+    """Wear, damage and worn volume of a pass at the start of a jump, and their changes per pass.
 
     Attributes
     ----------
@@ -38,9 +38,9 @@ class Rates(NamedTuple):
     slopes: tuple = (0.0, 0.0, 0.0)
 
     def continued(self, before, passes):
-        """The same rates, changing as they have done since a round before.
+        """Rates with the slopes since a previous round.
 
-        No rate falls below 0 or doubles within `LONGER` times as many passes.
+        No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes.
 
         Parameters
         ----------
@@ -51,12 +51,12 @@ class Rates(NamedTuple):
         """
         slopes = []
         for new, old in zip(self[:3], before, strict=True):
-            bound = new / (LONGER * passes)
+            bound = new / (MAX_EXTRAPOLATION * passes)
             slopes.append(np.clip((new - old) / passes, -bound, bound))
         return self._replace(slopes=tuple(slopes))
 
     def without(self, columns):
-        """The same rates with no damage added to some columns.
+        """Rates without damage in some columns.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class Rates(NamedTuple):
         return self._replace(damage=np.where(columns, 0.0, self.damage))
 
     def after(self, passes):
-        """Wear [m], damage and worn volume [m^2] of so many passes."""
+        """Wear [m], damage and worn volume [m^2] of a number of passes."""
         return tuple(
             laws.sum_over(passes, rate, slope) for rate, slope in zip(self[:3], self.slopes, strict=True)
         )
@@ -75,5 +75,5 @@ class Rates(NamedTuple):
         return laws.passes_to(depth, self.wear, self.slopes[0])
 
     def passes_to_damage(self, damage):
-        """Passes after which so much damage is added, shape (cells, n)."""
+        """Passes after which an amount of damage is added, shape (cells, n)."""
         return laws.passes_to(damage, self.damage, self.slopes[1])

@@ -1,1 +1,1 @@
-"""Solved passes: one, those of a round on all ranks, and the positions of surface 2 in them."""
+"""Solved passes: a single pass, the passes of a round on all ranks, the positions of surface 2."""

@@ -1,4 +1,4 @@
-"""One solved pass: its wear, the damage of the points that passed, friction."""
+"""Solve one pass: wear, fatigue damage of the points that passed the contact, friction."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +20,12 @@ from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
 
 SIDES = ("1", "2")
-NOTHING = BodyField(1e-6, 0, np.zeros(0))
+NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
 @dataclass(frozen=True)
 class Before:
-    """Surfaces before a pass, in the place of the `Simulation` of the pass before."""
+    """State before a pass, used instead of the `Simulation` of the previous pass."""
 
     case: object
     scales: object
@@ -49,9 +49,9 @@ def start(case, comm, scales, position, records):
     comm : mpi4py communicator
     scales : physics.scales.Scales
     position : int
-        Of surface 2, from 0: so many times `time.pass_shift`.
+        Of surface 2, from 0, in units of `time.pass_shift`.
     records : dict of str to NamedTuple
-        Of the bodies, as the pass before has left them.
+        Of the bodies, after the previous pass.
     """
     before = Before(case, scales, Records(records)) if records else None
     return Simulation(case, comm, after=before, pass_number=position + 1)
@@ -66,7 +66,7 @@ def run_pass(simulation, before, file, stop=None):
     before : dict of str to NamedTuple
         Records as of :func:`start`.
     file : Path
-        Of its result, replaced.
+        Result file, replaced.
     stop : run.stop.StopRequest, optional
 
     Returns
@@ -104,16 +104,16 @@ def run_pass(simulation, before, file, stop=None):
         OfBody(s + offset, z, d, depth)
         for (s, z, d), offset, depth in zip(damage, offsets, worn, strict=True)
     )
-    return Pass(bodies, figures, records.get("plastic_deformation"), max(map(_most_added, set_)))
+    return Pass(bodies, figures, records.get("plastic_deformation"), max(map(_largest_increase, set_)))
 
 
 def _depths(before, after, name, k):
     """Depths of body k before and after; zero where there is no record."""
-    found = (records[name].depth[k] if name in records else NOTHING for records in (before, after))
+    found = (records[name].depth[k] if name in records else NO_DEPTH for records in (before, after))
     return tuple(found)
 
 
-def _most_added(depths):
+def _largest_increase(depths):
     before, after = depths
     if not len(after.depth):
         return 0.0

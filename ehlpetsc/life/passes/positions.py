@@ -1,7 +1,7 @@
-"""Positions that surface 2 takes up over surface 1, and the columns of both bodies in them.
+"""Positions of surface 2 relative to surface 1, and the columns of both bodies.
 
 With `time.pass_shift` surface 2 begins each pass further on, as the teeth of a wheel follow each other: the
-columns of body 2 are those of all positions. Without it there is one position.
+columns of body 2 cover all positions. Without it there is one position.
 
 Of gears a pass is one engagement of a pinion tooth, from the begin of its contact to the end, and a position
 is a tooth of the wheel. Columns then count along the flanks. In the time in which a pinion tooth meets
@@ -14,8 +14,8 @@ from ehlpetsc.life.ageing import laws
 from ehlpetsc.life.ageing.body import LifeBody
 from ehlpetsc.surfaces.roughness import directed_speeds
 
-CELL = 0.25  # of the combined Rq: thickness of the first cells
-FLANK_ENDS = 1.0  # half widths at either end of a flank whose mean wear is that of the points beyond
+CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
+FLANK_END_LENGTH = 1.0  # half widths at either end of a flank whose mean wear is that of the points beyond
 
 
 def number_of_positions(case):
@@ -86,7 +86,7 @@ class Positions:
 
         scene = self._scenes[position]
         ends = scene.operation.travelled(0.0), scene.operation.travelled(scene.operation.duration)
-        averaged = FLANK_ENDS * self.scales.a if self._are_flanks else np.inf
+        averaged = FLANK_END_LENGTH * self.scales.a if self._are_flanks else np.inf
         fields = []
         for k, body in enumerate(bodies):
             faces = np.concatenate([scene.mesh_on_bodies.faces(way)[k][[0, -1]] for way in ends])
@@ -103,7 +103,7 @@ class Positions:
         return self._scenes[position].mesh_on_bodies.offsets[k]
 
     def _stretch(self, body, k, position):
-        """Abscissas of the first and last column of body k in a position: those of position 0, shifted."""
+        """Abscissas of the first and last column of body k in a position."""
         if self.count == 1 or k == 0:
             return body.s[0], body.s[-1]
         length = body.s[-1] - body.s[0] - self._columns_more * self.scales.dx
@@ -113,7 +113,7 @@ class Positions:
 
     @property
     def _columns_more(self):
-        """Columns of body 2 beyond those of position 0."""
+        """Number of columns of body 2 in excess of position 0."""
         return int(np.ceil(abs((self.count - 1) * self._shift) / self.scales.dx))
 
     @property
@@ -133,4 +133,4 @@ class Positions:
             extra = dx * np.arange(1, self._columns_more + 1)
             s = np.append(s, s[-1] + extra) if self._sign > 0 else np.append(s[0] - extra[::-1], s)
         height = profile.height(s - offset) if profile else np.zeros(len(s))
-        return LifeBody.new(s, height, laws.cell_edges(CELL * self.rq, of_pass.depths[-1] + 1e-12))
+        return LifeBody.new(s, height, laws.cell_edges(CELL_SIZE * self.rq, of_pass.depths[-1] + 1e-12))

@@ -1,4 +1,4 @@
-"""A round: passes that begin with the same surfaces, one in each position of surface 2, on all ranks."""
+"""Round: passes that start from the same surfaces, one for each position of surface 2, on all ranks."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
 
 
 class Ranks:
-    """Ranks of a life, in groups of one each where there are positions enough.
+    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Ranks:
         ----------
         positions : list of int
         solve : callable(position, comm, stop)
-            Solves one on a group of ranks; returns it.
+            Solves the pass of a position on a group of ranks; returns it.
         stop : run.stop.StopRequest, optional
 
         Returns
@@ -104,8 +104,8 @@ class Round(NamedTuple):
     def plastic(self):
         """Record of the plastic deformation after the round; None without.
 
-        Points that yielded in several of its passes have the largest depth of them: those that have yielded
-        under one asperity carry less under the next.
+        A point that yielded in several passes of the round has the largest of their depths: once yielded
+        under an asperity, it carries less under the next.
         """
         records = [one.plastic for one in self.passes]
         if records[0] is None:

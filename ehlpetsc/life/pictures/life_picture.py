@@ -4,8 +4,8 @@ import numpy as np
 
 from ehlpetsc.results.atomic_write import replacing
 
-SHOWN = 3  # instants of the life
-LEAST = -3.0  # log10 of the damage at the lower end of the colours
+SHOWN_INSTANTS = 3  # instants of the life
+MIN_LOG_DAMAGE = -3.0  # log10 of the damage at the lower end of the colours
 
 
 def draw(life, path):
@@ -22,7 +22,7 @@ def draw(life, path):
         raise OSError(f"{path}: not written, no pass is solved yet")
     figure = pyplot.figure(figsize=(11.0, 8.5), layout="constrained")
     top, bottom = figure.subfigures(2, 1, height_ratios=(2, 1))
-    chosen = np.unique(np.linspace(0, len(life.rows) - 1, SHOWN).round().astype(int))
+    chosen = np.unique(np.linspace(0, len(life.rows) - 1, SHOWN_INSTANTS).round().astype(int))
     above = []
     for column, row in enumerate(chosen):
         for k in range(2):
@@ -48,8 +48,8 @@ def draw(life, path):
         axes.set(xscale="log", xlim=(0.8 * passes[0], 1.25 * passes[-1]), xlabel="passes", ylabel=label)
     figure.suptitle(life.title)
     try:
-        with replacing(path, keep_ending=True) as beside:
-            figure.savefig(beside, dpi=130)
+        with replacing(path, keep_ending=True) as temporary:
+            figure.savefig(temporary, dpi=130)
     finally:
         pyplot.close(figure)
 
@@ -59,7 +59,7 @@ def under_profile(axes, body):
     micro = 1e6
     damage = np.where(body.is_there, body.damage, np.nan)
     with np.errstate(divide="ignore"):
-        values = np.clip(np.log10(damage), LEAST, 0.0)
+        values = np.clip(np.log10(damage), MIN_LOG_DAMAGE, 0.0)
     # columns of one height each: cells hang below the profile as made
     s, edges = np.repeat(micro * body.faces(), 2)[1:-1], micro * body.edges
     top = micro * np.repeat(body.height, 2)
@@ -67,7 +67,7 @@ def under_profile(axes, body):
         np.broadcast_to(s, (len(edges), len(s))),
         top - edges[:, None],
         np.repeat(values, 2, axis=1)[:, :-1],
-        vmin=LEAST,
+        vmin=MIN_LOG_DAMAGE,
         vmax=0.0,
         cmap="magma_r",
     )

@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.life.pictures.life_picture import under_profile
 from ehlpetsc.plot.movies import recording
 
-HOLD = 3  # frames that a round is shown
+FRAMES_PER_ROUND = 3  # frames that a round is shown
 
 
 def save_movie(life, path):
@@ -31,7 +31,7 @@ def save_movie(life, path):
         with recording(figure, path) as writer:
             for row in range(len(life.rows)):
                 _draw(figure, grid, life, row)
-                for _ in range(HOLD):
+                for _ in range(FRAMES_PER_ROUND):
                     writer.grab_frame()
     finally:
         pyplot.close(figure)
@@ -57,6 +57,6 @@ def _draw(figure, grid, life, row):
     grid[2].set(xscale="log", xlabel="passes", ylabel="D, share", ylim=(0.0, min(top, 2.0)))
     grid[2].legend(fontsize="x-small", loc="upper left")
     figure.suptitle(f"{life.title}: {passes[row]:,} passes", fontsize=10)
-    if row == 0:  # its layout holds for all: the axes stand still
+    if row == 0:  # fixed layout: the axes do not move between frames
         figure.draw_without_rendering()
         figure.set_layout_engine("none")

@@ -1,4 +1,4 @@
-"""Picture of the regimes: where wear wins, where fatigue, over two keys of a series, panels of others."""
+"""Picture of the regimes, wear or fatigue, over two keys of a series; a panel for each value of others."""
 
 import itertools
 import json
@@ -20,7 +20,7 @@ LABELS = {  # of a key: its name, unit, and the unit's size
     "contact.asperity_height": ("sigma", "nm", 1e-9),
 }
 LEGEND = 0.08  # of the height, below the panels
-REACH = 2.0  # of the colours: powers of ten of the damage ahead on either side of 1
+COLOUR_DECADES = 2.0  # of the colours: powers of ten of the damage ahead on either side of 1
 
 
 def read_index(path):
@@ -66,7 +66,7 @@ def draw_regimes(index, path):
         image = _panel(axes, keys, values, chosen)
         axes.set_title(", ".join(map(_setting, keys[2:], panel)), fontsize=9)
     bar = figure.colorbar(image, ax=list(grid), label="D of a cell when wear reaches it", extend="both")
-    powers = np.arange(-REACH, REACH + 1.0)
+    powers = np.arange(-COLOUR_DECADES, COLOUR_DECADES + 1.0)
     bar.set_ticks(powers, labels=[f"{10.0**power:g}" for power in powers])
     handles = [
         pyplot.Line2D([], [], ls="", marker=mark, mfc="none", mec=colour, mew=2.0, ms=9.0, label=label)
@@ -76,8 +76,8 @@ def draw_regimes(index, path):
     solved = max(row["solved"] for row in rows)
     figure.suptitle(f"{index['title']}; {solved} solved passes of each life at most", fontsize=10)
     try:
-        with replacing(path, keep_ending=True) as beside:
-            figure.savefig(beside, dpi=130)
+        with replacing(path, keep_ending=True) as temporary:
+            figure.savefig(temporary, dpi=130)
     finally:
         pyplot.close(figure)
 
@@ -89,16 +89,23 @@ def _panel(axes, keys, values, rows):
     for row in rows:
         x = values[0].index(row["value"][0])
         y = values[1].index(row["value"][1]) if len(keys) > 1 else 0
-        ahead[y, x] = REACH if row["damage_ahead"] is None else np.log10(max(row["damage_ahead"], 1e-99))
+        unworn = row["damage_ahead"] is None
+        ahead[y, x] = COLOUR_DECADES if unworn else np.log10(max(row["damage_ahead"], 1e-99))
         mark, colour, _ = MARKS[row["winner"]]
         axes.plot(x, y + 0.14, mark, mfc="white", mec=colour, mew=2.0, ms=11.0)
-        note = "no wear" if row["damage_ahead"] is None else f"D {row['damage_ahead']:.2g}"
+        note = "no wear" if unworn else f"D {row['damage_ahead']:.2g}"
         if row["winner"] == FATIGUE:
             note = f"first pit after\n{row['first_failure'] / 1e6:.2g} million"
         box = {"fc": "w", "ec": "none", "pad": 1}
         axes.text(x, y - 0.18, note, ha="center", va="center", fontsize=7, bbox=box)
     image = axes.imshow(
-        ahead, origin="lower", aspect="auto", vmin=-REACH, vmax=REACH, cmap="RdBu_r", alpha=0.7
+        ahead,
+        origin="lower",
+        aspect="auto",
+        vmin=-COLOUR_DECADES,
+        vmax=COLOUR_DECADES,
+        cmap="RdBu_r",
+        alpha=0.7,
     )
     axes.set_xticks(range(len(values[0])), _numbers(keys[0], values[0]))
     axes.set_xlabel(_label(keys[0]))

@@ -1,1 +1,1 @@
-"""Lives of a case with [series], and which mechanism wins in each."""
+"""Lives of a case with [series], and the winning mechanism of each."""

@@ -1,7 +1,7 @@
-"""Lives of a case with [series]: one for each setting, dealt to the ranks, and which mechanism wins in each.
+"""Lives of a case with [series]: one for each member, distributed over the ranks, and the winning mechanism.
 
-The index ``OUT.life.series.json`` names for each life its settings, file and figures. What lies there of the
-same case is continued, as a single life is.
+The index ``OUT.life.series.json`` lists for each life its settings, file and figures. Existing lives of the
+same case are continued.
 """
 
 import contextlib
@@ -17,7 +17,7 @@ INDEX = ".series.json"
 
 
 def index_of(output):
-    """Index of the lives of a series whose files' names begin as the stem of `output`."""
+    """Path of the index of a series of lives, from the stem of `output`."""
     return _stem(output).with_suffix(f".life{INDEX}")
 
 
@@ -36,9 +36,9 @@ def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, sto
         Its stem begins the files' names; by default ``CASE.life.h5``.
     overwrite : bool
     comm : mpi4py communicator, optional
-        Each of its ranks takes a life at a time.
+        Each of its ranks solves a life at a time.
     show : callable(str), optional
-        Gets a line for each life that ends, on the first rank.
+        Receives a line for each completed life, on the first rank.
     stop : run.stop.StopRequest, optional
 
     Returns
@@ -101,7 +101,7 @@ class _Lives:
         from ehlpetsc.run.on_root import on_root
         from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 
-        def take(report):
+        def record(report):
             number, row = report
             self.rows[number] |= row
             with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
@@ -110,7 +110,7 @@ class _Lives:
             show(f"{count} of {len(self.rows)}: {self.members[number].name}: {_words(self.rows[number])}")
 
         on_root(comm, self._write)
-        queue = WorkQueue(comm, 1, list(range(len(self.members))), take)
+        queue = WorkQueue(comm, 1, list(range(len(self.members))), record)
         serving, report = PollingStop(queue, stop), None
         while (number := queue.next(report, serving(queue.group))) is not None:
             report = number, self._live(self.members[number], queue.group, serving)

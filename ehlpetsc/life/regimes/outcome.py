@@ -1,4 +1,4 @@
-"""Which mechanism wins a life, and its figures for an index."""
+"""Winning mechanism of a life, and its figures for the index."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
 def winner(life):
     """Mechanism that wins a life: "fatigue", "wear" or "neither".
 
-    Fatigue wins where cells break out, or would, at the surface. Wear wins where none has, and none will: at
-    the rates of the last solved round every cell reaches the surface with a damage below 1. Neither has won
-    where damage would reach 1 after the life.
+    Fatigue: cells at the surface have broken out, or failed if `pits` is false. Wear: none has, and at the
+    rates of the last solved round every cell reaches the surface with a damage below 1. Neither: damage would
+    reach 1 after the end of the life.
 
     Parameters
     ----------

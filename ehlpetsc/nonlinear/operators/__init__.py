@@ -1,1 +1,1 @@
-"""The Jacobian as PETSc's matrices: of two unknowns a node and, as a variational inequality, of three."""
+"""The Jacobian as PETSc's matrices."""

@@ -1,11 +1,15 @@
 """The Jacobian as PETSc's matrices: matrix-free with the whole deflection, and its near field assembled.
 
 The Krylov method multiplies by the whole Jacobian (:class:`JacobianOperator`, a Python matrix), from which
-the default preconditioner takes its coefficients (``pc.getOperators()``). Other preconditioners
-(``-pc_type lu`` ...) get :class:`NearFieldMatrix`.
+the default preconditioner reads its coefficients (``pc.getOperators()``). Other preconditioners
+(``-pc_type lu`` ...) use :class:`NearFieldMatrix`.
 """
 
+from copy import copy
+from functools import partial
+
 import numpy as np
+from petsc4py import PETSc
 
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import STENCIL
@@ -20,10 +24,10 @@ from ehlpetsc.discretisation.interleaving import (
     w_of,
 )
 from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.collectives import global_sum
 from ehlpetsc.nonlinear.operators.jacobian_product import Linearisation, jacobian_product
-from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
 
-PIVOT_REGULARISATION = 1e-3  # of dp/dq: at cavitated nodes, in preconditioners alone
+PIVOT_REGULARISATION = 1e-3  # in place of dp/dq at cavitated nodes, in preconditioners alone
 
 
 def pivot_regularisation(*derivatives):
@@ -32,7 +36,7 @@ def pivot_regularisation(*derivatives):
     Parameters
     ----------
     derivatives : ndarray
-        All derivatives of the rows with respect to q of their own node.
+        Derivatives of the quantities in the rows with respect to q of their own node.
     """
     has_entry = np.any([d != 0.0 for d in derivatives], axis=0)
     return np.where(has_entry, 0.0, PIVOT_REGULARISATION)
@@ -47,12 +51,12 @@ class JacobianOperator:
     halo : halo_exchange.Halo
     ranks : mpi4py communicator
     factors : preconditioner.far_field_band.Factors or None
-        Of the default preconditioner, kept between solves.
+        Factors of the default preconditioner, kept between solves.
 
     Attributes
     ----------
     model, state, reynolds_derivatives
-        Of the linearisation, as in `ehl_problem.Evaluation`.
+        Point of linearisation, as in `ehl_problem.Evaluation`.
     size : int
         Local unknowns of the whole system.
     active : slice or ndarray of int
@@ -66,72 +70,46 @@ class JacobianOperator:
         self.active, self.inactive_nodes = slice(None), np.arange(0)
         self.model = self.state = self.reynolds_derivatives = None
         self.size = n_dofs(problem.local) + problem.load_is_local
-        self._room = np.empty(problem.local), np.empty((3, len(halo.window)))
+        self._work = np.empty(problem.local), np.empty((3, len(halo.window)))
 
     def linearise(self, evaluation):
-        """Set the state whose derivatives the products have."""
+        """Set the point of linearisation."""
         self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
-        self.state = self.model.linearised(evaluation.state, self.problem.owned, self._ranks_sum)
+        self.state = self.model.linearised(
+            evaluation.state, self.problem.owned, partial(global_sum, self.ranks)
+        )
         self._derivatives = self.state.derivatives(), self.reynolds_derivatives
-
-    def linearised(self, inactive_nodes):
-        """`Linearisation` at that state."""
-        return Linearisation((*self._derivatives, inactive_nodes, self.problem.deflection.form), self._room)
 
     @property
     def linearisation(self):
-        """`Linearisation` of all unknowns."""
-        return self.linearised(self.inactive_nodes)
+        """`Linearisation` of the unknowns in the system."""
+        return Linearisation(
+            (*self._derivatives, self.inactive_nodes, self.problem.deflection.form), self._work
+        )
 
     def _ranks_sum(self, numbers):
         return np.sum(self.ranks.allgather(numbers), axis=0)
 
     def mult(self, mat, v, out):
         """PETSc's product."""
-        with events.PRODUCT:
-            jacobian_product(*self.linearisation, tuple(self.halo), v.array_r.copy(), out.array)
-
-    def createSubMatrix(self, mat, rows, columns, out=None):
-        """Matrix of the unknowns that SNESVI keeps; rows and columns are the same."""
-        return python_matrix(RestrictedOperator(self, rows, mat), rows.getSizes(), mat.comm)
-
-
-class RestrictedOperator:
-    """Jacobian of the unknowns that SNESVI keeps, context of a Python matrix."""
-
-    def __init__(self, whole, rows, mat):
-        self.whole, self.size, self.halo, self.factors = whole, whole.size, whole.halo, whole.factors
-        self.active, self.inactive_nodes = slice(None), whole.inactive_nodes
-        indices = rows.indices
-        if len(indices) < self.size:
-            self.active = indices - mat.getOwnershipRange()[0]
-            is_inactive = np.ones(self.size, dtype=bool)
-            is_inactive[self.active] = False
-            self.inactive_nodes = nodes_of_w(np.flatnonzero(is_inactive))
-
-    @property
-    def model(self):
-        return self.whole.model
-
-    @property
-    def state(self):
-        return self.whole.state
-
-    @property
-    def reynolds_derivatives(self):
-        return self.whole.reynolds_derivatives
-
-    @property
-    def linearisation(self):
-        """`Linearisation` of the unknowns in the system."""
-        return self.whole.linearised(self.inactive_nodes)
-
-    def mult(self, mat, v, out):
-        """PETSc's product."""
         full, rows = np.zeros(self.size), np.empty(self.size)
         full[self.active] = v.array_r
-        jacobian_product(*self.linearisation, tuple(self.halo), full, rows)
+        with events.PRODUCT:
+            jacobian_product(*self.linearisation, tuple(self.halo), full, rows)
         out.array[:] = rows[self.active]
+
+    def createSubMatrix(self, mat, rows, columns, out=None):
+        """Matrix of the active unknowns of SNESVI; rows and columns are the same."""
+        restricted = copy(self)
+        restricted.restrict(rows.indices - mat.getOwnershipRange()[0])
+        return python_matrix(restricted, rows.getSizes(), mat.comm)
+
+    def restrict(self, active):
+        """Leave all unknowns out of the system but those of these local indices."""
+        if len(active) < self.size:
+            is_inactive = np.ones(self.size, dtype=bool)
+            is_inactive[active] = False
+            self.active, self.inactive_nodes = active, nodes_of_w(np.flatnonzero(is_inactive))
 
 
 class NearFieldMatrix:
@@ -142,7 +120,7 @@ class NearFieldMatrix:
     problem : ehl_problem.EHLProblem
     near_field : int
     matrix : petsc4py.PETSc.Mat
-        AIJ, created with its sizes.
+        AIJ matrix whose sizes are set.
     """
 
     def __init__(self, problem, near_field, matrix):
@@ -175,19 +153,20 @@ class NearFieldMatrix:
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
     def fill(self, state, derivatives):
-        """Assemble the matrix of a state, which is that of the whole mesh, on every rank."""
+        """Assemble the matrix at a state of the whole mesh, which every rank passes."""
         p, d, near_field = self.problem, self.problem.deflection, self.near_field
-        kernel = np.tile(-d.curvature[np.abs(np.arange(-near_field, near_field + 1))], (p.local, 1))
-        bend = np.zeros_like(kernel)
-        bend[:, near_field - 1 : near_field + 2] = d.curvature_coefficient * np.array(SECOND_DIFFERENCE)
+        by_pressure = np.tile(-d.curvature[np.abs(np.arange(-near_field, near_field + 1))], (p.local, 1))
+        by_separation = np.zeros_like(by_pressure)
+        second_difference = d.curvature_coefficient * np.array(SECOND_DIFFERENCE)
+        by_separation[:, near_field - 1 : near_field + 2] = second_difference
         for end in d.ends:
             row = end - p.first
-            kernel[row], bend[row] = d.end_row(end)[self.nodes[row]], 0.0
-            bend[row, near_field] = d.end_row_coefficient
-        by_q = kernel * state.p_q[self.nodes] + bend * state.separation_q[self.nodes]
+            by_pressure[row], by_separation[row] = d.end_row(end)[self.nodes[row]], 0.0
+            by_separation[row, near_field] = d.end_row_coefficient
+        by_q = by_pressure * state.p_q[self.nodes] + by_separation * state.separation_q[self.nodes]
         owned = slice(p.first, p.last)
         by_q[:, near_field] += pivot_regularisation(state.p_q[owned], state.separation_q[owned])
-        by_w = kernel * state.p_w[self.nodes] + bend * state.separation_w[self.nodes]
+        by_w = by_pressure * state.p_w[self.nodes] + by_separation * state.separation_w[self.nodes]
         approach = np.full((p.local, 1), -d.end_row_coefficient)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
@@ -212,6 +191,22 @@ class NearFieldMatrix:
 
 
 def set_rows(matrix, rows, columns, values):
-    """Insert a block of rows of equal width; negative columns are left out by PETSc."""
+    """Insert rows of equal width; PETSc ignores negative columns."""
     for_row = np.arange(len(rows) + 1, dtype=np.int32) * columns.shape[1]
     matrix.setValuesIJV(for_row, columns.ravel(), np.ascontiguousarray(values).ravel(), rowmap=rows)
+
+
+def python_matrix(context, sizes, comm):
+    """Square matrix with a Python context, ready for products.
+
+    Parameters
+    ----------
+    context : object
+        With methods of PETSc's names: ``mult``, ``createSubMatrix``.
+    sizes : tuple of int
+        Rows on this rank, and of all ranks.
+    comm : petsc4py.PETSc.Comm
+    """
+    made = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
+    made.setUp()
+    return made

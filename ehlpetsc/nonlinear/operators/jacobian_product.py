@@ -1,4 +1,4 @@
-"""Product with the Jacobian of one state, compiled, with one message."""
+"""Product with the Jacobian, compiled, with one collective."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from ehlpetsc.nonlinear.halo_exchange import exchange_unknowns
 
 
 class Linearisation(NamedTuple):
-    """What the product with the Jacobian takes of a state, and room.
+    """Coefficients of the product with the Jacobian, and work arrays.
 
     Attributes
     ----------
@@ -17,27 +17,27 @@ class Linearisation(NamedTuple):
         :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the Reynolds
         rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
         :func:`.deflection.deflection_rows`.
-    room : tuple of ndarray
-        Room for changes of pressure (local nodes,) and of three others (3, window).
+    work : tuple of ndarray
+        Work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3, window).
     """
 
     state: tuple
-    room: tuple
+    work: tuple
 
 
 @compiled
-def jacobian_product(state, room, halo, v, out):
-    """Fill in the product with the local part of a vector, zero in rows not in the system; collective.
+def jacobian_product(state, work, halo, v, out):
+    """Fill in the local rows of the product with a vector, zero in inactive rows; collective.
 
     Parameters
     ----------
-    state, room : tuple
-        Of a `Linearisation`.
+    state, work : tuple
+        Fields of a `Linearisation`.
     halo : tuple
-        Of a `halo_exchange.Halo`.
+        Fields of a `halo_exchange.Halo`.
     v, out : ndarray
     """
-    (by, derivatives, inactive_nodes, form), (pressure, change) = state, room
+    (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
     directional_derivative(by[0], v[: 2 * len(pressure)].reshape(len(pressure), 2), form[0], pressure)
     nodes, h00, curvature, load = exchange_unknowns(*halo, v, pressure, False)
     jacobian_rows(by, derivatives, nodes, h00, curvature, load, *form, change, out)

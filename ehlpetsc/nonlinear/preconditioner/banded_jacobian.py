@@ -10,6 +10,7 @@ left; the coefficients of other ranks' groups are stored as those of a group bef
 import numpy as np
 
 from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.band import same_deflection
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.nonlinear.operators.jacobian_operator import pivot_regularisation
@@ -204,25 +205,23 @@ class BandedJacobian:
     def _fill_deflection(self, entries):
         """Refill what a change of contact or cavity touches."""
         before, self.entries = self.entries, entries
-        pressure, depth, film = entries.p_first, entries.separation_first, entries.separation_second
-        changed = film_changed = np.ones(len(pressure), dtype=bool)
+        pressure, depth, film = entries[:3]
+        if before is not None and same_deflection(pressure, depth, film, *before[:3]):
+            return
+        changed = np.ones(len(pressure), dtype=bool)
         if before is not None:
-            changed = (pressure != before.p_first) | (depth != before.separation_first)
-            film_changed = film != before.separation_second
-        if changed.any():
-            some = np.flatnonzero(changed[self.pressure_nodes])
-            node = self.pressure_nodes[some]
-            values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
-            self.values[self.pressure_place[some]] = values
-            pressure, depth, changed = (part[self.problem.owned] for part in (pressure, depth, changed))
-            local = np.flatnonzero(changed)
-            self.values[self.diagonal[local]] += pivot_regularisation(pressure[local], depth[local])
-            self.dense = np.zeros((len(self.under_pressure), self.size))
-            self.dense[:, self.dofs[::2]] = self.under_pressure * pressure
-        if film_changed.any():
-            some = np.flatnonzero(film_changed[self.film_nodes])
-            node = self.film_nodes[some]
-            self.values[self.film_place[some]] = self.by_film[some] * film[node]
+            changed = np.any([now != old for now, old in zip(entries[:3], before[:3], strict=True)], axis=0)
+        some = np.flatnonzero(changed[self.film_nodes])
+        self.values[self.film_place[some]] = self.by_film[some] * film[self.film_nodes[some]]
+        some = np.flatnonzero(changed[self.pressure_nodes])
+        node = self.pressure_nodes[some]
+        values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
+        self.values[self.pressure_place[some]] = values
+        pressure, depth, changed = (part[self.problem.owned] for part in (pressure, depth, changed))
+        local = np.flatnonzero(changed)
+        self.values[self.diagonal[local]] += pivot_regularisation(pressure[local], depth[local])
+        self.dense = np.zeros((len(self.under_pressure), self.size))
+        self.dense[:, self.dofs[::2]] = self.under_pressure * pressure
 
 
 @compiled

@@ -8,10 +8,10 @@ group behind. A solve is three products of small matrices with vectors in each g
 LAPACK's substitution in a band; the factors take half as long as LAPACK's.
 
 All matrices are stored by columns, each with room for `LINE` numbers, three vectors of the processor. Numba
-makes vectors of a loop only where it can tell that nothing written is read again; :func:`axpy_four` reads
-before it writes, so that it need not ask. Loops count in unsigned numbers or to constants: numba takes twice
-as long over indices that may be negative, and over short loops whose length it does not know. It keeps what
-it compiled as long as this file is as it was, so the constants stand here.
+vectorises a loop only where it can exclude that a written number is read again: :func:`subtract_product` and
+:func:`subtract_column` read four numbers before they write any. Loops count in unsigned numbers or to
+constants: indices that may be negative, and short loops of unknown length, take twice as long. Numba caches
+its code until this file changes and does not notice changes of imported constants, so they are defined here.
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ RIGHT, FROM_RIGHT = 9, 0  # those of the group behind: one more than it has, for
 WIDTH, CUT = LEFT + SIZE + RIGHT, LEFT + RIGHT
 AT_LEFT, AT_RIGHT = slice(FROM_RIGHT, FROM_RIGHT + RIGHT), slice(FROM_LEFT, SIZE)  # what cuts there take
 FAST = {"contract", "nsz", "reassoc"}
-ONE, TWO, THREE, FOUR, EIGHT = (unsigned(k) for k in (1, 2, 3, 4, 8))
+ONE, TWO, THREE, FOUR = (unsigned(k) for k in (1, 2, 3, 4))
 
 
 class BlockLU:
@@ -69,25 +69,31 @@ class BlockLU:
         forward(self.factors, b, first)
         backward(self.factors, b)
 
-    def backward_transposed(self, b):
-        """Replace the coefficients `b` of x (rows, groups * LINE) by the equivalent ones of y, in place."""
-        backward_transposed(self.upper.ravel(), b)
+
+@compiled(fastmath=FAST)
+def subtract_product(y, i, matrix, j, x, k, count):
+    """Subtract the product of columns of a matrix with `x[k : k + count]` from `y[i : i + LINE]`.
+
+    The columns start at `matrix[j]`. Four sums at a time stay in a register of the processor.
+    """
+    for part in range(THREE):
+        here, column = i + part * FOUR, j + part * FOUR
+        a, b, c, d = y[here], y[here + ONE], y[here + TWO], y[here + THREE]
+        for n in range(unsigned(count)):
+            value, at = x[k + n], column + n * unsigned(LINE)
+            a, b = a - value * matrix[at], b - value * matrix[at + ONE]
+            c, d = c - value * matrix[at + TWO], d - value * matrix[at + THREE]
+        y[here], y[here + ONE], y[here + TWO], y[here + THREE] = a, b, c, d
 
 
 @compiled(fastmath=FAST)
-def axpy_four(a, i, factor, b, k):
-    """Take four numbers of b from the k-th on, times a factor, off those of a from the i-th on."""
-    first, second = a[i] - factor * b[k], a[i + ONE] - factor * b[k + ONE]
-    third, fourth = a[i + TWO] - factor * b[k + TWO], a[i + THREE] - factor * b[k + THREE]
-    a[i], a[i + ONE], a[i + TWO], a[i + THREE] = first, second, third, fourth
-
-
-@compiled(fastmath=FAST)
-def axpy(a, i, factor, b, k):
-    """Take a column of b times a factor off one of a; they begin at the k-th and the i-th number."""
-    axpy_four(a, i, factor, b, k)
-    axpy_four(a, i + FOUR, factor, b, k + FOUR)
-    axpy_four(a, i + EIGHT, factor, b, k + EIGHT)
+def subtract_column(y, i, column, factor):
+    """Subtract a column times a factor from `y[i : i + LINE]`."""
+    for part in range(THREE):
+        k = part * FOUR
+        a, b = y[i + k] - factor * column[k], y[i + k + ONE] - factor * column[k + ONE]
+        c, d = y[i + k + TWO] - factor * column[k + TWO], y[i + k + THREE] - factor * column[k + THREE]
+        y[i + k], y[i + k + ONE], y[i + k + TWO], y[i + k + THREE] = a, b, c, d
 
 
 @compiled(fastmath=FAST)
@@ -102,9 +108,8 @@ def factor(columns, inverses, upper, work, column, free, pivots):
         if i > 0:
             before = part - right * line
             for c in range(right):
-                for k in range(unsigned(LEFT)):
-                    entry = upper[before + c * line + unsigned(FROM_LEFT) + k]
-                    axpy(work, (unsigned(FROM_RIGHT) + c) * line, entry, columns, left + k * line)
+                place, known = (unsigned(FROM_RIGHT) + c) * line, before + c * line + unsigned(FROM_LEFT)
+                subtract_product(work, place, columns, left, upper, known, LEFT)
         eliminate(work, column, free, pivots)
         for c in range(size):
             for k in range(size):
@@ -137,7 +142,7 @@ def eliminate(a, column, free, pivots):
         column[pivot] = 0.0
         for c in range(unsigned(SIZE + RIGHT)):
             entry = a[c * line + pivot] * inverse
-            axpy(a, c * line, entry, column, unsigned(0))
+            subtract_column(a, c * line, column, entry)
             a[c * line + pivot] = entry
         for r in range(line):
             a[here + r] = -inverse * column[r]
@@ -153,13 +158,11 @@ def forward(factors, b, first):
     for i in range(first, groups):
         here = i * line
         if i > first:
-            for c in range(unsigned(LEFT)):
-                entry = b[here - line + unsigned(FROM_LEFT) + c]
-                axpy(b, here, entry, columns, (i * unsigned(WIDTH) + c) * line)
+            before = here - line + unsigned(FROM_LEFT)
+            subtract_product(b, here, columns, i * unsigned(WIDTH) * line, b, before, LEFT)
         for k in range(line):
-            known[k], b[here + k] = b[here + k], 0.0
-        for c in range(unsigned(SIZE)):
-            axpy(b, here, -known[c], inverses, (i * unsigned(SIZE) + c) * line)
+            known[k], b[here + k] = -b[here + k], 0.0
+        subtract_product(b, here, inverses, i * unsigned(SIZE) * line, known, unsigned(0), SIZE)
 
 
 @compiled(fastmath=FAST)
@@ -169,20 +172,21 @@ def backward(factors, b):
     groups = unsigned(len(b) // LINE)
     for done in range(ONE, groups):
         i = groups - ONE - done
-        for c in range(unsigned(RIGHT)):
-            entry = b[(i + ONE) * line + unsigned(FROM_RIGHT) + c]
-            axpy(b, i * line, entry, upper, (i * unsigned(RIGHT) + c) * line)
+        behind = (i + ONE) * line + unsigned(FROM_RIGHT)
+        subtract_product(b, i * line, upper, i * unsigned(RIGHT) * line, b, behind, RIGHT)
 
 
 @compiled(fastmath=FAST)
 def backward_transposed(upper, b):
-    """Substitute in place; see :class:`BlockLU`."""
-    line = unsigned(LINE)
+    """Replace the coefficients `b` of x (3, groups * LINE) by the equivalent ones of y, in place."""
+    line, (first, second, third) = unsigned(LINE), (b[0], b[1], b[2])
     for i in range(unsigned(b.shape[1] // LINE) - ONE):
+        here, behind = i * line, (i + ONE) * line + unsigned(FROM_RIGHT)
         for c in range(unsigned(RIGHT)):
-            column, behind = (i * unsigned(RIGHT) + c) * line, (i + ONE) * line + unsigned(FROM_RIGHT) + c
-            for row in range(unsigned(len(b))):
-                total = 0.0
-                for k in range(line):
-                    total += upper[column + k] * b[row, i * line + k]
-                b[row, behind] -= total
+            column, k = (i * unsigned(RIGHT) + c) * line, behind + c
+            x, y, z = first[k], second[k], third[k]
+            for r in range(line):
+                value = upper[column + r]
+                x, y = x - value * first[here + r], y - value * second[here + r]
+                z -= value * third[here + r]
+            first[k], second[k], third[k] = x, y, z

@@ -15,11 +15,11 @@ exchange them with the values at the cuts: once a solve.
 """
 
 import numpy as np
-from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ehlpetsc.compiled import compiled, unsigned
+from ehlpetsc.discretisation.contact.band import same_deflection
 from ehlpetsc.discretisation.finite_volumes import STENCIL
-from ehlpetsc.nonlinear.collectives import all_ranks, collective, exchange
+from ehlpetsc.nonlinear.collectives import all_ranks, collective
 from ehlpetsc.nonlinear.preconditioner.block_lu import (
     AT_LEFT,
     AT_RIGHT,
@@ -28,12 +28,12 @@ from ehlpetsc.nonlinear.preconditioner.block_lu import (
     LINE,
     SIZE,
     BlockLU,
+    backward_transposed,
 )
-from ehlpetsc.nonlinear.preconditioner.distributed_solve import RankFactors, begin, finish, solve
-from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem, regularise_pivots
+from ehlpetsc.nonlinear.preconditioner.distributed_solve import RankFactors, begin_coupling, finish_coupling
+from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
-IDENTITY = np.eye(BORDER)
 ENTRIES = 2 * STENCIL  # of a Reynolds row
 
 
@@ -67,13 +67,12 @@ class DistributedLU:
         self._interface = np.ascontiguousarray(interface)
         self._reduced = ReducedSystem(LEFT, CUT - LEFT, ranks.rank, ranks.size)
         self._messages = np.zeros((ranks.size, CUT + 2, CUT + BORDER))
-        self._rows = self._reduced.rows_of_inverse([])
         self._place = collective(ranks), ranks.rank, self._is_outer
-        self._ends, self._room = (
-            np.zeros((2, band.size)),
-            (np.zeros(band.size), np.zeros((ranks.size, CUT + BORDER))),
-        )
-        self._factored = None
+        self._ends, self._border_inverse = np.zeros((2, band.size)), np.zeros((BORDER, BORDER))
+        is_end = np.array([ranks.rank == 0, ranks.rank == ranks.size - 1])
+        self._end_dofs = np.where(is_end, band.dofs[[0, -2]], -1)
+        self._room = np.zeros(band.size), np.zeros((ranks.size, CUT + BORDER))
+        self._inactive_nodes = None
 
     def factor(self, entries, inactive_nodes, anew=True):
         """Factor for one state; unless `anew`, not where the last factors are nearly its own; collective.
@@ -82,21 +81,20 @@ class DistributedLU:
         """
         if not anew and all_ranks(self.ranks, self._is_still_good(entries, inactive_nodes)):
             return
-        self._factored = inactive_nodes, entries.reynolds_derivatives
+        self._inactive_nodes = inactive_nodes
         columns = self.band.fill(entries, inactive_nodes)
         self._lu.factor(columns)
         dense = self.band.dense
         if self._is_outer:
             dense = dense.copy()
-            self._lu.backward_transposed(dense)
+            backward_transposed(self._lu.factors[2], dense)
         g = self._columns_at_cuts(columns[0, :LEFT], columns[-1, LEFT + SIZE :])
-        self._ends[:] = 0.0
-        self._couple(dense, g)
-        cuts, border = (
-            (self._interface, g, dense, self._rows),
-            (self.band.dofs, self._ends, self._border_inverse),
-        )
-        self.factors = RankFactors(self._place, self._lu.factors, cuts, border, self._room)
+        cuts, coupled = (self._interface, g, dense), (self._place, self._lu.factors)
+        begin_coupling(*coupled, *cuts, self._ends, self._end_dofs, self._messages)
+        cuts = (*cuts, self._reduced.rows_of_inverse(self._messages))
+        coefficient, inverse = self._approach_coefficient, self._border_inverse
+        finish_coupling(*coupled, cuts, self._ends, self._messages, coefficient, inverse)
+        self.factors = RankFactors(*coupled, cuts, (self.band.dofs, self._ends, inverse), self._room)
 
     def _columns_at_cuts(self, left, right):
         """G of an inner rank, W of the group at the cut of an outer one."""
@@ -111,59 +109,31 @@ class DistributedLU:
             self._lu.solve(column, 0 if k < LEFT else self.band.groups - 1)
         return g
 
-    def _couple(self, dense, g):
-        """Reduced system and border, with one message."""
-        band, c, mine, (taken, width) = (
-            self.band,
-            self._approach_coefficient,
-            self._messages[self.ranks.rank],
-            g.shape,
-        )
-        parts = self._is_outer, self._lu.factors
-        if taken:
-            mine[:taken, :taken] = g[:, self._interface - band.size + width]
-            mine[:taken, CUT:] = g @ dense[:, -width:].T
-        for k, (rank, dof) in enumerate(((0, band.dofs[0]), (self.ranks.size - 1, band.dofs[-2]))):
-            first = band.groups
-            if self.ranks.rank == rank:
-                self._ends[k, dof], first = 1.0, dof // LINE
-            begin(*parts, (self._interface, g, dense, self._rows), self._ends[k], first, mine[CUT + k])
-        exchange(self._place[0], self._messages)
-        self._rows = self._reduced.rows_of_inverse(self._messages)
-        matrix, cuts = (
-            np.array([[1.0, 0.0, -c], [0.0, 1.0, -c], [0.0, 0.0, 0.0]]),
-            (self._interface, g, dense, self._rows),
-        )
-        for k in range(2):
-            everyone = np.ascontiguousarray(self._messages[:, CUT + k])
-            matrix[:, k] += finish(*parts, cuts, self._ends[k], everyone)
-        lu, pivots, singular = dgetrf(matrix)
-        if singular:
-            regularise_pivots(np.einsum("ii->i", lu))
-        self._border_inverse = np.ascontiguousarray(dgetrs(lu, pivots, IDENTITY)[0])
-
     def _is_still_good(self, entries, inactive_nodes):
         """Whether the factors of this rank are nearly those of the given state."""
-        before, rows = self._factored
-        return (
-            np.array_equal(inactive_nodes, before)
-            and entries.same_deflection(self.band.entries)
-            and is_close(entries.reynolds_derivatives, rows, CLOSE)
-        )
-
-    def solve(self, b, units, solution):
-        """:func:`solve` with the last factors."""
-        solve(*self.factors, b, units, solution)
+        is_same_system = np.array_equal(inactive_nodes, self._inactive_nodes)
+        return is_same_system and are_close(tuple(entries), tuple(self.band.entries), CLOSE)
 
 
 @compiled
-def is_close(derivatives, before, tolerance):
-    """Whether no entry is off by more than a fraction of the largest one of its row."""
-    for i in range(unsigned(len(before))):
+def are_close(entries, before, tolerance):
+    """Whether entries of the deflection rows are the same and those of Reynolds rows nearly so.
+
+    Parameters
+    ----------
+    entries, before : tuple of ndarray
+        Fields of a `contact.band.BandEntries`.
+    tolerance : float
+        Of each entry, as a fraction of the largest one of its row.
+    """
+    rows, old_rows = entries[3], before[3]
+    if not same_deflection(*entries[:3], *before[:3]):
+        return False
+    for i in range(unsigned(len(rows))):
         largest = change = 0.0
         for k in range(unsigned(ENTRIES)):
-            largest = max(largest, abs(before[i, k]))
-            change = max(change, abs(derivatives[i, k] - before[i, k]))
+            largest = max(largest, abs(old_rows[i, k]))
+            change = max(change, abs(rows[i, k] - old_rows[i, k]))
         if not change <= tolerance * largest:
             return False
     return True

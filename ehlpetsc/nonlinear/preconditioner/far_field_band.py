@@ -11,6 +11,9 @@ import numpy as np
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
+from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
+
+UNITS = np.eye(2)[:, None]  # of both unknowns of the band at a node
 
 
 class Factors:
@@ -39,9 +42,9 @@ class Factors:
         entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
-        for k in range(2):
-            self.units[k, :, k], self.units[k, :, 1 - k] = 1.0, 0.0
-            operator.model.from_band(state, self._owned, self.units[k])
+        self.units[:] = UNITS
+        for unit in self.units:
+            operator.model.from_band(state, self._owned, unit)
 
 
 class FarFieldBand:
@@ -59,5 +62,5 @@ class FarFieldBand:
         b, solution = np.zeros(operator.size), np.empty(operator.size)
         b[operator.active] = x.array_r
         with events.BACK_SOLVE:
-            operator.factors.lu.solve(b, operator.factors.units, solution)
+            solve(*operator.factors.lu.factors, b, operator.factors.units, solution)
         y.array[:] = solution[operator.active]

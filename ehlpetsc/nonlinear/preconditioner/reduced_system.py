@@ -1,17 +1,18 @@
-"""Reduced system of the unknowns w at the cuts, by which the ranks' parts of a band are coupled.
+"""Reduced system of the unknowns w at the cuts, which couples the ranks' parts of a band.
 
-In the order of the cuts it is banded; its cost grows as the number of ranks. Every rank factors it, and keeps
-of the inverse the rows of those w that it needs, and those of sums over the solution.
+In the order of the cuts it is banded; its cost grows as the number of ranks. Every rank factors it and keeps
+the rows of the inverse for the unknowns w that it takes, and for sums over the solution.
 """
 
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 
 BORDER = 3  # sums over the solutions of all ranks
+CONSTANTS, ZERO, ONE = np.array([0.0, 1.0]), -2, -1  # appended to other numbers, and their places
 
 
 class ReducedSystem:
-    """Indices of w, and what a rank needs of its solutions.
+    """Indices of w, and the rows of the inverse that a rank needs.
 
     Parameters
     ----------
@@ -21,59 +22,59 @@ class ReducedSystem:
     """
 
     def __init__(self, left, right, rank, ranks):
-        self._left, self._last, self._cut = left, ranks - 1, left + right
-        self._size = self._cut * self._last
-        self._below, self._above = self._cut + left - 1, self._cut + right - 1
-        self._of_rank = [self._indices(one) for one in range(ranks)]
-        self._taken = self._of_rank[rank][0]
-
-    def _indices(self, rank):
-        """Of the unknowns that a rank takes of others, and of its own at its cuts."""
-        before, behind = self._cut * (rank - 1), self._cut * rank
-        taken, own = [], []
-        if rank > 0:
-            taken += range(before, before + self._left)
-            own += range(before + self._left, behind)
-        if rank < self._last:
-            taken += range(behind + self._left, behind + self._cut)
-            own += range(behind, behind + self._left)
-        return np.array(taken, dtype=int), np.array(own, dtype=int)
+        cut = left + right
+        places = [_indices(other, ranks, left, right) for other in range(ranks)]
+        taken, size = places[rank][0], cut * (ranks - 1)
+        self._below, self._above = cut + left - 1, cut + right - 1
+        self._diagonal = self._below + self._above
+        # places among the values, in LAPACK's band and in the right-hand sides; among the solutions
+        number = np.arange(ranks * (cut + 2) * (cut + BORDER)).reshape(ranks, cut + 2, cut + BORDER)
+        self._band = np.full((size, self._diagonal + self._below + 1), ZERO)
+        self._wanted = np.full((len(taken) + BORDER, size), ZERO)
+        self._rows = np.full((len(taken) + BORDER, ranks, cut + BORDER), ZERO)
+        for other, (takes, own) in enumerate(places):
+            of_rank, takes_too = number[other, : len(takes)], takes[:, None]
+            self._band[takes_too, self._diagonal + own - takes_too] = of_rank[:, : len(own)]
+            self._wanted[-BORDER:, takes] = of_rank[:, cut:].T
+            self._rows[:, other, : len(own)] = size * np.arange(len(self._rows))[:, None] + own
+        self._band[:, self._diagonal] = self._wanted[np.arange(len(taken)), taken] = ONE
+        for k in range(-BORDER, 0):
+            self._rows[k, :, k] = ONE
+        self._sums_alone = np.eye(BORDER, cut + BORDER, cut)
 
     def rows_of_inverse(self, values):
         """Coefficients of the unknowns that this rank takes, and of the sums over all ranks.
 
         Parameters
         ----------
-        values : ndarray, shape (ranks, left + right, left + right + BORDER)
-            Of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its sums.
+        values : ndarray, shape (ranks, left + right + 2, left + right + BORDER)
+            Of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its sums;
+            the last two rows are not used.
 
         Returns
         -------
         ndarray, shape (taken + BORDER, ranks (left + right + BORDER))
             Of the values at the cuts and the sums that every rank has without the others.
         """
-        rows = np.zeros((len(self._taken) + BORDER, len(self._of_rank), self._cut + BORDER))
-        if len(values) > 1:
-            inverse = self._inverse(values)
-            for rank, (_, own) in enumerate(self._of_rank):
-                rows[:, rank, : len(own)] = inverse[own].T
-        for k in range(-BORDER, 0):
-            rows[k, :, k] = 1.0
-        return rows.reshape(len(rows), -1)
+        numbers = np.concatenate((values.ravel(), CONSTANTS))
+        band, solution = numbers[self._band], numbers[self._wanted]
+        if len(band):
+            solution[-BORDER:] *= -1.0
+            lu, pivots, singular = dgbtrf(band.T, self._below, self._above, overwrite_ab=True)
+            if singular:
+                regularise_pivots(lu[self._diagonal])
+            solution = dgbtrs(lu, self._below, self._above, solution.T, pivots, trans=1, overwrite_b=True)[
+                0
+            ].T
+        return np.concatenate((solution.ravel(), CONSTANTS))[self._rows].reshape(len(self._rows), -1)
 
-    def _inverse(self, values):
-        diagonal = self._below + self._above
-        band = np.zeros((diagonal + self._below + 1, self._size), order="F")
-        band[diagonal] = 1.0
-        wanted = np.zeros((self._size, len(self._taken) + BORDER), order="F")
-        wanted[self._taken, np.arange(len(self._taken))] = 1.0
-        for (taken, own), of_rank in zip(self._of_rank, values, strict=True):
-            band[diagonal + own - taken[:, None], taken[:, None]] += of_rank[: len(taken), : len(own)]
-            wanted[taken, -BORDER:] = -of_rank[: len(taken), self._cut :]
-        lu, pivots, singular = dgbtrf(band, self._below, self._above, overwrite_ab=True)
-        if singular:
-            regularise_pivots(lu[diagonal])
-        return dgbtrs(lu, self._below, self._above, wanted, pivots, trans=1)[0]
+
+def _indices(rank, ranks, left, right):
+    """Indices of the unknowns that a rank takes of others, and of its own at its cuts."""
+    cut = (left + right) * rank  # the one behind the rank
+    before, behind = np.arange(cut - left - right, cut), np.arange(cut, cut + left + right)
+    before, behind = before[: len(before) * (rank > 0)], behind[: len(behind) * (rank < ranks - 1)]
+    return np.append(before[:left], behind[left:]), np.append(before[left:], behind[:left])
 
 
 def regularise_pivots(diagonal):

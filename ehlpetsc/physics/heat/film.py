@@ -188,6 +188,9 @@ class FilmHeat(NamedTuple):
         Of both surfaces.
     guess
         Temperature to start from [K]; that of the last evaluation.
+    kept : ndarray, shape (4, nx)
+        Of the last evaluation: unknown of Reynolds' equation and film, not a number before it, and what
+        :func:`.discretisation.heat.film.heated_nodal` found.
     """
 
     law: FilmLaw
@@ -200,6 +203,12 @@ class FilmHeat(NamedTuple):
     r1: np.ndarray
     r2: np.ndarray
     guess: np.ndarray
+    kept: np.ndarray
+
+    @classmethod
+    def begun(cls, law, *arrays):
+        """Coefficients without any evaluation; `arrays` are those from `a` to `guess`."""
+        return cls(law, *arrays, np.full((4, len(arrays[0])), np.nan))
 
     def mirrored(self):
         """Coefficients with the nodes in reverse order."""
@@ -207,4 +216,6 @@ class FilmHeat(NamedTuple):
 
     def part(self, nodes):
         """Coefficients at a slice of the nodes."""
-        return FilmHeat(self.law, *(np.ascontiguousarray(array[nodes]) for array in self[1:]))
+        if nodes == slice(0, len(self.a)):
+            return self
+        return FilmHeat(self.law, *(np.ascontiguousarray(array[..., nodes]) for array in self[1:]))

@@ -1,1 +1,1 @@
-"""One result as one HTML page: its frame, style and script, and the numbers they show."""
+"""HTML page of one result: template, style, script and data."""

@@ -1,4 +1,4 @@
-"""One result as a self-contained HTML page."""
+"""Self-contained HTML page of one result."""
 
 import html
 import json
@@ -38,7 +38,7 @@ def save_report(result, path):
     for name, value in (("title", data["title"]), ("case", data["case"])):
         text = text.replace("{{" + name + "}}", html.escape(value))
     text = text.replace("{{facts}}", rows)
-    # within a script element only "<" can end it
+    # only "<" can end a script element
     text = text.replace("{{data}}", json.dumps(data, allow_nan=False).replace("<", "\\u003c"))
     text = text.replace("{{plotly}}", plotly)
     atomic_write(path, text.encode())

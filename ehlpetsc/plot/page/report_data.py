@@ -82,7 +82,7 @@ def _oil(fluid):
 
 
 def _temperatures(result):
-    """Highest temperatures of film and surfaces; None of an isothermal run."""
+    """Highest temperatures of film and surfaces; None for an isothermal run."""
     names = ("film_temperature_max", "temperature_1_max", "temperature_2_max")
     if names[0] not in result.scalars:
         return None
@@ -91,7 +91,7 @@ def _temperatures(result):
 
 
 def facts(result):
-    """Rows of the table at the top: name and value."""
+    """Names and values of the table at the top."""
     attrs = result.attrs
     case = tomllib.loads(str(attrs["case"]))
     motion, fluid, solids = (case.get(name, {}) for name in ("motion", "fluid", "contact"))
@@ -155,7 +155,7 @@ def frames(result):
 
 
 def scalars_over_time(result):
-    """Scalars of the steps that vary, against time; none of a steady result."""
+    """Varying scalars of the steps over time; empty for a steady result."""
     time = result.steps("time")
     if len(time) < 2:
         return {"time": _packed([]), "figures": []}
@@ -186,18 +186,18 @@ def _sort_key(name):
 
 
 def damage(result):
-    """Damage below the surfaces from the post-processing result beside, None without one."""
-    found = damage_beside(result)
-    if found is None:
+    """Damage below the surfaces from RESULT.post.h5; None without this file."""
+    post = damage_beside(result)
+    if post is None:
         return None
-    width = -(-len(found.s) // MAX_POINTS)
+    width = -(-len(post.s) // MAX_POINTS)
     with np.errstate(divide="ignore", invalid="ignore"):
-        decades = {side: np.log10(values) for side, values in found.damage.items()}
+        decades = {side: np.log10(values) for side, values in post.damage.items()}
     for values in decades.values():
         values[~np.isfinite(values)] = np.nan
     return {
-        "s": _packed(binned(found.s / found.a, width, np.mean)),
-        "depths": found.z.tolist(),
+        "s": _packed(binned(post.s / post.a, width, np.mean)),
+        "depths": post.z.tolist(),
         "surfaces": {
             side: [_packed(binned(row, width, np.fmax.reduce)) for row in rows]
             for side, rows in decades.items()
@@ -206,7 +206,7 @@ def damage(result):
 
 
 def binned(values, width, reduce):
-    """Every `width` values reduced to one by `reduce(values, axis=-1)`."""
+    """Groups of `width` values reduced by `reduce(values, axis=-1)`."""
     values = np.asarray(values)
     if width == 1:
         return values
@@ -216,7 +216,7 @@ def binned(values, width, reduce):
 
 
 def _packed(values, kind=np.float32):
-    """Numbers as text: little-endian bytes in base64."""
+    """Numbers as little-endian bytes in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<"))).decode(
         "ascii"
     )

@@ -1,4 +1,4 @@
-"""Collisions of asperities and lubricant entrapment, drawn into given axes."""
+"""Collisions of asperities and lubricant entrapment, drawn into axes."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#1
 
 
 def draw_collisions(axes, results, found, colours, width):
-    """Draw pressure and film at each collision, one column for each, with contacts of every member marked.
+    """Draw pressure and film at each collision, one column each, with the contacts of every member.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def draw_collisions(axes, results, found, colours, width):
             in_view = (x >= window[0]) & (x <= window[1])
             touching = in_view & in_contact(result, frame)
             upper.plot(x[touching], pressure[touching], "v", color=colour, ms=4)
-            if touching.any():  # an empty line that is not clipped would count for the layout
+            if touching.any():  # an unclipped empty line would affect the layout
                 lower.plot(x[touching], film[touching], "v", color=colour, ms=4, clip_on=False)
             thickest, highest = max(thickest, film[in_view].max()), max(highest, pressure[in_view].max())
         lower.set_ylim(0.0, 1.05 * thickest)
@@ -48,7 +48,7 @@ def draw_collisions(axes, results, found, colours, width):
 
 
 def draw_contact_points(axes, points, values, key, a):
-    """Draw film and pressure at contact points against the swept value, one line for each point."""
+    """Draw film and pressure at contact points over the varied value, one line for each point."""
     upper, lower = axes
     for point, colour in zip(points, COLOURS, strict=False):
         film, pressure = 1e6 * np.array(point.film), 1e-9 * np.array(point.pressure)
@@ -71,7 +71,7 @@ def draw_contact_points(axes, points, values, key, a):
 
 
 def draw_entrapment(axes, result, found, width):
-    """Draw pressure and the deformed surfaces at instants around an entrapment, one column for each.
+    """Draw pressure and the deformed surfaces at instants around an entrapment, one column each.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Pressure and film of an instant, drawn into given axes; x in half widths, film in um, pressure in GPa."""
+"""Pressure and film at an instant, drawn into axes; x in half widths, film in um, pressure in GPa."""
 
 import tomllib
 
@@ -28,14 +28,14 @@ GAP = "gap [µm]"  # without oil
 WINDOW = (-1.6, 1.4)  # limits of x/a by default
 HERTZ_STYLE = dict(lw=0.9, ls=":", zorder=1)
 HERTZ_GREY = "0.6"
-MIN_SOLIDS_SHARE = 0.005  # of the load: below it the pressure chooses the instant
+MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
 
 
 def choose_frames(results, step=None, time=None):
     """Index of the stored frame nearest to an instant, for every result.
 
-    Results whose surfaces move at different speeds are compared at equal travel of the faster surface, since
-    the same asperities then are at the same place.
+    Results with different speeds are compared at equal travel of the faster surface, at which asperities are
+    in the same position.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def choose_frames(results, step=None, time=None):
     step : int, optional
         Step number in the first result.
     time : float, optional
-        Time in the first result [s]. Without either, the fullest contact that all of them reach.
+        Time in the first result [s]. Without both, the frame of `frame_to_show` that all results reach.
 
     Raises
     ------
@@ -75,9 +75,9 @@ def choose_frames(results, step=None, time=None):
 
 
 def _load_on_solids(result):
-    """Sort key of results: largest share of the load on solids, then largest pressure."""
+    """Sort key of results: maximum fraction of the load on the solids, then maximum pressure."""
     share = np.nanmax(result.steps("contact_share")) if "contact_share" in result.scalars else 0.0
-    return (share if share > MIN_SOLIDS_SHARE else 0.0), np.nanmax(result.steps("p_max"))
+    return (share if share > MIN_LOAD_ON_SOLIDS else 0.0), np.nanmax(result.steps("p_max"))
 
 
 def travel_of(result):
@@ -86,10 +86,10 @@ def travel_of(result):
 
 
 def frame_to_show(result, reached=np.inf):
-    """Index of the stored frame with the largest share of the load on the solids, or the highest pressure.
+    """Index of the stored frame with the largest fraction of the load on the solids, or the highest pressure.
 
-    The share decides where it ever exceeds `MIN_SOLIDS_SHARE`. Frames before both surfaces fill the contact
-    count only if there are no others: the leading edge of a profile is no typical contact.
+    The fraction is used if it ever exceeds `MIN_LOAD_ON_SOLIDS`. Frames before both surfaces fill the contact
+    are used only if there are no others, because the leading edge of a profile is not typical.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def frame_to_show(result, reached=np.inf):
     values = result.steps("p_max")[rows]
     if "contact_share" in result.scalars:
         share = np.nan_to_num(result.steps("contact_share")[rows])
-        values = share if share[allowed].max() > MIN_SOLIDS_SHARE else values
+        values = share if share[allowed].max() > MIN_LOAD_ON_SOLIDS else values
     return int(np.argmax(np.where(allowed, np.nan_to_num(values), -1.0)))
 
 
@@ -121,7 +121,7 @@ def default_window(results):
 
 
 def instant(results, indices):
-    """Text with the travel of stored frames, with step and time where all share them; "" if steady."""
+    """Text with the travel of stored frames, and step and time if they are equal; "" if steady."""
     first, index = results[0], indices[0]
     if len(first.time) == 1:
         return ""
@@ -133,9 +133,9 @@ def instant(results, indices):
 
 
 def pressure_and_film(axes, results, indices, colours, window):
-    """Draw pressure and film; of a single result also contacts and the pressure of the solids.
+    """Draw pressure and film; for a single result also contacts and the pressure of the solids.
 
-    The film axis ends above the thickest film inside the contact, or in view where it is closed or elsewhere.
+    The film axis ends above the thickest film inside the contact, or in view if there is none inside.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def pressure_and_film(axes, results, indices, colours, window):
                 solids = 1e-9 * result.frame("contact_pressure", index)
                 upper.fill_between(x, 0.0, solids, color=SOLIDS_COLOUR, lw=0, zorder=1.5)
             touching = in_view & in_contact(result, index)
-            if touching.any():  # an empty line would extend the layout
+            if touching.any():  # an empty line would affect the layout
                 lower.plot(
                     x[touching], film[touching], "v", color=CONTACT_COLOUR, ms=4, clip_on=False, zorder=3
                 )
@@ -178,7 +178,7 @@ def pressure_and_film(axes, results, indices, colours, window):
 
 
 def _hertz(axes, results, colours, window):
-    """Draw the Hertz pressure, once where all results share it."""
+    """Draw the Hertz pressure, once if it is equal for all results."""
     fine = np.linspace(*window, 801)
     if share_hertz_contact(results):
         results, colours = results[:1], [HERTZ_GREY]
@@ -188,7 +188,7 @@ def _hertz(axes, results, colours, window):
 
 
 def x_in_mm(axes, results):
-    """Add an axis in mm where all results have the same a, and the direction of flow where there is oil."""
+    """Add an axis in mm if all results have the same a, and the direction of flow if there is oil."""
     a = {float(result.attrs["a"]) for result in results}
     if len(a) == 1:
         scale = 1e3 * a.pop()

@@ -1,4 +1,4 @@
-"""Pressure over x and time, and contacts per millisecond, drawn into given axes."""
+"""Pressure over x and time, and contacts per millisecond, drawn into axes."""
 
 import numpy as np
 from matplotlib.colors import ListedColormap
@@ -9,17 +9,17 @@ from ehlpetsc.plot.panels.frames import ACROSS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.filling import travelled
 
-MAP_ROWS = 1000  # most rows of pixels of a space-time map
-FEW_CONTACTS = 3000  # nodes in contact: fewer are marked by dots, as single pixels would not be seen
-COLOUR_PERCENTILE = 99.9  # of pressure: upper end of the colours, which a few sharp peaks would stretch
-MEAN_WIDTH = 0.1  # half-widths of a mean along the contact
+MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
+MAX_MARKED_CONTACTS = 3000  # nodes in contact marked by dots, because single pixels would not be visible
+COLOUR_PERCENTILE = 99.9  # of pressure: upper end of the colours, without a few sharp peaks
+MEAN_WIDTH = 0.1  # half widths of a moving mean along the contact
 POLYNOMIAL_ORDER = 8  # Holmes et al. 2005, figure 7 (ii)
 
 
 def space_time_map(axes, result, window, highest):
     """Draw pressure over x and time with contacts marked; returns the image for a colour bar.
 
-    At most `MAP_ROWS` frames are drawn; contacts of the frames between them are marked all the same.
+    At most `MAX_MAP_ROWS` frames are drawn; contacts of the frames between them are also marked.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def space_time_map(axes, result, window, highest):
     window : (float, float)
         Limits of x/a.
     highest : float
-        Pressure [GPa] at which the colours end.
+        Pressure [GPa] at the upper end of the colours.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def space_time_map(axes, result, window, highest):
     touching, red = _contacts(result, columns, stride), ListedColormap([CONTACT_COLOUR])
     axes.pcolormesh(x, rows, np.ma.masked_equal(touching, 0), **(mesh | {"cmap": red}))
     row, node = np.nonzero(touching)
-    if len(row) < FEW_CONTACTS:
+    if len(row) < MAX_MARKED_CONTACTS:
         axes.plot(x[node], rows[row], ".", color=CONTACT_COLOUR, ms=3, mew=0, rasterized=True)
     scale = travelled(result)[-1] / result.attrs["a"] / max(time[-1], 1e-30)
     constant = "steps/displacement_1" not in result
@@ -57,16 +57,16 @@ def space_time_map(axes, result, window, highest):
 
 
 def colour_limit(results, window):
-    """Pressure [GPa] at which the colours of all results end."""
+    """Pressure [GPa] at the upper end of the colours of all results."""
     return max(float(np.percentile(_pressures(result, window)[2], COLOUR_PERCENTILE)) for result in results)
 
 
 def _pressures(result, window):
-    """x/a and time [us] in view, pressure [GPa] of the frames drawn, their columns and stride."""
+    """x/a and time [us] in view, pressure [GPa] of the drawn frames, their columns and stride."""
     if len(result.time) < 2:
         raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
     x, time = result.x / result.attrs["a"], 1e6 * result.time
-    stride = -(-len(time) // MAP_ROWS)
+    stride = -(-len(time) // MAX_MAP_ROWS)
     part = np.flatnonzero((x >= window[0]) & (x <= window[1]))
     columns = slice(part[0], part[-1] + 1)
     pressure = 1e-9 * result["pressure"][: len(time) : stride, columns].astype(float)
@@ -84,7 +84,7 @@ def contact_rates(axes, results, colours, polynomial=False):
     """Draw contacts per millisecond along the contact, raw and smoothed.
 
     Smoothed by a mean over `MEAN_WIDTH` or, with `polynomial`, by a polynomial of 8th order as in Holmes et
-    al. 2005, figure 7 (ii), which needs many contacts: through few of them it oscillates.
+    al. 2005, figure 7 (ii), which oscillates if there are few contacts.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Ensembles over seeds: every run as a dot, with mean and bootstrap interval."""
+"""Ensembles over seeds: a dot for every run, mean and bootstrap interval."""
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -8,9 +8,9 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
 
 RUNS_COLOUR = "0.6"
-PANEL = (3.1, 2.4)  # inches
+PANEL_SIZE = (3.1, 2.4)  # inches
 COLUMNS = 3
-PANELS = {  # figure: label, factor from SI units
+PANELS = {  # scalar: label, factor from SI units
     "friction_coefficient": ("friction coefficient", 1.0),
     "film_central": ("mean central film [µm]", 1e6),
     "mean_gap_ratio": ("mean gap over the combined Rq", 1.0),
@@ -24,13 +24,15 @@ PANELS = {  # figure: label, factor from SI units
 
 
 def draw_ensemble(results, _options):
-    """Figure of the scalars of runs, one panel for each, against the key that differs beside the seeds."""
+    """Figure of the scalars of runs, one panel each, over the key that differs apart from seeds."""
     found = ensembles(results)
     names = [name for name in PANELS if all(name in one.scalars for one in found)]
     if not names:
         raise OutputError("no scalar that all runs have")
     rows = -(-len(names) // COLUMNS)
-    figure, axes = new_figure(rows, COLUMNS, (PANEL[0] * COLUMNS + 1.2, PANEL[1] * rows), squeeze=False)
+    figure, axes = new_figure(
+        rows, COLUMNS, (PANEL_SIZE[0] * COLUMNS + 1.2, PANEL_SIZE[1] * rows), squeeze=False
+    )
     abscissae, label, ticks = _abscissae(found)
     for panel, name in zip(axes.flat, names, strict=False):
         _draw_panel(panel, found, abscissae, name)
@@ -55,7 +57,7 @@ def _mean_and_interval():
 
 
 def _abscissae(found):
-    """Abscissae of the ensembles, their label, and tick labels where they are not numbers."""
+    """Abscissas of the ensembles, their label, and tick labels if they are not numbers."""
     keys = list(found[0].values)
     if len(keys) == 1:
         values = [one.values[keys[0]] for one in found]

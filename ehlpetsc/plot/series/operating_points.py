@@ -32,11 +32,11 @@ class OperatingPoint:
     Attributes
     ----------
     speed : float
-        Value of the abscissa, such as the mean speed of the surfaces [m/s].
+        Value of the abscissa, such as the entrainment speed [m/s].
     scalars : dict of str to TimeStatistics
         By the names in `QUANTITIES`.
     smooth : float
-        Friction coefficient of the smooth contact, before the roughness comes.
+        Friction coefficient of the smooth contact, before roughness enters.
     boundary : float
         Friction coefficient of the solids.
     """
@@ -48,12 +48,12 @@ class OperatingPoint:
 
 
 def scalar_over_time(result, name):
-    """A scalar of every step; the friction coefficient also of files that hold the force alone.
+    """Scalar of every step; the friction coefficient also from files with the friction force alone.
 
     Returns
     -------
     ndarray, shape (nsteps,)
-        nan where the file does not have it.
+        nan if the file does not have the scalar.
     """
     if name in result.scalars:
         values = result.steps(name).astype(float)
@@ -65,7 +65,7 @@ def scalar_over_time(result, name):
 
 
 def time_statistics(values, weights):
-    """Mean and percentiles of values, each of which counts by its weight; those not finite are left out."""
+    """Weighted mean and percentiles of the finite values."""
     known = np.isfinite(values) & (weights > 0.0)
     if not known.any():
         return TimeStatistics(np.nan, np.nan, np.nan)
@@ -75,7 +75,7 @@ def time_statistics(values, weights):
 
 
 def operating_point(result, speed):
-    """Means of one member; None where it ends before both surfaces fill the contact.
+    """Means of one member; None if it ends before both surfaces fill the contact.
 
     Parameters
     ----------

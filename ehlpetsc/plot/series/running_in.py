@@ -1,4 +1,4 @@
-"""Running in: heights and pressure before and after, and the changes of each pass."""
+"""Running-in: heights and pressure before and after, and the changes in each pass."""
 
 import tomllib
 
@@ -12,13 +12,13 @@ from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.running_in import heights, pass_summary
 
 SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches; with damage
-STRETCH = 0.6  # half widths of profile shown, around the deepest indentation
+PROFILE_WIDTH = 0.6  # half widths of profile around the deepest indentation
 MARGIN_FACTOR = 1.15  # above the highest value
-LENGTH_AXIS_FACTOR = 2.0  # separates the length from the share, which it follows
-FIRST, LAST = "0.65", "C3"  # colours of the passes
+LENGTH_AXIS_FACTOR = 2.0  # separates the curve of the length from that of the load fraction
+FIRST_COLOUR, LAST_COLOUR = "0.65", "C3"  # of the passes
 MAX_SINGLE_PASSES = 30  # more passes are drawn as dots and means over several
 PASSES_PER_MEAN = 10
-MIN_ADDED = 1e-3  # of the area that the first pass added: less is drawn at the edge
+MIN_ADDED = 1e-3  # of the area added by the first pass: smaller values are drawn at the edge
 
 
 def draw_running_in(results, _options):
@@ -55,19 +55,19 @@ def draw_running_in(results, _options):
 
 
 def draw_surface(axes, results):
-    """Draw the surface with the deepest indentation as made, after the first and after the last pass."""
+    """Draw the surface with the deepest indentation: original, after the first and after the last pass."""
     sides = [side for side in ("1", "2") if heights(results[-1], side) is not None]
     side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
     s, made, last = heights(results[-1], side)
     first = heights(results[0], side)[2]
     a = results[0].attrs["a"]
-    in_view = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * STRETCH * a
+    in_view = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * PROFILE_WIDTH * a
     forward = results[0].attrs["u1" if side == "1" else "u2"] > 0.0
     abscissa = 1e3 * (s.max() - s if forward else s - s.min())
     for z, colour, name, style in (
         (made, "k", "before", ":"),
-        (first, FIRST, "after pass 1", "-"),
-        (last, LAST, f"after pass {len(results)}", "-"),
+        (first, FIRST_COLOUR, "after pass 1", "-"),
+        (last, LAST_COLOUR, f"after pass {len(results)}", "-"),
     ):
         axes.plot(abscissa[in_view], 1e6 * z[in_view], style, color=colour, label=name)
     axes.set(
@@ -78,12 +78,15 @@ def draw_surface(axes, results):
 
 
 def draw_pressure(axes, results):
-    """Draw the pressures of the first and the last pass at the largest share of solids of the first."""
+    """Draw the pressures of the first and the last pass at the maximum load on the solids of the first."""
     first, last = results[0], results[-1]
     common = min(len(first.time), len(last.time))
     frame = min(frame_to_show(first), common - 1)
     x = first.x / first.attrs["a"]
-    for result, colour, name in ((first, FIRST, "pass 1"), (last, LAST, f"pass {len(results)}")):
+    for result, colour, name in (
+        (first, FIRST_COLOUR, "pass 1"),
+        (last, LAST_COLOUR, f"pass {len(results)}"),
+    ):
         axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
     axes.set(xlabel="x/a", ylabel="pressure [GPa]", xlim=(-1.2, 1.2))
     at = f"at {1e6 * first.time[frame]:.1f} µs"
@@ -99,28 +102,28 @@ def legend_above(axes, *others, title=None):
 
 
 def draw_plastic_area(axes, rows, is_shifted):
-    """Draw the plastic area that each pass adds, relative to the first, and Ra of both surfaces."""
+    """Draw the plastic area added by each pass, relative to the first, and Ra of both surfaces."""
     numbers = np.arange(1, len(rows) + 1)
     volumes = np.array([row["set_volume"] for row in rows])
     parts = np.diff(volumes, prepend=0.0) / volumes[0]
     axes.set_yscale("log")
-    draw_course(axes, numbers, parts, LAST, "o-", MIN_ADDED)
+    draw_course(axes, numbers, parts, LAST_COLOUR, "o-", MIN_ADDED)
     axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
     axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=ticks(numbers))
     axes.set_ylim(bottom=0.8 * MIN_ADDED)
-    beside = axes.twinx()
+    ra_axes = axes.twinx()
     names = {"1": "Ra 1", "2": "Ra 2, its stretch moves on" if is_shifted else "Ra 2"}
     for side, style in (("1", "^--"), ("2", "v:")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
             ra = [1e6 * row[side]["ra"] for row in rows]
             ms = 4 if len(rows) <= MAX_SINGLE_PASSES else 0
-            beside.plot(numbers, ra, style, color="C0", ms=ms, alpha=0.6, label=names[side])
-    beside.set_ylabel("Ra [µm]", color="C0")
-    legend_above(beside, axes)
+            ra_axes.plot(numbers, ra, style, color="C0", ms=ms, alpha=0.6, label=names[side])
+    ra_axes.set_ylabel("Ra [µm]", color="C0")
+    legend_above(ra_axes, axes)
 
 
 def draw_course(axes, numbers, values, colour, style, least=-np.inf):
-    """Draw a quantity pass by pass, at least `least`; of more than `MAX_SINGLE_PASSES` dots and means."""
+    """Draw a quantity over the passes, at least `least`; as dots and means above `MAX_SINGLE_PASSES`."""
     shown = np.maximum(values, least)
     if len(numbers) <= MAX_SINGLE_PASSES:
         axes.plot(numbers, shown, style, color=colour, ms=4)
@@ -133,33 +136,33 @@ def draw_course(axes, numbers, values, colour, style, least=-np.inf):
 
 
 def draw_contact(axes, rows):
-    """Draw the share of load on the solids and the length of contact, means while both surfaces fill it."""
+    """Draw the means of the load fraction of the solids and of the contact length."""
     numbers = np.arange(1, len(rows) + 1)
     share, length = (
         np.array([np.nan if row.get(name) is None else row[name] for row in rows])
         for name in ("contact_share", "contact_length")
     )
-    draw_course(axes, numbers, share, LAST, "o-")
+    draw_course(axes, numbers, share, LAST_COLOUR, "o-")
     axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=ticks(numbers))
     axes.set_ylim(0.0, _top(share, MARGIN_FACTOR))
-    beside = axes.twinx()
-    draw_course(beside, numbers, 1e6 * length, "C0", "s--")
+    length_axes = axes.twinx()
+    draw_course(length_axes, numbers, 1e6 * length, "C0", "s--")
     legend_above(axes)
-    beside.set_ylabel("length in contact [µm]", color="C0")
-    beside.set_ylim(0.0, _top(1e6 * length, LENGTH_AXIS_FACTOR * MARGIN_FACTOR))
+    length_axes.set_ylabel("length in contact [µm]", color="C0")
+    length_axes.set_ylim(0.0, _top(1e6 * length, LENGTH_AXIS_FACTOR * MARGIN_FACTOR))
     if not np.isfinite(share).any():
         note = "the run ends before both surfaces\nfill the contact: no means over time"
         axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
 
 
 def _top(values, margin):
-    """Upper limit of an axis above the largest value; 1 where all are 0 or unknown."""
+    """Upper limit of an axis above the largest value; 1 if all values are 0 or unknown."""
     largest = np.nanmax(values, initial=0.0)
     return margin * largest if largest > 0.0 else 1.0
 
 
 def draw_fatigue(axes, damages, side):
-    """Draw the largest damage of a surface at each depth, pass by pass."""
+    """Draw the maximum damage of a surface at each depth over the passes."""
     numbers = np.arange(1, len(damages) + 1)
     depths = damages[0]["z_over_a"]
     if any(side not in one or one["z_over_a"] != depths for one in damages):

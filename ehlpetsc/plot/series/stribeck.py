@@ -1,4 +1,4 @@
-"""Stribeck curve of a series over the entrainment speed: friction, share on the solids, mean gap ratio.
+"""Stribeck curve of a series over the entrainment speed: friction, load on the solids, mean gap ratio.
 
 Means over the time in which both surfaces fill the contact, with the scatter over that time as a band.
 """
@@ -17,17 +17,17 @@ from ehlpetsc.results.series_index import series_values
 
 SPEED = "motion.entrainment_speed"
 SIZE = (8.5, 7.5)  # inches
-MIN_SHARE = 1e-5  # of the load on the solids that is drawn
-MAX_LABELLED_RATIO = 1e3  # of speeds: beyond it labels between powers of ten touch
+MIN_LOAD_FRACTION = 1e-5  # of the solids, lower end of the axis
+MAX_LABELLED_RATIO = 1e3  # of speeds: with more, labels between powers of ten would touch
 
 
 def stribeck_points(results):
-    """Points of a series sorted by speed, and names of the members left out.
+    """Points of a series sorted by speed, and names of the ignored members.
 
     Raises
     ------
     OutputError
-        The results are no series over the speed, or no member lasts long enough.
+        The results are not a series over the speed, or no member is long enough.
     """
     if not any(result.attrs["status"] == "done" for result in results):
         raise OutputError("no member is done yet: a Stribeck curve needs two or more")
@@ -50,7 +50,7 @@ def stribeck_points(results):
 
 
 def curves_by_contact(results):
-    """Results grouped by contact law, mesh and [heat], by their label; the longest curve first."""
+    """Results by contact law, mesh and [heat], with their label; the longest curve first."""
     groups = {}
     for result in results:
         case = tomllib.loads(result.attrs["case"])
@@ -62,8 +62,8 @@ def curves_by_contact(results):
         key = *law, points, "heat" in case
         groups.setdefault(key, []).append(result)
     several, heated = (len({key[part] for key in groups}) > 1 for part in (2, 3))
-    found = sorted(groups.items(), key=lambda item: -len(item[1]))
-    return {_label(*key, several, heated): members for key, members in found}
+    curves = sorted(groups.items(), key=lambda item: -len(item[1]))
+    return {_label(*key, several, heated): members for key, members in curves}
 
 
 def _label(height, film, mesh, heat, with_mesh, with_heat):
@@ -75,7 +75,7 @@ def _label(height, film, mesh, heat, with_mesh, with_heat):
 
 
 def draw_stribeck(results, _options):
-    """Figure of friction, share on the solids and mean gap ratio against the speed.
+    """Figure of friction, load on the solids and mean gap ratio over the speed.
 
     With several contact laws or meshes the longest curve is drawn with its scatter, the others as means.
     """
@@ -120,17 +120,17 @@ def draw_stribeck(results, _options):
 
 
 def _share_axis(axes, points):
-    """Set a logarithmic axis down to `MIN_SHARE` where solids carry load, as shares range over decades."""
+    """Set a logarithmic axis down to `MIN_LOAD_FRACTION` if solids carry load."""
     means = np.array([point.scalars["contact_share"].mean for point in points])
     if (positive := means[means > 0.0]).size:
         axes.set_yscale("log")
-        axes.set_ylim(max(MIN_SHARE, 0.5 * positive.min()), 1.3)
+        axes.set_ylim(max(MIN_LOAD_FRACTION, 0.5 * positive.min()), 1.3)
     else:
         axes.set_ylim(0.0, 1.02)
 
 
 def _hersey_axis(axes, results):
-    """Add an axis with the Hersey number eta0 u/w where all results share viscosity and load."""
+    """Add an axis of the Hersey number eta0 u/w if all results have the same viscosity and load."""
     cases = [tomllib.loads(result.attrs["case"]) for result in results]
     given = {(c.get("fluid", {}).get("viscosity"), c.get("contact", {}).get("load")) for c in cases}
     if len(given) == 1 and None not in (pair := given.pop()):

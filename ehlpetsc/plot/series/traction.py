@@ -1,4 +1,4 @@
-"""Traction curves: friction against the slide/roll ratio, the largest marked."""
+"""Traction curves: friction over the slide/roll ratio, with the maximum marked."""
 
 import tomllib
 
@@ -14,7 +14,7 @@ SIZE = (8.5, 4.6)  # inches
 
 
 def draw_traction(results, _options):
-    """Figure of the friction coefficient against the slide/roll ratio.
+    """Figure of the friction coefficient over the slide/roll ratio.
 
     Results that differ in other keys form separate curves; isothermal ones are dashed beside those with heat.
 
@@ -74,7 +74,7 @@ def _curves(results):
 
 
 def _mark_largest(axes, ratios, friction, colour):
-    """Mark the largest value with its figures unless it is at the end of a curve."""
+    """Mark the maximum and its values unless it is at the end of a curve."""
     if friction.size < 3 or friction.argmax() in (0, friction.size - 1):
         return
     at = friction.argmax()

@@ -1,3 +1,3 @@
-"""Fatigue criteria beside the paper's: critical planes in three dimensions, tension, and a fatigue limit."""
+"""Fatigue criteria other than the paper's: critical planes in three dimensions, tension, fatigue limit."""
 
 CRITERIA = ("fatemi-socie", "shear", "swt", "dang-van")

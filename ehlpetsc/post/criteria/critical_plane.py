@@ -1,11 +1,11 @@
-r"""Critical plane of a history: the plane of largest damage in three dimensions.
+r"""Critical plane of a history: plane of maximum damage in three dimensions.
 
 A criterion is a quantity whose cycles are counted on a plane and a parameter P of each cycle (laws in
 :mod:`ehlpetsc.post.criteria.laws`). The largest normal stress of a cycle is that within its closed loop.
 
-First all planes of a coarse set are tried on the few samples at which the path turns, those first whose
-widest range promises most, until no other can reach the damage found. From the best two on the plane is
-improved in smaller and smaller steps, and the damage of the best one is counted on all samples.
+First all planes of a coarse grid are evaluated on the samples at which the path turns, in the order of their
+widest range, until no other plane can reach the damage found. The best two planes are then improved by a
+pattern search, and the damage of the best plane is counted on all samples.
 """
 
 from math import exp, log, pi
@@ -15,7 +15,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.post.criteria.path_reduction import turning_samples
 from ehlpetsc.post.criteria.planes import (
-    STEP,
+    GRID_STEP,
     normal_weights,
     residual_share,
     shear_weights,
@@ -26,9 +26,11 @@ from ehlpetsc.post.fatigue.life_table import interpolate
 from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of
 
 SHEAR, FATEMI_SOCIE, SWT = 0, 1, 2
-STARTS = 2  # planes of the coarse set that are improved
-FINEST = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
-NEGLIGIBLE = 0.2  # of the widest range: cycles left out in the search, below 1e-7 of its damage each
+STARTS = 2  # planes of the coarse grid that are improved
+MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
+NEGLIGIBLE_RANGE = (
+    0.2  # of the widest range: smaller cycles, ignored in the search, have less than 1e-7 of its damage
+)
 
 
 @compiled(error_model="python", nogil=True)
@@ -43,7 +45,7 @@ def _sum(weights, scale, offset, stress, size, out):
 
 @compiled(error_model="python", nogil=True)
 def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
-    """Fill the counted series (as an equivalent stress) and, where the criterion needs it, normal stress."""
+    """Fill in the counted series (as an equivalent stress) and, if required, the normal stress."""
     theta, phi, psi = angles
     if kind == SWT:
         _sum(strain_weights(theta, phi, nu), 1.0, 0.0, stress, size, series)
@@ -56,7 +58,7 @@ def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
 
 @compiled(error_model="python", nogil=True)
 def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
-    """1/N of a cycle of a given range and largest normal stress."""
+    """1/N of a cycle with a range and a maximum normal stress."""
     if kind == SWT and normal <= 0 or width <= 0:
         return 0.0
     parameter = interpolate(2 * log(width), curve)
@@ -93,7 +95,7 @@ def plane_damage(kind, angles, stress, size, law, threshold, work):
 
 @compiled(error_model="python", nogil=True)
 def _coarse(kind, grid, stress, size, law, work, bounds):
-    """The STARTS best planes of the grid: angles (STARTS, 3) and damage, in falling order."""
+    """Angles (STARTS, 3) and damage of the best planes of the grid, in falling order."""
     nu, residual, _, sensitivity, curve, lives = law
     series, normal = work[4], work[5]
     for g in range(grid.shape[0]):
@@ -105,7 +107,7 @@ def _coarse(kind, grid, stress, size, law, work, bounds):
     for g in np.argsort(-bounds):
         if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
             break
-        found = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE, work)
+        found = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE_RANGE, work)
         rank = STARTS
         while rank > 0 and found > best[rank - 1]:
             rank -= 1
@@ -118,16 +120,16 @@ def _coarse(kind, grid, stress, size, law, work, bounds):
 
 @compiled(error_model="python", nogil=True)
 def _improve(kind, angles, damage, stress, size, law, work):
-    """Pattern search over the angles, from half the coarse step down to FINEST."""
-    step = STEP * pi / 180 / 2
+    """Pattern search over the angles, from half the coarse step down to `MIN_ANGLE_STEP`."""
+    step = GRID_STEP * pi / 180 / 2
     trial = angles.copy()
-    while step > FINEST:
+    while step > MIN_ANGLE_STEP:
         better = False
         for axis in range(2 if kind == SWT else 3):
             for change in (-step, step):
                 trial[:] = angles
                 trial[axis] += change
-                found = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE, work)
+                found = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE_RANGE, work)
                 if found > damage:
                     damage, better = found, True
                     angles[:] = trial
@@ -139,7 +141,7 @@ def _improve(kind, angles, damage, stress, size, law, work):
 
 @compiled(error_model="python", nogil=True)
 def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out):
-    """out (3,) = damage on the worst plane of stress (3, :size), and theta and phi of its normal in radians.
+    """Set out (3,) to the damage on the worst plane of stress (3, :size), theta and phi of its normal [rad].
 
     `few` (3, :few_size) are the samples at which the path turns.
     """

@@ -4,16 +4,16 @@ r"""Dang Van's criterion: utilisation of the fatigue limit in every grain.
     U = \max_t \frac{\tau(t) + a\,\max(\sigma_H(t), 0)}{\tau_w}, \qquad
     a = 3\Big(\frac{\tau_w}{\sigma_w}-\frac12\Big)
 
-:math:`\tau(t)` is half the difference of the largest and smallest principal values of the deviator less the
-centre of the smallest ball about its path (what a grain that has shaken down still feels), :math:`\sigma_H`
+:math:`\tau(t)` is half the difference of the largest and smallest principal values of the deviator minus the
+centre of the smallest ball about its path (the stress in a grain after shakedown), :math:`\sigma_H`
 the hydrostatic stress with the residual stress, :math:`\tau_w` and :math:`\sigma_w` the fatigue limits in
 reversed torsion and reversed bending. Up to U = 1 no crack starts; the margin is 1/U.
 
 Dang Van, Griveau & Message (1989), *On a new multiaxial fatigue limit criterion*, in Biaxial and Multiaxial
-Fatigue, EGF 3; constants from the two limits. The smallest ball is to the deviator what the smallest circle
-is to the shear stress on a plane (Bernasconi & Papadopoulos (2005), Computational Materials Science 34).
-Under the pressure of a rolling contact the straight line would let ever more shear pass; here compression
-counts as no hydrostatic stress, which is the careful side.
+Fatigue, EGF 3; constants from the two limits. The smallest ball of the deviator corresponds to the smallest
+circle of the shear stress on a plane (Bernasconi & Papadopoulos (2005), Computational Materials Science 34).
+Under the pressure of a rolling contact the linear criterion would allow unlimited shear; here compressive
+hydrostatic stress counts as zero, which is conservative.
 """
 
 from math import sqrt
@@ -22,13 +22,13 @@ import numpy as np
 
 from ehlpetsc.compiled import ZERO, compiled
 
-ROUNDS = 200
-INSIDE = 1e-9  # a point outside by this share of the radius is inside
+MAX_ROUNDS = 200  # of the search for the smallest ball
+BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 
 
 @compiled(error_model="python", nogil=True)
 def _centre(points, corners, count):
-    """Centre of the smallest sphere through 1 to 4 points; False where they span fewer axes."""
+    """Centre of the smallest sphere through 1 to 4 points; False if they are degenerate."""
     centre = points[:, corners[0]].copy()
     n = count - 1
     if n == 0:
@@ -41,7 +41,7 @@ def _centre(points, corners, count):
         for m in range(n):
             system[k, m] = 2 * np.sum(edges[k] * edges[m])
         system[k, n] = np.sum(edges[k] ** 2)
-    for k in range(n):  # elimination; Gram matrices of a few edges, the largest pivot decides
+    for k in range(n):  # elimination with the largest pivot of the Gram matrix
         pivot = k
         for m in range(k + 1, n):
             if abs(system[m, k]) > abs(system[pivot, k]):
@@ -69,39 +69,39 @@ def _reach(points, corners, count, centre):
 
 
 @compiled(error_model="python", nogil=True)
-def _smallest_of_few(points, few, count):
-    """Smallest ball about up to 5 points: that of a part of them which holds the others; and this part."""
-    best, best_centre = np.inf, points[:, few[0]].copy()
-    kept, kept_count = few.copy(), count
-    part = np.empty(5, np.int64)
+def _smallest_of_few(points, indices, count):
+    """Smallest ball about up to 5 points, and the subset of points that defines it."""
+    best, best_centre = np.inf, points[:, indices[0]].copy()
+    best_subset, best_count = indices.copy(), count
+    subset = np.empty(5, np.int64)
     for mask in range(1, 1 << count):
         size = ZERO
         for k in range(count):
             if mask >> k & 1:
-                part[size] = few[k]
+                subset[size] = indices[k]
                 size += 1
         if size > 4:
             continue
-        found, centre = _centre(points, part, size)
+        found, centre = _centre(points, subset, size)
         if not found:
             continue
-        radius = _reach(points, part, size, centre)
-        if radius < best and _reach(points, few, count, centre) <= radius * (1 + INSIDE):
-            best, best_centre, kept_count = radius, centre, size
-            kept[:size] = part[:size]
-    return best, best_centre, kept, kept_count
+        radius = _reach(points, subset, size, centre)
+        if radius < best and _reach(points, indices, count, centre) <= radius * (1 + BALL_TOLERANCE):
+            best, best_centre, best_count = radius, centre, size
+            best_subset[:size] = subset[:size]
+    return best, best_centre, best_subset, best_count
 
 
 @compiled(error_model="python", nogil=True)
 def smallest_ball(points):
     """Centre (3,) and radius of the smallest ball about points (3, n).
 
-    The farthest point outside joins the few that carry the ball until none is outside: the radius grows in
-    every round, so that no set of carriers comes back.
+    The farthest point outside is added to the points that define the ball until no point is outside; the
+    radius increases in every round, so that no subset occurs twice.
     """
-    few = np.zeros(5, np.int64)
+    indices = np.zeros(5, np.int64)
     count, radius, centre = 1, 0.0, points[:, 0].copy()
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         farthest, squared = 0, -1.0
         for k in range(points.shape[1]):
             away = (
@@ -111,10 +111,10 @@ def smallest_ball(points):
             )
             if away > squared:
                 farthest, squared = k, away
-        if sqrt(squared) <= radius * (1 + INSIDE):
+        if sqrt(squared) <= radius * (1 + BALL_TOLERANCE):
             break
-        few[count] = farthest
-        larger, new_centre, few, count = _smallest_of_few(points, few, count + 1)
+        indices[count] = farthest
+        larger, new_centre, indices, count = _smallest_of_few(points, indices, count + 1)
         if not larger > radius:
             break
         radius, centre = larger, new_centre

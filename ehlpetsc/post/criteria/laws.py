@@ -1,7 +1,7 @@
-r"""Fatigue criteria beside the paper's: equations, sources, constants.
+r"""Fatigue criteria other than the paper's: equations, sources, constants.
 
-Plain shear strain (the plane of the largest damage by shear alone) and Fatemi & Socie (1988), Fatigue Fract.
-Engng Mater. Struct. 11, whose normal stress opens the crack that shear makes:
+Shear strain alone, and Fatemi & Socie (1988), Fatigue Fract. Engng Mater. Struct. 11, with the normal stress
+that opens a shear crack:
 
 .. math::
     \frac{\Delta\gamma}{2} \quad\text{or}\quad
@@ -9,10 +9,9 @@ Engng Mater. Struct. 11, whose normal stress opens the crack that shear makes:
     = \frac{\tau_f'}{G}(2N)^b + \gamma_f'(2N)^c
 
 with :math:`\tau_f'=\sigma_f'/\sqrt3`, :math:`\gamma_f'=\sqrt3\,\varepsilon_f'` (von Mises). k is found from
-tests in torsion and in tension; 1 is customary for steel where there are none. Torsion tests of a hardened
+tests in torsion and in tension; 1 is customary for steel without tests. Torsion tests of a hardened
 spring steel: McClaflin & Fatemi (2004), Int. J. Fatigue 26, 773. Smith, Watson & Topper (1970), J. Mater. 5,
-wrote theirs for one axis; on a plane it is Socie's (1987), J. Eng. Mater. Technol. 109, for cracks that
-tension makes:
+is uniaxial; on a plane it was proposed by Socie (1987), J. Eng. Mater. Technol. 109, for tensile cracks:
 
 .. math::
     \sigma_{n,\max}\frac{\Delta\varepsilon_n}{2}
@@ -20,24 +19,24 @@ tension makes:
 
 Strain ranges come from elastic ones by the same rule as in the paper's criterion (13), the shear as
 :math:`\Delta\gamma = \sqrt3\,\Delta\varepsilon(\sqrt3\Delta\tau)` with 3G for E, a normal strain as that of
-the uniaxial stress :math:`E\Delta\varepsilon_n`. The largest normal stress stays elastic and holds the
-residual stress; compression counts as none, so that it helps no further than down to a cycle which ends at
-zero stress.
+the uniaxial stress :math:`E\Delta\varepsilon_n`. The maximum normal stress is elastic and includes the
+residual stress; compression counts as zero, so that its benefit is limited to a cycle that ends at zero
+stress.
 """
 
 from dataclasses import dataclass
 from math import exp, inf, log, sqrt
 
 from ehlpetsc.post.fatigue.elastic_plastic import log_local_range
-from ehlpetsc.post.fatigue.life_table import HIGHEST, LOWEST, curve_table
+from ehlpetsc.post.fatigue.life_table import MAX_RANGE, MIN_RANGE, curve_table
 from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude, rule_of
 
-PLASTIC_STRAIN = 0.002  # at which the cyclic yield strength is read
+PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 
 
 @dataclass(frozen=True)
 class Criteria:
-    """Constants of the criteria beside those of the strain-life curves, SI units.
+    """Constants of the criteria in addition to those of the strain-life curves, SI units.
 
     Attributes
     ----------
@@ -47,8 +46,8 @@ class Criteria:
         sigma_y, Pa; None: the cyclic one at 0.2 % plastic strain, K' 0.002^n'.
     torsion_limit : float
         tau_w of Dang Van, Pa. Default: 375 MPa, the amplitude 0.25 p of the shear stress parallel to the
-        surface under the 1.5 GPa of Hertz pressure that ISO 281:2007 takes for the fatigue limit of bearing
-        steel. (In a point contact that is a von Mises stress of 0.9 GPa.)
+        surface at the Hertz pressure of 1.5 GPa, the fatigue limit of bearing steel in ISO 281:2007 (in a
+        point contact a von Mises stress of 0.9 GPa).
     bending_limit : float
         sigma_w of Dang Van, Pa. Default: sqrt(3) tau_w (von Mises).
     """
@@ -91,11 +90,11 @@ def _amplitude_table(modulus, material, rule):
         elastic = exp(local - log(2 * modulus) - value)
         return value, (elastic + (1 - elastic) / exponent) * rate / 2
 
-    return curve_table(2 * log(LOWEST * strength), 2 * log(HIGHEST * strength), log_amplitude)
+    return curve_table(2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength), log_amplitude)
 
 
 def _life_table(curve, strength, modulus, ductility, b, c):
-    """ln(1/N) over ln P of strength/modulus (2N)^b + ductility (2N)^c = P, as far as the amplitudes go."""
+    """ln(1/N) over ln P of strength/modulus (2N)^b + ductility (2N)^c = P, in the range of the amplitudes."""
 
     def log_damage(log_parameter):
         y = log_reversals(log_parameter, strength, modulus, ductility, b, c)
@@ -119,5 +118,5 @@ def swt_tables(material, strain="direct"):
     """Amplitude and life tables of Smith, Watson and Topper's criterion."""
     modulus, _, _, strength, ductility, b, c = material.constants()
     amplitudes = _amplitude_table(modulus, material, rule_of(strain))
-    ends = amplitudes[0, 0] + log(LOWEST * strength), amplitudes[-2, 0] + log(HIGHEST * strength)
+    ends = amplitudes[0, 0] + log(MIN_RANGE * strength), amplitudes[-2, 0] + log(MAX_RANGE * strength)
     return amplitudes, _life_table(ends, strength**2, modulus, strength * ductility, 2 * b, b + c)

@@ -1,9 +1,10 @@
-"""Reduction of a history to the samples where its path in stress space turns.
+"""Reduction of a history to the samples at which its path in stress space turns.
 
-A plane sees a sum of the three stresses. Samples at which one of 13 such sums turns back by more than a
-tolerance are kept, and between them those that lie off the straight line; the path between kept samples is
-straight and runs one way, so that no plane sees a reversal there that is larger than about the tolerance.
-The few samples serve to find the worst plane; its damage is counted on all of them.
+The stress on a plane is a weighted sum of the three stresses. Samples at which one of 13 such sums reverses
+by more than a tolerance are kept, and between them samples off the straight line; the path between kept
+samples is straight and monotone, so that the stress on any plane has no larger reversal between them than
+about the tolerance. The reduced history serves to find the worst plane; its damage is counted on all
+samples.
 """
 
 from math import sqrt
@@ -25,33 +26,33 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
 @compiled(error_model="python", nogil=True)
-def _mark_reversals(points, size, direction, tolerance, kept):
-    """Keep the samples from which the path turns back along a direction by more than the tolerance."""
+def _mark_reversals(points, size, direction, tolerance, is_kept):
+    """Mark the samples at which the path reverses along a direction by more than the tolerance."""
     high = low = direction[0] * points[0, 0] + direction[1] * points[1, 0] + direction[2] * points[2, 0]
-    top = bottom = way = 0
+    top = bottom = sign = 0
     for k in range(1, size):
         value = direction[0] * points[0, k] + direction[1] * points[1, k] + direction[2] * points[2, k]
-        if way >= 0:
+        if sign >= 0:
             if value > high:
                 high, top = value, k
             elif high - value > tolerance:
-                kept[top] = True
-                way, low, bottom = -1, value, k
-        if way <= 0:
+                is_kept[top] = True
+                sign, low, bottom = -1, value, k
+        if sign <= 0:
             if value < low:
                 low, bottom = value, k
             elif value - low > tolerance:
-                kept[bottom] = True
-                way, high, top = 1, value, k
-    if way > 0:
-        kept[top] = True
-    if way < 0:
-        kept[bottom] = True
+                is_kept[bottom] = True
+                sign, high, top = 1, value, k
+    if sign > 0:
+        is_kept[top] = True
+    if sign < 0:
+        is_kept[bottom] = True
 
 
 @compiled(error_model="python", nogil=True)
 def _off_line(points, first, last):
-    """Sample between two that is farthest from the straight line through them, and its distance."""
+    """Sample with the maximum distance from the straight line between two samples, and this distance."""
     dx, dy = points[0, last] - points[0, first], points[1, last] - points[1, first]
     dz = points[2, last] - points[2, first]
     length = dx * dx + dy * dy + dz * dz
@@ -73,17 +74,17 @@ def turning_samples(points, size, indices):
     for k in range(3):
         extent = max(extent, points[k, :size].max() - points[k, :size].min())
     tolerance = TOLERANCE * extent
-    kept = np.zeros(size, np.bool_)
-    kept[0] = kept[size - 1] = True
+    is_kept = np.zeros(size, np.bool_)
+    is_kept[0] = is_kept[size - 1] = True
     for direction in DIRECTIONS:
-        _mark_reversals(points, size, direction, tolerance, kept)
+        _mark_reversals(points, size, direction, tolerance, is_kept)
     count, first = 0, ZERO
     ends = np.empty(size, np.int64)
     for last in range(size):
-        if not kept[last]:
+        if not is_kept[last]:
             continue
         ends[0], open_ends = last, 1
-        while open_ends:  # stretches still to be looked at end here, the next one first
+        while open_ends:  # stack of the ends of the remaining intervals
             end = ends[open_ends - 1]
             index, away = _off_line(points, first, end)
             if away > tolerance:

@@ -10,7 +10,7 @@ The normal of a plane has the angle :math:`\theta` from x towards z in the secti
 
 With :math:`\sigma_y=\nu(\sigma_x+\sigma_z)` and no shear out of the section, shear stress
 :math:`t\cdot\sigma n`, normal stress :math:`n\cdot\sigma n` and normal strain are sums of the three in-plane
-stresses. Planes tilted either way out of the section are alike, so that tilts from 0 to 90 degrees are all.
+stresses. Planes tilted by opposite angles are equivalent, so that tilts from 0 to 90 degrees suffice.
 """
 
 from math import cos, pi, sin
@@ -19,7 +19,7 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 
-STEP = 15.0  # degrees between the planes and directions tried first
+GRID_STEP = 15.0  # degrees between the planes and directions of the coarse grid
 
 
 @compiled(error_model="python", nogil=True)
@@ -47,7 +47,7 @@ def normal_weights(theta, phi, nu):
 
 @compiled(error_model="python", nogil=True)
 def strain_weights(theta, phi, nu):
-    """Weights (3,) of sx, sz, txz in E times the normal strain: in uniaxial stress the stress itself."""
+    """Weights (3,) of sx, sz, txz in E times the normal strain, the stress in uniaxial loading."""
     a, b, c = normal_weights(theta, phi, nu)
     return (1 + nu) * (a - nu), (1 + nu) * (b - nu), (1 + nu) * c
 
@@ -59,7 +59,7 @@ def residual_share(theta, phi):
     return x * x + y * y
 
 
-def planes(step=STEP):
+def planes(step=GRID_STEP):
     """Angles (count, 3) in radians of planes about `step` degrees apart, direction 0."""
     rows = []
     for tilt in np.arange(0.0, 90.0, step):
@@ -69,10 +69,10 @@ def planes(step=STEP):
     return np.radians(rows)
 
 
-def planes_and_directions(step=STEP):
+def planes_and_directions(step=GRID_STEP):
     """Angles (count, 3) in radians of planes and directions in them, both about `step` degrees apart.
 
-    On a plane that is not tilted only the direction in the section bears shear, on that of the section none.
+    Planes without tilt have shear only in the direction of the section; the plane of the section has none.
     """
     psi = np.radians(np.arange(0.0, 180.0, step))
     rows = []
@@ -83,7 +83,7 @@ def planes_and_directions(step=STEP):
 
 
 def described(theta, phi):
-    """Angles of a plane's normal in degrees: 0 to 180 from x towards z in the section, 0 to 90 out of it."""
+    """Angles of a plane's normal [degrees]: 0 to 180 from x towards z in the section, 0 to 90 out of it."""
     x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
     tilt = np.degrees(np.arctan2(np.abs(y), np.hypot(x, z)))
     return np.degrees(np.arctan2(z, x)) % 180.0, tilt

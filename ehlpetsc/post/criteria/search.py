@@ -19,7 +19,7 @@ KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
 
 
 class PlaneDamage(NamedTuple):
-    """Damage of each history on its worst plane, and the plane's normal in degrees.
+    """Damage of each history on its worst plane, and angles of the plane's normal in degrees.
 
     `inclination` is from x towards z in the section (90: the plane is parallel to the surface), `tilt` out of
     the section.
@@ -98,7 +98,7 @@ def columns_of(criterion):
 
 
 def counter_of(criterion, material, constants, residue, strain, samples):
-    """The counter of one of CRITERIA; ValueError for one that does not exist."""
+    """Counter of a criterion; ValueError for an unknown name."""
     if criterion not in CRITERIA:
         raise ValueError(f"criterion = {criterion!r}: must be one of {', '.join(CRITERIA)}")
     if residue not in RESIDUES:
@@ -130,9 +130,10 @@ def critical_plane(
         Equations and sources: :mod:`ehlpetsc.post.criteria.laws`.
     constants : Criteria, optional
     residue, strain
-        As of :func:`ehlpetsc.post.damage`.
+        See :func:`ehlpetsc.post.damage`.
     residual_stress : float
-        Along the surface, the same in x and y, none in z, Pa; adds to the normal stress of a plane.
+        Residual stress along the surface, equal in x and y, zero in z, Pa; adds to the normal stress of a
+        plane.
 
     Returns
     -------
@@ -154,7 +155,7 @@ def critical_plane(
 
 
 def dang_van(sx, sz, txz, poisson_ratio, constants=None, residual_stress=0.0):
-    """Dang Van's utilisation of the fatigue limit by each history: up to 1 no crack starts; margin 1/U.
+    """Dang Van's utilisation U of the fatigue limit by each history; no crack for U <= 1, safety 1/U.
 
     Parameters
     ----------
@@ -162,9 +163,9 @@ def dang_van(sx, sz, txz, poisson_ratio, constants=None, residual_stress=0.0):
         Stress histories, Pa; sigma_y follows by plane strain.
     poisson_ratio : float
     constants : Criteria, optional
-        Its two fatigue limits.
+        Contains the two fatigue limits.
     residual_stress : float
-        Along the surface, the same in x and y, Pa; adds to the hydrostatic stress.
+        Residual stress along the surface, equal in x and y, Pa; adds to the hydrostatic stress.
 
     Returns
     -------

@@ -28,7 +28,7 @@ class Damage(NamedTuple):
 
 
 class Counting(NamedTuple):
-    """How histories are counted; the choices are explained in :func:`damage`."""
+    """Options of counting, explained in :func:`damage`."""
 
     count: str = "max3"
     residue: str = "closed"
@@ -37,7 +37,7 @@ class Counting(NamedTuple):
     strain: str = DEFAULT_STRAIN
 
     def check(self):
-        """Raise ValueError for a choice that does not exist."""
+        """Raise ValueError for an unknown option."""
         choices = (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES, STRAINS)
         for name, value, known in zip(self._fields, self, choices, strict=True):
             if value not in known:
@@ -89,7 +89,7 @@ def _fill_von_mises(stress, nu, scalar):
 
 @compiled(error_model="python", nogil=True)
 def damage_of_points(stress, lengths, nu, channels, options, constants, table, work, out):
-    """Fill out (points, 3) from stress (points, 3, samples), of which the first lengths[point] count."""
+    """Set out (points, 3) from stress (points, 3, samples) with lengths[point] samples each."""
     stack, first, second, weight, scalar, equivalent = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
@@ -112,7 +112,7 @@ def damage_of_points(stress, lengths, nu, channels, options, constants, table, w
 
 
 class Counter:
-    """Damage of blocks of histories under one material and one way of counting."""
+    """Damage of blocks of histories for one material and one method of counting."""
 
     columns = Damage._fields
 
@@ -132,7 +132,7 @@ class Counter:
     def __call__(self, stress, lengths, out, residual=0.0):
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range.
 
-        `residual` (Pa) lies in both directions along the surface; it enters the mean-stress term alone.
+        `residual` (Pa) acts in both directions along the surface; it enters only the mean-stress term.
         """
         damage_of_points(
             stress,
@@ -167,28 +167,28 @@ def damage(
         Stress histories, Pa; sigma_y follows by plane strain.
     material : Material
     count : {"max3", "sx", "sz", "txz", "von_mises"}
-        The scalar whose reversals are counted, which Holmes et al. leave open. "max3" counts sx, sz and txz
-        each for itself and keeps the largest damage: no one component sees every cycle (under a ripple sx and
-        sz move together, under a passing asperity txz turns while sz peaks), and the von Mises stress, which
-        has no sign, misses a reversal through zero. A von Mises stress signed by the shear is not offered:
-        its sign jumps pair nearly equal stress states.
+        Scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and txz
+        separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
+        sz change together, under a passing asperity txz reverses while sz peaks), and the von Mises stress,
+        which has no sign, misses a reversal through zero. A von Mises stress with the sign of the shear is
+        not available, because its jumps pair nearly equal stress states.
     residue : {"closed", "half"}
         See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
     ranges : {"reversals", "window"}
         Component ranges of a cycle: the difference between its two reversals, with its sign; or the largest
         von Mises distance between any two instants of the cycle's closed loop
-        (:mod:`ehlpetsc.post.fatigue.loops`), the same forwards and backwards in time.
+        (:mod:`ehlpetsc.post.fatigue.loops`), independent of the direction of time.
     mean_stress : {"none", "morrow"}
-        Morrow takes the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading the
-        mean stress itself) off the fatigue strength. Compression helps no further than in a uniaxial cycle
-        that ends at zero stress, where the mean is minus half the range: below -dsv/2 the mean counts as
-        -dsv/2. Without the floor the pressure of the contact itself would lengthen lives by decades.
+        Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading
+        the mean stress) from the fatigue strength. The benefit of compression is limited to that of a
+        uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this limit
+        the contact pressure would increase lives by decades.
     strain : {"direct", "neuber", "glinka"}
-        How the elastic range enters the cyclic stress-strain curve (13): as it is, as in the paper, or by
+        Use of the elastic range in the cyclic stress-strain curve (13): unchanged, as in the paper, or by
         Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
     residual_stress : float
-        Residual stress along the surface, the same in x and y, none in z, Pa: it adds twice itself to the
-        mean of Morrow's term and changes nothing without one.
+        Residual stress along the surface, equal in x and y, zero in z, Pa; enters twice in the mean of
+        Morrow's term, and has no effect without this term.
 
     Returns
     -------

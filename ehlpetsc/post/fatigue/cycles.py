@@ -1,9 +1,9 @@
 """Rainflow counting by the four-point method; the residue is counted as a closed history or as half cycles.
 
-A four-point count alone leaves a residue of the largest ranges uncounted, which is not conservative. The
-history of a point that the contact passes over and over is periodic, so by default the residue is closed:
-started from its largest reversal, led back to it, and counted to the end (ASTM E1049, 5.4.5, repeating
-histories). As half cycles it gives the counts of ASTM E1049, 5.4.4.
+A four-point count alone leaves a residue of the largest ranges, which is not conservative to ignore. The
+history of a point that passes the contact repeatedly is periodic; hence by default the residue is closed:
+it begins and ends with its largest reversal (ASTM E1049, 5.4.5, repeating histories). Counted as half
+cycles, the result is that of ASTM E1049, 5.4.4.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ RESIDUES = ("closed", "half")
 
 @compiled(error_model="python", nogil=True)
 def _close(series, stack, bottom, top, first, second, weight, n):
-    """Count and remove closed cycles: of four reversals the inner range is within both neighbouring ones."""
+    """Count and remove closed cycles, whose range is within both neighbouring ranges of four reversals."""
     while top - bottom >= 4:
         b, c = series[stack[top - 3]], series[stack[top - 2]]
         inner = abs(c - b)
@@ -59,10 +59,10 @@ def _close_residue(series, stack, top, first, second, weight, n):
 
 @compiled(error_model="python", nogil=True)
 def find_cycles(series, closed, stack, first, second, weight):
-    """Write each cycle's two reversals and its weight; return how many cycles.
+    """Write the two reversals and the weight of each cycle; return the number of cycles.
 
-    `series` must be finite. Work space: stack of 2 len + 4 integers, the others of len + 2. Of a plateau the
-    first sample is the reversal.
+    `series` must be finite. Work arrays: `stack` with 2 len + 4 integers, the others with len + 2. The first
+    sample of a plateau is the reversal.
     """
     size = series.shape[0]
     n = ZERO
@@ -99,7 +99,7 @@ def find_cycles(series, closed, stack, first, second, weight):
 
 
 def workspace(size):
-    """Arrays (stack, first, second, weight) that :func:`find_cycles` needs for histories up to `size`."""
+    """Work arrays (stack, first, second, weight) of :func:`find_cycles` for histories up to `size`."""
     return (
         np.empty(2 * size + 4, np.int64),
         np.empty(size + 2, np.int64),
@@ -116,8 +116,8 @@ def rainflow(series, residue="closed"):
     series : array_like, shape (n,)
         Finite values.
     residue : {"closed", "half"}
-        "closed": the history repeats, every cycle is whole. "half": what does not close counts one half a
-        range, as in ASTM E1049, 5.4.4.
+        "closed": the history repeats, all cycles are full. "half": ranges that do not close count as half
+        cycles, as in ASTM E1049, 5.4.4.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def rainflow(series, residue="closed"):
     Raises
     ------
     ValueError
-        Not one-dimensional, nan or inf in it, unknown residue.
+        Not one-dimensional, nan or inf, unknown residue.
     """
     series = np.ascontiguousarray(series, dtype=float)
     if residue not in RESIDUES:

@@ -11,15 +11,15 @@ def evaluate(sx, sz, txz, counter_of, residual_stress):
     sx, sz, txz : array_like, shape (..., samples)
         Pa.
     counter_of : callable(samples)
-        Gives a counter with `columns`, called with stress (points, 3, samples), lengths (points,), out
-        (points, columns) and the residual stress.
+        Returns a counter with `columns`, which is called with stress (points, 3, samples), lengths (points,),
+        out (points, columns) and the residual stress.
     residual_stress : float
         Pa.
 
     Returns
     -------
     list of float or ndarray, shape (...)
-        One a column.
+        One for each column.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from ehlpetsc.post.fatigue.elastic_plastic import log_local_range
 from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude, rule_of
 
 ENTRIES = 4096
-LOWEST, HIGHEST = 1e-6, 1e2  # of the fatigue strength
+MIN_RANGE, MAX_RANGE = 1e-6, 1e2  # of the fatigue strength
 
 
 def curve_table(start, stop, value_and_slope):
@@ -33,9 +33,9 @@ def curve_table(start, stop, value_and_slope):
 
 @lru_cache(maxsize=8)
 def life_table(material, strain="direct"):
-    """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: what that becomes before eq. (13).
+    """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: rule applied before eq. (13).
 
-    All histories of one material read the same table.
+    Cached: all histories of one material use the same table.
     """
     modulus, hardening, exponent, strength, ductility, b, c = material.constants()
     rule = rule_of(strain)
@@ -49,7 +49,7 @@ def life_table(material, strain="direct"):
         slope = (elastic + (1 - elastic) / exponent) / (b * life + c * (1 - life))
         return log(2.0) - y, -slope * rate / 2
 
-    return curve_table(2 * log(LOWEST * strength), 2 * log(HIGHEST * strength), log_damage)
+    return curve_table(2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength), log_damage)
 
 
 @compiled(error_model="python", nogil=True)

@@ -1,9 +1,9 @@
 r"""Closed loop of a counted cycle and its width in stress space.
 
-A cycle is closed by the counted scalar. Its loop are all instants about its two reversals, on either side,
-at which the scalar stays within the cycle's range: the way from the one to the other, and the ways on which
-the scalar comes back. It is the same whether time runs forwards or backwards. In a repeated history the loop
-of the largest cycle is the whole history.
+A cycle is closed by the counted scalar. Its loop consists of all instants around its two reversals at which
+the scalar is within the range of the cycle: the path between the reversals, and the paths on which the scalar
+returns. It does not depend on the direction of time. In a repeated history the loop of the largest cycle is
+the whole history.
 
 In plane strain the von Mises distance of two instants is the Euclidean one of the points
 
@@ -19,7 +19,7 @@ import numpy as np
 
 from ehlpetsc.compiled import ZERO, compiled
 
-BLOCK = 16  # points of a path that are bounded together
+POINTS_PER_BALL = 16  # successive points of a path with a common bound
 
 
 @compiled(error_model="python", nogil=True)
@@ -57,7 +57,7 @@ def loop_of(series, size, i, j, closed):
 
 @compiled(error_model="python", nogil=True)
 def equivalent_points(stress, nu, points):
-    """Fill points (3, samples) whose distances are the von Mises ones, from stress (3, samples)."""
+    """Set points (3, samples), whose distances are von Mises stresses, from stress (3, samples)."""
     root = sqrt(3.0)
     for k in range(stress.shape[1]):
         sx, sz = float(stress[0, k]), float(stress[1, k])
@@ -100,11 +100,11 @@ def _widest_of_few(x, y, z):
 
 @compiled(error_model="python", nogil=True)
 def _balls(x, y, z, indices):
-    """Middle point and radius of each BLOCK of consecutive points of the path, given by their indices."""
-    count = -(-indices.size // BLOCK)
+    """Middle point and radius of each `POINTS_PER_BALL` successive points of the path, by indices."""
+    count = -(-indices.size // POINTS_PER_BALL)
     middles, radii = np.empty(count, np.int64), np.empty(count)
     for m in range(count):
-        block = indices[m * BLOCK : (m + 1) * BLOCK]
+        block = indices[m * POINTS_PER_BALL : (m + 1) * POINTS_PER_BALL]
         middles[m], squared = block[block.size // 2], 0.0
         for i in block:
             squared = max(squared, _squared_distance(x, y, z, i, middles[m]))
@@ -127,13 +127,13 @@ def _far_from(x, y, z, middle, best):
 def widest(points, first, count):
     """Largest squared distance between two of points[:, first:first + count].
 
-    Two sweeps to the farthest point give a distance close to the largest. Only points that lie far enough
-    from the middle of it can belong to a larger one; of these, blocks whose balls come close enough are tried
-    pair by pair.
+    Two searches for the farthest point yield a distance close to the maximum. Only points far enough from its
+    midpoint can have a larger distance; of these, pairs of points are compared in blocks whose balls are far
+    enough apart.
     """
     last = first + count
     x, y, z = points[0, first:last], points[1, first:last], points[2, first:last]
-    if count <= BLOCK:
+    if count <= POINTS_PER_BALL:
         return _widest_of_few(x, y, z)
     _, a = _farthest(x, y, z, ZERO)
     best, b = _farthest(x, y, z, a)
@@ -145,7 +145,7 @@ def widest(points, first, count):
             apart = sqrt(_squared_distance(x, y, z, middles[m], middles[n]))
             if apart + radii[m] + radii[n] <= sqrt(best):
                 continue
-            for i in far[m * BLOCK : (m + 1) * BLOCK]:
-                for j in far[n * BLOCK : (n + 1) * BLOCK]:
+            for i in far[m * POINTS_PER_BALL : (m + 1) * POINTS_PER_BALL]:
+                for j in far[n * POINTS_PER_BALL : (n + 1) * POINTS_PER_BALL]:
                     best = max(best, _squared_distance(x, y, z, i, j))
     return best

@@ -1,6 +1,6 @@
 r"""Damage over several passes of the same points: mean, scatter and passes to failure by Miner's sum.
 
-One pass meets one part of the other surface; the next one meets another. After M passes
+In each pass the surface is in contact with another part of the other surface. After M passes
 :math:`\sum_m D_m = M\bar D`, and failure is expected after :math:`1/\bar D` passes (Palmgren-Miner).
 """
 
@@ -15,9 +15,9 @@ class Passes(NamedTuple):
     Attributes
     ----------
     mean, deviation, largest : ndarray
-        Of D over the passes; deviation with n - 1, nan of one pass.
+        Statistics of D over the passes; deviation with n - 1, nan for one pass.
     count : ndarray of int
-        Passes of each point.
+        Number of passes of each point.
     life : ndarray
         Passes to failure 1/mean; infinite without damage.
     """
@@ -35,12 +35,12 @@ def pass_statistics(damages):
     Parameters
     ----------
     damages : array_like, shape (passes, ...)
-        D of each pass; nan where a point did not pass.
+        D of each pass; nan for points that did not pass.
 
     Returns
     -------
     Passes
-        Arrays of shape (...); nan where no pass is.
+        Arrays of shape (...); nan without passes.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def pass_statistics(damages):
 
 
 def fold(s, damage, stretch):
-    """Passes of the same points within one result: a body that repeats itself every `stretch`.
+    """Passes of the same points within one result, for a body with the period `stretch`.
 
     Parameters
     ----------
@@ -97,15 +97,15 @@ def fold(s, damage, stretch):
 
 
 def largest_near(s, damage, positions, distance):
-    """Largest damage within a distance of each place along the surface.
+    """Maximum damage within a distance of each position along the surface.
 
     Parameters
     ----------
     s : ndarray, shape (ns,)
         Rising body coordinates, m.
     damage : ndarray, shape (..., ns)
-        nan where a point did not pass: left out.
-    places : ndarray, shape (n,)
+        nan for points that did not pass, which are ignored.
+    positions : ndarray, shape (n,)
     distance : float
         m; the nearest point always counts.
 

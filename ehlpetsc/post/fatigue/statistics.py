@@ -6,9 +6,9 @@ import numpy as np
 
 from ehlpetsc.results.post_result import WeibullFit
 
-PROMINENCE = 0.1  # of Rq: lower bumps are noise of the measurement, not asperities
+MIN_PROMINENCE = 0.1  # of Rq: smaller peaks are noise of the measurement
 REGRESSIONS = ("x on y", "y on x")
-MIN_SPREAD = 1e-6  # of the values: damages are accurate to some 1e-6, closer values have no shape
+MIN_SPREAD = 1e-6  # relative: damages are accurate to about 1e-6
 
 
 class Asperities(NamedTuple):
@@ -25,7 +25,7 @@ def asperities(profile, s, complete):
     Parameters
     ----------
     profile : (s, z) or None
-        As in the result file, sorted; None: smooth, no peaks.
+        From the result file, sorted; None: smooth, no peaks.
     s : ndarray, shape (ns,)
         Body points, uniform.
     complete : ndarray of bool, shape (ns,)
@@ -38,7 +38,7 @@ def asperities(profile, s, complete):
     passed = s[complete]
     inside = (abscissae >= passed[0]) & (abscissae <= passed[-1])
     rough = np.std(heights[inside]) if inside.any() else 0.0
-    peaks, _ = find_peaks(heights, prominence=max(PROMINENCE * rough, np.finfo(float).tiny))
+    peaks, _ = find_peaks(heights, prominence=max(MIN_PROMINENCE * rough, np.finfo(float).tiny))
     peaks = peaks[inside[peaks]]
     nearest = np.rint((abscissae[peaks] - s[0]) / (s[1] - s[0])).astype(int)
     return Asperities(abscissae[peaks], heights[peaks], nearest)
@@ -50,7 +50,7 @@ def benard_ranks(n):
 
 
 def too_alike(values):
-    """Whether values above 0 are fewer than two, or spread by less than LEAST_SPREAD of the largest."""
+    """Whether fewer than two values are above 0, or their range is below `MIN_SPREAD` of the largest."""
     return values.size < 2 or values.max() - values.min() <= MIN_SPREAD * values.max()
 
 
@@ -64,16 +64,16 @@ def weibull_fit(values, regression="x on y"):
     Parameters
     ----------
     values : array_like
-        -log10 of damages. An infinite one (no damage) is censored: it counts in the ranks and is above all
-        others. One of 0 or less (damage of 1 or more) keeps its rank, but has no place on the line.
+        -log10 of damages. An infinite value (no damage) is censored: it counts in the ranks, above all other
+        values. A value of 0 or less (damage of 1 or more) has a rank, but is not used for the line.
     regression : {"x on y", "y on x"}
-        Which deviations are least squares: those in ln x, or those in the ranks.
+        Minimised deviations: of ln x, or of the ranks.
 
     Returns
     -------
     WeibullFit
-        nan where fewer than two values remain or all lie within 1e-6 of each other: a spread that is
-        rounding would give a beta of a million without meaning.
+        nan if fewer than two values remain or their relative range is below 1e-6, where rounding would
+        yield a beta of a million.
 
     Raises
     ------
@@ -97,8 +97,8 @@ def weibull_fit(values, regression="x on y"):
 
 
 def rank_correlation(first, second):
-    """Spearman's correlation of two sets of values, ties at their mean rank; nan where one is constant."""
-    from scipy.stats import rankdata  # a second to import, for pictures and criteria alone
+    """Spearman's rank correlation of two samples, ties at their mean rank; nan if one is constant."""
+    from scipy.stats import rankdata  # an import of one second, only for pictures and criteria
 
     if first.size < 2 or np.ptp(first) == 0 or np.ptp(second) == 0:
         return np.nan
@@ -112,7 +112,7 @@ def log_life(damage):
 
 
 def exceedance(damage):
-    """Share of asperities with more damage than each, at Benard's ranks: (damage falling, probability)."""
+    """Fraction of asperities with more damage than each, by Benard's ranks: (falling damage, probability)."""
     falling = np.sort(np.asarray(damage, float))[::-1]
     return falling, benard_ranks(falling.size)
 

@@ -8,8 +8,8 @@ r"""Life of stress ranges: equivalent range, cyclic stress-strain curve, strain-
 
     \Delta\varepsilon/2 = (\sigma_f'/E)(2N)^b + \varepsilon_f'(2N)^c  \qquad (14)
 
-Holmes et al. 2005. K' is not in their Table 1; unless given it is :math:`\sigma_f'/\varepsilon_f'^{n'}`,
-which makes the two curves agree.
+Holmes et al. 2005. K' is not in their Table 1; its default :math:`\sigma_f'/\varepsilon_f'^{n'}` makes the
+two curves consistent.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.elastic_plastic import STRAINS, log_local_range
 
-LARGEST_EXPONENT = 700.0  # exp of more overflows
+MAX_EXPONENT = 700.0  # exp of more overflows
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def equivalent_range(dsx, dsy, dsz, dtxz):
 
 
 def rule_of(strain):
-    """Place of a rule's name in STRAINS; ValueError for one that does not exist."""
+    """Index of a rule in `STRAINS`; ValueError for an unknown rule."""
     if strain not in STRAINS:
         raise ValueError(f"strain = {strain!r}: must be one of {', '.join(STRAINS)}")
     return STRAINS.index(strain)
@@ -98,7 +98,7 @@ def strain_range(dsv, material, strain="direct"):
 
 
 def local_range(dsv, material, strain):
-    """Elastic-plastic stress range of an elastic one, Pa (:mod:`ehlpetsc.post.fatigue.elastic_plastic`)."""
+    """Elastic-plastic stress range from an elastic range, Pa (:mod:`.elastic_plastic`)."""
     dsv, rule = np.asarray(dsv, float), rule_of(strain)
     curve = material.constants()[:3]
     logs = [log_local_range(log(value), *curve, rule)[0] if value > 0 else -inf for value in dsv.ravel()]
@@ -118,9 +118,9 @@ def log_strain_amplitude(log_dsv, modulus, hardening, exponent):
 def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
     """ln(2N) from ln of the strain amplitude, eq. (14).
 
-    The right-hand side, as ln over ln(2N), is convex and falls; from the larger of the one-term solutions,
-    which lies left of the root, Newton climbs to it without overshoot. A strength <= 0 (mean stress above it)
-    leaves the plastic term alone.
+    The logarithm of the right-hand side is convex and decreasing in ln(2N); from the larger of the one-term
+    solutions, left of the root, Newton's method converges without overshoot. With a strength <= 0 (mean
+    stress above it) only the plastic term remains.
     """
     plastic = log(ductility)
     if strength <= 0:
@@ -141,13 +141,13 @@ def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
 
 @compiled(error_model="python", nogil=True)
 def cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c):
-    """1/N of one cycle, straight from the equations."""
+    """1/N of one cycle, directly from the equations."""
     if dsv <= 0:
         return 0.0
     local, _ = log_local_range(log(dsv), modulus, hardening, exponent, rule)
     amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
     y = log_reversals(amplitude, strength - mean, modulus, ductility, b, c)
-    return 2 * exp(min(-y, LARGEST_EXPONENT))
+    return 2 * exp(min(-y, MAX_EXPONENT))
 
 
 @compiled(error_model="python", nogil=True)
@@ -162,7 +162,7 @@ def _lives(dsv, mean, rule, constants, out):
             local, _ = log_local_range(log(dsv[i]), modulus, hardening, exponent, rule)
             amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
             y = log_reversals(amplitude, strength - mean[i], modulus, ductility, b, c)
-            out[i] = inf if y > LARGEST_EXPONENT else exp(max(y, -LARGEST_EXPONENT)) / 2
+            out[i] = inf if y > MAX_EXPONENT else exp(max(y, -MAX_EXPONENT)) / 2
 
 
 def cycles_to_failure(dsv, material, mean_stress=0.0, strain="direct"):
@@ -174,9 +174,9 @@ def cycles_to_failure(dsv, material, mean_stress=0.0, strain="direct"):
         Equivalent stress range, Pa, >= 0.
     material : Material
     mean_stress : array_like
-        Taken off the fatigue strength in the elastic term of (14) (Morrow), Pa.
+        Subtracted from the fatigue strength in the elastic term of (14) (Morrow), Pa.
     strain : {"direct", "neuber", "glinka"}
-        What the elastic range becomes before (13): :mod:`ehlpetsc.post.fatigue.elastic_plastic`.
+        Rule applied to the elastic range before (13): :mod:`ehlpetsc.post.fatigue.elastic_plastic`.
 
     Returns
     -------

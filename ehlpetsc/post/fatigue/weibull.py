@@ -6,20 +6,20 @@ import numpy as np
 
 from ehlpetsc.post.fatigue.statistics import REGRESSIONS, benard_ranks, too_alike
 
-LEVEL = 0.9  # of the bounds
-DRAWS = 1000
-ROUNDS = 100
+CONFIDENCE = 0.9  # of the bounds
+DRAWS = 1000  # of the bootstrap
+MAX_ITERATIONS = 100  # of Newton's method
 
 
 class WeibullLikelihood(NamedTuple):
-    """Scale alpha and shape beta of the largest likelihood."""
+    """Scale alpha and shape beta of maximum likelihood."""
 
     alpha: float
     beta: float
 
 
 class WeibullBounds(NamedTuple):
-    """Lower and upper bound of scale and shape, and the (alpha, beta) rows they were drawn from."""
+    """Lower and upper bounds of scale and shape, and the drawn rows (alpha, beta)."""
 
     alpha: tuple
     beta: tuple
@@ -47,7 +47,7 @@ def _log_likelihood(z, kind, slope, exact):
 
 
 def weibull_likelihood(values):
-    r"""Two-parameter Weibull of the largest likelihood.
+    r"""Two-parameter Weibull distribution of maximum likelihood.
 
     .. math:: F(x) = 1-\exp[-(x/\alpha)^\beta]
 
@@ -56,13 +56,13 @@ def weibull_likelihood(values):
     Parameters
     ----------
     values : array_like
-        -log10 of damages, as of :func:`ehlpetsc.post.weibull_fit`. An infinite one counts as above the
-        largest finite one, one of 0 or less as below the smallest above 0: censored, not left out.
+        -log10 of damages, as in :func:`ehlpetsc.post.weibull_fit`. Infinite values are censored above the
+        largest finite value, values of 0 or less below the smallest value above 0.
 
     Returns
     -------
     WeibullLikelihood
-        nan where the finite values above 0 are too alike (as in :func:`ehlpetsc.post.weibull_fit`).
+        nan if the finite values above 0 are too similar (as in :func:`ehlpetsc.post.weibull_fit`).
 
     Raises
     ------
@@ -82,7 +82,7 @@ def weibull_likelihood(values):
     exact, slope = used.size, 1.2 / max(y.std(), 1e-300)
     shift = 0.0
     best = _log_likelihood(slope * y - shift, kind, slope, exact)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ITERATIONS):
         first, second = _derivatives(slope * y - shift, kind)
         gradient = np.array([-first.sum(), exact / slope + (first * y).sum()])
         across = -(second * y).sum()
@@ -104,7 +104,7 @@ def weibull_likelihood(values):
 
 
 def _fits(rows, regression):
-    """(alpha, beta) of every row (draws, n) by median ranks; nan where values are too alike."""
+    """(alpha, beta) of every row (draws, n) by median ranks; nan if values are too similar."""
     rows = np.sort(rows, axis=1)
     used = (rows > 0) & np.isfinite(rows)
     count = used.sum(axis=1)
@@ -120,26 +120,26 @@ def _fits(rows, regression):
     return fits
 
 
-def weibull_bounds(values, regression="x on y", level=LEVEL, draws=DRAWS, seed=0):
+def weibull_bounds(values, regression="x on y", level=CONFIDENCE, draws=DRAWS, seed=0):
     """Bounds of a median rank fit by resampling the values with replacement (Efron's percentiles).
 
-    Neighbouring asperities meet the same parts of the other surface: where damages hang together, true
-    bounds are wider than these.
+    Neighbouring asperities are in contact with the same parts of the other surface; if damages are
+    correlated, the true bounds are wider.
 
     Parameters
     ----------
     values : array_like
-        As of :func:`ehlpetsc.post.weibull_fit`.
+        See :func:`ehlpetsc.post.weibull_fit`.
     regression : {"x on y", "y on x"}
     level : float
-        Share of the drawn fits between the bounds.
+        Fraction of the drawn fits between the bounds.
     draws, seed : int
-        The same seed draws the same.
+        Number of samples; seed of the random numbers.
 
     Returns
     -------
     WeibullBounds
-        nan where the values are too alike to be fitted.
+        nan if the values are too similar.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""Loads and case of a result file, read and checked."""
+"""Reading and checks of the loads and the case of a result file."""

@@ -5,13 +5,13 @@ import numpy as np
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.inputs.loads import UNITS
 
-SCALE_TOLERANCE = 1e-4  # relative: attributes and case are the same numbers but for rounding
+SCALE_TOLERANCE = 1e-4  # relative: attributes and case differ by rounding
 LOAD_TOLERANCE = 0.01  # the solver balances the load to rounding; other programs' quadrature may differ
-FRAME_TOLERANCE = 1e-4  # a stored frame, in single precision too, and the scalars of its step
-MIN_STEP = 2.0**-13  # of the nominal one: the solver gives up at twice that
-MAX_STEP = 1.5  # the solver's steps are at most the nominal one
+FRAME_TOLERANCE = 1e-4  # of a stored frame, also in single precision, and the scalars of its step
+MIN_STEP = 2.0**-13  # of the nominal time step: half the smallest time step of the solver
+MAX_STEP = 1.5  # of the nominal time step, the largest time step of the solver
 MAX_NEGATIVE_PRESSURE = 1e-3  # of p0: rounding of a pressure at 0
-MIN_TEMPERATURE = 100.0  # K: less is in degrees Celsius, or a rise
+MIN_TEMPERATURE = 100.0  # K: smaller values are in degrees Celsius, or temperature rises
 
 
 def check_scales(loads):
@@ -19,16 +19,16 @@ def check_scales(loads):
     if not loads.has_conditions:
         return
     scales, faults = loads.scales, []
-    found = {"a": loads.a, "p0": loads.p0, "u1": loads.speeds["1"], "u2": loads.speeds["2"]}
+    stored = {"a": loads.a, "p0": loads.p0, "u1": loads.speeds["1"], "u2": loads.speeds["2"]}
     for name, unit, size in (
         ("a", "m", scales.a),
         ("p0", "Pa", scales.p0),
         ("u1", "m/s", scales.u_max),
         ("u2", "m/s", scales.u_max),
     ):
-        wanted = getattr(scales, name)
-        if not abs(found[name] - wanted) <= SCALE_TOLERANCE * size:
-            faults.append(f"attribute {name} = {found[name]:.6g}: its case gives {wanted:.6g} {unit}")
+        expected = getattr(scales, name)
+        if not abs(stored[name] - expected) <= SCALE_TOLERANCE * size:
+            faults.append(f"attribute {name} = {stored[name]:.6g}: its case gives {expected:.6g} {unit}")
     for surface, speed in loads.profile_speeds.items():
         if not abs(speed - loads.speeds[surface]) <= SCALE_TOLERANCE * scales.u_max:
             faults.append(
@@ -89,19 +89,20 @@ class Balance:
         self._refuse(low < MIN_TEMPERATURE, first, low, name, "its least value", MIN_TEMPERATURE, "K or more")
         self._of_step(first, high, f"{name}_max", name, "its greatest value", MIN_TEMPERATURE)
 
-    def _of_step(self, first, found, name, dataset, what, size):
-        known = self.of_step[name]
-        if known is not None:
-            known = known[first : first + len(found)]
-            wrong = ~(np.abs(found - known) <= FRAME_TOLERANCE * np.maximum(np.abs(known), size))
-            self._refuse(wrong, first, found, dataset, what, known, f"as steps/{name} has it")
+    def _of_step(self, first, values, name, dataset, quantity, size):
+        expected = self.of_step[name]
+        if expected is not None:
+            expected = expected[first : first + len(values)]
+            wrong = ~(np.abs(values - expected) <= FRAME_TOLERANCE * np.maximum(np.abs(expected), size))
+            self._refuse(wrong, first, values, dataset, quantity, expected, f"as steps/{name} has it")
 
-    def _refuse(self, wrong, first, found, dataset, what, wanted, why):
+    def _refuse(self, wrong, first, values, dataset, quantity, expected, why):
         if not wrong.any():
             return
         row = int(np.flatnonzero(wrong)[0])
-        should = np.broadcast_to(wanted, wrong.shape)[row]
+        should = np.broadcast_to(expected, wrong.shape)[row]
         raise PostError(
-            f"dataset {dataset}: {what} at frame {first + row} (t = {self.loads.time[first + row]:.6g} s) is "
-            f"{found[row]:.6g}, it must be {should:.6g} {why}: is it in {UNITS[dataset]}, and of this case?"
+            f"dataset {dataset}: {quantity} at frame {first + row} "
+            f"(t = {self.loads.time[first + row]:.6g} s) is {values[row]:.6g}, "
+            f"it must be {should:.6g} {why}: is it in {UNITS[dataset]}, and of this case?"
         )

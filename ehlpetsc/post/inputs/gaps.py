@@ -13,11 +13,11 @@ class Gaps(NamedTuple):
     Attributes
     ----------
     every : int
-        Steps between frames where none is missing.
+        Steps between frames without gaps.
     after : ndarray of int
-        Stored frames after which some are missing.
+        Stored frames before a gap.
     missing : ndarray of int
-        How many each time.
+        Number of missing frames in each gap.
     """
 
     every: int
@@ -26,7 +26,7 @@ class Gaps(NamedTuple):
 
 
 def find_gaps(loads):
-    """Gaps in the stored frames, two or more, of :class:`ehlpetsc.post.inputs.loads.Loads`."""
+    """Gaps in the stored frames (at least two) of :class:`ehlpetsc.post.inputs.loads.Loads`."""
     between = np.diff(loads.step)
     if loads.dt:
         steps = np.diff(loads.time) / loads.dt

@@ -7,14 +7,14 @@ import numpy as np
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.inputs.consistency import Balance
 
-FRAMES = 128  # at a time
+FRAMES_PER_BLOCK = 128  # read at once
 
 
 def input_digest(loads, surfaces):
-    """Check every frame of the loads that `surfaces` need; return a digest of all that damage depends on.
+    """Check every frame of the loads of `surfaces`; return a digest of all inputs of the damage.
 
-    The digest holds two weighted sums of each frame: what does not change these in the sixteenth digit does
-    not change the damage either.
+    The digest contains two weighted sums of each frame: a change of the loads that does not change their
+    sixteenth digit does not change the damage either.
 
     Raises
     ------
@@ -28,8 +28,8 @@ def input_digest(loads, surfaces):
     digest.update(repr((loads.a, loads.p0, loads.speeds, loads.status, surfaces)).encode())
     balance, nodes = Balance(loads), loads.x.size
     weights = np.stack([np.ones(nodes), np.arange(1, nodes + 1) * 0.6180339887498949 % 1], axis=1)
-    for first in range(0, loads.time.size, FRAMES):
-        last = min(first + FRAMES, loads.time.size)
+    for first in range(0, loads.time.size, FRAMES_PER_BLOCK):
+        last = min(first + FRAMES_PER_BLOCK, loads.time.size)
         for name in loads.needed(surfaces):
             rows = loads.rows(name, first, last)
             with np.errstate(all="ignore"):  # of damaged numbers, which are detected below

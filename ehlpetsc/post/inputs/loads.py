@@ -12,9 +12,9 @@ from ehlpetsc.post.stresses.half_plane import spacing
 from ehlpetsc.results.post_result import SURFACES
 from ehlpetsc.results.reader import read_result
 
-CACHE = 32 << 20  # bytes of chunks kept a dataset
+CACHE_BYTES = 32 << 20  # of chunks of each dataset
 VARIABLE = ("displacement_1", "displacement_2", "load_given")  # of changing operating conditions
-MIN_NODES = 8  # the slopes between nodes take seven
+MIN_NODES = 8  # slopes between nodes use seven nodes
 UNITS = {"x": "m", "time": "s", "pressure": "Pa"}
 UNITS |= {f"shear_stress_{surface}": "Pa" for surface in SURFACES}
 UNITS |= {f"temperature_{surface}": "K" for surface in SURFACES}
@@ -27,13 +27,13 @@ class Loads:
     ----------
     path : path-like
     overrides : dict, optional
-        Overrides of its case, as of `ehlpetsc.load`.
+        Overrides of its case, see `ehlpetsc.load`.
 
     Attributes
     ----------
     case : Case
     scales : Scales
-        What follows from the case: a, p0, dx, dt ...
+        Scales of the case: a, p0, dx, dt ...
     x : ndarray (nx,), m
     time : ndarray (nt,), s
     step : ndarray (nt,)
@@ -41,20 +41,20 @@ class Loads:
     dx, a, p0 : float
         As stored.
     speeds : dict
-        Of the reference state, m/s, by surface.
+        Speeds of the reference state, m/s, by surface.
     operation : ehlpetsc.physics.operation.ConstantOperation or VariableOperation
     dt : float or None
-        Longest time step of the case, s; None where it varies with the operating conditions.
+        Longest time step of the case, s; None with variable operating conditions.
     load : ndarray (nt,)
-        Of the operating conditions at each frame, N/m.
+        Load of the operating conditions at each frame, N/m.
     has_conditions : bool
         Whether the case has its operating conditions; they may be in a file beside it.
     travelled : dict
         Distance covered since time 0 at each frame, m, (nt,), by surface.
     profiles : dict
-        (s, z) sorted by s, or None where the surface is smooth.
+        (s, z) sorted by s; None for a smooth surface.
     profile_speeds : dict
-        m/s, by surface, as the profiles have them.
+        Speeds of the profiles, m/s, by surface.
     title, status : str
 
     Raises
@@ -62,14 +62,14 @@ class Loads:
     OutputError
         Not a result file, or a damaged one.
     CaseError
-        The case text in it is none.
+        The case text in the file is faulty.
     PostError
-        Nodes not uniform, times that do not increase, a profile that is no profile.
+        Nodes not uniform, times that do not increase, a faulty profile.
     """
 
     def __init__(self, path, overrides=None):
         self.path = Path(path)
-        self._result = read_result(path, rdcc_nbytes=CACHE)
+        self._result = read_result(path, rdcc_nbytes=CACHE_BYTES)
         self._stored = {}
         try:
             attrs = self._result.attrs
@@ -115,7 +115,7 @@ class Loads:
         self.travelled = {"1": one, "2": other}
 
     def _profile(self, surface):
-        """(s, z, speed) sorted by s; None of a smooth surface."""
+        """(s, z, speed) sorted by s; None for a smooth surface."""
         found = self._result.profile(surface)
         if found is None:
             return None
@@ -135,7 +135,7 @@ class Loads:
         return self._result.attrs["case"]
 
     def heated(self, surfaces):
-        """Surfaces among `surfaces` whose temperature is stored; none of a run without [heat]."""
+        """Surfaces among `surfaces` whose temperature is stored; empty without [heat]."""
         stored = () if self.case.heat is None else self._result.fields
         return tuple(surface for surface in surfaces if f"temperature_{surface}" in stored)
 
@@ -144,13 +144,13 @@ class Loads:
         return self.case.heat.bulk_temperature[int(surface) - 1]
 
     def needed(self, surfaces):
-        """Names of the fields that post-processing of `surfaces` reads."""
+        """Names of the fields required for `surfaces`."""
         shear = (f"shear_stress_{surface}" for surface in surfaces)
         heat = (f"temperature_{surface}" for surface in self.heated(surfaces))
         return ("pressure", *shear, *heat)
 
     def check(self, surfaces):
-        """Raise PostError if a field that `surfaces` need is not there, or in another unit."""
+        """Raise PostError if a field required for `surfaces` is missing or in another unit."""
         for name in ("x", "time", *self.needed(surfaces)):
             if name not in ("x", "time", *self._result.fields):
                 raise PostError(
@@ -167,12 +167,12 @@ class Loads:
 
     def rows(self, name, first, last):
         """Frames first .. last-1 of one dataset, float64."""
-        if name not in self._stored:  # kept open, and with it HDF5's cache of its chunks
+        if name not in self._stored:  # remains open with HDF5's cache of chunks
             self._stored[name] = self._result[name]
         return self._stored[name][first:last].astype(float, copy=False)
 
     def step_scalar(self, name):
-        """Scalar ``steps/name`` at each stored frame; None where the file does not hold it."""
+        """Scalar ``steps/name`` at each stored frame; None if it is not in the file."""
         if name not in self._result.scalars or "step" not in self._result.scalars:
             return None
         rows = np.searchsorted(self._result.steps("step"), self.step)

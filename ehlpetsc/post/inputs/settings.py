@@ -9,11 +9,11 @@ from ehlpetsc.errors import PostError
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
 
-DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5)  # z/a, where [post] names none: the paper's and some between
+DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5)  # z/a, default: the depths of the paper and some between
 
 
 class Settings(NamedTuple):
-    """Depths z/a, one material a surface, constants of the criteria, residual stress (z/a, Pa)."""
+    """Depths z/a, material of each surface, constants of the criteria, residual stress (z/a, Pa)."""
 
     depths: tuple
     material_1: Material
@@ -26,7 +26,7 @@ class Settings(NamedTuple):
         return {"1": self.material_1, "2": self.material_2}[surface]
 
     def residual(self, depth):
-        """Residual stress along the surface at a depth z/a, Pa: straight lines, constant beyond its ends."""
+        """Residual stress along the surface at a depth z/a, Pa, linearly interpolated."""
         if not self.residual_stress:
             return 0.0
         depths, values = zip(*self.residual_stress, strict=True)

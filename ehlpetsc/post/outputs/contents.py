@@ -5,25 +5,25 @@ import numpy as np
 from ehlpetsc.materials import DEFAULT
 from ehlpetsc.post.fatigue.passes import largest_near
 from ehlpetsc.post.fatigue.statistics import asperities, log_life, rank_correlation, weibull_fit
-from ehlpetsc.post.fatigue.weibull import LEVEL, weibull_bounds, weibull_likelihood
+from ehlpetsc.post.fatigue.weibull import CONFIDENCE, weibull_bounds, weibull_likelihood
 from ehlpetsc.post.temperatures import point_temperatures
 
 
 class Contents:
-    """Gathers datasets, root attributes and group attributes for `write_result`.
+    """Datasets, root attributes and group attributes for `write_result`.
 
-    One surface has the fixed names: surface 2, whose asperities meet more others, if it is rough and
+    One surface has the fixed names: surface 2, whose asperities have more contacts, if it is rough and
     passed.
 
     Parameters
     ----------
     prepared : ehlpetsc.post.prepare.Prepared
     regression : str
-        Of the Weibull fit.
+        Regression of the Weibull fit.
     columns : sequence of (criterion, column)
-        Of the columns after damage, cycles and peak range.
+        Columns after damage, cycles and peak range.
     within : float
-        Half widths either side of a peak in which the largest damage of its asperity is sought.
+        Half widths on either side of a peak, in which the damage of its asperity is the maximum.
     """
 
     def __init__(self, prepared, regression, columns=(), within=0.0):
@@ -59,7 +59,7 @@ class Contents:
         self._add_asperities(surface, values[..., 0])
 
     def add_temperatures(self, surface):
-        """Surface temperatures of the points of a surface; nothing where they are not stored."""
+        """Add the surface temperatures of the points of a surface, if stored."""
         prepared = self.prepared
         if surface not in prepared.loads.heated([surface]):
             return
@@ -93,7 +93,7 @@ class Contents:
                 )
 
     def _put_confidence(self, inner, lives):
-        """Maximum likelihood and bounds by resampling, for each depth."""
+        """Add maximum likelihood and bounds by resampling, for each depth."""
         best = np.array([weibull_likelihood(row) for row in lives]).reshape(-1, 2)
         bounds = [weibull_bounds(row, self.regression) for row in lives]
         for k, name in enumerate(("alpha", "beta")):
@@ -105,7 +105,7 @@ class Contents:
         self.datasets |= {f"{group}/{inner}{name}": value for name, value in values.items()}
 
     def attributes(self, identity, counting, settings=()):
-        """Root attributes: where the result comes from and how it was computed."""
+        """Root attributes: provenance and settings of the result."""
         loads = self.prepared.loads
         mean = (loads.speeds["1"] + loads.speeds["2"]) / 2
         return {
@@ -123,7 +123,7 @@ class Contents:
             "regression": self.regression,
             "every": self.prepared.every,
             "within": self.within,
-            "bounds_level": LEVEL,
+            "bounds_level": CONFIDENCE,
             "residual_stress": np.array(self.prepared.settings.residual_stress, float).reshape(-1, 2),
             **{f"speed_{name}": loads.speeds[name] for name in self.prepared.motions},
             **counting._asdict(),

@@ -1,4 +1,4 @@
-"""Cache of finished depths, from which an interrupted run continues."""
+"""Cache of finished depths, with which an interrupted run continues."""
 
 import contextlib
 import io
@@ -21,12 +21,12 @@ class DepthCache:
     ----------
     output : path-like
     fingerprint : str
-        Of the input and the choices; depths of another are deleted.
+        Fingerprint of input and settings; depths with another one are deleted.
 
     Raises
     ------
     OutputError
-        The folder's name is taken by something else.
+        The folder exists with other content.
     """
 
     def __init__(self, output, fingerprint):
@@ -63,7 +63,7 @@ class DepthCache:
         return self.folder / f"{surface}_{depth!r}.npy"
 
     def has(self, surface, depth):
-        """Whether that depth is done."""
+        """Whether a depth is finished."""
         return self._path(surface, depth).is_file()
 
     def load(self, surface, depth):
@@ -77,7 +77,7 @@ class DepthCache:
         atomic_write(self._path(surface, depth), image.getbuffer())
 
     def remove(self):
-        """Delete all depths: the result holds them, or there is nothing to continue from."""
+        """Delete all depths, once they are in the result or cannot be continued."""
         with contextlib.suppress(OSError):
             self._empty()
             self.folder.rmdir()

@@ -1,4 +1,4 @@
-"""Several results as passes of one surface: common points and stored statistics."""
+"""Several results as passes of one surface: common points and statistics."""
 
 import numpy as np
 
@@ -13,13 +13,13 @@ PROFILE_TOLERANCE = 1e-3  # of a spacing of body points; of the profile's height
 def same_points(results, surface):
     """s (m) of the points that passed in every result, and their damage (results, nz, points).
 
-    Between passes that are shifted against each other (``time.pass_shift``) a point is matched with the
-    nearest one, at most half a node spacing away.
+    In passes shifted against each other (``time.pass_shift``) a point is matched with the nearest point, at
+    most half a node spacing away.
 
     Raises
     ------
     PostError
-        Depths, points or profile of the surface differ: these are not passes of one body.
+        Depths, points or profile of the surface differ; the results are not passes of one body.
     """
     first = results[0]
     spacing = first.s[1] - first.s[0]
@@ -44,7 +44,7 @@ def same_points(results, surface):
 
 
 def _shift_of_profile(first, other, surface):
-    """Distance in s (m) by which the profile of another pass is shifted; PostError if it is another one."""
+    """Distance in s (m) by which the profile of another pass is shifted; PostError for another profile."""
     if (surface in first.profiles) != (surface in other.profiles):
         raise PostError(f"surface {surface} is smooth in one result and rough in another")
     if surface not in first.profiles:
@@ -76,7 +76,7 @@ def store_passes(path, results, surface):
     results : sequence of PostResult
         Of passes of one body.
     surface : {"2", "1"}
-        Of it.
+        Surface of the body.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def store_passes(path, results, surface):
     Raises
     ------
     PostError
-        These are not passes of one body, or `path` is not ours to write.
+        The results are not passes of one body, or `path` must not be replaced.
     """
     check_output(path, [result.path for result in results])
     s, damages = same_points(results, surface)

@@ -21,7 +21,7 @@ def note_damage(index):
     Parameters
     ----------
     index : path-like
-        Its passes have been processed.
+        Index of processed passes.
 
     Returns
     -------
@@ -31,16 +31,16 @@ def note_damage(index):
     Raises
     ------
     OutputError
-        Among others, a run or another command is writing it.
+        The index cannot be read or written, for instance because another process is writing it.
     """
     index = Path(index)
     with Lock(index, "wait for it"):
         content, found = read_index(index), []
         for row in content["passes"]:
             with read_result(index.with_name(row["file"])) as result:
-                known = damage_beside(result)
-            if known is not None:
-                row["damage"] = known.summary()
+                damage = damage_beside(result)
+            if damage is not None:
+                row["damage"] = damage.summary()
                 found.append((row["pass"], row["damage"]))
         atomic_write(index, json.dumps(content, indent=1).encode())
     return found

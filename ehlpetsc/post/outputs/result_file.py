@@ -65,17 +65,17 @@ DESCRIPTIONS = {
 
 
 def fingerprint(*parts):
-    """Hash of everything that a result depends on: digest of the input, choices, version of the program."""
+    """Hash of all inputs of a result: digest of the loads, settings, version of the program."""
     return hashlib.sha256(json.dumps([__version__, FORMAT_VERSION, parts], default=repr).encode()).hexdigest()
 
 
 def check_output(path, inputs):
-    """Refuse an output that would overwrite anything but an earlier result of post-processing.
+    """Refuse an output that would overwrite a file other than a result of post-processing.
 
     Raises
     ------
     OutputError
-        It is one of `inputs`, or exists and is something else, or its folder does not exist.
+        The path is one of `inputs` or another existing file, or its folder does not exist.
     """
     path = Path(path)
     if not path.parent.is_dir():
@@ -90,22 +90,22 @@ def check_output(path, inputs):
 
 
 def write_result(path, datasets, attrs, group_attrs):
-    """Write a result atomically: in memory first, then beside `path`, renamed at the end.
+    """Write a result atomically: in memory, then to a temporary file, which is renamed.
 
-    HDF5 itself does not end cleanly on a full disk; a plain write does.
+    HDF5 crashes on a full disk, a plain write does not.
 
     Parameters
     ----------
     path : path-like
     datasets : dict
-        Name to array; names of a second surface have it before the last part, as in ``weibull/1/alpha``.
+        Arrays by name; the second surface is before the last part of the name, as in ``weibull/1/alpha``.
     attrs, group_attrs : dict
         Root attributes; attributes by group name.
 
     Raises
     ------
     OSError
-        No room on the disk, or the folder cannot be written to; nothing is left behind.
+        The disk is full or the folder is read-only; no file is left.
     """
     image = io.BytesIO()
     with h5py.File(image, "w") as file:
@@ -147,7 +147,7 @@ def _scales(file):
 
 
 def stored_fingerprint(path):
-    """Fingerprint of a finished result; None of anything else."""
+    """Fingerprint of a finished result; None for other files."""
     try:
         return PostResult(path).attrs.get("fingerprint")
     except OutputError:

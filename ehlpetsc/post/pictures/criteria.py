@@ -1,4 +1,4 @@
-"""Criteria beside the paper's damage: a map of each, and a comparison point by point."""
+"""Pictures of other criteria than the paper's: a map of each, and a comparison with the paper's damage."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,18 +12,18 @@ NAMES = {
     "swt": "Smith-Watson-Topper",
     "dang-van": "Dang Van",
 }
-SECTION = 2.0  # half widths shown
-SCALE = "viridis_r"
-SHARES = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)  # of the fatigue limit, written at the axis
+SECTION_LENGTH = 2.0  # half widths
+COLOUR_MAP = "viridis_r"
+UTILISATION_TICKS = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)  # of the fatigue limit
 
 
 def criteria_picture(result, surface):
-    """Maps under the profile on one scale of damage; beside each its values over the paper's damage."""
+    """Maps below the profile on one scale of damage, each beside its values over the paper's damage."""
     names = [name for name in NAMES if name in result.criteria]
     figure = Figure(figsize=(10, 1.4 + 1.75 * (len(names) + 1)), layout="constrained")
     heights = (0.5, *[1] * (len(names) + 1))
     axes = figure.subplots(len(names) + 2, 2, height_ratios=heights, width_ratios=(2.6, 1))
-    ends = plots.stretch(result, surface, SECTION)
+    ends = plots.stretch(result, surface, SECTION_LENGTH)
     paper = result.damage[surface]
     levels = plots.decades(np.nanmax(paper))
     plots.profile(axes[0, 0], result, surface, ends)
@@ -80,7 +80,7 @@ def _row(figure, row, result, surface, name, values, ends, levels):
         right.set_ylim(ends[0] / 100, ends[1])
     else:
         low, high = right.get_ylim()
-        shown = [share for share in SHARES if low <= share <= high]
+        shown = [share for share in UTILISATION_TICKS if low <= share <= high]
         right.set_yticks(shown, [f"{share:g}" for share in shown])
         right.set_yticks([], minor=True)
     ranks = rank_correlation(paper[:, complete].ravel(), values[:, complete].ravel())
@@ -92,7 +92,7 @@ def _row(figure, row, result, surface, name, values, ends, levels):
 def _colours(z):
     import matplotlib
 
-    return matplotlib.colormaps[SCALE](np.linspace(0.05, 1, len(z)))
+    return matplotlib.colormaps[COLOUR_MAP](np.linspace(0.05, 1, len(z)))
 
 
 def _depth_colours(figure, axes, result):

@@ -1,4 +1,4 @@
-"""Distributions of damage at the asperities: the share of them above a damage, with its Weibull fit."""
+"""Distributions of damage at the asperities: fraction above a damage, with the Weibull fit."""
 
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
-from ehlpetsc.post.fatigue.weibull import LEVEL, WeibullLikelihood, weibull_bounds, weibull_likelihood
+from ehlpetsc.post.fatigue.weibull import CONFIDENCE, WeibullLikelihood, weibull_bounds, weibull_likelihood
 from ehlpetsc.post.pictures import plots
 
 COLOUR_MAP = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
@@ -47,7 +47,7 @@ def _colours(count):
 
 
 def _curve(axes, under, fit, label, color):
-    """Share of asperities above a damage, with its Weibull fit."""
+    """Draw the fraction of asperities above a damage, with the Weibull fit."""
     damaged = under[under > 0]
     if not damaged.size:
         axes.plot([], [], color=color, label=f"{label}: no damage")
@@ -68,7 +68,7 @@ def _draw_confidence(axes, under, regression, color):
     damaged = under[under > 0]
     values = np.logspace(np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5), 120)
     drawn = [fitted_exceedance(values, WeibullLikelihood(*row)) for row in bounds.draws]
-    low, high = np.quantile(drawn, [(1 - LEVEL) / 2, (1 + LEVEL) / 2], axis=0)
+    low, high = np.quantile(drawn, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
     axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
     axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
 
@@ -82,7 +82,7 @@ def _add_legend_entries(axes, with_limits=True):
         axes.plot([], [], color="0.3", label=words, **style)
     if not with_limits:
         return
-    axes.fill_between([], [], color="0.3", alpha=0.15, lw=0, label=f"{100 * LEVEL:g} % bootstrap limits")
+    axes.fill_between([], [], color="0.3", alpha=0.15, lw=0, label=f"{100 * CONFIDENCE:g} % bootstrap limits")
 
 
 def _finish(axes, title):

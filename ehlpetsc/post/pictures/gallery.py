@@ -1,4 +1,4 @@
-"""The pictures of one result, and of several over slide/roll ratios; each as PNG and SVG."""
+"""Pictures of one result, and of several results over slide/roll ratios, as PNG and SVG."""
 
 from pathlib import Path
 
@@ -21,16 +21,16 @@ from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.post_result import PostResult
 
-STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # without the salt, no two SVG files would be the same
+STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # the salt makes SVG files reproducible
 DPI = 160
 FORMATS = ("png", "svg")
 FIELD_DEPTH = 1.5  # half widths
-SECTION = 2.0  # half widths of profile shown, as in the paper
-LAYER = 0.2  # half widths of depth in a picture of several results: damage under asperities ends above
+SECTION_LENGTH = 2.0  # half widths of profile, as in the paper
+LAYER_DEPTH = 0.2  # half widths in a picture of several results: damage below asperities is shallower
 
 
 def _save(figure, stem):
-    """Write all formats with one layout, which takes longer to find than to draw."""
+    """Write all formats with one layout, whose computation takes longer than drawing."""
     figure.set_dpi(DPI)
     figure.get_layout_engine().execute(figure)
     figure.set_layout_engine(None)
@@ -40,8 +40,8 @@ def _save(figure, stem):
         check_derived(Path(name), (), PICTURE_SIGNATURES, "--pictures")
     for kind, name in zip(FORMATS, names, strict=True):
         metadata = {"Date": None} if kind == "svg" else None
-        with replacing(name, keep_ending=True) as beside:
-            figure.savefig(beside, dpi=DPI, bbox_inches=around, metadata=metadata)
+        with replacing(name, keep_ending=True) as temporary:
+            figure.savefig(temporary, dpi=DPI, bbox_inches=around, metadata=metadata)
     return names
 
 
@@ -54,13 +54,13 @@ def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
     inputs, outputs : sequences of str
         Result files and their post-processing results.
     folder : str
-        Empty: beside each result.
+        Folder of the pictures; "": temporary each result.
     point : (float, float), optional
         s/a and z/a of the history picture.
     frame : int, optional
         Stored frame of the stress picture.
     passes : {"2", "1"}, optional
-        The results are passes of this surface: statistics over them instead of a comparison.
+        Surface of which the results are passes: statistics instead of a comparison.
     """
     names = []
     if folder:
@@ -70,8 +70,8 @@ def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
         stem = Path(folder or Path(output).parent) / Path(path).stem
         names += _of_one(path, result, stem, point, frame)
     if passes:
-        beside = Path(folder or Path(outputs[0]).parent)
-        names += _save(passes_picture(results, passes), beside / f"passes.damage_{passes}")
+        temporary = Path(folder or Path(outputs[0]).parent)
+        names += _save(passes_picture(results, passes), temporary / f"passes.damage_{passes}")
     elif len(results) > 1:
         names += _compared(sorted(results, key=lambda r: r.ratio), Path(folder or Path(outputs[0]).parent))
     return names
@@ -121,9 +121,10 @@ def damage_picture(result, surface):
     if surface in result.temperatures:
         plots.temperatures(axes[-2], result, surface)
     s, z = result.worst_point(surface)
+    place = f"{plots.along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})"
     axes[0].set_title(
-        f"surface {surface}, slide/roll ratio {result.ratio:.3g}, largest damage {largest:.2g} at "
-        f"{plots.along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})",
+        f"surface {surface}, slide/roll ratio {result.ratio:.3g}, {plots.strain_rule(result)}\n"
+        f"largest damage {largest:.2g} at {place}",
         fontsize=9,
     )
     _bar(figure, plots.damage_contours(axes[-1], result, surface, ends, plots.decades(largest)), list(axes))
@@ -139,11 +140,11 @@ def stacked_picture(results, surface):
     axes = figure.subplots(count + 1, 1, sharex=True, height_ratios=(0.7, *[1] * count))
     levels = plots.decades(max(r.largest(surface, k) for r in results for k in range(len(r.z))))
     start = [_aligned(result, surface, results) for result in results]
-    ends = plots.stretch(start[0], surface, SECTION)
+    ends = plots.stretch(start[0], surface, SECTION_LENGTH)
     plots.profile(axes[0], start[0], surface, ends)
     contours = None
     for row, result in zip(axes[1:], start, strict=True):
-        drawn = plots.damage_contours(row, result, surface, ends, levels, LAYER, gap=0.1)
+        drawn = plots.damage_contours(row, result, surface, ends, levels, LAYER_DEPTH, gap=0.1)
         contours = contours or drawn
         row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
     axes[0].set_title(f"surface {surface}, {plots.strain_rule(results[0])}", fontsize=9)
@@ -154,13 +155,13 @@ def stacked_picture(results, surface):
 
 
 def _aligned(result, surface, results):
-    """The result cut to the points that passed in all results, so that all share one profile."""
+    """Result reduced to the points that passed in all results, so that all have the same profile."""
     first = max(r.s[r.complete[surface]][0] for r in results)
     last = min(r.s[r.complete[surface]][-1] for r in results)
     if last <= first:
         raise PostError(f"no point of surface {surface} passed the whole contact in all of the results")
     last_shown = last + 0.5 * (result.s[1] - result.s[0])
-    first_shown = max(first, last - SECTION * result.a) - 0.5 * (result.s[1] - result.s[0])
+    first_shown = max(first, last - SECTION_LENGTH * result.a) - 0.5 * (result.s[1] - result.s[0])
     result.complete[surface] &= (result.s >= first_shown) & (result.s <= last_shown)
     return result
 
@@ -228,7 +229,7 @@ def history_picture(path, result, point):
         plots.surface_temperature(axes, time[1:-1], heat)
         axes.set_xlim(top.get_xlim())
     (between or [top])[0].set_xlabel("time [µs]")
-    marked = f"the {plots.MARKED} largest" if len(cycles) > plots.MARKED else "all"
+    marked = f"the {plots.MARKED_CYCLES} largest" if len(cycles) > plots.MARKED_CYCLES else "all"
     top.set_title(
         f"surface {surface}, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "
         f"{z:g}: {len(cycles)} cycles of {plots.COMPONENTS[channel]}, {marked} marked, damage "

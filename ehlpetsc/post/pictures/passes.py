@@ -1,4 +1,4 @@
-"""Several results as passes of one body: damage a pass with its scatter, and passes to Miner's sum 1."""
+"""Pictures of passes of one body: damage per pass with its scatter, and passes to Miner's sum 1."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,7 +9,7 @@ from ehlpetsc.post.pictures import plots
 
 
 def passes_picture(results, surface):
-    """Damage a pass along the surface at the worst depth, and the share of points with Miner's sum 1."""
+    """Damage per pass along the surface at the worst depth, and fraction of points with Miner's sum 1."""
     s, damages = same_points(results, surface)
     found = pass_statistics(damages)
     worst = int(found.mean.max(axis=1).argmax())

@@ -1,4 +1,4 @@
-"""Pictures of stresses, histories and damage, each drawn into given axes."""
+"""Plots of stresses, histories and damage, drawn into axes."""
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
@@ -7,10 +7,10 @@ from ehlpetsc.post.fatigue.accumulate import CHANNELS
 from ehlpetsc.post.fatigue.cycles import rainflow
 from ehlpetsc.post.stresses.half_plane import von_mises
 
-DECADES = 7  # shown below the largest damage, as in figure 8 of the paper
+DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
 COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
 VON_MISES = r"$\sigma_{vM}$"
-MARKED = 12  # cycles in the picture of a history
+MARKED_CYCLES = 12  # in the picture of a history
 DARK = "#222222"
 HOT = "#cc3311"
 
@@ -19,7 +19,7 @@ STRAIN_RULES = {"direct": "elastic range as it is", "neuber": "Neuber's rule", "
 
 
 def strain_rule(result):
-    """How the elastic stress range of a result entered the cyclic curve, for titles."""
+    """Rule for the elastic stress range of a result, for titles."""
     return STRAIN_RULES[result.attrs.get("strain", "direct")]
 
 
@@ -32,7 +32,7 @@ def decades(largest):
 
 
 def along_body(result, surface, s):
-    """Abscissa [mm] on the surface's own profile: distance from the point that was at the inlet at time 0."""
+    """Abscissa [mm] of the profile: distance from the point that was at the inlet at time 0."""
     passed = result.s[result.complete[surface]]
     if result.attrs.get(f"speed_{surface}", 1.0) < 0:
         return 1e3 * (s - result.attrs.get("outlet", passed[0]))
@@ -136,8 +136,8 @@ def legend_beside(axes):
 def stress_field(axes, x, z, values, label):
     """Draw one stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign.
 
-    The colours span all but the highest and lowest thousandths: peaks under single asperities would leave the
-    rest in one colour.
+    The colours span all but the highest and lowest thousandths, because peaks below single asperities would
+    leave all other values in one colour.
     """
     low, high = np.quantile(values, [0.001, 0.999])
     limit = max(-low, high)
@@ -184,7 +184,7 @@ def history(axes, time, values, channel):
         axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
     counted = values[channel] / 1e9
     cycles = rainflow(counted)
-    for row in cycles[np.argsort(-cycles[:, 0])][:MARKED][::-1]:
+    for row in cycles[np.argsort(-cycles[:, 0])][:MARKED_CYCLES][::-1]:
         i, j = int(row[3]), int(row[4])
         axes.plot(time[[i, j]], counted[[i, j]], "o", ms=3, color="#cc3311")
         axes.vlines(time[j], *sorted((counted[i], counted[j])), color="#cc3311", lw=0.8)

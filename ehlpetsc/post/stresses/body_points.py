@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 NO_FLANK = np.inf, -np.inf
-GRID_ROUNDING = 1e-9  # nodes; a point that far from a node is at it
+GRID_ROUNDING = 1e-9  # nodes: points nearer to a node are at it
 
 
 class Passage(NamedTuple):
     """Passage of body points through the nodes.
 
-    Body point j is at node j + shift[k] + offset[k] at frame k, 0 <= offset < 1. `enter` and `leave` are its
-    first and last frames inside the nodes; `complete` where it came from outside and went out again, or where
+    Body point j is at node j + shift[k] + offset[k] at frame k, 0 <= offset < 1. `enter` and `leave` are
+    its first and last frames inside the nodes; `complete` is true if it entered and left the nodes, or if
     the contact began and ended on its flank.
     """
 
@@ -23,12 +23,12 @@ class Passage(NamedTuple):
     complete: np.ndarray
 
     def samples(self):
-        """Most frames that a complete point spends inside."""
+        """Maximum number of frames of a complete point inside the nodes."""
         return int((self.leave - self.enter + 1)[self.complete].max(initial=0))
 
 
 def body_points(x, dx, travelled):
-    """Body coordinates s, dx apart, of all points that were ever among the nodes x.
+    """Body coordinates s, with the spacing dx, of all points that were ever among the nodes x.
 
     Parameters
     ----------
@@ -36,16 +36,16 @@ def body_points(x, dx, travelled):
         m.
     dx : float
     travelled : iterable of ndarray (nt,)
-        Distance that each body has covered at each frame, m.
+        Distance travelled by each body at each frame, m.
     """
-    ends = np.array([[way[0], way[-1]] for way in travelled])
+    ends = np.array([[distance[0], distance[-1]] for distance in travelled])
     before = max(int(np.ceil(ends.max() / dx - GRID_ROUNDING)), 0)
     after = max(int(np.ceil(-ends.min() / dx - GRID_ROUNDING)), 0)
     return x[0] + dx * np.arange(-before, x.size + after)
 
 
 def passage(s, x, dx, travelled, flank=NO_FLANK):
-    """Passage of the points s = s[0] + j dx of a body that has covered `travelled` (nt,): x = s + travelled.
+    """Passage of the points s = s[0] + j dx of a body with x = s + travelled (nt,).
 
     Parameters
     ----------
@@ -53,8 +53,8 @@ def passage(s, x, dx, travelled, flank=NO_FLANK):
     dx : float
     travelled : ndarray, shape (nt,)
     flank : (float, float)
-        Points s at x = 0 when the contact of two teeth ends and when it begins: those between need neither
-        come from outside nor go out.
+        Points s at x = 0 at the end and at the beginning of the contact of two teeth; points between them
+        need not enter or leave the nodes.
 
     Raises
     ------

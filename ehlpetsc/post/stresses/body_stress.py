@@ -1,11 +1,11 @@
-"""Stress histories at points fixed in the body, evaluated where the points are.
+"""Stress histories at points fixed in the body, evaluated at the positions of the points.
 
-Between two frames a body point moves by a part of the node spacing. Linear interpolation, of nodal stresses
-or of the load, then cuts the peaks of short ripples: 5 % of the amplitude at ten nodes, and much more of the
-damage near the surface, which rises with about the eleventh power. Here the load has cubic pieces
-(:mod:`ehlpetsc.post.stresses.load_interpolation`), and their kernels are evaluated at the offset of the
-body's points from the nodes, one offset a frame: their spectra are polynomials in the offset, through
-Chebyshev points.
+Between two frames a body point moves by a fraction of the node spacing. Linear interpolation, of nodal
+stresses or of the load, would reduce the peaks of short ripples: by 5 % of the amplitude at ten nodes, and
+the damage near the surface, which increases with about the eleventh power, by much more. Here the load has
+cubic pieces (:mod:`ehlpetsc.post.stresses.load_interpolation`), and their kernels are evaluated at the
+offset of the body's points from the nodes, one offset a frame: their spectra are polynomials in the offset,
+through Chebyshev points.
 """
 
 from functools import lru_cache
@@ -18,12 +18,13 @@ from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.half_plane import padded_length
 from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
 
-BATCH = 8  # frames transformed at a time: their spectra stay in the cache
-BLOCK = 32  # frequencies
-QUANTUM = 2.0**-24  # of p0 (60 Pa at 1 GPa): histories are kept in single precision on this grid, so that the
-#                     rounding noise of the transforms in an unloaded stretch is no cycle
-CUTOFF = 21.0  # k z up to which a wave number k matters at depth z: exp(-21) is 1e-9
-TAPER = 0.45  # beyond the cut-off, in 1/element, over which the rest falls to nothing
+FRAMES_PER_BATCH = 8  # transformed at once, so that their spectra fit in the cache
+FREQUENCIES_PER_BLOCK = 32
+# of p0 (60 Pa at 1 GPa): single-precision histories are rounded to multiples, so that the noise of the
+# transforms without load causes no cycles
+QUANTUM = 2.0**-24
+MAX_KZ = 21.0  # wave number times depth; exp(-21) is 1e-9
+TAPER_WIDTH = 0.45  # 1/element: wave numbers beyond the cut-off over which the spectrum falls to zero
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
 
 
@@ -36,7 +37,7 @@ def half_element(nx):
 def offset_weights(offset):
     """Weights (2, frames, 3) of the two parts of :func:`kernel_table` at offsets (frames,) from the nodes.
 
-    Sums and differences of the Lagrange weights of OFFSETS that lie symmetrically about one half.
+    Sums and differences of the Lagrange weights of `OFFSETS` that are symmetric about one half.
     """
     weights = np.ones((offset.size, OFFSETS.size))
     for k, node in enumerate(OFFSETS):
@@ -49,18 +50,18 @@ def offset_weights(offset):
 def low_pass(nx, depth):
     """Factor of each frequency (f,): 1, then falling smoothly to 0. Depth in elements.
 
-    Ripples of the load shorter than the depth hardly reach it, as exp(-k z). What the kernels' spectra hold
-    beyond comes from the ends of their range and is seen there alone, where the load is zero. A sharp end
-    would spread it over all nodes: 2e-5 of the load at z = 0.5 a of 400 nodes; this leaves less than 1e-9.
+    Stresses of load ripples decay with the depth as exp(-k z). The spectra of the kernels at larger wave
+    numbers come from the ends of their range, where the load is zero. A sharp cut-off would distribute them
+    over all nodes: 2e-5 of the load at z = 0.5 a with 400 nodes; the smooth one leaves less than 1e-9.
     """
     n = padded_length(nx)
     wave_number = 2 * np.pi / n * np.arange(n // 2 + 1)
-    beyond = wave_number - CUTOFF / max(depth, CUTOFF / np.pi)
-    t = np.clip(1 - beyond / TAPER, 0, 1)
+    beyond = wave_number - MAX_KZ / max(depth, MAX_KZ / np.pi)
+    t = np.clip(1 - beyond / TAPER_WIDTH, 0, 1)
     return t**5 * (126 - 420 * t + 540 * t**2 - 315 * t**3 + 70 * t**4)  # four flat derivatives
 
 
-@lru_cache(maxsize=8)  # both surfaces, and the passes of a life, have their depths in common
+@lru_cache(maxsize=8)  # for both surfaces, and the passes of a life
 def kernel_table(nx, depth):
     r"""Kernel spectra at the three lower OFFSETS, as real numbers (f, 2, 3, 8); depth in elements.
 
@@ -81,14 +82,15 @@ def kernel_table(nx, depth):
 def _multiply(table, weights, loads, out):
     """Spectra out (frames, 3, :f) of sx, sz, txz from a kernel_table, weights and loads (frames, 4, >= f).
 
-    BLOCK frequencies of all frames at a time: their part of the table stays in the cache.
+    `FREQUENCIES_PER_BLOCK` frequencies of all frames at once, so that their part of the table fits in the
+    cache.
     """
     real, imaginary = np.empty(8), np.empty(8)
-    for start in range(0, table.shape[0], BLOCK):
+    for start in range(0, table.shape[0], FREQUENCIES_PER_BLOCK):
         for frame in range(weights.shape[1]):
             u0, u1, u2 = weights[0, frame, 0], weights[0, frame, 1], weights[0, frame, 2]
             v0, v1, v2 = weights[1, frame, 0], weights[1, frame, 1], weights[1, frame, 2]
-            for k in range(start, min(start + BLOCK, table.shape[0])):
+            for k in range(start, min(start + FREQUENCIES_PER_BLOCK, table.shape[0])):
                 x, y = table[k, 0], table[k, 1]
                 for m in range(8):
                     real[m] = u0 * x[0, m] + u1 * x[1, m] + u2 * x[2, m]
@@ -120,7 +122,7 @@ class BodyStress:
     def transform(self, pressure, shear):
         """Spectra (frames, 4, n/2 + 1) of the loads (frames, nx) and their slopes.
 
-        They are shifted by half an element. Beyond its ends a load falls to zero over one element.
+        Shifted by half an element. Beyond the end nodes a load falls to zero over one element.
         """
         loads = np.empty((len(pressure), 4, pressure.shape[1]))
         loads[:, 0], loads[:, 1] = pressure, shear
@@ -143,8 +145,8 @@ def history_at(loads, surface, s, depth, quantum=0.0):
     enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1
     stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
     values = np.zeros((3, max(leave - enter, 0) + 2))
-    for begin in range(enter, leave, BATCH):
-        frames = np.arange(begin, min(begin + BATCH, leave))
+    for begin in range(enter, leave, FRAMES_PER_BATCH):
+        frames = np.arange(begin, min(begin + FRAMES_PER_BATCH, leave))
         spectra = stress.transform(*loads.read(surface, frames[0], frames[-1] + 1))
         fields = stress(0, spectra, offset_weights(motion.offset[frames]))
         at = frames - enter + 1

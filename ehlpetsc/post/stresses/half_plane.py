@@ -1,7 +1,7 @@
 r"""Stresses in the half plane under a line load, by FFT with exact element kernels.
 
-Each body in its own frame: x as in the contact, z into the solid, tension positive, pressure positive,
-traction q in +x on the solid. The load is linear between nodes and nothing outside them.
+Each body has its own frame: x as in the contact, z into the solid, tension positive, pressure positive,
+traction q in +x on the solid. The load is linear between nodes and zero outside.
 """
 
 from functools import lru_cache
@@ -12,25 +12,27 @@ from scipy import fft
 from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.stresses.kernels import half_hat, hat
 
-UNIFORM = 1e-6  # spacing may differ by this share: positions stored with rounding
-DEPTHS_AT_ONCE = 5  # whose spectra stay in the cache
+SPACING_TOLERANCE = 1e-6  # relative, of stored positions
+DEPTHS_AT_ONCE = 5  # so that their spectra fit in the cache
 
 
 def spacing(x):
-    """Spacing of uniform nodes; ValueError if there are under two or they are not uniform and increasing."""
+    """Spacing of nodes; ValueError for fewer than two nodes or if they are not uniform and increasing."""
     x = np.asarray(x, float)
     if x.ndim != 1 or x.size < 2:
         raise ValueError("x must be one row of at least two nodes")
     dx = (x[-1] - x[0]) / (x.size - 1)
-    if not (dx > 0 and np.abs(np.diff(x) - dx).max() <= UNIFORM * dx + 8 * np.spacing(np.abs(x).max())):
+    if not (
+        dx > 0 and np.abs(np.diff(x) - dx).max() <= SPACING_TOLERANCE * dx + 8 * np.spacing(np.abs(x).max())
+    ):
         raise ValueError("x must be uniformly spaced and increasing")
     return dx
 
 
 def padded_length(nx):
-    """FFT length that holds the linear convolution of nx nodes with nx offsets either way.
+    """FFT length of the linear convolution of nx nodes with nx offsets in both directions.
 
-    2 nx - 1 would do; with 2 nx the kernels seen from between two nodes are symmetric.
+    2 nx - 1 would suffice; with 2 nx the kernels between two nodes are symmetric.
     """
     return fft.next_fast_len(2 * nx, real=True)
 
@@ -95,7 +97,7 @@ class StressField:
         return out
 
     def _cut_ends(self, fields, pressure, shear):
-        """Take off the outer halves of the end nodes' hats, where the load does not end at zero."""
+        """Subtract the outer halves of the end nodes' hats if the load is not zero there."""
         for node, kernels in ((0, 0), (-1, 1)):
             p, q = pressure[..., node], 0.0 if shear is None else shear[..., node]
             if not (np.any(p) or np.any(q)):
@@ -132,7 +134,7 @@ def stress(x, z, pressure, shear, poisson_ratio):
         - \tfrac{2z}{\pi}\int\tfrac{q\,(x-s)^2}{D^2}ds
 
     with :math:`D=(x-s)^2+z^2` (Holmes et al. 2005, section 2.3, restored). At z = 0 the limits from inside:
-    -p and the traction's principal value; at an end node that carries traction the infinite part is left out.
+    -p and the principal value for the traction; at an end node with traction without the infinite part.
 
     Parameters
     ----------
@@ -145,13 +147,12 @@ def stress(x, z, pressure, shear, poisson_ratio):
     shear : array_like, shape (..., nx), or None
         Traction in +x on this solid, Pa.
     poisson_ratio : float
-        None of the three in-plane stresses depends on it (a load on a half plane); it is checked here and
-        gives the fourth by :func:`out_of_plane`.
+        Checked, but the three in-plane stresses do not depend on it; see :func:`out_of_plane` for the fourth.
 
     Returns
     -------
     sx, sz, txz : ndarray
-        Pa, (..., nz, nx), without the axis nz where z is one number.
+        Pa, (..., nz, nx), without the axis nz if z is a number.
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""Complete histories of body points, collected from the frames of a result file by one or more threads.
+"""Complete stress histories of body points, collected from the frames of a result file by threads.
 
-A point is unstressed before it enters and after it leaves: each history starts and ends with a zero.
+A point is unstressed before it enters and after it leaves: each history begins and ends with zero.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -10,9 +10,9 @@ from functools import partial
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.post.stresses.body_stress import BATCH, BodyStress, offset_weights
+from ehlpetsc.post.stresses.body_stress import FRAMES_PER_BATCH, BodyStress, offset_weights
 
-FRAMES_READ = 144  # at a time by each thread
+FRAMES_PER_READ = 144  # by each thread
 SAMPLE_BYTES = 12  # three stresses in single precision
 
 
@@ -33,7 +33,7 @@ def _collect(stress, begin, first, shift, enter, leave, quantum, histories):
 
 
 def runs_of_points(motion, memory, depths):
-    """Split the complete points into runs of consecutive ones whose histories fit in `memory` bytes."""
+    """Split the complete points into ranges of consecutive points whose histories fit in `memory` bytes."""
     points = np.flatnonzero(motion.complete)
     room = max(1, int(memory / (SAMPLE_BYTES * depths * (motion.samples() + 2))))
     runs = []
@@ -44,7 +44,7 @@ def runs_of_points(motion, memory, depths):
 
 @contextmanager
 def workers(count):
-    """Map function on `count` threads, for a ``with`` statement."""
+    """Context manager of a map function on `count` threads."""
     if count == 1:
         yield map
         return
@@ -53,9 +53,9 @@ def workers(count):
 
 
 class HistoryCollector:
-    """Collects the histories of consecutive points and distributes them to the workers.
+    """Collector of the histories of consecutive points, which distributes them to the workers.
 
-    A worker is a thread: the expensive parts release Python's lock.
+    A worker is a thread; the expensive parts release the GIL.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class HistoryCollector:
     quantum : float
         Pa.
     map_ : callable
-        Of :func:`workers`.
+        Map function of :func:`workers`.
     advance : callable(frames), optional
     """
 
@@ -84,16 +84,16 @@ class HistoryCollector:
         ----------
         points : ndarray of int
         finish : list of callable(depth, first, last, histories)
-            One a worker. Gets histories (points, 3, samples) of points first .. last-1, of which the first
-            leave - enter + 3 samples count.
+            One for each worker, called with the histories (points, 3, samples) of points first .. last-1, of
+            which the first leave - enter + 3 samples count.
         """
         motion = self.motion
         histories = np.zeros((self.depths, points.size, 3, motion.samples() + 2), np.float32)
         frames = motion.enter[points].min(), motion.leave[points].max() + 1
-        for begin in range(*frames, FRAMES_READ * len(finish)):
-            end = min(begin + FRAMES_READ * len(finish), frames[1])
+        for begin in range(*frames, FRAMES_PER_READ * len(finish)):
+            end = min(begin + FRAMES_PER_READ * len(finish), frames[1])
             loads = self.loads.read(self.surface, begin, end)
-            starts = range(begin, end, BATCH)
+            starts = range(begin, end, FRAMES_PER_BATCH)
             list(self.map(partial(self._add_frames, loads, begin, points[0], histories), starts))
             if self.advance:
                 self.advance(end - begin)
@@ -101,8 +101,8 @@ class HistoryCollector:
         list(self.map(partial(self._hand_over, points[0], histories), parts))
 
     def _add_frames(self, loads, begin, point, histories, first):
-        """Stresses of up to BATCH frames from `first` on, of loads from frame `begin` on."""
-        m, part = self.motion, slice(first - begin, first - begin + BATCH)
+        """Add the stresses of a batch of frames from `first` on, of loads from frame `begin` on."""
+        m, part = self.motion, slice(first - begin, first - begin + FRAMES_PER_BATCH)
         spectra = self.stress.transform(*(load[part] for load in loads))
         weights = self.weights[:, first : first + len(spectra)]
         for depth in range(self.depths):

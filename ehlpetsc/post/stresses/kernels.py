@@ -12,7 +12,7 @@ With u = x - s, D = u^2 + z^2 the plane-strain half plane under pressure p and t
 
 import numpy as np
 
-GAUSS_DISTANCE = 8.0  # elements; beyond it quadrature is exact to rounding and the closed form cancels
+GAUSS_DISTANCE = 8.0  # elements: beyond, quadrature is exact to rounding and the closed form has cancellation
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 
@@ -78,7 +78,7 @@ def hat(u, z):
     Parameters
     ----------
     u : ndarray, shape (n,)
-        Distance from the middle of the hat, in elements.
+        Distance from the centre of the hat, in elements.
     z : float
         Depth in elements, >= 0; at z = 0 the limits from inside the body.
 
@@ -90,8 +90,8 @@ def hat(u, z):
 
 
 def half_hat(u, z):
-    """Kernel over the left half alone: contribution of the end node of a load outside the load.
+    """Kernels integrated over the left half of a hat: contribution of an end node outside the load.
 
-    At u = z = 0 the traction jump's stress is infinite; the finite part is returned.
+    At u = z = 0 the stress of a jump of the traction is infinite; the finite part is returned.
     """
     return _blend(u, z, _half_closed, _half_quadrature)

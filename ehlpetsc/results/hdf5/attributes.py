@@ -1,7 +1,7 @@
-"""Attributes of HDF5 files, their texts of fixed length.
+"""Attributes of HDF5 files, with strings of fixed length.
 
-A text of variable length lies in a heap without a checksum, where one wrong byte makes HDF5 crash; one of
-fixed length lies in the header of its group or dataset, which has one.
+HDF5 stores strings of variable length in a heap without a checksum, where one wrong byte makes it crash;
+strings of fixed length are in the header of their group or dataset, which has a checksum.
 """
 
 import h5py
@@ -39,7 +39,7 @@ def _put_text(item, name, raw):
 
 
 def change(item, name, text):
-    """Overwrite the text of an attribute in place, as allowed while a file is read; it must not be longer."""
+    """Overwrite a string attribute in place, allowed while a file is read; it must not become longer."""
     attribute = item.attrs.get_id(name)
     attribute.write(_padded(text.encode(), attribute), mtype=attribute.get_type())
 
@@ -49,13 +49,13 @@ def _padded(raw, attribute):
 
 
 class Attributes(dict):
-    """Attributes read, texts as str; one that is missing is an OutputError.
+    """Attributes by name, strings as str; a missing attribute raises an OutputError.
 
     Parameters
     ----------
     item : h5py.File, h5py.Group or h5py.Dataset
     path : path-like
-        The file, for the error.
+        Path of the file, for error messages.
     """
 
     def __init__(self, item, path):
@@ -70,13 +70,13 @@ class Attributes(dict):
 
 
 def plain(value):
-    """Value of an attribute; a text as printable str, bytes that are no UTF-8 replaced."""
-    if isinstance(value, str):  # h5py keeps such bytes of a text of variable length as lone surrogates
+    """Value of an attribute; strings as printable str, with bytes that are not UTF-8 replaced."""
+    if isinstance(value, str):  # h5py returns such bytes of strings of variable length as lone surrogates
         return value.encode(errors="replace").decode()
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
 def one_line(fault):
-    """First line of the message of an exception; its type without one."""
+    """First line of the message of an exception, or its type if the message is empty."""
     line = next(iter(str(fault).strip().splitlines()), type(fault).__name__)[:200]
     return "".join(character if character.isprintable() else "?" for character in line)

@@ -1,4 +1,4 @@
-"""Continuation of a result: check that it is an earlier part of the same run, and copy of its rows."""
+"""Continuation of a result: check that it is an earlier part of the same run, and copy its rows."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ehlpetsc.results.hdf5.datasets import extend, room
 from ehlpetsc.results.provenance import earlier_runs
 from ehlpetsc.results.reader import read_result
 
-ROWS = 1024  # copied at a time
+ROWS_PER_BLOCK = 1024  # copied at once
 SCALE_TOLERANCE = 1e-9  # relative: speeds and scales nearer than this are equal
 
 
@@ -19,12 +19,12 @@ def copy_up_to(file, path, step, contact_count):
     Parameters
     ----------
     file : h5py.File
-        The new file, laid out.
+        New file with all datasets.
     path : path-like
-        The earlier one.
+        Earlier file.
     step : int
     contact_count : ndarray of int, shape (nx,), or None
-        Steps in contact up to `step`; None: those of the earlier file.
+        Steps in contact up to `step`; None: from the earlier file.
 
     Returns
     -------
@@ -34,7 +34,7 @@ def copy_up_to(file, path, step, contact_count):
     Raises
     ------
     OutputError
-        It is damaged, or no earlier part of this run.
+        The earlier file is damaged, or not an earlier part of this run.
     """
     with read_result(path) as old:
         try:
@@ -62,14 +62,14 @@ def _copy(file, old, step, count):
 
 
 def _copy_rows(file, old, name, rows):
-    for begin in range(0, rows, ROWS):
-        block = old[name][begin : min(begin + ROWS, rows)]
+    for begin in range(0, rows, ROWS_PER_BLOCK):
+        block = old[name][begin : min(begin + ROWS_PER_BLOCK, rows)]
         with room(file, block.nbytes):
             extend(file[name], block)
 
 
 def _misfit(file, old, step, count_from_file):
-    """Reason why a file is not an earlier part of the same run; None: it is."""
+    """Reason why a file is not an earlier part of the same run; None if it is one."""
     last = max(old.steps("step"), default=None)
     if not np.array_equal(old.x, file["x"][:]):
         return "it was computed on another mesh, or for another half width"
@@ -81,9 +81,9 @@ def _misfit(file, old, step, count_from_file):
         return f"it ends at step {last}, before step {step} of the restart file"
     if count_from_file and last is not None and last > step:
         return f"it continues to step {last} and the contacts up to step {step} are unknown"
-    for name, what in (("p0", "largest pressure of Hertz"), ("u1", "speed"), ("u2", "speed")):
+    for name, quantity in (("p0", "maximum Hertz pressure"), ("u1", "speed"), ("u2", "speed")):
         if name in file.attrs and not np.isclose(
             old.attrs[name], file.attrs[name], rtol=SCALE_TOLERANCE, atol=0.0
         ):
-            return f"it was computed for another {what} ({name} = {old.attrs[name]:.6g})"
+            return f"it was computed for another {quantity} ({name} = {old.attrs[name]:.6g})"
     return None

@@ -15,9 +15,9 @@ from ehlpetsc.results.hdf5 import attributes
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
 METADATA_BYTES = 2**20  # more than HDF5 adds to its own structures in one flush
-NUMBERS = itertools.count()  # of results in memory
-RESERVE_BYTES = 2**16  # more than it writes on closing
-MEMORY_BLOCK = 2**22  # by which a file in memory grows
+MEMORY_NUMBERS = itertools.count()  # of results in memory
+RESERVE_BYTES = 2**16  # more than HDF5 writes on closing
+MEMORY_BLOCK = 2**22  # bytes by which a file in memory grows
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class Layout:
         Nodes [m].
     fields : list of str
         Fields to store in a frame, keys of `ehlpetsc.quantities.FIELDS`.
-    figures : list of str, optional
-        Per-step figures, keys of `ehlpetsc.quantities.STEP_SCALARS`; by default those that every case has.
+    scalars : list of str, optional
+        Scalars of the steps, keys of `ehlpetsc.quantities.STEP_SCALARS`; by default those of every case.
     precision : {"float64", "float32"}
         Type of the stored fields.
     profiles : dict
-        ``{"1": (s, z, speed) or None, "2": ...}``; a fourth item may hold attributes (ra, rq, rsk), a
-        fifth one names depths of `ehlpetsc.quantities.OTHERS` to make room for ("set").
+        ``{"1": (s, z, speed) or None, "2": ...}``; an optional fourth item contains attributes (ra, rq, rsk),
+        a fifth one names of depths to create, keys of `ehlpetsc.quantities.OTHERS` ("set").
     """
 
     x: np.ndarray
@@ -55,12 +55,12 @@ def lay_out(file, layout):
         flag = FIELDS[name].dtype == "u1"
         dtype = np.dtype("u1" if flag else layout.precision)
         rows = max(1, CHUNK_BYTES // (len(x) * dtype.itemsize))
-        # contact is rare, so its bytes all but vanish; floats are not worth the time of packing
-        packed = {"compression": "gzip", "compression_opts": 1} if flag else {}
-        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **packed)
+        # contact is rare, so that flags compress to almost nothing; floats do not compress enough
+        compression = {"compression": "gzip", "compression_opts": 1} if flag else {}
+        _growing(file, name, FIELDS[name], rows, len(x), dtype=dtype, **compression)
     _growing(file, "step", OTHERS["step"], CHUNK_STEPS)
     _fixed(file, "contact_count", OTHERS["contact_count"], np.zeros(len(x), dtype="i8"))
-    for name in sorted(layout.scalars, key="time".__ne__):  # the scale of the others comes first
+    for name in sorted(layout.scalars, key="time".__ne__):  # first the dimension scale of the others
         _growing(file, f"steps/{name}", STEP_SCALARS[name], CHUNK_STEPS)
     for surface, profile in layout.profiles.items():
         if profile is not None:
@@ -71,14 +71,14 @@ def lay_out(file, layout):
 
 
 def dataset_names(file):
-    """Names of all datasets of a file, with those of their groups."""
+    """Paths of all datasets of a file."""
     names = []
     file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
     return names
 
 
 def last_row(file):
-    """Number and time [s] of the last step that a file holds; None: it holds none."""
+    """Number and time [s] of the last step in a file; None: no step."""
     steps, times = file["steps/step"], file["steps/time"]
     return (int(steps[-1]), float(times[-1])) if len(times) else None
 
@@ -86,7 +86,7 @@ def last_row(file):
 def create(path):
     """Create an HDF5 file for writing, None: in memory; OSError if the disk is full."""
     if path is None:
-        name = f"result {next(NUMBERS)}"  # HDF5 takes two of one name for one file
+        name = f"result {next(MEMORY_NUMBERS)}"  # for HDF5 two files with one name are one file
         return h5py.File(name, "w", driver="core", block_size=MEMORY_BLOCK, backing_store=False)
     with open(path, "wb") as raw:
         os.posix_fallocate(raw.fileno(), 0, METADATA_BYTES)
@@ -97,7 +97,7 @@ def create(path):
 def room(file, data_bytes):
     """Check the disk space before HDF5 writes, which crashes on a full disk, and flush afterwards.
 
-    Some space is kept in reserve behind the data, so that the file can always be closed.
+    A reserve after the data ensures that the file can always be closed.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def room(file, data_bytes):
     Raises
     ------
     OSError
-        There is not enough room (or quota); the file is as it was.
+        The disk is full, or the quota used up; the file does not change.
     """
     if in_memory(file):
         yield
@@ -126,7 +126,7 @@ def room(file, data_bytes):
 
 
 def close(file, status, limits=""):
-    """Store the status of the run, close the file and free its reserve; one in memory stays open."""
+    """Store the status of the run, close the file and free its reserve; a file in memory remains open."""
     if in_memory(file):
         _note_end(file, status, limits)
         return
@@ -134,7 +134,7 @@ def close(file, status, limits=""):
     try:
         _note_end(file, status, limits)
         file.close()
-        (end,) = struct.unpack_from("<Q", os.pread(descriptor, 48, 0), 28)  # as superblocks 2 and 3 have it
+        (end,) = struct.unpack_from("<Q", os.pread(descriptor, 48, 0), 28)  # of superblocks 2 and 3
         os.ftruncate(descriptor, end)
     finally:
         os.close(descriptor)
@@ -167,7 +167,7 @@ def _surface(file, name, s, z, speed, statistics=None, depths=()):
 
 
 def comment(item, text):
-    """Description for `h5dump -H` and `h5ls -v`, which show no values of attributes."""
+    """Set the description for `h5dump -H` and `h5ls -v`, which do not print values of attributes."""
     h5py.h5o.set_comment(item.id, text.encode())
 
 
@@ -177,7 +177,7 @@ def _fixed(file, name, field, values):
     _describe(file.create_dataset(name, data=values, **checked), field)
 
 
-def _growing(file, name, field, rows, *width, dtype=None, **packed):
+def _growing(file, name, field, rows, *width, dtype=None, **compression):
     dataset = file.create_dataset(
         name,
         (0, *width),
@@ -185,7 +185,7 @@ def _growing(file, name, field, rows, *width, dtype=None, **packed):
         maxshape=(None, *width),
         chunks=(rows, *width),
         fletcher32=True,
-        **packed,
+        **compression,
     )
     _describe(dataset, field)
 

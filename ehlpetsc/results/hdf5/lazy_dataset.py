@@ -1,7 +1,7 @@
-"""Datasets of a result, read on demand; damage that HDF5 finds is an OutputError that names the file.
+"""Datasets of a result, read on demand; errors of HDF5 become an OutputError with the name of the file.
 
-HDF5 may crash on a damaged file or never return from reading it. A process that monitors the reading one
-gets the name of the dataset that is being read by `announced_to`.
+HDF5 may crash on a damaged file or never return. `announced_to` passes the name of the dataset that is being
+read to a process that monitors the reader.
 """
 
 import contextlib
@@ -31,27 +31,27 @@ def _announce():
 
 @contextlib.contextmanager
 def reading(path, name=""):
-    """Context of calls of HDF5 that converts the exceptions of a damaged file to an OutputError."""
+    """Context manager that converts exceptions of HDF5 on a damaged file to an OutputError."""
     _names.append(name or "the file")
     _announce()
     try:
         yield
     except (OSError, RuntimeError, KeyError, AttributeError, ValueError, TypeError, MemoryError) as fault:
-        what = f"{path}: {name}" if name else f"{path}"
-        raise OutputError(f"{what}: cannot be read, the file is damaged ({one_line(fault)})") from None
+        place = f"{path}: {name}" if name else f"{path}"
+        raise OutputError(f"{place}: cannot be read, the file is damaged ({one_line(fault)})") from None
     finally:
         _names.pop()
         _announce()
 
 
 class LazyDataset:
-    """Dataset in the file; its slices are arrays.
+    """Dataset of a file; slices of it are arrays.
 
     Attributes
     ----------
     name : str
     shape, dtype, ndim, chunks
-        As of `h5py.Dataset`.
+        See `h5py.Dataset`.
     """
 
     def __init__(self, dataset, path):
@@ -71,5 +71,5 @@ class LazyDataset:
 
     @property
     def attrs(self):
-        """Attributes, texts as str."""
+        """Attributes, strings as str."""
         return Attributes(self._dataset, self._path)

@@ -1,4 +1,4 @@
-"""Opening of result files, also while they are written or after a killed run, and checks of them."""
+"""Opening of result files, also during a run or after a killed run, and their checks."""
 
 import os
 from pathlib import Path
@@ -14,18 +14,18 @@ FORMAT_VERSION = 1
 """Version of the layout; a reader refuses files of a later one."""
 
 ATTRIBUTES = {"title": str, "case": str, "status": str, "a": float, "p0": float, "u1": float, "u2": float}
-MAX_PACKING = 2000  # times the size of a file: more numbers than its packed bytes can stand for
+MAX_COMPRESSION = 2000  # largest size of the data of an undamaged file over the size of the file
 
 
 def open_for_reading(path, **options):
-    """Open an HDF5 file that may still be written to, or that a killed writer left open.
+    """Open an HDF5 file, also one that is being written or that a killed writer left open.
 
     Further options are those of `h5py.File`.
 
     Raises
     ------
     OutputError
-        No such file, or not one HDF5 can read.
+        No such file, or no readable HDF5 file.
     """
     try:
         if not isinstance(path, str | os.PathLike) or isinstance(os.fspath(path), bytes):
@@ -40,17 +40,18 @@ def open_for_reading(path, **options):
 
 
 def _marked_as_being_written(path):
-    """Whether a live or killed SWMR writer left its mark, which only a SWMR reader accepts.
+    """Whether a file has the flag of a live or killed SWMR writer, which only a SWMR reader accepts.
 
-    On other files, damaged ones among them, a SWMR reader may wait for ever for a writer to mend them.
+    On other, possibly damaged files a SWMR reader may wait for ever for a writer.
     """
     with open(path, "rb") as raw:
-        head = raw.read(12)
-    return head.startswith(b"\x89HDF\r\n\x1a\n") and len(head) == 12 and head[8] >= 3 and bool(head[11] & 4)
+        start = raw.read(12)
+    is_hdf5 = start.startswith(b"\x89HDF\r\n\x1a\n") and len(start) == 12
+    return is_hdf5 and start[8] >= 3 and bool(start[11] & 4)
 
 
 def open_result(path, **options):
-    """Open and check the HDF5 file of a result; further options are those of `h5py.File`.
+    """Open and check a result file; further options are those of `h5py.File`.
 
     Raises
     ------
@@ -71,7 +72,7 @@ def open_result(path, **options):
 
 
 def _fault(file):
-    """Reason why an HDF5 file is no result; None: it is one."""
+    """Reason why an HDF5 file is not a result; None if it is one."""
     version = file.attrs.get("format_version")
     if version is not None and "damage/s" in file:
         return "a result of post-processing; give the file it was made from"
@@ -98,9 +99,11 @@ def _fault_of_datasets(file):
     lost = [name for name in named if not isinstance(file.get(name), h5py.Dataset)]
     if lost:
         return f"damaged: {lost[0]} is missing, or cannot be read"
-    room = MAX_PACKING * os.fstat(file.id.get_vfd_handle()).st_size
+    max_bytes = MAX_COMPRESSION * os.fstat(file.id.get_vfd_handle()).st_size
     for name in ("x", "contact_count", *(f"surface/{s}/{v}" for s in ("1", "2") for v in "sz")):
-        if name in file and not (isinstance(file[name], h5py.Dataset) and (file[name].nbytes or 0) <= room):
+        if name not in file:
+            continue
+        if not isinstance(file[name], h5py.Dataset) or (file[name].nbytes or 0) > max_bytes:
             return f"damaged: {name} is no dataset, or has more numbers than the file can hold"
     nodes = file["x"].shape
     if nodes is None or len(nodes) != 1 or nodes[0] < 2:
@@ -116,7 +119,7 @@ def _fault_of_datasets(file):
             return f"damaged: {name} has {item.shape[1]} nodes, x {nodes[0]}"
         if item.ndim == 2 and "/" in name:
             return f"damaged: {name} has the shape {item.shape}"
-        if item.nbytes > room:
+        if item.nbytes > max_bytes:
             return f"damaged: {name} has {item.shape[0]} rows, more than the file can hold"
     if file["contact_count"].shape != nodes or file["contact_count"].dtype.kind not in "iu":
         return "damaged: contact_count is no number for every node"

@@ -1,4 +1,4 @@
-"""Run command: one case on all ranks, or a series on groups of them. Rank 0 alone reads the case file."""
+"""Run command: one case on all ranks, or a series on groups of ranks. Only rank 0 reads the case file."""
 
 import sys
 from pathlib import Path
@@ -9,7 +9,7 @@ from petsc4py import PETSc
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.nonlinear.scheme import check_scheme
-from ehlpetsc.run.cli.options import faults, help_text, text_of, time_limit
+from ehlpetsc.run.cli.options import faults, text_of, time_limit
 from ehlpetsc.run.preview.banner import banner
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.run.series.passes import Passes
@@ -20,7 +20,7 @@ from ehlpetsc.run.stop import StopRequest
 
 
 def read_case(comm, path, overrides):
-    """The case on every rank, or None where it is faulty (reported on rank 0)."""
+    """Case on every rank; None if it is faulty (reported on rank 0)."""
     case = None
     if comm.rank == 0:
         try:
@@ -41,7 +41,7 @@ def refuse(comm, lines):
 
 
 def run(path, overrides):
-    """Run a case file on all ranks; without one, list the options. Returns the exit status."""
+    """Run a case file on all ranks; with -help print PETSc's options. Returns the exit status."""
     comm, options = MPI.COMM_WORLD, PETSc.Options()
     try:
         stop = StopRequest(time_limit(options))
@@ -55,10 +55,9 @@ def run(path, overrides):
     if path and case is None:
         return ExitStatus.BAD_INPUT
     try:
-        if case and options.hasName("help"):
-            Simulation(case, comm)  # PETSc's objects print their options as they are made
         if options.hasName("help"):
-            PETSc.Sys.Print(help_text())
+            if case:
+                Simulation(case, comm)  # PETSc's objects print their options when they are created
             return ExitStatus.DONE
         output = text_of(options, "ehl_output") or Path(case.path).stem + ".h5"
         several = case.time is not None and case.time.passes > 1
@@ -79,7 +78,7 @@ def run(path, overrides):
 
 
 def run_single(comm, case, stop, output, restart, overwrite):
-    """A case that is no series, on all ranks. Returns the exit status."""
+    """Run a case that is not a series on all ranks. Returns the exit status."""
     simulation = Simulation(case, comm)
     if comm.rank == 0:
         for line in banner(case, simulation.scales, simulation.roughness, comm.size):

@@ -11,11 +11,11 @@ from ehlpetsc.command_parser import program
 from ehlpetsc.errors import UsageError
 from ehlpetsc.run.cli.options import OWN, usage
 
-PETSC = tuple(
+OPTION_PREFIXES = tuple(
     "snes ksp pc mat vec sub mg sys log options help info malloc citations get_total_flops checkstack "
     "on_error fp_trap version debug ehl da dm start_in_debugger stop_for_debugger debugger error_output "
     "shared_tmp use_gpu cuda memory v h skip_petscrc python viewer tao ts prefix no_signal_handler".split()
-)  # beginnings of PETSc's names and of own ones; misspelt own ones are refused later with the nearest
+)  # of PETSc's and the program's options; misspelt options of the program are refused later with a suggestion
 
 
 @dataclass
@@ -27,13 +27,13 @@ class Command:
     case : str or None
         The case file.
     overrides : list of str
-        Values of -ehl_set: those of PETSC_OPTIONS, then those of the command line.
+        Values of -ehl_set in PETSC_OPTIONS, then on the command line.
     explain : bool
         Whether to print the summary of the case instead of running it.
     ranks : bool
         Whether to print the default number of ranks instead of running the case.
     petsc : list of str
-        All other words, for PETSc.
+        All other arguments, for PETSc.
     """
 
     case: str | None = None
@@ -46,14 +46,14 @@ class Command:
 def parse_command_line(arguments):
     """Parse the command line.
 
-    The case file is the word that ends in .toml, else the first word. -ehl_set is removed, also from
-    PETSC_OPTIONS, because PETSc's table keeps only the last option of a name. Two dashes before a name count
-    as one: PETSc would treat the name as another option, an unused one.
+    The case file is the argument that ends in .toml, otherwise the first argument. -ehl_set is removed, also
+    from PETSC_OPTIONS, because PETSc's table stores only the last option of a name. Two dashes before a name
+    count as one: for PETSc they would be part of another, unused name.
 
     Raises
     ------
     UsageError
-        Two case files, or none where one is needed; an options file that is not there; -ehl_set alone.
+        Two case files, or none although one is needed; a missing options file; -ehl_set without a value.
     """
     command = Command()
     rest, sets = _without_sets(arguments)
@@ -94,7 +94,7 @@ def _with_one_dash(word):
 
 
 def _check_name(word):
-    """Refuse an option that neither this program nor PETSc can have, before anything is computed."""
+    """Refuse an option that neither this program nor PETSc has."""
     name = word.lstrip("-")
     if word == "-n" or word == "-np":
         raise UsageError(
@@ -103,12 +103,12 @@ def _check_name(word):
     meant = difflib.get_close_matches(f"ehl_{name}", OWN, n=1, cutoff=0.9)
     if word.startswith("-") and name not in OWN and meant:
         raise UsageError(f"{word}: unknown option; did you mean -{meant[0]}?")
-    if word.startswith("--") and name[:1].isalpha() and not (name in OWN or name.startswith(PETSC)):
+    if word.startswith("--") and name[:1].isalpha() and not (name in OWN or name.startswith(OPTION_PREFIXES)):
         raise UsageError(f"{word}: unknown option; {program('ehlpetsc')} -help lists the options")
 
 
 def _is_value(words, at):
-    """Whether a word is the file name after an option of the program."""
+    """Whether an argument is the file name after an option of the program."""
     return at > 0 and words[at - 1].lstrip("-") in ("ehl_output", "ehl_restart")
 
 

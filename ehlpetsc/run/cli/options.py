@@ -9,15 +9,15 @@ from ehlpetsc.errors import UsageError
 
 @dataclass(frozen=True)
 class Option:
-    """An option of this program as ``-help`` lists it: value with its unit, default, meaning."""
+    """Option of this program: value with its unit, default, meaning."""
 
     value: str
     default: str
     text: str
 
     @property
-    def shown(self):
-        """Value as shown by ``-help``."""
+    def placeholder(self):
+        """Value as printed by ``-help``."""
         return self.value and f" <{self.value}>"
 
 
@@ -28,19 +28,19 @@ OWN = {
     "ehl_restart": Option(
         "FILE.restart.h5", "begin at time 0", "continue from there and append to the result"
     ),
-    "ehl_scheme": Option("newton|sweep", "newton", "iteration; sweep is the paper's own, slower"),
+    "ehl_scheme": Option("newton|sweep", "newton", "iteration; sweep: Gauss-Seidel of the paper, slower"),
     "ehl_set": Option("TABLE.KEY=VALUE", "the case as it is", "set a key of the case; may be repeated"),
     "ehl_time_limit": Option("MINUTES", "none", "stop after this wall clock time, restart file written"),
 }
 
 
 def usage():
-    """Usage of the command, by the name that was typed."""
+    """Usage of the command, with the name by which it was called."""
     return f"{program('ehlpetsc')} CASE.toml [options]"
 
 
 def faults(names):
-    """One line for each unknown option of the program, with the nearest known one.
+    """One message for each unknown option of the program, with the most similar known option.
 
     Parameters
     ----------
@@ -66,22 +66,22 @@ def help_text():
         "Options come from: program defaults < [petsc] of the case < PETSC_OPTIONS < command line.",
         "Own options:",
     ]
-    lines += [f"  -{name}{o.shown}: {o.text} (default: {o.default})" for name, o in OWN.items()]
+    lines += [f"  -{name}{o.placeholder}: {o.text} (default: {o.default})" for name, o in OWN.items()]
     lines += [
         "  --explain: print a summary of the case: expected film, run time, file size; nothing is run",
         "  --ranks: print the default number of ranks of the case, one or two; nothing is run",
         "  --keys [TABLE or TABLE.KEY]: print the keys of a case file with units, bounds, defaults",
         "  --template: print a commented case to begin from",
-        "With a case, -help also lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",
         "Other commands, each with -h: ehlpetsc plot, post, summary, compare, study, ensemble, collisions,",
         "  contacts; ehlpetsc explain CASE.toml, keys, template, python SCRIPT.py, completion (for bash)",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
+        "With a case, -help then lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",
     ]
     return "\n".join(lines)
 
 
 def text_of(options, name):
-    """Value of an own option, "" where it is not given.
+    """Value of an option of the program; "" if it is not set.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def text_of(options, name):
     Raises
     ------
     UsageError
-        It has no value.
+        The option has no value.
     """
     value = options.getString(name, "")
     if options.hasName(name) and not value:
@@ -100,7 +100,7 @@ def text_of(options, name):
 
 
 def time_limit(options):
-    """Minutes of -ehl_time_limit, 0 where there is no limit.
+    """Minutes of -ehl_time_limit; 0: no limit.
 
     Raises
     ------

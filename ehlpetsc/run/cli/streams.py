@@ -8,15 +8,15 @@ import sys
 def harden_std_streams():
     """Keep this process alive when its standard output or error cannot be written.
 
-    Later output is dropped, that of libraries in the process as well; the loss of standard output is reported
-    once on standard error. Closed descriptors 0 to 2 are opened on /dev/null: the next file opened would get
-    their number, and the printed text with it.
+    Later output is dropped, including the output of libraries in the process; the loss of standard output is
+    reported once on standard error. Closed descriptors 0 to 2 are opened on /dev/null: otherwise the next
+    file opened would get their number and receive the printed text.
     """
     for descriptor in range(3):
         try:
             os.fstat(descriptor)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free number
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(errors="backslashreplace")  # names of files need not be text
     sys.stdout = FaultTolerantStream(sys.stdout, 1, "standard output")
@@ -24,15 +24,15 @@ def harden_std_streams():
 
 
 class FaultTolerantStream:
-    """A text stream that drops output once it cannot be written.
+    """Text stream that drops output once it cannot be written.
 
     Parameters
     ----------
     stream : file or None
-        None: closed from the start.
+        None: closed from the beginning.
     descriptor : int
     name : str, optional
-        Of the stream, for the report of its loss.
+        Name of the stream, for the report of its loss.
     """
 
     def __init__(self, stream, descriptor, name=""):
@@ -44,24 +44,24 @@ class FaultTolerantStream:
         return getattr(self._stream, name)
 
     def write(self, text):
-        """As of a file."""
+        """Write like a file."""
         self._try(self._stream.write, text)
         return len(text)
 
     def flush(self):
-        """As of a file."""
+        """Flush like a file."""
         self._try(self._stream.flush)
 
     def _try(self, action, *arguments):
         try:
             action(*arguments)
         except OSError as error:
-            self._give_up(error)
+            self._redirect(error)
 
-    def _give_up(self, error):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, self._descriptor)  # what the libraries print goes there too
-        os.close(nowhere)
+    def _redirect(self, error):
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, self._descriptor)  # also for the output of libraries
+        os.close(null)
         with contextlib.suppress(OSError):
             self._stream.flush()
         if self.lost is None and self._name:

@@ -1,6 +1,6 @@
-"""Limits of the model that a run exceeded: one sentence each with the figure, printed at its end.
+"""Results outside the validity of the model: one message each with the value, printed at the end of a run.
 
-They follow from the totals over all steps; the sentences are stored in the result file as well.
+The messages follow from the totals over all steps and are also stored in the result file.
 """
 
 import numpy as np
@@ -12,13 +12,13 @@ from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
 from ehlpetsc.surfaces.profile import WAVE_NODES
 
 ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
-MAX_MEASURED_VISCOSITY = 1e7  # Pa s: highest viscosities that have been measured of oils
-MAX_MASS_ERROR = 0.05  # of the oil that the contact carries
-MAX_DECADES = 300  # of a viscosity that is printed
+MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
+MAX_MASS_ERROR = 0.05  # of the oil in the contact
+MAX_DECADES = 300  # log10 of the largest viscosity that is printed with digits
 
 
 def limits(case, scales, rough, totals):
-    """Limits that a run exceeded, one sentence each.
+    """Messages on results outside the validity of the model.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def limits(case, scales, rough, totals):
     scales : physics.scales.Scales
     rough : surfaces.roughness.Roughness or None
     totals : dict of str to number
-        Figures of the run, see `ehlpetsc.results.totals.Totals`.
+        Scalars over the run, see `ehlpetsc.results.totals.Totals`.
 
     Returns
     -------
@@ -34,10 +34,10 @@ def limits(case, scales, rough, totals):
     """
     if "p_max" not in totals:  # no step was taken
         return []
-    sentences = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
+    messages = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
     if case.fluid:
-        sentences += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
-    return [line for line in sentences if line]
+        messages += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
+    return [message for message in messages if message]
 
 
 def _yield(case, totals):
@@ -78,11 +78,11 @@ def _balance(case, totals):
     error = totals["mass_error"]
     if error <= MAX_MASS_ERROR:
         return None
-    figure = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
+    ratio = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
     cure = "a finer mesh or smaller snes_atol reduces it"
     if not case.contact.has_contact_pressure:
         cure = 'nodes in direct contact do not conserve mass, contact.model = "mixed" does'
-    return f"oil balance: the mass defect of one step is {figure} the oil that the contact carries; {cure}"
+    return f"oil balance: the mass defect of one step is {ratio} the oil that the contact carries; {cure}"
 
 
 def _molecules(totals):

@@ -9,17 +9,17 @@ from ehlpetsc.quantities import STEP_SCALARS
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
-MIN_RATE_TIME = 1.0  # s after the first step, which waits for the compiler, before a remaining time is shown
+MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
 
-_COLUMNS = {name: figure.progress for name, figure in STEP_SCALARS.items() if figure.progress}
+_COLUMNS = {name: scalar.progress for name, scalar in STEP_SCALARS.items() if scalar.progress}
 _REMAINING = "{:>9s}"
 
 
 def on_terminal(stream):
     """Whether output is shown on a terminal.
 
-    mpirun gives every rank a terminal, even where its own output is a file: the output of the parent process
-    decides, and run_mpi.sh sets TERM.
+    Under mpirun every rank has a terminal, even if the output of mpirun is a file: the output of the parent
+    process decides, and run_mpi.sh sets TERM.
     """
     if not stream.isatty() or os.environ.get("TERM") == "dumb":
         return False
@@ -45,15 +45,15 @@ class Progress:
     begin, end : float
         Time at the start of this run and at its end [s].
     stream : file, optional
-        Where to write; standard output by default.
+        Default: standard output.
     """
 
     def __init__(self, begin, end, stream=None):
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
         self._bar = on_terminal(self._stream) or in_notebook()
-        self._output = None  # of a notebook's cell
-        self._marks = []  # wall clock and time of the run, from the first step on, now and then
+        self._output = None  # display of a notebook's cell
+        self._samples = []  # (wall clock, time of the run) since the first step
         self._shown = None
         self._pending = None
 
@@ -62,8 +62,8 @@ class Progress:
 
         Parameters
         ----------
-        figures : dict of str to number
-            Of the step, as below ``steps/`` of a result file.
+        scalars : dict of str to number
+            Scalars of the step, as in ``steps/`` of a result file.
         """
         now = clock.monotonic()
         self._pending = scalars
@@ -83,29 +83,29 @@ class Progress:
         scalars, self._pending = self._pending, None
         done = (scalars["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
         done = min(max(done, 0.0), 1.0)
-        left = self._left(now, scalars["time"])
+        remaining = self._remaining(now, scalars["time"])
         if self._bar:
-            self._draw_bar(done, left, scalars)
+            self._draw_bar(done, remaining, scalars)
         else:
             if self._shown is None:
                 self._stream.write(_heading(scalars))
-            self._stream.write(_line(scalars, left))
+            self._stream.write(_line(scalars, remaining))
         self._stream.flush()
         self._shown = now
 
-    def _left(self, now, time):
-        """Remaining time, by the rate over the last half of the wall clock time; "?" before it is known."""
-        if not self._marks or now - self._marks[-1][0] > SECONDS_BETWEEN_BARS:
-            self._marks.append((now, time))
-        begun = self._marks[0][0]
-        since = next(mark for mark in reversed(self._marks) if mark[0] <= begun + 0.5 * (now - begun))
+    def _remaining(self, now, time):
+        """Remaining time from the rate over the last half of the wall clock time; "?": not known yet."""
+        if not self._samples or now - self._samples[-1][0] > SECONDS_BETWEEN_BARS:
+            self._samples.append((now, time))
+        begun = self._samples[0][0]
+        since = next(sample for sample in reversed(self._samples) if sample[0] <= begun + 0.5 * (now - begun))
         if now - begun < MIN_RATE_TIME and time < self._end or time <= since[1]:
             return "0s" if time >= self._end else "?"
         return duration((now - since[0]) * max(self._end - time, 0.0) / (time - since[1]))
 
-    def _draw_bar(self, done, left, scalars):
-        shown = [column.bar.format(value) for column, value in _scaled(scalars) if column.bar]
-        text = "  ".join([f" {100 * done:5.1f} %", *shown, f"{left} left"])
+    def _draw_bar(self, done, remaining, scalars):
+        values = [column.bar.format(value) for column, value in _scaled(scalars) if column.bar]
+        text = "  ".join([f" {100 * done:5.1f} %", *values, f"{remaining} left"])
         columns = shutil.get_terminal_size().columns
         width = max(10, columns - len(text) - 3)
         filled = round(done * width)
@@ -116,7 +116,7 @@ class Progress:
             self._stream.write("\r" + bar.ljust(columns - 1))
 
     def _update_cell(self, bar):
-        """Replace the bar in a notebook's cell: a carriage return would leave a line for each."""
+        """Replace the bar in a notebook's cell, where a carriage return does not overwrite a line."""
         from IPython.display import display
 
         if self._output is None:
@@ -142,7 +142,7 @@ class ProgressOutput:
         """Show a step, but not the steady start."""
         if self._progress is not None:
             self._progress.step(state.scalars)
-        elif not self._simulation.finished:  # of a steady case nothing follows
+        elif not self._simulation.finished:  # a steady case has no steps
             self._progress = self._of(state.time)
 
     def close(self, status):
@@ -167,13 +167,13 @@ def _heading(scalars):
     return " ".join([*cells, _REMAINING.format("remaining")]) + "\n"
 
 
-def _line(scalars, left):
+def _line(scalars, remaining):
     cells = [column.form.format(value) for column, value in _scaled(scalars)]
-    return " ".join([*cells, _REMAINING.format(left)]) + "\n"
+    return " ".join([*cells, _REMAINING.format(remaining)]) + "\n"
 
 
 def duration(seconds):
-    """A time span for people: ``45s``, ``12m05s``, ``3h20m``, ``2d04h``."""
+    """Duration as text: ``45s``, ``12m05s``, ``3h20m``, ``2d04h``."""
     s = round(seconds)
     if s < 60:
         return f"{s}s"
@@ -185,7 +185,7 @@ def duration(seconds):
 
 
 def summary_line(status, totals, wall):
-    """Last line of a run, for grep.
+    """Last line of the output of a run.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Recorder of a run: its outputs, the lock on their files, and the message where a write fails."""
+"""Recorder of a run: result and restart file, the lock on these files, advice after a failed write."""
 
 import contextlib
 from pathlib import Path
@@ -17,7 +17,7 @@ from ehlpetsc.run.restart.resume_advice import resume_advice
 
 
 class Recorder:
-    """Stores a simulation's accepted states; an output itself.
+    """Output that stores the accepted states of a simulation.
 
     Parameters
     ----------
@@ -58,19 +58,19 @@ class Recorder:
                 self._lock.release()
 
     def lock_output(self, restart=None, overwrite=False):
-        """Check before the computation that the result may be written, and lock it until the end.
+        """Check before the run that the result can be written, and lock it until the end.
 
         Parameters
         ----------
         restart : path-like, optional
-            Restart file to resume from: the result is then continued.
+            Restart file from which the run and the result are continued.
         overwrite : bool
             Whether existing files may be replaced.
 
         Returns
         -------
         path-like or None
-            Restart file to resume from: that given, else that of an unfinished run of the very same case.
+            Restart file to resume from: `restart`, otherwise that of an unfinished run of the same case.
 
         Raises
         ------
@@ -79,13 +79,13 @@ class Recorder:
         check_file("restart", restart)
         if self.output is None:
             return restart
-        return self.comm.bcast(on_root(self.comm, self._reserve, restart, overwrite))
+        return self.comm.bcast(on_root(self.comm, self._lock_files, restart, overwrite))
 
-    def _reserve(self, restart, overwrite):
+    def _lock_files(self, restart, overwrite):
         case = self.simulation.case
-        read = inputs_of(case)
-        check_output_path(self.output, [*read, Path(restart)] if restart else read)
-        check_output_path(self.restart, read)
+        inputs = inputs_of(case)
+        check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
+        check_output_path(self.restart, inputs)
         self._lock = Lock(self.output)
         self._lock.acquire()
         for path in (self.output, self.restart):
@@ -100,14 +100,14 @@ class Recorder:
         Returns
         -------
         list of str
-            Notes for the user, one line each.
+            Notes for the user.
         """
         simulation, model = self.simulation, self.simulation.stepper.problem.model
-        found, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
-        solution = found.state
-        simulation.resume(solution, found.baseline, found.positions)
-        self._observe(Totals(found.totals))
-        self.result.open(solution.step, found.contact_count)
+        stored, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
+        solution = stored.state
+        simulation.resume(solution, stored.baseline, stored.positions)
+        self._observe(Totals(stored.totals))
+        self.result.open(solution.step, stored.contact_count)
         self._restart_file.note_stored()
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
 
@@ -129,7 +129,7 @@ class Recorder:
             self._restart_file.save()
 
     def close(self, status):
-        """Write what is left and how the run ended.
+        """Write the remaining data and the status of the run.
 
         Parameters
         ----------

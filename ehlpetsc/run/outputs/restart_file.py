@@ -1,4 +1,4 @@
-"""The restart file as an output: written every few minutes, when a run is stopped and when a write fails."""
+"""The restart file as an output: written every few minutes, at a stop and after a failed write."""
 
 import contextlib
 import time as clock
@@ -9,13 +9,13 @@ from ehlpetsc.run.restart import checkpoint
 
 
 class RestartFile:
-    """Restart file of a simulation, written only for states that the result file holds.
+    """Restart file of a simulation, written only for states in the result file.
 
     Parameters
     ----------
     simulation : run.simulation.Simulation
     path : Path or None
-        None: none.
+        None: no restart file.
     result : .result_file.ResultFile
     totals : results.totals.Totals
     """
@@ -27,11 +27,11 @@ class RestartFile:
 
     @property
     def stored_step(self):
-        """Last step up to which the result file is complete, on rank 0; None: unknown."""
+        """Step up to which the result file is complete, on rank 0; None: unknown."""
         return self._stored and self._stored.state.step
 
     def write(self, state):
-        """Keep a state that the result file holds; save the restart file where it is due."""
+        """Remember a state in the result file; write the restart file if it is due."""
         self.note_stored()
         due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
         if state.step and self.comm.bcast(due):
@@ -39,7 +39,7 @@ class RestartFile:
             self._saved = clock.monotonic()
 
     def close(self, status):
-        """Write the file of an unfinished run, and of a pass for the next one."""
+        """Write the file of an unfinished run, and of a pass that is continued by the next one."""
         time = self.simulation.case.time
         needed = status is not ExitStatus.DONE or time is not None and time.passes > 1
         if needed and self.simulation.solution is not None and self.result.is_open:
@@ -51,13 +51,13 @@ class RestartFile:
             on_root(self.comm, self._save)
 
     def save_stored(self):
-        """Write the file, if that is possible, for the last state that the result file holds; on rank 0."""
+        """Write the file, if possible, for the last state in the result file; on rank 0."""
         with contextlib.suppress(OutputError):
             if self._stored:
                 self._write(self._stored)
 
     def note_stored(self):
-        """Keep a state up to which the result file on rank 0 is complete."""
+        """Remember the state up to which the result file on rank 0 is complete."""
         state = self.simulation.solution
         if self.path and self.simulation.case.time and self.result.holds(state):
             self._stored = self._now()

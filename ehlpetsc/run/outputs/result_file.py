@@ -1,4 +1,4 @@
-"""The result file as an output; rank 0 alone writes it."""
+"""The result file as an output, written by rank 0."""
 
 import mpi4py
 import numpy as np
@@ -15,7 +15,7 @@ from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.outputs.stored_surfaces import body_depths, profiles
 from ehlpetsc.stepping.step_control import on_level
 
-MESSAGE_BYTES = 2**30  # MPI counts to twice as many
+MESSAGE_BYTES = 2**30  # half of the largest count of MPI
 
 
 class ResultFile:
@@ -27,12 +27,12 @@ class ResultFile:
     path : Path or None
         None: in memory.
     totals : results.totals.Totals
-        Of the run, for the limits of the model.
+        Totals of the run, for the limits of the model.
 
     Attributes
     ----------
     limits : list of str
-        Limits of the model that the run exceeded, known on rank 0 once it is closed.
+        Messages of :func:`.limits.limits`, on rank 0, set by :meth:`close`.
     """
 
     def __init__(self, simulation, path, totals):
@@ -40,12 +40,12 @@ class ResultFile:
         self.limits, self._writer, self.is_open = [], None, False
 
     def open(self, step=None, contact_count=None):
-        """Create the file; after a restart, continue it behind `step` with its contact counts."""
+        """Create the file; after a restart, continue it after `step` with its contact counts."""
         on_root(self.comm, self._create, step, contact_count)
         self.is_open = True
 
     def write(self, state):
-        """Append the step and, where it is due, a frame."""
+        """Append the step and, if it is due, a frame."""
         if not self.is_open:
             self.open()
         with events.OUTPUT:
@@ -61,27 +61,27 @@ class ResultFile:
             on_root(self.comm, self._close, status)
 
     def abandon(self, status):
-        """Close on this rank alone: the error may not occur on the others."""
+        """Close the file on this rank without communication, after an error of this rank."""
         if self._writer:
             self._writer.close(status.words)
 
     def to_bytes(self):
         """The bytes of a result in memory, on every rank."""
-        image = self._writer.to_bytes() if self.comm.rank == 0 else None
+        content = self._writer.to_bytes() if self.comm.rank == 0 else None
         if self.comm.size == 1:
-            return image
-        size = self.comm.bcast(image and len(image))
-        whole = np.frombuffer(image, "u1") if image else np.empty(size, "u1")
+            return content
+        size = self.comm.bcast(content and len(content))
+        buffer = np.frombuffer(content, "u1") if content else np.empty(size, "u1")
         for begin in range(0, size, MESSAGE_BYTES):
-            self.comm.Bcast(whole[begin : begin + MESSAGE_BYTES])
-        return whole.tobytes()
+            self.comm.Bcast(buffer[begin : begin + MESSAGE_BYTES])
+        return buffer.tobytes()
 
     def contact_count(self):
         """Steps in contact of each node so far, on rank 0."""
         return self._writer.contact_count.copy()
 
     def holds(self, state):
-        """Whether the file on rank 0 holds a state and all before it."""
+        """Whether the file on rank 0 contains a state and all states before it."""
         return self._writer is not None and self._writer.written == (state.step, state.time)
 
     def _append(self, state):

@@ -1,17 +1,17 @@
-"""Warning when a run becomes several times slower than at its begin."""
+"""Warning when a run becomes several times slower than at its beginning."""
 
 import statistics
 
-MEDIAN_STEPS = 20  # of a median
-SKIPPED_STEPS = 3  # first steps, which load and compile
-SLOWDOWN = 3.0  # contact and finer films take up to twice the time of an iteration
+MEDIAN_STEPS = 20  # steps of a median
+SKIPPED_STEPS = 3  # first steps, which include loading and compilation
+SLOWDOWN = 3.0  # ratio that causes the warning; contact and thin films alone may double an iteration's time
 
 
 class SlowSteps:
-    """Output that warns when an iteration takes several times as long as the first ones.
+    """Output that warns when an iteration takes several times as long as at the beginning.
 
-    Ranks wait for each other some twenty times an iteration: where they share cores with other work, each
-    wait lasts until the other rank has its turn.
+    Ranks wait for each other about twenty times an iteration: if they share cores with other processes, each
+    wait lasts until the other rank is scheduled.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class SlowSteps:
         self._seen, self._first, self._latest, self._warned = 0, [], [], False
 
     def write(self, state):
-        """Compare the latest steps with the first ones; the steady start counts as none."""
+        """Compare the latest steps with the first ones, without the steady start."""
         scalars = state.scalars
         if scalars["step"] == 0 or not scalars["newton"]:
             return

@@ -1,11 +1,11 @@
-"""Surfaces of a result: heights, and depths kept in the bodies by effects, over body points.
+"""Surfaces of a result: heights, and depths of effects such as wear, at body points.
 
-A body point s is at x = s + speed time; where a result begins after a change of speed an offset makes it so.
+A body point s is at x = s + speed time; if a result begins after a change of speed, s includes an offset.
 """
 
 import numpy as np
 
-OFFSET_TOLERANCE = 1e-6  # mesh spacings: ways nearer than this differ by rounding
+OFFSET_TOLERANCE = 1e-6  # mesh spacings: smaller offsets are rounding
 
 
 def profiles(simulation):
@@ -18,42 +18,42 @@ def profiles(simulation):
     Returns
     -------
     dict of str to tuple
-        By side: body points and heights [m], speed [m/s], roughness parameters, names of the effects' depths.
-        None for a smooth side without such depths.
+        By surface: body points and heights [m], speed [m/s], roughness parameters, names of the effects'
+        depths. None for a smooth surface without such depths.
     """
     depths = [name for effect in simulation.stepper.effects for name in effect.surface]
     rough, speeds = simulation.roughness, (simulation.scales.u1, simulation.scales.u2)
-    found = {}
+    sides = {}
     for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
         profile = rough and rough.side(side)
         if profile:
             scalars = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
-            found[side] = profile.s + offset, profile.z, speeds[k], scalars, depths
+            sides[side] = profile.s + offset, profile.z, speeds[k], scalars, depths
         else:
-            found[side] = _smooth_side(simulation, k, offset, depths) if depths else None
-    return found
+            sides[side] = _smooth_side(simulation, k, offset, depths) if depths else None
+    return sides
 
 
 def body_depths(simulation):
-    """Depths kept in the bodies by effects, at the body points of :func:`profiles` [m].
+    """Depths of effects at the body points of :func:`profiles` [m].
 
     Returns
     -------
     list of (str, str, ndarray)
-        Side, name of the quantity and values.
+        Surface, name of the quantity and values.
     """
     offsets, solution = _offsets(simulation), simulation.solution
     sides = profiles(simulation)
     points = [
         None if one is None else one[0] - offset for one, offset in zip(sides.values(), offsets, strict=True)
     ]
-    found = []
+    depths = []
     for effect in simulation.stepper.effects:
         for name, both in effect.on_surfaces(solution.records[effect.name], points).items():
-            found += [
+            depths += [
                 (side, name, depth) for side, depth in zip(sides, both, strict=True) if depth is not None
             ]
-    return found
+    return depths
 
 
 def _offsets(simulation):
@@ -62,12 +62,12 @@ def _offsets(simulation):
         return 0.0, 0.0
     now = simulation.solution.travelled
     constant = simulation.operation.travelled(simulation.solution.time)
-    apart = [way - steady for way, steady in zip(now, constant, strict=True)]
-    return [offset if abs(offset) > OFFSET_TOLERANCE * simulation.scales.dx else 0.0 for offset in apart]
+    offsets = [distance - steady for distance, steady in zip(now, constant, strict=True)]
+    return [offset if abs(offset) > OFFSET_TOLERANCE * simulation.scales.dx else 0.0 for offset in offsets]
 
 
 def _smooth_side(simulation, side, offset, depths):
-    """Body points of a smooth surface that passes, for its depths; 0: surface 1."""
+    """Body points of a smooth surface that pass the mesh, for its depths; `side` 0: surface 1."""
     scales = simulation.scales
     least, largest = simulation.operation.extent()[side]
     ends = scales.x[[0, -1]] * scales.a

@@ -6,7 +6,7 @@ from ehlpetsc import __version__
 from ehlpetsc.run.preview.forecast import steps
 from ehlpetsc.run.preview.surfaces import lambda_line, surface_lines
 
-WORTH_TWO_RANKS = 8000  # nodes: fewer gain little on a quiet machine, and lose on a busy one
+MIN_NODES_OF_TWO_RANKS = 8000  # with fewer, two ranks gain little on a quiet machine and lose on a busy one
 
 
 def banner(case, scales, rough, ranks):
@@ -30,13 +30,14 @@ def banner(case, scales, rough, ranks):
         f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
         *(surface_lines(case, scales, rough) if rough else []),
         *lambda_line(case, scales, rough),
-        *_ranks_for_nothing(scales, ranks),
+        *_note_on_ranks(scales, ranks),
     ]
 
 
 def worthwhile_ranks(case):
-    """Default number of ranks: two for a series, and for a large mesh where two cores are idle; else one."""
-    return 2 if case.series or (case.mesh.nodes >= WORTH_TWO_RANKS and idle_cores() >= 2) else 1
+    """Default number of ranks: two for a series, and for a large mesh if two cores are idle; else one."""
+    is_large = case.mesh.nodes >= MIN_NODES_OF_TWO_RANKS
+    return 2 if case.series or (is_large and idle_cores() >= 2) else 1
 
 
 def idle_cores():
@@ -44,10 +45,10 @@ def idle_cores():
     return round(len(os.sched_getaffinity(0)) - os.getloadavg()[0])
 
 
-def _ranks_for_nothing(scales, ranks):
-    if ranks == 1 or scales.nx >= WORTH_TWO_RANKS:
+def _note_on_ranks(scales, ranks):
+    if ranks == 1 or scales.nx >= MIN_NODES_OF_TWO_RANKS:
         return []
     return [
-        f"note: one rank is quicker: at {scales.nx} nodes ranks wait for each other longer than they save; "
+        f"note: one rank is faster: at {scales.nx} nodes ranks wait for each other longer than they save; "
         "the members of a series gain from ranks at any size"
     ]

@@ -10,16 +10,16 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 
-MIN_FILM_LEFT = 0.95  # of the flooded film: below it the inlet is reported as too near
-PROPOSED_FILM_LEFT = 0.99  # of the flooded film, with the proposed inlet
-MAX_FILM_SLOPE = 0.25  # films that the gap opens from one node to the next: 5 % of the film are missing
-MESH_MARGIN = 1.1  # a mesh that lacks a few percent of its points causes no warning
-MAX_OPENING = 5.0  # films opened from one node to the next: no smooth film is left
-MAX_INLET = 100.0  # half widths that mesh.inlet may be
+MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
+PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
+MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
+MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
+MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
+MAX_INLET = 100.0  # half widths: largest distance of the proposed inlet
 
 
 def domain_warnings(case, scales):
-    """Warnings of an inlet too near, or a mesh too coarse for the inlet sweep, with the cure.
+    """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure.
 
     Parameters
     ----------
@@ -40,13 +40,13 @@ def domain_warnings(case, scales):
 
 
 def domain_faults(case, scales):
-    """Faults of the domain that make the result meaningless, one line each; checked before a run.
+    """Faults of the domain that make the result meaningless, one message each; checked before a run.
 
-    Parameters as of `domain_warnings`.
+    Parameters as in :func:`domain_warnings`.
     """
     if case.contact.yield_pressure:
         return _too_narrow(case, scales)
-    if case.fluid is None or case.contact.has_contact_pressure:  # where the boundary film stays
+    if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
     opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
     if opening <= MAX_OPENING:
@@ -59,32 +59,32 @@ def domain_faults(case, scales):
 def _too_narrow(case, scales):
     """Fault of a domain too narrow to bear the load at the yield pressure."""
     pressure = min(case.contact.yield_pressure)
-    needed, there = scales.load / (pressure * scales.a), case.mesh.outlet - case.mesh.inlet
-    if needed < there:
+    needed, width = scales.load / (pressure * scales.a), case.mesh.outlet - case.mesh.inlet
+    if needed < width:
         return []
     return [
         f"{case.path}: contact.yield_pressure = {1e-9 * pressure:g} GPa bears the load on {needed:.3g} half "
-        f"widths or more, the domain has {there:.3g}; put mesh.inlet and mesh.outlet further out"
+        f"widths or more, the domain has {width:.3g}; put mesh.inlet and mesh.outlet further out"
     ]
 
 
 def _thinnest(case, scales):
-    """Expected film or, where it is thicker, the film left by solids in contact [a^2/R]."""
+    """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
     return max(expected_film(case, scales), smallest_film(case.contact, scales))
 
 
 def _near_inlet(case, scales):
     film, inlet = expected_film(case, scales), -case.mesh.inlet
-    left = film_left_by_inlet(film, inlet)
-    if left >= MIN_FILM_LEFT:
+    ratio = film_left_by_inlet(film, inlet)
+    if ratio >= MIN_FILM_RATIO:
         return []
-    further = inlet
-    while further < MAX_INLET and film_left_by_inlet(film, further) < PROPOSED_FILM_LEFT:
-        further += 0.1
+    proposed = inlet
+    while proposed < MAX_INLET and film_left_by_inlet(film, proposed) < PROPOSED_FILM_RATIO:
+        proposed += 0.1
     return [
-        f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * left:.0f} % of "
-        f"the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * further) / 10.0:g} leaves "
-        f"{100 * PROPOSED_FILM_LEFT:g} %"
+        f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * ratio:.0f} % "
+        f"of the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * proposed) / 10.0:g} leaves "
+        f"{100 * PROPOSED_FILM_RATIO:g} %"
     ]
 
 

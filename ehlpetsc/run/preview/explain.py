@@ -23,7 +23,7 @@ from ehlpetsc.surfaces.roughness import Roughness
 
 
 def explain(case):
-    """Text summary: conditions, mesh size, effects that are off.
+    """Text summary of a case: conditions, mesh size, effects that are switched off.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def _contact(s):
 
 
 def _layer(contact, s):
-    """Films at which a compliant layer carries load; [] without one."""
+    """Films at which a compliant layer carries load; [] without a layer."""
     if contact.asperity_height is None:
         return []
     law = GAMMA * contact.asperity_height, contact.asperity_stiffness * 0.5 * s.E
@@ -106,21 +106,21 @@ def _motion(case, s):
 
 
 def _variable(case, s):
-    """Ranges of conditions that change with time, beside the reference state of the lines above."""
+    """Ranges of conditions that change with time."""
     table, operation = case.conditions, operation_of(case, s)
     origin = "gear pair" if case.gears else "table"
 
-    def of(values, unit):
+    def range_of(values, unit):
         low, high = values.min(), values.max()
         return f"{low:.4g} {unit}" if low == high else f"{low:.4g} to {high:.4g} {unit}"
 
     repeats = f", {table.repeat} times" if table.repeat > 1 else ""
     moved = 1e3 * s.a * case.time.travel
     return [
-        f"Conditions of a {origin}{repeats}: load {of(1e-3 * table.load, 'kN/m')}, "
-        f"radius {of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
-        f"Motion: mean {of(table.entrainment, 'm/s')}; surface 1 {of(table.u1, 'm/s')}, "
-        f"surface 2 {of(table.u2, 'm/s')}",
+        f"Conditions of a {origin}{repeats}: load {range_of(1e-3 * table.load, 'kN/m')}, "
+        f"radius {range_of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
+        f"Motion: mean {range_of(table.entrainment, 'm/s')}; surface 1 {range_of(table.u1, 'm/s')}, "
+        f"surface 2 {range_of(table.u2, 'm/s')}",
         f"Time: {1e3 * operation.duration:.4f} ms, the faster surface moves {moved:.3f} mm; "
         f"{operation.step_count(s.dt)} steps",
     ]
@@ -140,7 +140,7 @@ def _size(case, s, rough):
 def _series(case):
     """Members of a series and their total cost."""
     series = tomllib.loads(case.text)["series"]
-    shown = "; ".join(
+    values = "; ".join(
         f"{key} = {', '.join(map(str, values))}"
         for key, values in zip(keys_of(series), zip(*combinations(series), strict=True), strict=True)
     )
@@ -150,7 +150,7 @@ def _series(case):
         seconds += work_time(member, scales, Roughness.of(member, scales))
         size += file_size(member, scales)
     return [
-        f"A series: {shown}; below, the base case.",
+        f"A series: {values}; below, the base case.",
         f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
     ]
 

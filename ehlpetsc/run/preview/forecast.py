@@ -11,15 +11,15 @@ from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.hdf5.datasets import CHUNK_BYTES, CHUNK_STEPS
 from ehlpetsc.surfaces.entry_times import entry_times
 
-# of one Newton iteration on one rank, in times of `probe`: as such and for each node, measured side by side
-# with it on 141 to 2661 nodes; a step takes that of its iterations and one more
-ITERATION, NODE = 0.105, 6.7e-5
-# iterations a step: before roughness comes, under it, in mixed lubrication
-SMOOTH, FILM, MIXED = 1.6, 2.5, 4.5
+# time of a Newton iteration on one rank over that of `probe`: constant part and part for each node, measured
+# side by side on 141 to 2661 nodes; a step takes the time of its iterations and of one more
+ITERATION_PROBES, NODE_PROBES = 0.105, 6.7e-5
+# Newton iterations a step: before roughness enters, with roughness in full film, in mixed lubrication
+SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 PROBE_OPERATIONS = 3000
 START_PROBES = 70.0  # time of imports and of loading compiled loops, over that of `probe`
-FULL_FILM = 3.0  # lambda ratio from which on they do not
-STEADY = 20  # iterations of a steady solution
+FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
+STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 
 
 def lambda_ratio(case, s, rough):
@@ -29,7 +29,7 @@ def lambda_ratio(case, s, rough):
 
 
 def run_time(case, s, rough):
-    """Expected wall clock time on one rank of this machine, as busy as it is now [s]; of all passes."""
+    """Expected wall clock time of all passes on one rank of this machine at its current load [s]."""
     return begin_time() + work_time(case, s, rough)
 
 
@@ -41,29 +41,30 @@ def begin_time():
 def work_time(case, s, rough):
     """Wall clock time of the iterations [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
-    return passes * (iterations(case, s, rough) + solves) * (ITERATION + NODE * s.nx) * probe()
+    each = (ITERATION_PROBES + NODE_PROBES * s.nx) * probe()
+    return passes * (iterations(case, s, rough) + solves) * each
 
 
 def iterations(case, s, rough):
     """Expected Newton iterations of a run."""
-    arrived = _share_under_roughness(case, s, rough)
+    fraction = _rough_fraction(case, s, rough)
     mixed = rough and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
-    each = (1.0 - arrived) * SMOOTH + arrived * (MIXED if mixed else FILM)
-    return STEADY + (steps(s) if case.time else 0) * each
+    each = (1.0 - fraction) * SMOOTH_ITERATIONS + fraction * (MIXED_ITERATIONS if mixed else FILM_ITERATIONS)
+    return STEADY_ITERATIONS + (steps(s) if case.time else 0) * each
 
 
-def _share_under_roughness(case, s, rough):
-    """Share of the steps after the first profile has reached the contact."""
+def _rough_fraction(case, s, rough):
+    """Fraction of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
-    arrivals = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
-    reaches = min(found[0] if found else 0.0 for found in arrivals)
-    return min(max(1.0 - reaches / case.time.travel, 0.0), 1.0)
+    entries = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
+    first = min(times[0] if times else 0.0 for times in entries)
+    return min(max(1.0 - first / case.time.travel, 0.0), 1.0)
 
 
 @cache
 def probe():
-    """Time of `PROBE_OPERATIONS` small array operations on this machine [s], such as a step consists of."""
+    """Time of `PROBE_OPERATIONS` small array operations, as in a time step, on this machine [s]."""
     return sorted(_timed_operations() for _ in range(3))[1]
 
 
@@ -78,7 +79,7 @@ def _timed_operations():
 
 
 def steps(s):
-    """Time steps of a transient case, none of them halved."""
+    """Number of time steps of a transient case without halved steps."""
     return math.ceil(s.duration / s.dt - 1e-9)
 
 

@@ -39,7 +39,7 @@ def lambda_line(case, s, rough):
 
 
 def _regime(ratio):
-    """Usual reading of the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
+    """Lubrication regime by the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
     if ratio > FULL_FILM:
         return "full film"
     return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
@@ -60,35 +60,35 @@ def _profile(case, s, profile):
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
         if case.time is not None and profile.is_moving:
             lines += _part_in_contact(case, s, profile)
-    arrives = entry_times(profile, s)
-    if arrives:
-        reaches, fills = arrives
-        then = "and fills it" if profile.repeats else "and has its middle at x = 0"
-        lines.append(f"reaches the contact at travel {reaches:.2f} a {then} at {fills:.2f} a")
+    times = entry_times(profile, s)
+    if times:
+        reaches, fills = times
+        end = "and fills it" if profile.repeats else "and has its middle at x = 0"
+        lines.append(f"reaches the contact at travel {reaches:.2f} a {end} at {fills:.2f} a")
     return lines
 
 
 def _part_in_contact(case, s, profile):
-    """Part of a measured profile that passes the whole contact, and the travel needed for all of it."""
-    arrives, length = entry_times(profile, s)[0], profile.given.length
+    """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
+    reaches, length = entry_times(profile, s)[0], profile.given.length
     slower = s.u_max / abs(profile.speed)
-    through = s.a * (case.time.travel - arrives - 2.0 * slower) / slower
+    through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower
     if through >= length:
         return []
-    needed = arrives + (2.0 + length / s.a) * slower
+    needed = reaches + (2.0 + length / s.a) * slower
     part = f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
     return [f"of {1e3 * length:.4g} mm {part}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"]
 
 
 def height_lines(rough, s):
-    """Valleys and peaks of the profiles beside those of means over the cells of a mesh."""
+    """Height ranges of the profiles, and of their means over the cells of the mesh."""
     for side in ("1", "2"):
         profile = rough and rough.side(side)
         if profile:
-            given = profile.heights.min(), profile.heights.max()
-            given, seen = (
+            heights = profile.heights.min(), profile.heights.max()
+            heights, means = (
                 " to ".join(f"{1e6 * round(z, 12):.3g}" for z in pair)
-                for pair in (given, profile.extremes_of_cells(s.dx))
+                for pair in (heights, profile.extremes_of_cells(s.dx))
             )
             about = "means over cells, as the mesh has them"
-            yield f"Surface {side}: heights from {given} um; {about}, {seen} um"
+            yield f"Surface {side}: heights from {heights} um; {about}, {means} um"

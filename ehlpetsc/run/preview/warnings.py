@@ -9,14 +9,14 @@ from ehlpetsc.surfaces.entry_times import entry_warnings
 from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
-LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz' pressure of EHL contacts, with room
-MAX_EHL_FILM = 0.1  # half-widths: films of EHL contacts are a hundredth of it and less
-TILT = 0.5  # of the height variance, above which a profile counts as tilted
-MIN_YIELD_PRESSURE = 0.25  # of p0: solids softer than that flow as a whole
+LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
+MAX_EHL_FILM = 0.1  # half widths: films of EHL contacts are at most a hundredth of a half width
+MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a straight line counts as tilted
+MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
 
 
 def warnings(case, scales):
-    """Warnings before a run, one line each.
+    """Warnings before a run, one message each.
 
     Parameters
     ----------
@@ -30,6 +30,7 @@ def warnings(case, scales):
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
             f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
         )
+    notes += soft_pass_warnings(case, scales)
     if rough and case.time is None and case.motion is not None:
         notes.append(
             f"{' and '.join(rough)} with [motion] but without [time]: "
@@ -41,8 +42,20 @@ def warnings(case, scales):
     return notes + mesh_warnings(profiles, scales) + heat_warnings(case, scales)
 
 
+def soft_pass_warnings(case, scales):
+    """Shifted passes of solids that yield under the smooth contact, with which every pass starts."""
+    softest, time = min(case.contact.yield_pressure or (np.inf,)), case.time
+    if softest >= scales.p0 or time is None or time.passes == 1 or not time.pass_shift:
+        return []
+    return [
+        f"contact.yield_pressure = {1e-9 * softest:g} GPa is below Hertz' {1e-9 * scales.p0:.3g} GPa: the "
+        "smooth surface ahead of the profiles yields too, anew in every pass that time.pass_shift begins "
+        "further on; the plastic area added by a pass is mostly that"
+    ]
+
+
 def heat_warnings(case, scales):
-    """Isothermal cases whose estimated flash temperature is high."""
+    """Warning of an isothermal case with a high estimated flash temperature."""
     if case.heat is not None or case.motion is None:
         return []
     friction = case.contact.boundary_friction
@@ -57,7 +70,7 @@ def heat_warnings(case, scales):
 
 
 def magnitude_warnings(case, scales):
-    """Magnitudes outside elastohydrodynamic contacts: most likely a slip in a unit."""
+    """Warnings of magnitudes outside elastohydrodynamic contacts, most likely wrong units."""
     notes = []
     if not LOW_PRESSURE <= scales.p0 <= HIGH_PRESSURE:
         notes.append(
@@ -76,19 +89,19 @@ def magnitude_warnings(case, scales):
 
 
 def oil_warnings(fluid):
-    """Constants of the oil that its law does not use."""
+    """Warning of oil constants that the viscosity law does not use."""
     unused = {"seed": ("roelands_z", "roelands_pressure"), "roelands": ("kappa", "chi")}
     if fluid is None:
         return []
     names = unused.get(fluid.law, (*unused["seed"], *unused["roelands"]))
     if fluid.law == "roelands" and fluid.chi and abs(fluid.roelands_pressure * fluid.chi - 1.0) < 1e-6:
-        return []  # written by them
-    given = [f"fluid.{name}" for name in names if getattr(fluid, name) is not None]
-    return [f'{", ".join(given)}: not used by law = "{fluid.law}"'] if given else []
+        return []  # derived from kappa and chi
+    keys = [f"fluid.{name}" for name in names if getattr(fluid, name) is not None]
+    return [f'{", ".join(keys)}: not used by law = "{fluid.law}"'] if keys else []
 
 
 def tilt_warnings(case, profiles):
-    """Profiles whose heights are mostly a straight line: a tilt of the measurement."""
+    """Warnings of profiles whose heights are mostly a straight line, a tilt of the measurement."""
     notes = []
     for side in ("1", "2"):
         profile, spec = profiles and profiles.side(side), case.surface.side(side)
@@ -96,10 +109,10 @@ def tilt_warnings(case, profiles):
             continue
         X, z = profile.X, profile.heights
         slope = np.polyfit(X - X.mean(), z, 1)[0]
-        share = slope**2 * X.var() / z.var() if z.any() else 0.0
-        if share > TILT:
+        fraction = slope**2 * X.var() / z.var() if z.any() else 0.0
+        if fraction > MAX_TILT_VARIANCE:
             notes.append(
-                f"surface.{side}: {100 * share:.0f} % of the height variance is a straight line "
+                f"surface.{side}: {100 * fraction:.0f} % of the height variance is a straight line "
                 f"({1e6 * abs(slope) * (X[-1] - X[0]):.3g} um over {1e3 * (X[-1] - X[0]):.3g} mm); "
                 "level = true takes it off"
             )

@@ -1,4 +1,4 @@
-"""State of a run in a restart file: saved, loaded and checked against the case."""
+"""State of a run in a restart file: saving, loading, checks against the case."""
 
 import tomllib
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from ehlpetsc.stepping.predictor import TimeLevel
 from ehlpetsc.stepping.state import State
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
-NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables that may change without a word
-NODE_TOLERANCE = 1e-9  # of the domain: how far nodes may have moved in x/a
+NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
+NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 
 
 @dataclass(frozen=True)
@@ -28,14 +28,14 @@ class Checkpoint:
     Attributes
     ----------
     state : stepping.state.State
-        Its `m` is None where the contact has another size than when it was saved: that of the state is meant.
+        `m` is None if the size of the contact has changed since it was saved; it then follows from q and w.
     baseline : pair of ndarray
-        Steady q and w that the predictor starts from.
+        Steady q and w for the predictor.
     contact_count : ndarray of int, shape (nx,)
     totals : dict of str to number
-        Of all steps so far, for the summary.
+        Totals of all steps so far, for the summary.
     positions : surfaces.roughness.SurfacePositions
-        When saved, those at the begin of the run; when loaded, those of the state.
+        Positions at the beginning of the run (saved) or at the state (loaded).
     pass_number : int
     """
 
@@ -61,7 +61,7 @@ def save(path, checkpoint, case, scales, model):
     path : path-like
     checkpoint : Checkpoint
     case, scales, model
-        Of the run; the contact model.
+        Case, scales and contact model of the run.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def load(path, case, scales, model):
     -------
     checkpoint : Checkpoint
     notes : list of str
-        Keys of the case that are not what they were, one line each.
+        Keys of the case that have changed, one message each.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def load(path, case, scales, model):
     try:
         records = _records(arrays | attributes)
     except ValueError as error:
-        raise OutputError(f"{path}: damaged restart file: {error}") from None
+        raise OutputError(f"{path}: damaged restart file, or of an earlier ehlpetsc: {error}") from None
     rescale(arrays, attributes, scales)
     positions = SurfacePositions(
         (float(attributes["travelled_1"]), float(attributes["travelled_2"])),
@@ -150,7 +150,7 @@ def load(path, case, scales, model):
 
 
 def _fields(model, name, q, w):
-    """Arrays that define q and w independently of the contact model, with which a run may continue."""
+    """Arrays that define q and w independently of the contact model, which may change at a restart."""
     film = model.state(q, w).film
     return {f"{name}q": q, f"{name}h": film, f"{name}contact_pressure": model.contact_pressure(w)}
 
@@ -161,7 +161,7 @@ def _unknowns(model, arrays, name):
 
 
 def _records(values):
-    """Records of the effects that a file holds."""
+    """Records of effects in a file."""
     return {
         effect.name: unflat(effect.record, values, effect.name)
         for effect in EFFECTS
@@ -170,7 +170,7 @@ def _records(values):
 
 
 def pass_of(path):
-    """Number of the pass that a restart file belongs to; for the errors see :func:`load`."""
+    """Number of the pass of a restart file; errors as in :func:`load`."""
     return _pass_number(load_restart(path)[1])
 
 
@@ -189,7 +189,7 @@ def _earlier(model, arrays):
 
 
 def _misfit(arrays, attributes, earlier, case, scales):
-    """Reason why a file does not fit the case; None: it does."""
+    """Reason why a file does not fit the case; None if it fits."""
     x, now = arrays["x"] / attributes["a"], scales.x
     if len(x) != len(now):
         return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"
@@ -211,7 +211,7 @@ def _misfit(arrays, attributes, earlier, case, scales):
 
 
 def changed_keys(earlier, now):
-    """``fluid.viscosity was 0.002, is 0.004``, a line each for every key of the physics that differs."""
+    """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics."""
     one, other = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**one, **other} if one.get(key) != other.get(key)]
     return [f"{key} was {one.get(key, 'left out')}, is {other.get(key, 'left out')}" for key in keys]

@@ -1,4 +1,4 @@
-"""Table of the entries of a restart file, and the check of a file against it."""
+"""Table of the entries of a restart file, and check of a file against the table."""
 
 from dataclasses import dataclass
 
@@ -8,81 +8,87 @@ from ehlpetsc.effects import EFFECTS
 from ehlpetsc.names import current_name
 from ehlpetsc.quantities import STEP_SCALARS
 
-TOTAL = "total "  # before the names of totals among the attributes
-RECORD = "record "  # before the names of effects whose records the file holds
-MAX_NUMBER = 1e300  # of any number
+TOTAL = "total "  # prefix of the names of totals among the attributes
+RECORD = "record "  # prefix of the names of effects with a record in the file
+MAX_NUMBER = 1e300  # largest magnitude of a number
 
 
 @dataclass(frozen=True)
 class Item:
-    """One entry.
+    """Entry of a restart file.
 
     Attributes
     ----------
     meaning : str
     dims : tuple of str
-        Of an array, names of its dimensions: arrays with a name in common have the same length there.
-    least, most : float
-    whole : bool
-        A whole number, or several.
-    needed : bool
+        Names of the dimensions of an array; a dimension has the same length in all arrays.
+    low, high : float
+        Bounds of the values.
+    is_integer : bool
+    is_required : bool
     """
 
     meaning: str
     dims: tuple = ()
-    least: float = -MAX_NUMBER
-    most: float = MAX_NUMBER
-    whole: bool = False
-    needed: bool = True
+    low: float = -MAX_NUMBER
+    high: float = MAX_NUMBER
+    is_integer: bool = False
+    is_required: bool = True
 
 
-def _state(name, what, *dims):
-    """Entries that define q and w independently of the contact model, with which a run may continue."""
-    needed = not dims
+def _state(prefix, level, *dims):
+    """Entries that define q and w independently of the contact model, which may change at a restart."""
+    dims, required = (*dims, "node"), not dims
     return {
-        f"{name}q": Item(
-            f"oil pressure in p0 or -void fraction, {what}", (*dims, "node"), -1.0, needed=needed
-        ),
-        f"{name}h": Item(f"film in a^2/R, {what}", (*dims, "node"), 0.0, needed=needed),
-        f"{name}contact_pressure": Item(f"of the solids in p0, {what}", (*dims, "node"), 0.0, needed=needed),
+        f"{prefix}{name}": Item(f"{meaning}, {level}", dims, low, is_required=required)
+        for name, meaning, low in (
+            ("q", "oil pressure in p0 or -void fraction", -1.0),
+            ("h", "film in a^2/R", 0.0),
+            ("contact_pressure", "of the solids in p0", 0.0),
+        )
     }
 
 
 ARRAYS = (
-    {"x": Item("nodes [m]", ("node",)), "contact_count": Item("steps in contact", ("node",), 0, whole=True)}
+    {
+        "x": Item("nodes [m]", ("node",)),
+        "contact_count": Item("steps in contact", ("node",), 0, is_integer=True),
+    }
     | _state("", "now")
     | _state("smooth_", "steady at time 0")
     | _state("earlier_", "one and two levels ago", "level")
     | {
-        "earlier_travelled": Item("way of the film at these levels [m]", ("level",), needed=False),
-        "m": Item("mass per area of the film in a^2/R", ("node",), 0.0, needed=False),
-        "m_older": Item("one level ago", ("node",), 0.0, needed=False),
+        "earlier_travelled": Item(
+            "distance travelled by the film at these levels [m]", ("level",), is_required=False
+        ),
+        "m": Item("mass per area of the film in a^2/R", ("node",), 0.0, is_required=False),
+        "m_older": Item("mass per area one level ago", ("node",), 0.0, is_required=False),
     }
 )
 NUMBERS = {
-    "time": Item("time [s]", least=0.0),
-    "dt": Item("step that led here [s], 0: none", least=0.0),
-    "step": Item("steps taken", least=0, whole=True),
-    "retries": Item("halvings of the last step", least=0, whole=True),
+    "time": Item("time [s]", low=0.0),
+    "dt": Item("last time step [s], 0: none", low=0.0),
+    "step": Item("number of time steps", low=0, is_integer=True),
+    "retries": Item("halvings of the last step", low=0, is_integer=True),
     "h00": Item("approach in a^2/R"),
-    "a": Item("half width [m]", least=1e-300),
-    "p0": Item("largest pressure of Hertz [Pa]", least=1e-300),
-    "h_scale": Item("a^2/R [m]", least=1e-300),
+    "a": Item("half width [m]", low=1e-300),
+    "p0": Item("maximum Hertz pressure [Pa]", low=1e-300),
+    "h_scale": Item("a^2/R [m]", low=1e-300),
     "u1": Item("speed of surface 1 [m/s]"),
     "u2": Item("speed of surface 2 [m/s]"),
-    "travelled_1": Item("way of surface 1 since time 0 [m]"),
-    "travelled_2": Item("way of surface 2 since time 0 [m]"),
+    "travelled_1": Item("distance travelled by surface 1 since time 0 [m]"),
+    "travelled_2": Item("distance travelled by surface 2 since time 0 [m]"),
     "entered_inlet": Item("inlet at which profiles entered [m]"),
     "entered_outlet": Item("outlet at which profiles entered [m]"),
     "begin_1": Item("abscissa with which profile 1 entered [m]"),
     "begin_2": Item("abscissa with which profile 2 entered [m]"),
-    "pass_number": Item("of the passes of both bodies over each other", least=1, whole=True),
+    "pass_number": Item("number of the pass of both bodies over each other", low=1, is_integer=True),
 }
-TEXTS = {"case": "the case as it was run"}
+TEXTS = {"case": "text of the case"}
 
 
 def fault(arrays, attributes):
-    """Reason why the content of a file is not that of a restart file; None: it is.
+    """Reason why the content of a file is not that of a restart file; None if it is.
 
     Parameters
     ----------
@@ -95,12 +101,12 @@ def fault(arrays, attributes):
         return f"unknown entry {min(unknown)}"
     lengths = {}
     for name, item in {**ARRAYS, **NUMBERS}.items():
-        held = arrays if name in ARRAYS else attributes
-        if name not in held:
-            if item.needed:
+        values = arrays if name in ARRAYS else attributes
+        if name not in values:
+            if item.is_required:
                 return f"{name} ({item.meaning}) is missing"
             continue
-        wrong = _fault_of(np.asarray(held[name]), item, lengths)
+        wrong = _fault_of(np.asarray(values[name]), item, lengths)
         if wrong:
             return f"{name} ({item.meaning}) {wrong}"
     for name, meaning in TEXTS.items():
@@ -117,7 +123,7 @@ def _is_of_others(name):
 
 
 def _fault_of(values, item, lengths):
-    if values.dtype.kind not in ("iu" if item.whole else "f"):
+    if values.dtype.kind not in ("iu" if item.is_integer else "f"):
         return f"is of the type {values.dtype}"
     if values.ndim != len(item.dims):
         return f"has {values.ndim} dimensions, not {len(item.dims)}"
@@ -126,10 +132,8 @@ def _fault_of(values, item, lengths):
             return f"has the length {length} over {dim}, others {lengths[dim]}"
     if not np.isfinite(values).all():
         return "is not finite"
-    if values.size and not item.least <= values.min() <= values.max() <= item.most:
-        return (
-            f"lies in {values.min():.6g} to {values.max():.6g}, allowed: {item.least:.6g} to {item.most:.6g}"
-        )
+    if values.size and not item.low <= values.min() <= values.max() <= item.high:
+        return f"lies in {values.min():.6g} to {values.max():.6g}, allowed: {item.low:.6g} to {item.high:.6g}"
     return None
 
 
@@ -146,7 +150,7 @@ def _fault_of_totals(attributes):
 
 
 def _inconsistency(arrays, attributes):
-    """Contradiction between entries; None: there is none."""
+    """Contradiction between entries; None if there is none."""
     x, step = arrays["x"], attributes["step"]
     if len(x) < 2 or not (np.diff(x) > 0.0).all():
         return "its nodes do not increase"

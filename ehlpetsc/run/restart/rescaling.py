@@ -1,15 +1,15 @@
-r"""A state under another load, radius or elasticity, whose scales a, p0 and a^2/R differ.
+r"""Conversion of a state to another load, radius or elasticity, with other scales a, p0 and a^2/R.
 
-Fields stay where they are in x/a, the same node of the mesh. There
+Fields keep their position x/a, that is, their node:
 
-* pressures keep their share of p0: the sum over the nodes carries the new load at once;
-* what the film has above the gap beside Hertz' dry contact keeps its thickness in metres, and the gap is that
-  of the new contact, :math:`h=g+r(h_0-g)` in a^2/R, :math:`r` the old a^2/R over the new one and g as in
+* pressures in p0 do not change: their sum over the nodes carries the new load;
+* the excess of the film over the gap beside Hertz' dry contact keeps its thickness in metres, and the gap is
+  that of the new contact, :math:`h=g+r(h_0-g)` in a^2/R, :math:`r` the old a^2/R over the new one and g as in
   :func:`ehlpetsc.physics.exact_solutions.hertz_gap`;
-* a cavity keeps its oil in metres, :math:`(1+q)h=r(1+q_0)h_0`.
+* a cavity keeps its oil film in metres, :math:`(1+q)h=r(1+q_0)h_0`.
 
-Earlier masses per area do not apply to the new contact: the next step is one of backward Euler from that of
-the present state, and earlier levels are left out.
+Earlier masses per area do not apply to the new contact: the next step is a step of backward Euler from the
+mass of the converted state, without earlier levels.
 """
 
 import numpy as np
@@ -17,38 +17,39 @@ import numpy as np
 from ehlpetsc.physics.exact_solutions import hertz_gap
 
 SCALE_TOLERANCE = 1e-12  # relative
-CORE_HALF_WIDTH = 0.5  # in a: the approach takes up the film's change between -0.5 and 0.5
-PREFIXES = ("", "smooth_")
-PAST = ("m", "m_older", "earlier_travelled", "earlier_q", "earlier_h", "earlier_contact_pressure")
+CORE_HALF_WIDTH = 0.5  # in a: the approach changes by the mean change of the film between -0.5 and 0.5
+STATE_PREFIXES = ("", "smooth_")  # of the names of the converted states
+HISTORY = ("m", "m_older", "earlier_travelled", "earlier_q", "earlier_h", "earlier_contact_pressure")
 
 
 def rescale(arrays, attributes, scales):
-    """Bring the content of a restart file to the units of a case, in place.
+    """Convert the content of a restart file to the scales of a case, in place.
 
     Parameters
     ----------
     arrays, attributes : dict
-        As of :mod:`ehlpetsc.run.restart.contents`.
+        See :mod:`ehlpetsc.run.restart.contents`.
     scales : physics.scales.Scales
-        Of the case.
+        Scales of the case.
 
     Returns
     -------
     bool
-        Whether anything had to be done.
+        Whether the scales differ.
     """
-    then = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
-    now = np.array([scales.a, scales.p0, scales.h])
-    if (np.abs(then - now) <= SCALE_TOLERANCE * now).all():
+    old = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
+    new = np.array([scales.a, scales.p0, scales.h])
+    if (np.abs(old - new) <= SCALE_TOLERANCE * new).all():
         return False
     ratio, x = attributes["h_scale"] / scales.h, scales.x
     gap = hertz_gap(x, 1.0, 1.0)
     core = np.abs(x) <= CORE_HALF_WIDTH
     if core.any():
         attributes["h00"] += (ratio - 1.0) * (arrays["h"] - gap)[core].mean()
-    for part in PREFIXES:
-        arrays[part + "q"], arrays[part + "h"] = _fields(arrays[part + "q"], arrays[part + "h"], gap, ratio)
-    for name in PAST:
+    for prefix in STATE_PREFIXES:
+        q, h = arrays[prefix + "q"], arrays[prefix + "h"]
+        arrays[prefix + "q"], arrays[prefix + "h"] = _fields(q, h, gap, ratio)
+    for name in HISTORY:
         arrays.pop(name, None)
     attributes["dt"] = 0.0
     return True

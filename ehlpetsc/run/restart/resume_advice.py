@@ -1,4 +1,4 @@
-"""Advice after a failed write: the point from which the run can be continued."""
+"""Advice after a failed write: how to continue the run."""
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.restart_file import load_restart
@@ -10,10 +10,10 @@ def resume_advice(restart, case, step):
     Parameters
     ----------
     restart : Path
-        Restart file of the run; it may be missing or of another case.
+        Restart file of the run; it may be missing or belong to another case.
     case : case.loading.Case
     step : int or None
-        The last step that the result file holds whole; None: it holds none.
+        Last complete step in the result file; None: there is none.
 
     Returns
     -------
@@ -25,6 +25,6 @@ def resume_advice(restart, case, step):
         if step is not None and attributes["case"] == case.text and attributes["step"] <= step:
             return f"once this is mended, continue with -ehl_restart {restart} (step {attributes['step']})"
     except (OutputError, KeyError):
-        pass  # none, an older one that is damaged, or another program's
+        pass  # no restart file, a damaged one, or a file of another program
     again = "repeat it with -ehl_overwrite" if restart.exists() else "the same command begins at time 0"
     return f"there is no restart file of it: once this is mended, {again}"

@@ -1,6 +1,6 @@
-"""Running in: repeated passes of the same stretches of both bodies, each with the surfaces of the last one.
+"""Running-in: repeated passes of the same parts of both bodies, each with the surfaces of the previous pass.
 
-Each pass is a run of its own with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` contains the
+Each pass is a separate run with a result ``OUTPUT.passK.h5``. The index ``OUTPUT.passes.json`` contains the
 surfaces after each pass, for ``ehlpetsc plot OUTPUT.passes.json --running-in``.
 """
 
@@ -29,7 +29,7 @@ class Passes:
     comm : mpi4py communicator
     case : case.loading.Case
     output : path-like
-        Its stem begins the passes' file names.
+        Its stem is the prefix of the passes' file names.
     stop : stop.StopRequest, optional
     """
 
@@ -54,14 +54,14 @@ class Passes:
         Parameters
         ----------
         restart : path-like, optional
-            Restart file of the pass to continue from; by default of the last one of the very same case.
+            Restart file to continue from; by default that of the last pass of the same case.
         overwrite : bool
             Whether to replace existing files and begin with the first pass.
 
         Returns
         -------
         errors.ExitStatus
-            Of the last pass that was run.
+            Status of the last pass that was run.
 
         Raises
         ------
@@ -86,7 +86,7 @@ class Passes:
         simulation, status = None, ExitStatus.DONE
         for number in range(first, self.case.time.passes + 1):
             simulation = Simulation(self.case, self.comm, after=simulation, pass_number=number)
-            self._say(f"pass {number} of {self.case.time.passes}")
+            self._print(f"pass {number} of {self.case.time.passes}")
             outcome = Run(simulation, self.file(number), self.stop).run(restart, overwrite)
             status, restart = outcome.status, None
             if status is not ExitStatus.DONE:
@@ -96,7 +96,7 @@ class Passes:
         return status
 
     def _unfinished(self):
-        """Restart file of the last unfinished pass; None: there is none."""
+        """Restart file of the last unfinished pass; None if there is none."""
         index, passes = self._read_index(), range(1, self.case.time.passes + 1)
         noted = {row["pass"] for row in index["passes"]} if index["case"] == self.case.text else ()
         begun = next((n for n in passes if n not in noted or not self._is_done(n)), None)
@@ -116,11 +116,11 @@ class Passes:
         return False
 
     def _rows_before(self, first):
-        """Index rows of the passes before a continued one; none without an index."""
+        """Index entries of the passes before pass `first`."""
         return [row for row in self._read_index()["passes"] if row["pass"] < first]
 
     def _read_index(self):
-        """Case text and rows of the index; none where it is missing or damaged."""
+        """Case text and entries of the index; None and [] if it is missing or damaged."""
         try:
             index = json.loads(self.index.read_text())
             return {"case": index["case"], "passes": [row for row in index["passes"] if row["pass"] > 0]}
@@ -140,26 +140,26 @@ class Passes:
         except OSError as error:
             whole = f"{self.file(number).name} is whole"
             raise OutputError(f"{self.index}: index not written, {error.strerror}; {whole}") from error
-        self._say(line(row))
+        self._print(line(row))
 
     def _print_end(self):
         if self.comm.rank != 0:
             return
-        self._say(f"passes: {self.index}")
+        self._print(f"passes: {self.index}")
         shift = self.case.time.pass_shift
         number = passes_to_run_in(self.rows, SHIFTED_IN_A_ROW if shift else 1)
         if number:
-            self._say(f"run in: from pass {number} on each adds less than {RUN_IN:.0%} of the first one's")
+            self._print(f"run in: from pass {number} on each adds less than {RUN_IN:.0%} of the first one's")
         if len(self.rows) > 1 and not shift:
-            self._say("the same asperities have met in every pass; time.pass_shift brings others together")
+            self._print("the same asperities have met in every pass; time.pass_shift brings others together")
 
-    def _say(self, text):
+    def _print(self, text):
         if self.comm.rank == 0:
             print(text, flush=True)
 
 
 def line(row):
-    """Line of a pass."""
+    """Printed line of a pass."""
     parts = [
         f"pass {row['pass']}: set {1e12 * row['set_volume']:.4g} um^2, added {1e12 * row['added']:.4g} um^2"
     ]

@@ -1,9 +1,8 @@
-"""Series of a case: its members are distributed to groups of ranks; a result file each and one index file.
+"""Series of a case: members distributed to groups of ranks, one result file each and one index file.
 
-The index ``OUTPUT.series.json`` names the swept key, or keys, and for each member its value, result file
-(beside the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". What a member's
-file holds already is not computed again: a complete file of the same case text is kept, a restart file of it
-continued.
+The index ``OUTPUT.series.json`` contains the varied key, or keys, and for each member its value, result file
+(beside the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". Members with a
+complete file of the same case text are not computed again; members with a restart file are continued.
 """
 
 import json
@@ -30,15 +29,15 @@ from ehlpetsc.run.solve import Run
 
 
 class PrefixedStream:
-    """A stream that puts a name before every line; for output only."""
+    """Output stream that puts a name before every line."""
 
     def __init__(self, name, stream):
         self._name, self._stream, self._line = f"[{name}] ", stream, ""
 
     def write(self, text):
-        *whole, self._line = (self._line + text).split("\n")
-        # one write a batch of lines: the groups' output then does not mix within a line
-        self._stream.write("".join(f"{self._name}{line}\n" for line in whole))
+        *lines, self._line = (self._line + text).split("\n")
+        # one write for all lines, so that the output of groups does not mix within a line
+        self._stream.write("".join(f"{self._name}{line}\n" for line in lines))
 
     def flush(self):
         self._stream.flush()
@@ -54,11 +53,11 @@ class Series:
     ----------
     world : mpi4py communicator
     case : case.loading.Case
-        With a series.
+        Case with a series.
     options : petsc4py.PETSc.Options
     stop : stop.StopRequest
     output : path-like
-        Its stem begins the members' file names.
+        Its stem is the prefix of the members' file names.
 
     Raises
     ------
@@ -149,13 +148,13 @@ class Series:
             f"series of {len(self.members)} members, {missing} of them to compute, on "
             f"{-(-self.world.size // ranks)} x {ranks} rank(s): {names}"
         )
-        said = {}
+        names_of = {}
         for member in self.members:
-            for line in warnings(member.case, Scales.of(member.case)):
-                said.setdefault(line, []).append(member.name)
-        for line, whose in said.items():
-            of = "" if len(whose) == len(self.members) else f"{', '.join(whose)}: "
-            print(f"warning: {of}{line}")
+            for warning in warnings(member.case, Scales.of(member.case)):
+                names_of.setdefault(warning, []).append(member.name)
+        for warning, names in names_of.items():
+            prefix = "" if len(names) == len(self.members) else f"{', '.join(names)}: "
+            print(f"warning: {prefix}{warning}")
         sys.stdout.flush()
 
     def _keep_index(self):
@@ -205,7 +204,7 @@ class Series:
 
 
 def ranks_per_member(options, size):
-    """Value of -ehl_ranks_per_member, 1 where it is not given.
+    """Value of -ehl_ranks_per_member; default: 1.
 
     Raises
     ------

@@ -1,14 +1,14 @@
-"""Queue of work for groups of ranks: a free group gets the next item.
+"""Work queue for groups of ranks: a free group gets the next item.
 
-The first rank deals and works at the same time: it looks for requests between its own time steps
-(:meth:`WorkQueue.serve`), so that no rank is spent on waiting and no shared memory is needed.
+The first rank distributes the items and computes at the same time: it answers requests between its own time
+steps (:meth:`WorkQueue.serve`), so that no rank only waits and no shared memory is needed.
 """
 
 import time as clock
 
 from mpi4py import MPI
 
-REQUEST, ANSWER = 71, 72
+REQUEST, ANSWER = 71, 72  # tags of messages
 POLL_SECONDS = 0.01  # between two polls of a waiting rank
 
 
@@ -19,10 +19,10 @@ class WorkQueue:
     ----------
     world : mpi4py communicator
     ranks : int
-        Of a group; the last group has what is left.
+        Size of a group; the last group has the remaining ranks.
     order : list of int
-        In which the pieces are dealt.
-    take : callable
+        Items in the order of their distribution.
+    on_report : callable
         Called on the first rank of the world with each report.
     group : mpi4py communicator, optional
         Group of this rank in an earlier queue; by default the ranks are split.
@@ -37,7 +37,7 @@ class WorkQueue:
         self.world, self.on_report = world, on_report
         self.group = group or world.Split(world.rank // ranks, world.rank)
         self._waiting = list(order)
-        self._others = -(-world.size // ranks) - 1  # groups that are yet to hear that nothing is left
+        self._others = -(-world.size // ranks) - 1  # groups that have not received the end of the queue
 
     def next(self, report, ending):
         """Report on the last item and get the next one; collective over the group.
@@ -45,18 +45,18 @@ class WorkQueue:
         Parameters
         ----------
         report : object or None
-            Handed to `on_report`; that of the group's first rank counts.
+            Passed to `on_report`; the report of the group's first rank counts.
         ending : bool
-            True: deal nothing more, to no group.
+            True: distribute no further item, to no group.
 
         Returns
         -------
         int or None
-            None: nothing left, for good.
+            None: the queue is empty.
         """
         number = None
         if self.world.rank == 0:
-            number = self._deal(report, ending)
+            number = self._next(report, ending)
         elif self.group.rank == 0:
             self.world.send((report, ending), 0, REQUEST)
             wait(lambda: self.world.iprobe(0, ANSWER))
@@ -64,25 +64,25 @@ class WorkQueue:
         return self.group.bcast(number)
 
     def serve(self):
-        """Answer pending requests; on the first rank, often."""
+        """Answer pending requests on the first rank; to be called often."""
         if self.world.rank != 0:
             return
         status = MPI.Status()
         while self._others and self.world.iprobe(MPI.ANY_SOURCE, REQUEST, status):
             report, ending = self.world.recv(source=status.source, tag=REQUEST)
-            number = self._deal(report, ending)
+            number = self._next(report, ending)
             self._others -= number is None
             self.world.send(number, status.source, ANSWER)
 
     def finish(self, status):
-        """Wait until every group is done; the first rank's `status()` on all ranks."""
+        """Wait until every group is done; return the first rank's `status()` on all ranks."""
         if self.world.rank == 0:
             wait(lambda: self.serve() or not self._others)
-        done = self.world.Ibarrier()  # a rank in a plain barrier would keep its core busy
+        done = self.world.Ibarrier()  # a rank in a blocking barrier would keep its core busy
         wait(done.Test)
         return self.world.bcast(status() if self.world.rank == 0 else None)
 
-    def _deal(self, report, ending):
+    def _next(self, report, ending):
         if report is not None:
             self.on_report(report)
         if ending:
@@ -91,13 +91,13 @@ class WorkQueue:
 
 
 class PollingStop:
-    """Stop request that serves the other groups at every query, as `run.stop.StopRequest`.
+    """Stop request like `run.stop.StopRequest` that also serves the other groups at every query.
 
     Parameters
     ----------
     queue : WorkQueue
     stop : run.stop.StopRequest or None
-        None: never.
+        None: no stop.
     """
 
     def __init__(self, queue, stop):

@@ -1,1 +1,1 @@
-"""Error against run time: which runs, their errors, the table and the picture."""
+"""Error over run time: plan of the runs, errors, table and picture."""

@@ -15,14 +15,14 @@ NO_MEASURES = dict.fromkeys(MEASURES, np.nan)
 
 @dataclass
 class Measures:
-    """Measures of one run that the study compares.
+    """Measures of one run.
 
     Attributes
     ----------
     x, h : ndarray
         Nodes [half widths] and the film of the last frame [m].
     h_min, h_c, p_max : float
-        Least film [m] and largest pressure [Pa] of the run, central film of the last frame [m].
+        Minimum film [m] and maximum pressure [Pa] of the run, central film of the last frame [m].
     contact : float
         Mean length in contact over the run [half widths].
     damage : float or None
@@ -41,8 +41,8 @@ class Measures:
 def measures(path, damage=False):
     """Measures of a result file: films at its last frame, extremes and contact of the whole run.
 
-    Contact is the length of the contacts times their duration over that of the whole run [m s/s]; damage the
-    greatest on surface 2, by ``ehlpetsc.post``.
+    Contact is the length of the contacts times their duration over the duration of the run [m s/s]; damage
+    is the maximum on surface 2, by ``ehlpetsc.post``.
     """
     with read_result(path) as result:
         x = np.asarray(result.x) / result.attrs["a"]
@@ -60,17 +60,17 @@ def measures(path, damage=False):
         )
 
 
-def errors(ours, reference):
-    """Relative errors; film is the greatest local one over h_c, damage the difference in decades."""
-    inside = np.abs(ours.x) <= 1.0
-    film = np.abs(ours.h - np.interp(ours.x, reference.x, reference.h))[inside].max() / reference.h_c
+def errors(values, reference):
+    """Relative errors; film: maximum local error over h_c, damage: difference in decades."""
+    inside = np.abs(values.x) <= 1.0
+    film = np.abs(values.h - np.interp(values.x, reference.x, reference.h))[inside].max() / reference.h_c
     found = {"film": film, "damage": np.nan, "contact": np.nan}
     for name in ("h_min", "h_c", "p_max", "contact"):
         true = getattr(reference, name)
         if true > 0.0:
-            found[name] = abs(getattr(ours, name) / true - 1.0)
+            found[name] = abs(getattr(values, name) / true - 1.0)
     if reference.damage is not None:
-        found["damage"] = abs(ours.damage - reference.damage)
+        found["damage"] = abs(values.damage - reference.damage)
     return {name: found.get(name, np.nan) for name in MEASURES}
 
 

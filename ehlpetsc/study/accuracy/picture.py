@@ -1,4 +1,4 @@
-"""The log-log picture of a study: error against wall time and against Newton iterations."""
+"""Log-log picture of a study: error over wall time and over Newton iterations."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.study.accuracy.errors import MEASURES
 
 MARKERS = "osD^vP"
-TICKS = 5  # labels of an axis that stand apart
+MAX_TICKS = 5  # labels of an axis that do not overlap
 MANTISSAS = ((1, 1.5, 2, 3, 4, 6, 8), (1, 2, 3, 5), (1, 2, 5), (1, 3), (1,))
 TITLES = {"film": "local film, max norm", "damage": "damage, decades"}
 
@@ -17,7 +17,7 @@ def draw(rows, path, title):
     Parameters
     ----------
     rows : list of dict
-        Of :meth:`ehlpetsc.study.accuracy.table.Study.table`, the reference first.
+        Rows of :meth:`ehlpetsc.study.accuracy.table.Study.table`, the reference first.
     path : path-like
         PNG file.
     title : str
@@ -39,8 +39,8 @@ def draw(rows, path, title):
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.get_layout_engine().set(rect=(0.0, 0.1, 1.0, 0.9))
     figure.legend(handles, labels, loc="lower center", ncols=(len(labels) + 1) // 2, frameon=False)
-    with replacing(path, keep_ending=True) as beside:
-        figure.savefig(beside, dpi=110)
+    with replacing(path, keep_ending=True) as temporary:
+        figure.savefig(temporary, dpi=110)
 
 
 def _panel(axis, rows, measure, cost):
@@ -71,20 +71,20 @@ def _panel(axis, rows, measure, cost):
 
 
 def ticks(low, high):
-    """Round values for a logarithmic axis from `low` to `high`, few enough that their labels stand apart.
+    """Round values for a logarithmic axis from `low` to `high`, whose labels do not overlap.
 
     Returns
     -------
     list of float
-        At most `TICKS`, at least two.
+        At most `MAX_TICKS`, at least two.
     """
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
     for mantissas in MANTISSAS:
         found = [d * m for d in decades for m in mantissas if low <= d * m <= high]
-        if 2 <= len(found) <= TICKS:
+        if 2 <= len(found) <= MAX_TICKS:
             return found
-    if len(found) > TICKS:  # many decades: every so many of them
-        return found[:: -(-len(found) // TICKS)]
+    if len(found) > MAX_TICKS:  # many decades: every so many of them
+        return found[:: -(-len(found) // MAX_TICKS)]
     step = 10.0 ** np.floor(np.log10((high - low) / 2.0))
     step *= next(m for m in (5, 2, 1) if m * step <= (high - low) / 2.0)
     first = np.ceil(low / step - 1e-9)
@@ -92,5 +92,5 @@ def ticks(low, high):
 
 
 def _shown(error):
-    """Error for a logarithmic axis, at least rounding."""
+    """Error for a logarithmic axis, not below rounding."""
     return np.nan if not np.isfinite(error) else max(error, 1e-8)

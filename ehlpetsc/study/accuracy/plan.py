@@ -1,4 +1,4 @@
-"""Runs of the study: references finer than all, then one setting of the case varied at a time."""
+"""Runs of the study: finer references, then one setting of the case varied at a time."""
 
 from ehlpetsc.study.setting import ATOL, MESH, NEAR, RANKS, RTOL, STEP, Setting
 
@@ -8,7 +8,7 @@ NEAR_FIELDS = (5, 10, 20, 40)
 
 
 def plan(case, meshes, steps, ranks):
-    """Runs of the study: references first, then each setting varied about the case as it is.
+    """Runs of the study: references, then each setting varied about that of the case.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def plan(case, meshes, steps, ranks):
     for coarser in (1, 2, 4):
         values = {**base, **finest, MESH: finest[MESH] // coarser}
         if case.time:
-            values[STEP] = finest[STEP]  # dt goes with dx
+            values[STEP] = finest[STEP]  # dt is proportional to dx
         references.append(Setting(values, "reference", f"{coarser}"))
     runs = [Setting(base, label="as it is")]
     for key, values in varied:

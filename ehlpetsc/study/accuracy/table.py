@@ -1,8 +1,8 @@
-r"""Error against run time: one setting of a case varied at a time, compared with a finer reference.
+r"""Error over run time: one setting of a case varied at a time, compared with a finer reference.
 
-The reference has twice the finest mesh, half the least Courant number and the tightest tolerances of those
-tried. Its own error is estimated by Richardson extrapolation from two runs with 2 and 4 times its mesh and
-time step: :math:`e=|f_1-f_2|/(2^p-1)`, p the order that the three show, held within 0.5 and 2.
+The reference has half the smallest spacing, half the smallest Courant number and the tightest tolerances of
+all runs. Its error is estimated by Richardson extrapolation from two runs with 2 and 4 times its spacing
+and time step: :math:`e=|f_1-f_2|/(2^p-1)`, p the observed order of the three, limited to 0.5 to 2.
 """
 
 from pathlib import Path
@@ -30,11 +30,11 @@ class Study:
     Parameters
     ----------
     path : path-like
-        The case file.
+        Case file.
     overrides : sequence of str
-        Changes of the case that all runs share.
+        Common overrides of all runs.
     folder : path-like
-        Where the result files go.
+        Folder of the result files.
     limit : float
         Wall clock time of one run [s].
     damage : bool
@@ -47,7 +47,7 @@ class Study:
         self._known = {}
 
     def run(self, setting, number):
-        """Outcome and measures of one run; None where it did not converge. The same run is not run twice."""
+        """Outcome and measures of one run, None if it did not converge; equal runs are run once."""
         known = tuple(setting.values.items())
         if known in self._known:
             return self._known[known]
@@ -67,13 +67,13 @@ class Study:
         return outcome, found
 
     def _steps(self, setting):
-        """Of the whole run, so that its last state is a frame."""
+        """Steps of the whole run, so that its last state is a frame."""
         if not self.case.time:
             return 1
         return max(round(self.case.time.travel * setting.values[MESH] / setting.values[STEP]), 1)
 
     def table(self, references, runs, csv_path, say=print):
-        """Run all; rows by the names of `COLUMNS`, the reference with its estimated error first."""
+        """Run all; return rows with the keys `COLUMNS`, first the reference with its estimated error."""
         finest = [self.run(setting, -number) for number, setting in enumerate(references, 1)]
         if finest[0][1] is None:
             raise NotConverged(f"the reference: {finest[0][0].message}")

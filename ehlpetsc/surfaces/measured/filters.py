@@ -4,25 +4,25 @@ import numpy as np
 
 from ehlpetsc.errors import ProfileError
 
-SPACING_TOLERANCE = 0.01  # rounding in a file's abscissae, against a spacing that really varies
+SPACING_TOLERANCE = 0.01  # relative rounding of the abscissas of equally spaced points in a file
 MAX_EXACT_LENGTH = 100_000  # points: longer transforms are padded to a fast length
 MIN_PADDING = 10_000  # points
-MIN_SPACINGS = 2  # spacings: a profile holds no shorter wave
+MIN_SPACINGS = 2  # of the shortest wave in a profile
 
 
 def levelled(x, z):
-    """Heights less their least-squares line."""
+    """Heights minus their least-squares line."""
     x = x - x.mean()
     return z - z.mean() - x * (x @ z / (x @ x))
 
 
 def high_pass(x, z, cutoff):
-    """Roughness: the profile less the mean line of wavelength `cutoff` [m], see `mean_line`."""
+    """Roughness: profile minus the mean line of cut-off `cutoff` [m], see `mean_line`."""
     return z - mean_line(x, z, cutoff, "cutoff")
 
 
 def low_pass(x, z, cutoff):
-    """The profile without waves shorter than `cutoff` [m]: the S-filter of ISO 3274, see `mean_line`."""
+    """Profile without waves shorter than `cutoff` [m]: S-filter of ISO 3274, see `mean_line`."""
     return mean_line(x, z, cutoff, "short_cutoff")
 
 
@@ -42,12 +42,12 @@ def mean_line(x, z, cutoff, key):
     cutoff : float
         Wavelength [m].
     key : str
-        Key of this cut-off in the case.
+        Key of the cut-off in the case.
 
     Raises
     ------
     ProfileError
-        Where x is not equally spaced, or the cut-off is longer than the profile or no wave of it.
+        x is not equally spaced, or the cut-off is longer than the profile or shorter than its waves.
     """
     from scipy.fft import dct, idct, next_fast_len
 
@@ -65,7 +65,7 @@ def mean_line(x, z, cutoff, key):
     size, beyond = (
         x.size,
         int(2.0 * cutoff / step) + MIN_PADDING,
-    )  # beyond it the weights of the filter vanish
+    )  # the weights of the filter vanish beyond
     if (
         size > MAX_EXACT_LENGTH and beyond < size
     ):  # lengths with a large prime factor cost six times the memory

@@ -1,20 +1,20 @@
-"""Implausible profiles compared with half width, film and mesh, mostly a wrong unit."""
+"""Profiles that are implausible compared with half width, film and mesh, mostly by a wrong unit."""
 
 import numpy as np
 
 from ehlpetsc.surfaces.measured.profile_files import UNITS
 
 MAX_SPACING = 0.25  # half widths between two points: wider than asperities
-MAX_RQ = 0.1  # half widths: greatest Rq
-MAX_RQ_RATIO = 30.0  # times the elastic approach a^2/R, or the film: greatest Rq
-MAX_SLOPE = 1.0  # greatest root mean square slope
-MIN_RQ = 1e-11  # m: least Rq
-CELLS = 4  # of the mesh: least length
+MAX_RQ = 0.1  # half widths
+MAX_RQ_RATIO = 30.0  # Rq over the elastic approach a^2/R, or over the film
+MAX_SLOPE = 1.0  # root mean square
+MIN_RQ = 1e-11  # m
+MIN_CELLS = 4  # of the mesh, length of the profile
 TYPICAL_SPACING, TYPICAL_RQ = (5e-9, 3e-5), (3e-10, 2e-5)  # m: of measured profiles
 
 
 def absurd(given, a, dx, approach, film):
-    """Implausible property of a measured profile, in a sentence that names the likely unit; None: plausible.
+    """Message on an implausible measured profile, with the likely unit; None: plausible.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def absurd(given, a, dx, approach, film):
         fault = f"slopes of {slope:.3g} in the root mean square"
     elif 0.0 < rq < MIN_RQ:
         fault = f"Rq {_um(rq)}, less than an atom"
-    elif given.length < CELLS * dx:
+    elif given.length < MIN_CELLS * dx:
         fault = f"{_um(given.length)} long beside cells of the mesh of {_um(dx)}"
     else:
         return None
@@ -45,15 +45,15 @@ def absurd(given, a, dx, approach, film):
 
 
 def likely_unit(given, layout, scale):
-    """Keys that would make a profile one as they are measured, e.g. ``unit = "um"``; None if none would.
+    """Keys that make a profile plausible, e.g. ``unit = "um"``; None if there are none.
 
     Parameters
     ----------
     given : ehlpetsc.surfaces.samples.Samples
     layout : ehlpetsc.surfaces.measured.profile_files.Layout
-        As it was read.
+        Layout of the file.
     scale : float
-        Factor on the heights given by the user.
+        Factor on the heights in the case.
     """
     now = (layout.unit or "m", layout.x_unit or layout.unit or "m")
     rq, step = given.z.std() / (abs(scale) or 1.0) / UNITS[now[0]], given.spacing / UNITS[now[1]]

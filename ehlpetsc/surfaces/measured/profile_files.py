@@ -11,25 +11,25 @@ from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 OTHER_FORMATS = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}
-MIN_MEASURED_POINTS = 50  # fewer are a shape made by hand, without missing points
-SPACING_VARIATION = 0.02  # relative, of equal spacings
-MIN_EQUAL_SHARE = 0.9  # of the spacings, where lines are missing
+MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
+SPACING_VARIATION = 0.02  # relative, of equally spaced points
+MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
 MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
 UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Layout of a profile file; parts left out are detected in the file.
+    """Layout of a profile file; missing entries are detected from the file.
 
     Attributes
     ----------
     unit, x_unit : str or None
-        Of the heights, and of x where it is another: a key of `UNITS`; left out: m.
+        Units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
     spacing : float or None
-        Of the points [m], where the file has heights alone.
+        Spacing of the points [m], for files without x.
     columns : tuple of int or None
-        Of x and z, or of z alone, counted from 1.
+        Columns of x and z, or of z alone, from 1.
     decimal : str or None
         "." or ",".
     header_lines : int or None
@@ -51,11 +51,11 @@ KEYS = tuple(Layout.__dataclass_fields__)
 
 
 def read_profile(path, layout=None):
-    """Abscissae, from 0 on, and heights of a profile file.
+    """Abscissas, from 0 on, and heights of a profile file.
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
     header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
-    format through the package SurfaceTopography where it is installed.
+    format through the package SurfaceTopography if it is installed.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def read_profile(path, layout=None):
     X, z : ndarray, shape (n,)
         Both in m, X increasing; heights positive out of the metal.
     notes : tuple of str
-        What was done to the file's numbers.
+        Notes on the processing of the numbers.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def read_profile(path, layout=None):
         raise ProfileError(f"cannot be read: {error}") from None
 
 
-@functools.lru_cache(maxsize=4)  # a case is checked, described and run: the file is read once for all
+@functools.lru_cache(maxsize=4)  # one reading for check, summary and run
 def _read(path, layout, _modified, _size):
     text = path.suffix.lower() in TEXT
     x, z, notes = checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
@@ -108,7 +108,7 @@ def _from_text(path, layout):
 
 
 def _chosen(columns, layout):
-    """The columns of x and z, or of z alone."""
+    """Columns of x and z, or of z alone."""
     count = len(columns)
     if layout.columns is not None:
         if max(layout.columns) > count:
@@ -144,7 +144,7 @@ def _from_surface_topography(path, layout):
             f"format {path.suffix!r} needs the package SurfaceTopography (pip install SurfaceTopography); "
             "without it, allowed: .csv or two-column text, x and z in m"
         ) from None
-    except Exception as error:  # its own libraries do not fit together
+    except Exception as error:  # incompatible libraries
         reason = str(error).strip().splitlines()[-1:] or [type(error).__name__]
         raise ProfileError(f"the package SurfaceTopography does not start: {reason[0]}") from None
     try:
@@ -152,8 +152,8 @@ def _from_surface_topography(path, layout):
         if topography.dim == 1:
             return topography.positions_and_heights()
         x, _, z = topography.positions_and_heights()
-    except Exception as error:  # its readers raise what they like on a damaged file
-        lines = str(error).strip().splitlines()  # many: what each of its readers says to an unknown format
+    except Exception as error:  # various exceptions on a damaged file
+        lines = str(error).strip().splitlines()  # messages of all readers for an unknown format
         reason = lines[0] if len(lines) == 1 else "in none of its formats"
         raise ProfileError(f"SurfaceTopography cannot read it: {reason}") from None
     middle = z.shape[1] // 2  # of an areal map the central trace
@@ -161,7 +161,7 @@ def _from_surface_topography(path, layout):
 
 
 def checked(x, z, layout):
-    """Profile from x = 0 on with increasing x and filled gaps; ProfileError with the fault otherwise."""
+    """Profile from x = 0 on with increasing x and filled gaps; ProfileError for a faulty one."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
     bad = ~(np.abs(x) < MAX_ABSCISSA) | (np.abs(z) >= MAX_ABSCISSA)
@@ -189,11 +189,11 @@ def checked(x, z, layout):
 
 
 def _with_missing_lines(x, z):
-    """Profile with a nan for every point missing in an otherwise equally spaced file."""
+    """Profile with nan for every missing point of an equally spaced file."""
     step = np.diff(x)
     usual = np.median(step)
     equal, wide = np.abs(step - usual) <= SPACING_VARIATION * usual, step > 1.5 * usual
-    is_measured = x.size >= MIN_MEASURED_POINTS and equal.mean() >= MIN_EQUAL_SHARE
+    is_measured = x.size >= MIN_MEASURED_POINTS and equal.mean() >= MIN_EQUAL_FRACTION
     if not (is_measured and wide.any() and (equal | wide).all()):
         return x, z
     counts = np.rint(step / usual)

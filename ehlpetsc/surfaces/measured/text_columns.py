@@ -1,8 +1,7 @@
 """Columns of numbers in text files of measuring instruments.
 
-Separator and decimal sign are found from the lines that hold nothing but numbers; what could be read in two
-ways is refused with the key that settles it. Blocks of lines that hold nothing else are read by numpy, all
-others line by line.
+Separator and decimal sign are detected from lines with numbers only; ambiguous files are refused with the key
+that resolves the ambiguity. Blocks of lines with numbers only are read by numpy, others line by line.
 """
 
 import codecs
@@ -18,31 +17,31 @@ from ehlpetsc.errors import ProfileError
 MISSING = {"", "nan", "-nan", "nan(ind)", "-nan(ind)", "na", "n/a", "bad", "*", "***", "-", "--", "---"}
 NUMBERS_ONLY = re.compile(r"[\d\s.,;eE+-]+")
 BLOCK_OF_NUMBERS = re.compile(r"[0-9 \t\n.,;eE+-]+")
-NO_NUMBER = re.compile(r"^[ ,;\t]*[,;\t][ ,;\t]*$", re.MULTILINE)  # a line of separators alone
-OUTER_TAB = re.compile(r"^ *\t|\t *$", re.MULTILINE)  # one that separates nothing
+SEPARATORS_ONLY = re.compile(r"^[ ,;\t]*[,;\t][ ,;\t]*$", re.MULTILINE)
+OUTER_TAB = re.compile(r"^ *\t|\t *$", re.MULTILINE)  # separates nothing
 DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 UNIT_IN_HEADER = re.compile(r"[\[(/]\s*(mm|um|µm|μm|nm|m)\s*(?:[\])]|$)", re.MULTILINE)
 OTHER_LINE_END = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]")
-BLOCK = 1 << 20  # characters that are read at once
+CHARACTERS_PER_BLOCK = 1 << 20
 
 
 def text_columns(path, decimal=None, header_lines=None):
-    """Numbers of a text file, a row each line.
+    """Numbers of a text file, one row for each line.
 
     Parameters
     ----------
     path : pathlib.Path
     decimal : str, optional
-        "." or ","; left out: found from the file.
+        "." or ","; default: detected.
     header_lines : int, optional
-        Lines before the numbers; left out: all lines before the first one of numbers.
+        Lines before the numbers; default: all lines before the first line of numbers.
 
     Returns
     -------
     columns : ndarray, shape (n columns, n rows)
-        nan where a number is missing.
+        nan for a missing number.
     header : str
-        Lines before the numbers, comments among them.
+        Lines before the numbers, comments included.
 
     Raises
     ------
@@ -80,7 +79,7 @@ def text_columns(path, decimal=None, header_lines=None):
 
 
 def units_in(header):
-    """Units of length named in brackets, or behind a slash, in a header, in their order."""
+    """Units of length in brackets, or after a slash, in a header, in their order."""
     return [unit.replace("µ", "u").replace("μ", "u") for unit in UNIT_IN_HEADER.findall(header)]
 
 
@@ -90,22 +89,22 @@ def _decoded(path):
         return _with_newlines(raw.decode("utf-16", "replace"))
     if b"\0" in raw:
         raise ProfileError("not text; allowed: columns of numbers, x and z")
-    raw = raw.removeprefix(codecs.BOM_UTF8)  # also before what is not UTF-8 then
+    raw = raw.removeprefix(codecs.BOM_UTF8)  # also if the rest is not UTF-8
     try:
-        text = raw.decode().replace("\ufeff", "")  # files put together have more of them
-    except UnicodeDecodeError:  # instruments write µ and degrees in the code page of their country
+        text = raw.decode().replace("\ufeff", "")  # concatenated files have several
+    except UnicodeDecodeError:  # instruments write µ and degrees in a national code page
         text = raw.decode("latin-1")
     return _with_newlines(text)
 
 
 def _with_newlines(text):
-    """Text with one sign for every kind of line end."""
+    """Text with newlines in place of other line ends."""
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     return "\n".join(text.splitlines()) if OTHER_LINE_END.search(text) else text
 
 
 def _line_begin(text, count):
-    """Where the line behind the first `count` ones begins."""
+    """Index of the beginning of the line after the first `count` lines."""
     begin = 0
     for _ in range(count):
         begin = text.find("\n", begin) + 1 or len(text)
@@ -113,17 +112,17 @@ def _line_begin(text, count):
 
 
 def _blocks(text, begin):
-    """Whole lines, about `BLOCK` characters at once, with the number of the first."""
+    """Blocks of complete lines of about `CHARACTERS_PER_BLOCK`, with their first line numbers."""
     number = text.count("\n", 0, begin) + 1
     while begin < len(text):
-        end = text.find("\n", begin + BLOCK) + 1 or len(text)
+        end = text.find("\n", begin + CHARACTERS_PER_BLOCK) + 1 or len(text)
         block = text[begin:end]
         yield number, block
         number, begin = number + block.count("\n"), end
 
 
 def _lines(block, number):
-    """Lines with their numbers, without comments, blank ones and those of separators alone."""
+    """Lines with their numbers, without comments, blank lines and lines of separators only."""
     for n, line in enumerate(block.split("\n"), number):
         line = line.partition("#")[0].strip()
         if line.strip(" ,;\t"):
@@ -134,11 +133,11 @@ def _holds_numbers_alone(block):
     if not BLOCK_OF_NUMBERS.fullmatch(block) or "\t" in block and OUTER_TAB.search(block):
         return False
     separated = any(sign in f"\n{block}" for sign in ("\n;", "\n,", "\n "))
-    return not (separated and NO_NUMBER.search(block))
+    return not (separated and SEPARATORS_ONLY.search(block))
 
 
 def _numbers_alone(text, begin):
-    """Numbers of many lines at once, where they hold nothing else."""
+    """Numbers of many lines at once, if they contain nothing else."""
     for _, block in _blocks(text, begin):
         if _holds_numbers_alone(block):
             yield block
@@ -160,9 +159,9 @@ class _Words:
     ----------
     separator : re.Pattern
     delimiter : str or None
-        The same for numpy; None: blanks.
+        Separator for numpy; None: blanks.
     removed, comma : str
-        Sign between thousands, and the decimal sign.
+        Separator of thousands; decimal sign.
     """
 
     separator: re.Pattern
@@ -172,7 +171,7 @@ class _Words:
 
     @classmethod
     def of(cls, text, begin, decimal):
-        """Notation of a file, from its lines that contain numbers alone."""
+        """Notation of a file, from its lines with numbers only."""
         seen, blank = set(), False
         for block in _numbers_alone(text, begin):
             seen |= {sign for sign in ",;\t." if sign in block}
@@ -186,15 +185,15 @@ class _Words:
         else:
             return cls(re.compile(r"\s*,\s*|\s+"), ",", comma=",")
         if {",", "."} <= seen and decimal is None:
-            raise ProfileError('both "," and "." stand in its numbers; write decimal = "," or decimal = "."')
+            raise ProfileError('its numbers contain both "," and "."; write decimal = "," or decimal = "."')
         return cls(re.compile(separator), delimiter, {",": ".", ".": ","}.get(decimal, ""))
 
     def split(self, line):
-        """Numbers of a line, written with a point."""
+        """Numbers of a line, with a decimal point."""
         return self.separator.split(self._with_points(line))
 
     def table(self, block):
-        """Numbers of a block, one row for each line; None where it must be read line by line."""
+        """Numbers of a block, one row for each line; None if it must be read line by line."""
         if not _holds_numbers_alone(block) or block.isspace():
             return None
         text = self._with_points(block)
@@ -212,7 +211,7 @@ class _Words:
 
 
 def _numbers(words):
-    """Numbers of a line, nan for missing ones; None for an empty line or one with other text."""
+    """Numbers of a line, nan for missing numbers; None for an empty line or a line with other text."""
     try:
         row = [np.nan if word.lower() in MISSING else float(word) for word in words]
     except ValueError:
@@ -221,12 +220,12 @@ def _numbers(words):
 
 
 def _columns(pieces):
-    """Rows put together, without columns that hold no number.
+    """Concatenated rows without empty columns.
 
     Parameters
     ----------
     pieces : list of (int, ndarray)
-        Rows of one length that follow each other, and the line of the first.
+        Successive rows of one length, with the line number of the first.
     """
     if not pieces:
         raise ProfileError("0 points; allowed: lines of numbers, x and z")

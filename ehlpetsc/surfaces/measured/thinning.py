@@ -3,15 +3,15 @@
 import numpy as np
 
 MIN_THINNED_POINTS = 200_000  # points; a spline through fewer takes negligible time
-MAX_POINTS_PER_CELL = 16  # points to a cell of the mesh, or to the shortest cut-off
+MAX_POINTS_PER_CELL = 16  # points per cell of the mesh, or per shortest cut-off
 
 
 def thinned(X, z, shortest):
-    """A profile with `MAX_POINTS_PER_CELL` points to the shortest wave, where it has more than twice as many.
+    """Profile with `MAX_POINTS_PER_CELL` points per shortest wave, if it has more than twice as many.
 
-    Every new point has the mean height of the old ones around it, by the trapezoidal rule, corrected
+    Every new point has the mean height of the old points around it, by the trapezoidal rule, corrected
     for curvature to the height at the point, :math:`z_j=m_j-(m_{j+1}-2m_j+m_{j-1})/24`, mirrored at the ends.
-    Means over cells, which are all that a mesh gets, keep their value: of a wave as short as two cells within
+    Means over cells, which alone enter the solution, do not change: of a wave of two cells by less than
     3e-5 of its amplitude.
 
     Parameters
@@ -24,7 +24,7 @@ def thinned(X, z, shortest):
     Returns
     -------
     X, z : ndarray
-        The same arrays where there is nothing to be saved.
+        The same arrays if the profile is not thinned.
     """
     count = max(int(MAX_POINTS_PER_CELL * (X[-1] - X[0]) / shortest), MAX_POINTS_PER_CELL) + 1
     if X.size < max(MIN_THINNED_POINTS, 2 * count):

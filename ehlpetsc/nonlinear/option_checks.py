@@ -1,20 +1,20 @@
-"""Options that are refused, with PETSc's own message, and tolerances looser than the program's."""
+"""Checks of PETSc options: refused options, PETSc's error messages, loose tolerances."""
 
 import importlib
 
 from ehlpetsc.errors import UsageError
 
-MAX_OPTIONS = 512  # options that PETSc's table holds
-LOOSER = {"snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
-DIFFERENCES = "PETSc's differences would stand in for the Jacobian, a product here; leave it out"
-REFUSED = {"snes_mf": DIFFERENCES, "snes_mf_operator": DIFFERENCES}
-NUMERIC, NO_NUMBERS = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
-# in names of options that only tell
-NO_CAUSE = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
+MAX_OPTIONS = 512  # size of PETSc's table
+DEFAULT_TOLERANCES = {"snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
+NO_FINITE_DIFFERENCES = "PETSc's finite differences would replace the Jacobian; leave it out"
+REFUSED = {"snes_mf": NO_FINITE_DIFFERENCES, "snes_mf_operator": NO_FINITE_DIFFERENCES}
+NUMERIC_PREFIXES, NOT_FINITE = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
+# parts of the names of options that only print
+OUTPUT_OPTIONS = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
 
 
 def refusal(error, given):
-    """PETSc's message when it refuses an option, after the options that it can mean; None if there are none.
+    """Message of an error of PETSc with the options that can cause it; None if none can.
 
     Parameters
     ----------
@@ -23,27 +23,33 @@ def refusal(error, given):
         Options of the user.
     """
     reason = petsc_message(error)
-    can = {n: v for n, v in given.items() if not (n.startswith("ehl_") or any(map(n.__contains__, NO_CAUSE)))}
-    named = {n: v for n, v in can.items() if n in reason or v and v in reason}
-    names = [f"-{name} {value or ''}".strip() for name, value in (named if len(named) == 1 else can).items()]
+    possible = {
+        name: value
+        for name, value in given.items()
+        if not (name.startswith("ehl_") or any(part in name for part in OUTPUT_OPTIONS))
+    }
+    named = {n: v for n, v in possible.items() if n in reason or v and v in reason}
+    causes = named if len(named) == 1 else possible
+    names = [f"-{name} {value or ''}".strip() for name, value in causes.items()]
     if not names:
         return None
     return f"PETSc refuses {'one of ' if len(names) > 1 else ''}{', '.join(names)}: {reason}"
 
 
 def petsc_message(error):
-    """Last line of an error of PETSc."""
+    """Last line of PETSc's error message."""
     return str(error).splitlines()[-1].split("] ")[-1]
 
 
 def check_options(options, own):
-    """Refuse what PETSc would take and then do wrong, or end the process over.
+    """Refuse options that PETSc would accept although they fail later or end the process.
 
     Parameters
     ----------
     options : dict of str to str
+        Options of the user.
     own : int
-        Number of the program's own.
+        Number of options that the program sets.
 
     Raises
     ------
@@ -57,14 +63,14 @@ def check_options(options, own):
     for name, value in options.items():
         if name in REFUSED and str(value).lower() not in ("false", "no", "0"):
             raise UsageError(f"-{name}: {REFUSED[name]}")
-        if name.startswith(NUMERIC) and str(value).lower().strip().lstrip("+-") in NO_NUMBERS:
+        if name.startswith(NUMERIC_PREFIXES) and str(value).lower().strip().lstrip("+-") in NOT_FINITE:
             raise UsageError(f"-{name} {value}: allowed: a number")
     if options.get("pc_python_type"):
         _check_class(options["pc_python_type"])
 
 
 def _check_class(path):
-    """Refuse what cannot be made, or not be applied, as a preconditioner: PETSc finds out while it solves."""
+    """Refuse a class that is not a preconditioner, which PETSc would notice during the first solve."""
     module, _, name = path.rpartition(".")
     try:
         made = getattr(importlib.import_module(module), name)()
@@ -75,17 +81,17 @@ def _check_class(path):
 
 
 def loose_tolerances(values, atol):
-    """One line for every tolerance that is looser than the program's own.
+    """One message for every tolerance that is looser than the default.
 
     Parameters
     ----------
     values : dict of str to str
         Options.
     atol : float
-        The program's own ``-snes_atol``.
+        Default of ``-snes_atol``.
     """
     lines = []
-    for name, own in {"snes_atol": atol, **LOOSER}.items():
+    for name, own in {"snes_atol": atol, **DEFAULT_TOLERANCES}.items():
         value = _number(values.get(name, own))
         if value is not None and value > own:
             lines.append(f"-{name} {value:g} is looser than the program's {own:g}: results are less certain")
@@ -95,5 +101,5 @@ def loose_tolerances(values, atol):
 def _number(text):
     try:
         return float(text)
-    except (TypeError, ValueError):  # without a value, or a word
+    except (TypeError, ValueError):  # no value, or no number
         return None

@@ -1,10 +1,10 @@
-"""The equations of one scene as PETSc sees them: two unknowns a node, vectors, matrices, bounds, step limits.
+"""The nonlinear system of a case for PETSc: two unknowns a node, vectors, matrices, bounds, step limits.
 
-Each rank holds the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), the last one on the last rank,
-and works out its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`); what it needs of other ranks comes by
+Each rank stores the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), h00 on the last rank, and
+evaluates its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`) with data of other ranks from
 :mod:`ehlpetsc.nonlinear.halo_exchange`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.operators`), so
-that Newton converges as with the full matrix; the preconditioner of this program takes what it needs from it,
-others (``-pc_type lu`` ...) get the near field assembled.
+that Newton's method converges as with the full matrix; the default preconditioner reads its coefficients from
+it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of the near field.
 """
 
 import numpy as np
@@ -17,21 +17,20 @@ from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.interleaving import n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.collectives import all_ranks, gathered, global_max
+from ehlpetsc.nonlinear.collectives import all_ranks, gathered, global_max, global_sum
 from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, Halo, exchange_unknowns
-from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix
-from ehlpetsc.nonlinear.operators.python_matrix import python_matrix
+from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix, python_matrix
 from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
 from ehlpetsc.nonlinear.snes import owned
 
-RESIDUAL_ROUNDING = 2.0  # times what a last digit of every unknown can make of the residual
+RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
-STEP_LIMIT = 0.3  # p0: largest change of pressure of one Newton step
-FILM_AFTER_RELEASE = 1e-3  # of the expected film: film of a node in the iteration in which its solids part
+STEP_LIMIT = 0.3  # p0: largest change of pressure in one Newton step
+FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the expected film
 
 
 class TwoFields:
-    """Pairs (q, w) at every node, w bounded below in direct contact.
+    """System of the pairs (q, w) at every node, w bounded below in direct contact.
 
     Parameters
     ----------
@@ -39,23 +38,24 @@ class TwoFields:
         As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
     comm : petsc4py.PETSc.Comm
     bound_tolerance : float
-        Films this close to their bound count as on it, ``-snes_vi_zero_tolerance`` of SNES; in a^2/R.
+        Tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this close to their
+        bound count as on it.
 
     Attributes
     ----------
     x, f : petsc4py.PETSc.Vec
-        Unknowns and rows.
+        Unknowns and residual.
     lower, upper : petsc4py.PETSc.Vec
         Bounds of the unknowns.
     bound_reached : bool
-        Whether the last step evaluated takes a film to its bound, on any rank.
+        Whether a film is at its bound after the last evaluated step, on any rank.
     operator, preconditioned : petsc4py.PETSc.Mat
-        The Jacobian, and what preconditioners get of it; there from :meth:`create_matrices` on.
+        The Jacobian, and the matrix for preconditioners; set by :meth:`create_matrices`.
 
     Raises
     ------
     UsageError
-        More ranks than the mesh can be cut for.
+        More ranks than the mesh has blocks.
     """
 
     def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD, bound_tolerance=ZERO_TOLERANCE):
@@ -85,13 +85,13 @@ class TwoFields:
         self._made = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
 
     def create_matrices(self, with_band):
-        """Make the operator, and what preconditioners get.
+        """Create the Jacobian and the matrix for preconditioners.
 
         Parameters
         ----------
         with_band : bool
-            Whether that is the operator itself, which has all that the band of
-            :mod:`ehlpetsc.nonlinear.preconditioner` needs; else it is an assembled near field.
+            Whether preconditioners get the Jacobian itself, as :mod:`ehlpetsc.nonlinear.preconditioner` needs
+            it; otherwise an assembled matrix with the deflection of the near field.
         """
         sizes = self.x.getSizes()
         self.factors = Factors(self.problem, self.ranks) if with_band else None
@@ -105,7 +105,7 @@ class TwoFields:
             self._made.append(self.preconditioned)
 
     def set_initial_guess(self, q, w, h00, inputs):
-        """Set the unknowns to a guess on the whole mesh, and the inputs of the solve.
+        """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve.
 
         Parameters
         ----------
@@ -114,8 +114,8 @@ class TwoFields:
         inputs : ehl_problem.StepInputs
         """
         self.inputs, self.x_evaluated, self.rows = inputs, None, None
-        mine = slice(self.problem.first, self.problem.last)
-        q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = q[mine], w[mine]
+        local = slice(self.problem.first, self.problem.last)
+        q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = q[local], w[local]
         if self.problem.load_is_local:
             self.x.array[-1] = h00
 
@@ -125,18 +125,18 @@ class TwoFields:
 
     def _pairs_of(self, v):
         self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        whole = self.all.array_r
-        return q_of(whole, self.n).copy(), w_of(whole, self.n).copy(), whole[-1]
+        values = self.all.array_r
+        return q_of(values, self.n).copy(), w_of(values, self.n).copy(), values[-1]
 
     def residual(self):
-        """Rows of the solution: deflection and Reynolds at every node, shape (nx,), and the load's."""
+        """Residual of the solution: deflection and Reynolds rows, shape (nx,), and the load row."""
         if self.rows is None:
             self.f.array[:] = self.evaluation(self.x).residual
             self.rows = self._pairs_of(self.f)
         return self.rows
 
     def evaluation(self, x):
-        """Residual and derivatives at x, which is the point last evaluated more often than not."""
+        """Residual and derivatives at x, evaluated unless x is the point evaluated last."""
         if not all_ranks(self.ranks, np.array_equal(x.array_r, self.x_evaluated)):
             self.evaluate(x)
         return self._evaluation
@@ -157,23 +157,23 @@ class TwoFields:
         return self._evaluation
 
     def linearise(self, x, is_evaluated=False):
-        """Set the matrices for x, on every rank the point last evaluated where that is said."""
+        """Set the matrices for x; `is_evaluated` states that x is the point evaluated last, on every rank."""
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
             with events.ASSEMBLY:
-                whole = gathered(self.ranks, self.jacobian.state, self.problem.owned)
-                self.assembled.fill(whole, self.jacobian.reynolds_derivatives)
+                state = gathered(self.ranks, self.jacobian.state, self.problem.owned)
+                self.assembled.fill(state, self.jacobian.reynolds_derivatives)
 
     @property
     def contact(self):
-        """Contact model of the solve in hand."""
+        """Contact model of the current solve."""
         return self.inputs.contact or self.model
 
     def limit_step(self, x, y):
         """Shorten a step y, to be subtracted from x, and limit single entries of it.
 
-        The step is scaled as a whole, so that linear rows stay satisfied, to `STEP_LIMIT` p0 in any pressure,
-        because the viscosity is exponential in p; single entries are limited by the contact model.
+        All of y is scaled by one factor, so that linear rows remain satisfied, to `STEP_LIMIT` p0 in any
+        pressure, because the viscosity is exponential in p; the contact model limits single entries.
         """
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
         change = global_max(self.ranks, self.contact.pressure_change(now, step))
@@ -183,19 +183,19 @@ class TwoFields:
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
     def reaches_bound(self, x, y):
-        """Whether the step y takes a film of this rank to its bound."""
+        """Whether the step y brings a film of this rank to its bound."""
         film = w_of(x.array_r, self.local) - w_of(y.array_r, self.local)
         return not film.min() > self.model.lower_bound + self.model.bound_tolerance
 
     def rounding(self):
-        """Residual at x that rounding of the unknowns leaves: no smaller tolerance can be met.
+        """Residual at x from rounding of the unknowns, a lower limit of the tolerance.
 
-        Slow surfaces over a wide inlet reach it: a pressure's last digit drives more oil than is drawn in.
+        Slow surfaces with a long inlet reach it: a pressure's last digit drives more oil than they entrain.
         """
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
-        mine = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
-        return RESIDUAL_ROUNDING * np.sqrt(self.ranks.allreduce(mine))
+        local = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
+        return RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, local))
 
 
 def first_nodes(n, ranks):
