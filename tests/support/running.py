@@ -1,4 +1,4 @@
-"""Running the program as its users do: as processes of their own, under mpirun or without."""
+"""Run the program as users do: in a process of its own, with or without mpirun."""
 
 import importlib.util
 import re
@@ -17,7 +17,8 @@ MAIN = str(ROOT / "ehlpetsc" / "__main__.py")
 TAMPERED = str(Path(__file__).with_name("tampered.py"))
 environment.prepare()
 PETSC = Path(importlib.util.find_spec("petsc4py").origin).parents[1]
-# what run_mpi.sh sets; the tests of a bare environment leave out some
+TEMPORARY_FOLDER = tempfile.TemporaryDirectory(prefix="ehlpetsc.")
+# set by run_mpi.sh, but for TMPDIR and one other; tests of a minimal environment omit some
 SCRIPT = {
     "PYTHONPATH": f"{ROOT}:{PETSC}",
     "OMP_NUM_THREADS": "1",
@@ -27,7 +28,10 @@ SCRIPT = {
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_smsc": "^cma",
     "OMPI_MCA_orte_execute_quiet": "1",
-    "OMPI_MCA_ess_singleton_isolated": "1",  # of Open MPI 4: without mpirun no daemon is started
+    # of Open MPI 4: without mpirun no daemon is started. Runs without one share a session folder in TMPDIR,
+    # which one removes while another needs it: each worker of the tests has a TMPDIR of its own
+    "OMPI_MCA_ess_singleton_isolated": "1",
+    "TMPDIR": TEMPORARY_FOLDER.name,
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
@@ -36,7 +40,7 @@ SCRIPT = {
     "PMIX_MCA_gds": "hash",
 }
 BARE = {"PATH": "/usr/bin:/bin", "HOME": "/", "TERM": "dumb"}
-ALONE = {"OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}  # one rank: Open MPI looks for no way to others
+ALONE = {"OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self"}  # one rank: Open MPI opens no network
 PREPARED = Prepared(PYTHON, BARE | SCRIPT | ALONE)
 MPIRUNS_COMMENT = re.compile(  # what run_mpi.sh leaves out too
     r"^-{70,}\nprterun detected that one or more processes.*?^-{70,}\n"
@@ -61,7 +65,7 @@ def command(*words, ranks=0, tampered=()):
 
 
 def run(*words, cwd, ranks=0, tampered=(), **environment):
-    """Run the program to its end; output and error output as text, without Open MPI 5's comment."""
+    """Run the program; output and error output as text, without the comment of Open MPI 5."""
     if not ranks:
         return _run_prepared([*(tampered and (TAMPERED, *tampered) or (MAIN,)), *words], cwd, environment)
     done = subprocess.run(
@@ -78,7 +82,7 @@ def run(*words, cwd, ranks=0, tampered=(), **environment):
 
 
 def _run_prepared(words, folder, environment):
-    """The same on one rank, without the time that importing takes."""
+    """Run on one rank without the time for imports."""
     with tempfile.TemporaryDirectory() as streams:
         out, err = Path(streams, "out"), Path(streams, "err")
         status = PREPARED.run(words, folder, environment, out, err)
@@ -86,7 +90,7 @@ def _run_prepared(words, folder, environment):
 
 
 def wait_for(path, process):
-    """Until the file is there or the process has ended, a minute at most."""
+    """Wait until the file exists or the process has ended, a minute at most."""
     for _ in range(1200):
         time.sleep(0.05)
         if path.exists() or process.poll() is not None:
@@ -94,7 +98,7 @@ def wait_for(path, process):
 
 
 def summary(text):
-    """Figures of the last line of a run, as text by name."""
+    """Values of the last line of a run as text by name."""
     line = text.strip().splitlines()[-1]
     assert line.startswith("ehlpetsc: "), text
     return dict(re.findall(r"(\w+)=(\S+)", line))
