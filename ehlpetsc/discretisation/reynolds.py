@@ -119,7 +119,8 @@ class Reynolds:
         if inputs.heat is not None:
             from ehlpetsc.discretisation.heat.film import heated_nodal
 
-            heated_nodal(q, h, density, *units, inputs.heat.part(self.nodes), again, at)
+            law, *arrays = inputs.heat.part(self.nodes)
+            heated_nodal(q, h, density, *units, tuple(law), *arrays, again, at)
             return at
         nodal(q, h, rheology.viscosity_constants(fluid), density, *units, 1.0 / fluid.viscosity, at)
         return at

@@ -134,7 +134,7 @@ def test_derivatives_of_reynolds_rows(ends):
     arrays += [363.0 + 20.0 * rng.uniform(0.0, 1.0, n) for _ in range(2)]
     arrays += [1e-8 * rng.uniform(0.5, 1.0, n) for _ in range(2)]
     law = film_law(case.fluid, case.heat, scales.conditions.sliding)
-    heat = FilmHeat.begun(law, *arrays, np.full(n, 370.0))
+    heat = FilmHeat.begun(law, arrays, np.full(n, 370.0))
     inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
     thermal = replace(inputs, heat=heat)
     values = reynolds.evaluate(q, h, thermal)[1]
@@ -161,8 +161,9 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     n, reynolds = scales.nx, Reynolds(scales, 5e-4, 0, scales.nx)
     q, h, b = np.full(n, 0.5), np.full(n, 5e-4), np.full(n, 363e6)
     q[20], b[20] = 1.0, 563e6
-    rest = np.zeros(n), np.zeros(n), b / 1e6, b / 1e6, np.full(n, 1e-8), np.full(n, 1e-8), np.full(n, 370.0)
-    heat = FilmHeat.begun(film_law(case.fluid, case.heat, 0.0), np.full(n, 1e6), b, *rest)
+    zero, response = np.zeros(n), np.full(n, 1e-8)
+    of_nodes = np.full(n, 1e6), b, zero, zero, b / 1e6, b / 1e6, response, response
+    heat = FilmHeat.begun(film_law(case.fluid, case.heat, 0.0), of_nodes, np.full(n, 370.0))
     inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
     cold, hot = (reynolds.properties(q, h, one) for one in (inputs, replace(inputs, heat=heat)))
     assert heat.guess[20] == pytest.approx(563.0)

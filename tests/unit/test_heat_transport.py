@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.discretisation.heat.transport import Film, explicit_transport, heat_taken, transport
+from ehlpetsc.discretisation.heat.transport import explicit_transport, heat_taken, transport
 from ehlpetsc.physics.heat.film import FilmHeat, FilmLaw
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
@@ -26,13 +26,14 @@ def carried(profile, nodes, way=1.0, moving=False):
     change, t, worst = begin - profile(along + dx * courant) if moving else zero, INLET + begin, 0.0
     kept = 0.5 * stored * change
     for _ in range(steps):
-        film = Film(zero, 1e-6 * full, full, t, stored, change, kept, flow, zero)
+        film = zero, 1e-6 * full, full, t, stored, change, kept, flow
         a, b = explicit_transport(stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
-        heat = FilmHeat.begun(LAW, a, b, zero, zero, *walls, b / a)
-        new, q1, q2, shear, beyond = (np.empty(nodes) for _ in range(5))
-        assert transport(b / a, tuple(film), INLET, INLET, heat, new, q1, q2, shear, beyond) == 1
-        worst = max(worst, abs(heat_taken(tuple(film), INLET, new, beyond) + q1.sum() + q2.sum()))
+        heat = FilmHeat.begun(LAW, (a, b, zero, zero, *walls), b / a)
+        new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
+        assert transport(b / a, *film, INLET, INLET, tuple(LAW), heat.of_nodes, *out) == 1
+        taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
+        worst = max(worst, abs(taken + q1.sum() + q2.sum()))
         change, t, kept = new - t, new, beyond
     return begin, t - INLET, worst / (CAPACITY / dt * begin.sum())
 

@@ -20,39 +20,39 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
     positive_extrapolation,
 )
-from ehlpetsc.physics.heat.film import _log_viscosity, film_temperature
+from ehlpetsc.physics.heat.film import A, B, FilmLaw, _log_viscosity, film_temperature, fixed_at
 from ehlpetsc.physics.rheology import mobilities
 
 
 @compiled
-def heated_nodal(q, h, density, p0, film, unit, heat, again, at):
+def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, kept, again, at):
     """Fill in what faces need of nodes, the viscosity at the film's temperature with its derivatives.
 
     Parameters
     ----------
     q, h, density, p0, film, unit, at
         As of :func:`.reynolds.nodal`; at the node beyond the outlet the temperature is that of the last one.
-    heat : FilmHeat
-        Of these nodes; `guess` becomes their temperature.
+    law, of_nodes, guess, kept
+        :class:`ehlpetsc.physics.heat.film.FilmHeat` of these nodes, `law` as a tuple: numba looks up the type
+        of a named one anew in some calls, slowly. `guess` becomes their temperature.
     again : bool
         Whether nodes whose unknowns are those of the last evaluation get its viscosity, without derivatives.
     """
-    nodes, law, kept = len(q), heat.law, heat.kept
+    nodes, law = len(q), FilmLaw(*law)
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
         if again and q[i] == kept[0, i] and h[i] == kept[1, i]:
             at[FLUIDITY, i], at[THERMAL, i] = kept[2, i], kept[3, i]
             continue
-        walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
-        of_node = heat.a[i], heat.b[i], heat.g[i], heat.spread[i], walls, law
+        of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
         left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, viscosity = film_temperature(heat.guess[i], p, at[H, i], left, *of_node)
+        t, t_p, t_h, _, _, _, viscosity = film_temperature(guess[i], p, at[H, i], left, *of_node)
         _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
-        heat.guess[i], kept[0, i], kept[1, i] = t, q[i], h[i]
+        guess[i], kept[0, i], kept[1, i] = t, q[i], h[i]
         kept[2, i], kept[3, i] = at[FLUIDITY, i], at[THERMAL, i]
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
-        t = heat.guess[nodes - 1]
+        t = guess[nodes - 1]
         viscosity = _log_viscosity(p, t, law.pressure_law, law.thermal_law)
         _fill_fluidity(nodes, p, t, viscosity, 0.0, 0.0, law, p0, film, at)
 

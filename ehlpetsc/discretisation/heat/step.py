@@ -11,7 +11,7 @@ from ehlpetsc.discretisation.heat.mixing import mixing
 from ehlpetsc.discretisation.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.heat.film import FilmHeat
+from ehlpetsc.physics.heat.film import R1, R2, SPREAD, W1, W2, FilmHeat, G
 from ehlpetsc.physics.heat.laws import film_law
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
@@ -80,7 +80,7 @@ class HeatStep:
         t = record.film
         known = *explicit_transport(self._stored, record.flow, t, self.inlet), record.source, record.spread
         law = self._law(step.conditions.sliding)
-        self._heat = FilmHeat.begun(law, *known, *walls, *responses, t.copy())
+        self._heat = FilmHeat.begun(law, (*known, *walls, *responses), t.copy())
         if record.solved and self.fluid is not None:
             inputs = replace(inputs, heat=self._heat)
         self._inputs = inputs
@@ -120,7 +120,8 @@ class HeatStep:
             film = Film(pressure, thickness, left, record.film, self._stored, *then, unit * couette, part)
             source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
-        heat = self._heat._replace(law=self._heat.law._replace(thinnest=0.0), g=source, spread=spread)
+        heat = self._heat.with_rows((G, SPREAD), (source, spread))
+        heat = heat._replace(law=heat.law._replace(thinnest=0.0))
         found = self._steady(record, heat, film, step) if self._moved is None else self._moving(heat, film)
         return found, film, source, spread
 
@@ -168,13 +169,13 @@ class HeatStep:
     def _nodes(self, heat, film, guess):
         """Film temperatures, both fluxes, the heat of shear and e."""
         out = [np.empty(len(guess)) for _ in range(5)]
-        transport(guess, tuple(film), self.inlet, self.coldest, heat, *out)
+        transport(guess, *film[:-1], self.inlet, self.coldest, tuple(heat.law), heat.of_nodes, *out)
         return out
 
     def _moving(self, heat, film):
         t, *fluxes, shear, extrapolated = self._nodes(heat, film, heat.guess)
-        responses = [heat.r1, heat.r2]
-        walls = [w + r * q for w, r, q in zip((heat.w1, heat.w2), responses, fluxes, strict=True)]
+        before, responses = heat.of_nodes[[W1, W2]], heat.of_nodes[[R1, R2]]
+        walls = [w + r * q for w, r, q in zip(before, responses, fluxes, strict=True)]
         bodies = [b.accept(one, q) for b, one, q in zip(self.bodies, self._moved, fluxes, strict=True)]
         return Temperatures(t, walls, fluxes, shear, extrapolated, bodies, responses)
 
@@ -192,7 +193,7 @@ class HeatStep:
             risen = [b.steady(one, u) for b, one, u in zip(self.bodies, q, speeds, strict=True)]
             walls = [bulk + rise for bulk, (rise, _) in zip(self.bulk, risen, strict=True)]
             known = [w - r * one for w, r, one in zip(walls, responses, q, strict=True)]
-            now = heat._replace(w1=known[0], w2=known[1], r1=responses[0], r2=responses[1])
+            now = heat.with_rows((W1, W2, R1, R2), known + responses)
             guess = record.film if found is None else found.film
             t, *new, shear, extrapolated = self._nodes(now, film, guess)
             bodies = [b.record(one, terms) for b, one, (_, terms) in zip(self.bodies, q, risen, strict=True)]
@@ -205,6 +206,7 @@ class HeatStep:
     def balance(self, found, film, source):
         """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it."""
         total = (found.shear + source).sum()
-        taken = heat_taken(tuple(film), self.inlet, found.film, found.extrapolated)
+        of_film = film.old, film.stored, film.extrapolated, film.couette
+        taken = heat_taken(*of_film, self.inlet, found.film, found.extrapolated)
         missing = total - found.fluxes[0].sum() - found.fluxes[1].sum() - taken
         return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.physics.heat.film import film_temperature
+from ehlpetsc.physics.heat.film import FilmLaw, film_temperature, fixed_at
 
 SWEEPS = 50
 SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the sweeps
@@ -100,32 +100,52 @@ def _limited(difference, next_one):
 
 
 @compiled
-def _limiters(t, film, in_space, in_time):
+def _limiters(t, old, change, couette, in_space, in_time):
     """Fill in both limiters of every node at temperatures t; oil enters and leaves as at the end nodes."""
     last = len(t) - 1
     for i in range(last + 1):
         # t knows the neighbours of the old level and changes less than the solution: BDF2 at most
-        in_time[i] = min(_limited(t[i] - film.old[i], film.change[i]), 0.5)
+        in_time[i] = min(_limited(t[i] - old[i], change[i]), 0.5)
         in_space[i] = 0.0
         if 0 < i < last:
             left, right = t[i] - t[i - 1], t[i + 1] - t[i]
-            in_space[i] = _limited(left, right) if film.couette[i + 1] >= 0.0 else _limited(right, left)
+            in_space[i] = _limited(left, right) if couette[i + 1] >= 0.0 else _limited(right, left)
 
 
 @compiled
-def transport(t, film, inlet, coldest, heat, t_new, q1, q2, shear_heat, extrapolated):
+def transport(
+    t,
+    pressure,
+    thickness,
+    left,
+    old,
+    stored,
+    change,
+    before_step,
+    flow,
+    inlet,
+    coldest,
+    law,
+    of_nodes,
+    t_new,
+    q1,
+    q2,
+    shear_heat,
+    extrapolated,
+):
     """Temperatures of the film and heat fluxes of a solution, by sweeps along the film.
 
     Parameters
     ----------
     t : ndarray, shape (nodes,)
         First guess, at which the limiters are taken [K].
-    film : tuple
-        The arrays of :class:`Film`, which numba would take apart slowly in some runs.
+    pressure, thickness, left, old, stored, change, before_step, flow
+        As `pressure` to `couette` of :class:`Film`. One by one, as numba looks up the types of many arrays in
+        a tuple, and of named tuples, anew in some calls, slowly.
     inlet, coldest : float
         Temperature of the oil that enters, least one of it and both bodies [K].
-    heat : FilmHeat
-        Its `a` and `b` are not used.
+    law, of_nodes
+        As of :class:`ehlpetsc.physics.heat.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
     t_new, q1, q2, shear_heat, extrapolated : ndarray, shape (nodes,)
         Filled in; the last one is e at the end of the step, over the step [W/m^2].
 
@@ -134,73 +154,68 @@ def transport(t, film, inlet, coldest, heat, t_new, q1, q2, shear_heat, extrapol
     int
         Sweeps.
     """
-    film = Film(*film)
-    nodes, law, flow = len(t), heat.law, film.couette
+    nodes, law = len(t), FilmLaw(*law)
     in_space, in_time = np.empty(nodes), np.empty(nodes)
-    _limiters(t, film, in_space, in_time)
+    _limiters(t, old, change, flow, in_space, in_time)
     t_new[:] = t
     backward = flow[nodes // 2] < 0.0  # with the flow; the limiters need what is upstream
     for sweep in range(SWEEPS):
-        change, turned = 0.0, False
+        largest, turned = 0.0, False
         for k in range(nodes):
             i = nodes - 1 - k if backward else k
             from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
             turned = turned or (from_left if backward else from_right) > 0.0
             before, after = t_new[i - 1] if i > 0 else inlet, t_new[i + 1] if i < nodes - 1 else inlet
-            known = film.stored[i] * film.old[i] + film.extrapolated[i]
+            known = stored[i] * old[i] + before_step[i]
             if from_left > 0.0:
                 drawn = in_space[i - 1] * (before - t_new[i - 2]) if i > 1 else 0.0
                 known += from_left * (before + drawn)
             if from_right > 0.0:
                 drawn = in_space[i + 1] * (after - t_new[i + 2]) if i < nodes - 2 else 0.0
                 known += from_right * (after + drawn)
-            walls = heat.w1[i], heat.w2[i], heat.r1[i], heat.r2[i]
+            fixed = fixed_at(i, of_nodes, law)
             for _ in range(2):
-                beyond = film.stored[i] * in_time[i]
+                beyond = stored[i] * in_time[i]
                 to_right, to_left = in_space[i] * max(flow[i + 1], 0.0), in_space[i] * max(-flow[i], 0.0)
-                a = film.stored[i] + from_left + from_right + beyond + to_right + to_left
-                b = known + beyond * film.old[i] + to_right * before + to_left * after
+                a = stored[i] + from_left + from_right + beyond + to_right + to_left
+                b = known + beyond * old[i] + to_right * before + to_left * after
                 value, _, _, q1[i], q2[i], shear_heat[i], _ = film_temperature(
                     t_new[i],
-                    film.pressure[i],
-                    film.thickness[i],
-                    film.left[i],
+                    pressure[i],
+                    thickness[i],
+                    left[i],
                     a,
                     b,
-                    heat.g[i],
-                    heat.spread[i],
-                    walls,
-                    law,
+                    *fixed,
                 )
                 upstream = before if flow[i + 1] >= 0.0 else after
-                drop = max(in_space[i] * (upstream - value), in_time[i] * (film.old[i] - value))
+                drop = max(in_space[i] * (upstream - value), in_time[i] * (old[i] - value))
                 if drop <= max(value - coldest, 0.0):
                     break
                 in_space[i] = in_time[i] = 0.0
-            change = max(change, abs(value - t_new[i]))
-            t_new[i], extrapolated[i] = value, beyond * (value - film.old[i])
-        if not turned or change < SWEEP_TOLERANCE * inlet:
+            largest = max(largest, abs(value - t_new[i]))
+            t_new[i], extrapolated[i] = value, beyond * (value - old[i])
+        if not turned or largest < SWEEP_TOLERANCE * inlet:
             return sweep + 1
         backward = not backward
     return SWEEPS
 
 
 @compiled
-def heat_taken(film, inlet, t, extrapolated):
+def heat_taken(old, stored, before_step, flow, inlet, t, extrapolated):
     """Heat that the oil stores and takes out of the contact, summed over the cells [W/m^2].
 
     Parameters
     ----------
-    film, inlet
+    old, stored, before_step, flow, inlet
         As of :func:`transport`.
     t, extrapolated : ndarray, shape (nodes,)
         As it fills them in.
     """
-    film = Film(*film)
-    nodes, flow = len(t), film.couette
+    nodes = len(t)
     # oil that the pressure moves takes its heat along from where it turns: the Couette flow alone carries
     taken = max(flow[nodes], 0.0) * (t[nodes - 1] - inlet) + max(-flow[0], 0.0) * (t[0] - inlet)
     for i in range(nodes):
-        taken += film.stored[i] * (t[i] - film.old[i]) + extrapolated[i] - film.extrapolated[i]
+        taken += stored[i] * (t[i] - old[i]) + extrapolated[i] - before_step[i]
         taken -= (flow[i + 1] - flow[i]) * (t[i] - inlet)
     return taken

@@ -24,6 +24,8 @@ QUADRATIC = 1e-4  # K: the same of an iteration of Newton's method, after which 
 ERROR = 1e-8  # K: estimated error of an iteration of Chebyshev's method that ends it,
 SMALL = 0.3  # change of ln(eta) up to which that estimate holds
 
+A, B, G, SPREAD, W1, W2, R1, R2 = range(8)  # rows of FilmHeat.of_nodes
+
 _log_viscosity = compiled(thermal_viscosity.log_viscosity)
 
 
@@ -120,6 +122,13 @@ def _balanced(guess, slope, known, heat, ln_rate, p, law):
 
 
 @compiled
+def fixed_at(i, of_nodes, law):
+    """Last arguments of :func:`film_temperature` at node i, from `g` on, from those of :class:`FilmHeat`."""
+    walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i]
+    return of_nodes[G, i], of_nodes[SPREAD, i], walls, law
+
+
+@compiled
 def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     r"""Temperature of the film at one node.
 
@@ -177,16 +186,15 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
 
 
 class FilmHeat(NamedTuple):
-    """Coefficients of the film's temperature that are fixed in a solve; arrays of shape (nx,).
+    """Coefficients of the film's temperature that are fixed in a solve, and what its evaluations keep.
 
     Attributes
     ----------
     law : FilmLaw
-    a, b, g, spread
-        As of :func:`film_temperature`.
-    w1, w2, r1, r2
-        Of both surfaces.
-    guess
+    of_nodes : ndarray, shape (8, nx)
+        Rows `A` to `R2`, as of :func:`film_temperature`. One array, as numba looks up the types of many in a
+        tuple anew in some calls, slowly.
+    guess : ndarray, shape (nx,)
         Temperature to start from [K]; that of the last evaluation.
     kept : ndarray, shape (4, nx)
         Of the last evaluation: unknown of Reynolds' equation and film, not a number before it, and what
@@ -194,21 +202,21 @@ class FilmHeat(NamedTuple):
     """
 
     law: FilmLaw
-    a: np.ndarray
-    b: np.ndarray
-    g: np.ndarray
-    spread: np.ndarray
-    w1: np.ndarray
-    w2: np.ndarray
-    r1: np.ndarray
-    r2: np.ndarray
+    of_nodes: np.ndarray
     guess: np.ndarray
     kept: np.ndarray
 
     @classmethod
-    def begun(cls, law, *arrays):
-        """Coefficients without any evaluation; `arrays` are those from `a` to `guess`."""
-        return cls(law, *arrays, np.full((4, len(arrays[0])), np.nan))
+    def begun(cls, law, of_nodes, guess):
+        """Coefficients without any evaluation, from the rows of `of_nodes`."""
+        return cls(law, np.array(of_nodes), guess, np.full((4, len(guess)), np.nan))
+
+    def with_rows(self, rows, values):
+        """Coefficients with other values in some rows of `of_nodes`."""
+        of_nodes = self.of_nodes.copy()
+        for row, one in zip(rows, values, strict=True):
+            of_nodes[row] = one
+        return self._replace(of_nodes=of_nodes)
 
     def mirrored(self):
         """Coefficients with the nodes in reverse order."""
@@ -216,6 +224,6 @@ class FilmHeat(NamedTuple):
 
     def part(self, nodes):
         """Coefficients at a slice of the nodes."""
-        if nodes == slice(0, len(self.a)):
+        if nodes == slice(0, len(self.guess)):
             return self
         return FilmHeat(self.law, *(np.ascontiguousarray(array[..., nodes]) for array in self[1:]))
