@@ -18,13 +18,13 @@ parabola with
 regular at r = 0.
 """
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import inlined
 
 PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
 
 
-@compiled
+@inlined
 def exchange_law(kind, r, walls):
     """Flux into both surfaces per temperature [W/(m^2 K)], and the temperature without flux [K]."""
     w1, w2, r1, r2 = walls
@@ -38,7 +38,7 @@ def exchange_law(kind, r, walls):
     return g1 + g2, (g1 * w1 + g2 * w2) / (g1 + g2)
 
 
-@compiled
+@inlined
 def fluxes(kind, t, r, walls, exchange, alpha):
     """Heat fluxes into both surfaces, and the derivative of their sum with respect to r."""
     w1, w2, r1, r2 = walls

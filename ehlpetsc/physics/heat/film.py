@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import inlined
 from ehlpetsc.physics.heat import thermal_viscosity
 from ehlpetsc.physics.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
 from ehlpetsc.physics.heat.shear import shear_stress
@@ -26,7 +26,7 @@ SMALL = 0.3  # change of ln(eta) up to which that estimate holds
 
 A, B, G, SPREAD, W1, W2, R1, R2 = range(8)  # rows of FilmHeat.of_nodes
 
-_log_viscosity = compiled(thermal_viscosity.log_viscosity)
+_log_viscosity = inlined(thermal_viscosity.log_viscosity)
 
 
 class FilmLaw(NamedTuple):
@@ -63,7 +63,7 @@ class FilmLaw(NamedTuple):
     thinnest: float = 0.0
 
 
-@compiled
+@inlined
 def _log_rate(h, spread, law):
     """`ln_rate` of :func:`.shear.shear_stress`."""
     if law.eyring == np.inf:
@@ -71,7 +71,7 @@ def _log_rate(h, spread, law):
     return np.log(law.sliding * law.eta0 / (law.eyring * h)) - spread
 
 
-@compiled
+@inlined
 def _balanced(guess, slope, known, heat, ln_rate, p, law):
     """Temperature of `slope` T = `known` + `heat` times the shear stress, by a safeguarded Halley's method.
 
@@ -121,14 +121,14 @@ def _balanced(guess, slope, known, heat, ln_rate, p, law):
     return t, (tau, by_ln_eta, by_p), (ln_eta, eta_p, eta_t)
 
 
-@compiled
+@inlined
 def fixed_at(i, of_nodes, law):
     """Last arguments of :func:`film_temperature` at node i, from `g` on, from those of :class:`FilmHeat`."""
     walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i]
     return of_nodes[G, i], of_nodes[SPREAD, i], walls, law
 
 
-@compiled
+@inlined
 def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     r"""Temperature of the film at one node.
 

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import inlined
 from ehlpetsc.physics.heat import thermal_viscosity
 
 MAX_LN_SINH = 20.0  # above it the stress is linear in ln(eta) to 1e-17
 
-_limited = compiled(thermal_viscosity.limited_shear)
+_limited = inlined(thermal_viscosity.limited_shear)
 
 
-@compiled
+@inlined
 def shear_stress(ln_rate, ln_eta, p, eyring, limit):
     r"""Mean shear stress of the film :math:`\tau_m` [Pa].
 
