@@ -108,7 +108,7 @@ class Blocks(NamedTuple):
         moments = [np.exp(-rates * to_the_end), np.exp(-rates * to_the_end[::-1])]
         matrices = (
             np.hstack([*_near(kernel), *moments]),
-            np.concatenate([(weights * part).T for part in moments[::-1]]),
+            np.concatenate([(weights * moment).T for moment in moments[::-1]]),
             np.exp(-BLOCK * rates),
             _translation(cuts, rank, rates),
         )
@@ -129,10 +129,10 @@ class Blocks(NamedTuple):
 
 def _near(kernel):
     """Matrices of the sums over a block at itself, at the block on its right and at that on its left."""
-    known = np.zeros(2 * BLOCK)
-    known[: len(kernel)] = kernel[: 2 * BLOCK]
+    padded = np.zeros(2 * BLOCK)
+    padded[: len(kernel)] = kernel[: 2 * BLOCK]
     apart = np.arange(BLOCK) - np.arange(BLOCK)[:, None]
-    return [known[np.abs(apart + shift)] for shift in (0, BLOCK, -BLOCK)]
+    return [padded[np.abs(apart + shift)] for shift in (0, BLOCK, -BLOCK)]
 
 
 def _translation(cuts, rank, rates):

@@ -47,11 +47,11 @@ def fast_length(n):
     `scipy.fft.next_fast_len` would load 4 MB more than `numpy.fft`, which is as quick.
     """
     while True:
-        rest = n
+        cofactor = n
         for prime in (2, 3, 5):
-            while rest % prime == 0:
-                rest //= prime
-        if rest == 1:
+            while cofactor % prime == 0:
+                cofactor //= prime
+        if cofactor == 1:
             return n
         n += 1
 

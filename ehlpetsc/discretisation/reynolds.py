@@ -91,16 +91,16 @@ class Reynolds:
         self.rows = slice(max(first, 1), last)
         self.has_inlet, self.has_outlet = first == 0, last == n
         nodes = slice(max(self.rows.start - 2, 0), min(last + 1, n))  # all that the local rows need
-        self.nodes, self.given = nodes, slice(nodes.start - start, nodes.stop - start)
-        self.row_in_given = self.rows.start - nodes.start
+        self.nodes, self.input_nodes = nodes, slice(nodes.start - start, nodes.stop - start)
+        self.row_in_input = self.rows.start - nodes.start
         self.dx = scales.x[1] - scales.x[0]
         self.columns = self._columns(np.arange(first, last), n)
 
     def _columns(self, rows, n):
         node = rows[:, None] + np.arange(-2, 2)
-        both = dofs_of(node)
-        both[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
-        return both.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
+        columns = dofs_of(node)
+        columns[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
+        return columns.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
 
     def mass_per_area(self, q, h, fluid):
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
@@ -112,14 +112,14 @@ class Reynolds:
 
         `again` as of :func:`.heat.film.heated_nodal`.
         """
-        q, h, fluid = q[self.given], h[self.given], inputs.fluid
+        q, h, fluid = q[self.input_nodes], h[self.input_nodes], inputs.fluid
         s, density = self.scales, rheology.density_constants(fluid)
         rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
         at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
             from ehlpetsc.discretisation.heat.film import heated_nodal
 
-            law, *arrays = inputs.heat.part(self.nodes)
+            law, *arrays = inputs.heat.at_nodes(self.nodes)
             heated_nodal(q, h, density, *units, tuple(law), *arrays, again, at)
             return at
         nodal(q, h, rheology.viscosity_constants(fluid), density, *units, 1.0 / fluid.viscosity, at)
@@ -147,7 +147,7 @@ class Reynolds:
             With respect to q and h of the nodes of `columns`.
         """
         rows, history, law = self.rows, inputs.history, self.face_law(inputs)
-        at, first = self.properties(q, h, inputs), self.row_in_given
+        at, first = self.properties(q, h, inputs), self.row_in_input
         storage = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
             storage = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt

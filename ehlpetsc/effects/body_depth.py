@@ -17,11 +17,11 @@ from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 class BodyDepth(Effect):
     """Effect whose record has `depth` and `hidden`, the part of the depth that is not in the gap."""
 
-    def start(self, before=None, **more):
+    def start(self, before=None, **entries):
         """Depth zero with further entries of the record, or the record of the previous pass."""
         if before is None:
             zero = BodyFields.zero(self.scene.scales.dx)
-            return self.record(depth=zero, hidden=zero, **more)
+            return self.record(depth=zero, hidden=zero, **entries)
         return before._replace(hidden=self._ahead_of_profiles(before.depth))
 
     def inputs(self, record, inputs, step):
@@ -32,7 +32,7 @@ class BodyDepth(Effect):
         """Depths of both bodies in the gap at the nodes [m], shape (nx,) each."""
         depths = self.scene.mesh_on_bodies.means(record.depth, step.travelled)
         hidden = self.scene.mesh_on_bodies.means(record.hidden, step.travelled)
-        return [depth - part for depth, part in zip(depths, hidden, strict=True)]
+        return [depth - hidden_depth for depth, hidden_depth in zip(depths, hidden, strict=True)]
 
     def observe(self, record, solution, step):
         """Depths in the gap at the nodes."""

@@ -123,9 +123,9 @@ class Heat(Effect):
     def start(self, before=None):
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
         n, steps = self.scene.scales.nx, self._steps
-        zero, one = np.zeros(n), np.ones(n)
-        walls = [bulk * one for bulk in steps.bulk]
-        state = (steps.inlet * one, *walls, zero, zero, zero, zero, np.zeros(n + 1), *[zero] * 5)
+        zeros, ones = np.zeros(n), np.ones(n)
+        walls = [bulk * ones for bulk in steps.bulk]
+        state = (steps.inlet * ones, *walls, zeros, zeros, zeros, zeros, np.zeros(n + 1), *[zeros] * 5)
         return HeatRecord(*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0)
 
     def inputs(self, record, inputs, step):
@@ -134,20 +134,20 @@ class Heat(Effect):
 
     def accept(self, record, solution, step):
         """Temperatures and fluxes of a solution."""
-        found, film, source, spread = self._steps.solve(record, solution, step)
+        temperatures, film, source, spread = self._steps.solve(record, solution, step)
         return HeatRecord(
-            found.film,
-            *found.walls,
-            *found.fluxes,
+            temperatures.film,
+            *temperatures.walls,
+            *temperatures.fluxes,
             source - film.rubbing,
             spread,
             film.couette,
-            *found.responses,
+            *temperatures.responses,
             film.pressure,
-            (found.film - film.old) / (step.dt or np.inf),
-            found.extrapolated * (step.dt or 0.0),
-            *found.bodies,
-            *self._steps.balance(found, film, source),
+            (temperatures.film - film.old) / (step.dt or np.inf),
+            temperatures.extrapolated * (step.dt or 0.0),
+            *temperatures.bodies,
+            *self._steps.balance(temperatures, film, source),
             record.solved + 1,
         )
 

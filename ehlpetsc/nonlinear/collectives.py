@@ -64,10 +64,10 @@ def gathered(ranks, record, owned):
     """Named tuple of the arrays of all nodes, from one of arrays of which `owned` are those of the rank."""
     if ranks.size == 1:
         return record
-    return record._make(_gathered(ranks, part, owned) for part in record)
+    return record._make(_gathered(ranks, field, owned) for field in record)
 
 
-def _gathered(ranks, part, owned):
-    if isinstance(part, np.ndarray):
-        return np.concatenate(ranks.allgather(part[owned]))
-    return gathered(ranks, part, owned) if isinstance(part, tuple) else part
+def _gathered(ranks, field, owned):
+    if isinstance(field, np.ndarray):
+        return np.concatenate(ranks.allgather(field[owned]))
+    return gathered(ranks, field, owned) if isinstance(field, tuple) else field

@@ -126,13 +126,15 @@ class RunOptions:
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
     def _enter(self, table):
-        there = table.getAll()
-        self.given = wanted = self._of_case | there | self._of_call
+        in_table = table.getAll()
+        self.given = wanted = self._of_case | in_table | self._of_call
         check_options(wanted, len(self._defaults | PRECONDITIONER | KRYLOV))
         wanted = self._defaults | _linear_solver(wanted) | wanted
         self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
-        self._entered = [name for name, value in wanted.items() if name not in there or there[name] != value]
-        changed = [name for name in [*self._entered, *self.deferred_views] if name in there]
+        self._entered = [
+            name for name, value in wanted.items() if name not in in_table or in_table[name] != value
+        ]
+        changed = [name for name in [*self._entered, *self.deferred_views] if name in in_table]
         self._saved = {name: table.getString(name, "") for name in changed}
         for name in self.deferred_views:
             table.delValue(name)

@@ -70,8 +70,8 @@ class FlexibleGMRES:
         v, _, _, norms = basis.vectors
         v[0] = 0.0
         v[0, operator.active] = b.array_r
-        given = *operator.linearisation, *halo, *factors.lu.factors, factors.units
-        number = iterations(*basis, *given, min(max_it, MAX_IT), *tolerances)
+        system = *operator.linearisation, *halo, *factors.lu.factors, factors.units
+        number = iterations(*basis, *system, min(max_it, MAX_IT), *tolerances)
         for k, norm in enumerate(norms[: number + 1].tolist()):
             reason = ksp.callConvergenceTest(k, norm)
             ksp.logConvergenceHistory(norm)

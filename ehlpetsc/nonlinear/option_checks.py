@@ -13,20 +13,20 @@ NUMERIC_PREFIXES, NOT_FINITE = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinit
 OUTPUT_OPTIONS = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
 
 
-def refusal(error, given):
+def refusal(error, user_options):
     """Message of an error of PETSc with the options that can cause it; None if none can.
 
     Parameters
     ----------
     error : petsc4py.PETSc.Error
-    given : dict of str to str
+    user_options : dict of str to str
         Options of the user.
     """
     reason = petsc_message(error)
     possible = {
         name: value
-        for name, value in given.items()
-        if not (name.startswith("ehl_") or any(part in name for part in OUTPUT_OPTIONS))
+        for name, value in user_options.items()
+        if not (name.startswith("ehl_") or any(fragment in name for fragment in OUTPUT_OPTIONS))
     }
     named = {n: v for n, v in possible.items() if n in reason or v and v in reason}
     causes = named if len(named) == 1 else possible

@@ -26,7 +26,7 @@ def _destroy(made):
         made.pop().destroy()
 
 
-def create(comm, kind, f, function, pre_check, given):
+def create(comm, kind, f, function, pre_check, user_options):
     """Create a SNES of a type, or of the user's ``-snes_type``.
 
     Parameters
@@ -37,7 +37,7 @@ def create(comm, kind, f, function, pre_check, given):
         Vector of the residual.
     function, pre_check : bound method
         Residual function and pre-check of the line search; SNES does not keep their object alive.
-    given : dict of str to str
+    user_options : dict of str to str
         Options of the user.
 
     Raises
@@ -58,15 +58,15 @@ def create(comm, kind, f, function, pre_check, given):
     except (PETSc.Error, UsageError) as error:
         snes.destroy()
         if isinstance(error, PETSc.Error):
-            raise_refusal(error, given)
+            raise_refusal(error, user_options)
         raise
     snes.setLineSearchPreCheck(weakly(pre_check))
     return snes
 
 
-def raise_refusal(error, given):
+def raise_refusal(error, user_options):
     """Raise an error of PETSc, as a `UsageError` where an option of the user can be its cause."""
-    message = refusal(error, given)
+    message = refusal(error, user_options)
     if message is None:
         raise error
     raise UsageError(message) from None

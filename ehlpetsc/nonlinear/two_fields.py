@@ -149,8 +149,8 @@ class TwoFields:
         self.x_evaluated = x.array_r.copy()
         with events.RESIDUAL:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
-            given = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
-            nodes, h00, curvature, load = exchange_unknowns(*self.halo, *given)
+            local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
+            nodes, h00, curvature, load = exchange_unknowns(*self.halo, *local_data)
             (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
             self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, sums)
             self.bound_reached = load[3] > 0.0

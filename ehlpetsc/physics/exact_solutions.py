@@ -17,7 +17,7 @@ def hertz_pressure(x, a, p0):
 
 
 def hertz_gap(x, a, radius):
-    r"""Gap beside a dry smooth cylinder [m], 0 inside.
+    r"""Gap outside the contact of a dry smooth cylinder [m], 0 inside.
 
     :math:`\frac{a^2}{2R}\left[X\sqrt{X^2-1}-\ln(X+\sqrt{X^2-1})\right]`, :math:`X=|x|/a`: the parabola
     and the deflection by the pressure of `hertz_pressure` (Johnson 1985, section 4.2).

@@ -61,7 +61,7 @@ def smooth_films(fluid, modulus, conditions):
 
 
 def inlet_opening(film, points):
-    r"""Opening of Hertz' gap over one node spacing beside the contact, over the film.
+    r"""Opening of Hertz' gap over one node spacing outside the contact, over the film.
 
     :math:`\frac{2\sqrt2}{3}(\Delta x/a)^{3/2}` in :math:`a^2/R` over the film. At 0.25 the film
     of a second-order scheme is about 5 % too thin, at 1 about 40 %; from about 5 on there is no film.

@@ -100,13 +100,13 @@ class VariableOperation:
     @cached_property
     def duration(self):
         """Length of the whole run [s]."""
-        whole = self.table.repeat * self.period
+        table_duration = self.table.repeat * self.period
         if self.travel is None or self.travel >= self.table.swept_length() * (1.0 - END_TOLERANCE):
-            return whole
+            return table_duration
         fine = self.table.sampled()
         swept = cumulative(fine.speed, fine.time)
-        done, rest = divmod(self.travel, swept[-1])
-        return min(done * self.period + float(np.interp(rest, swept, fine.time)), whole)
+        repetitions, distance = divmod(self.travel, swept[-1])
+        return min(repetitions * self.period + float(np.interp(distance, swept, fine.time)), table_duration)
 
     @cached_property
     def _levels(self):

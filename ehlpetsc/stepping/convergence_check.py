@@ -52,12 +52,12 @@ def solve_step(solver, q, w, h00, inputs, watch=None):
             raise
         spent = error.iterations
     try:
-        *begin, more = solve_checked(solver, q, w, h00, replace(inputs, contact=elastic), watch=watch)
-        spent += more
-        *state, more = solve_checked(solver, *begin, inputs, watch=watch)
+        *begin, iterations = solve_checked(solver, q, w, h00, replace(inputs, contact=elastic), watch=watch)
+        spent += iterations
+        *state, iterations = solve_checked(solver, *begin, inputs, watch=watch)
     except SolveFailed as error:
         raise error.after(spent) from error
-    return *state, spent + more
+    return *state, spent + iterations
 
 
 def find_fault(problem, q, w, h00, rows, tolerance):

@@ -71,8 +71,8 @@ def diagnostics(scene, problem, effects, state, started):
     solution = Solution(problem.model.state(state.q, state.w), loads.contact_pressure, loads)
     for effect in effects:
         if effect.is_in(case):
-            more = effect.observe(state.records[effect.name], solution, step)
-            fields, scalars = fields | more[0], scalars | more[1]
+            effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)
+            fields, scalars = fields | effect_fields, scalars | effect_scalars
     return scalars, fields, contact_mask
 
 

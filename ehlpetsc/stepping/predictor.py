@@ -30,7 +30,7 @@ class TimeLevel(NamedTuple):
 def advected(values, nodes):
     """Values advected by `nodes` nodes.
 
-    Cubic interpolation, limited to the range of the two neighbouring values: beside the pressure spikes of
+    Cubic interpolation, limited to the range of the two neighbouring values: next to the pressure spikes of
     asperities, two or three nodes wide, a cubic undershoots, and the resulting cavity costs Newton's method
     iterations.
     """

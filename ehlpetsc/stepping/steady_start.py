@@ -74,8 +74,8 @@ def steady(solver, film, inputs, watch=None):
     else:
         begin = starved_start(problem, film, inputs)
     # the meniscus may move over all nodes of the inlet, one an iteration
-    *state, more = Continuation(solver, inputs, problem.n, watch).solve(begin)
-    return *state, iterations + more
+    *state, starved_iterations = Continuation(solver, inputs, problem.n, watch).solve(begin)
+    return *state, iterations + starved_iterations
 
 
 def yielding_start(solver, film, inputs, watch=None):

@@ -85,7 +85,7 @@ class TimeStepping:
             before = state.records
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
-                solution, more, residual = self._inlet_first(
+                solution, iterations, residual = self._inlet_first(
                     again,
                     lambda i, q, w, h00=state.h00: solve_step(self.solver, q, w, h00, i, watch),
                     state.q,
@@ -93,7 +93,7 @@ class TimeStepping:
                 )
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
-            newton += more
+            newton += iterations
             state = self._state(solution, residual, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
@@ -178,7 +178,7 @@ class TimeStepping:
             inputs = replace(inputs, phi=self._roughness_ramp(step.time) * inputs.phi)
         return step, inputs
 
-    def _state(self, solution, residual, end, records, **more):
+    def _state(self, solution, residual, end, records, **entries):
         (q, w, h00), model = solution, self.problem.model
         nodes, m = model.state(q, w), self.problem.mass_per_area(q, w)
         loads = model.surface_loads(q, w, nodes.film, residual)
@@ -197,7 +197,7 @@ class TimeStepping:
             dt=end.dt,
             travelled=end.travelled,
             records=accepted,
-            **more,
+            **entries,
         )
 
     def guess(self, state, dt):

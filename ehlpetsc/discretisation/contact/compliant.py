@@ -86,9 +86,9 @@ class CompliantContact(SeparatedContact):
     def state(self, q, w):
         """See :class:`.model.ContactModel`."""
         solids, slope = asperity_pressures(w, *self.law)
-        pressure, one = np.maximum(q, 0.0) + solids, np.ones_like(w)
+        pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
         mask = solids > self.layer.contact_pressure
-        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, one, mask)
+        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones, mask)
 
     def contact_pressure(self, w):
         """See :class:`.model.ContactModel`."""

@@ -43,8 +43,8 @@ class DirectContact(ContactModel):
         return self._state(q, w, full_of_oil(q) * 1.0)
 
     def _state(self, q, w, p_q):
-        none, one = np.zeros(len(w)), np.ones(len(w))
-        return NodeState(q, self.pressure(q, w), w, p_q, none, one, w <= self.lower_bound)
+        zeros, ones = np.zeros(len(w)), np.ones(len(w))
+        return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones, w <= self.lower_bound)
 
     def contact_pressure(self, w):
         """Not separated from the oil's: zero."""

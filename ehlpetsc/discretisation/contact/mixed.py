@@ -149,10 +149,10 @@ def pressure_change(now, step, stiffness):
 
 @compiled
 def limit_contact_switch(now, step, stiffness, film_after_release):
-    """Limit steps in place where solids come to touch or part: both stop just beyond.
+    """Limit steps in place where solids come to touch or separate: both stop just beyond.
 
-    Solids that touch begin with `PRESSURE_AFTER_REFILL`; those that part with at most `film_after_release`:
-    their derivatives are those of the other side.
+    Solids that touch begin with `PRESSURE_AFTER_REFILL`; those that separate with at most
+    `film_after_release`: their derivatives are those of the other side.
     """
     for i in range(len(now)):
         w, dw = now[i, 1], step[i, 1]

@@ -11,7 +11,7 @@ import numpy as np
 
 
 class ContactModel:
-    """Elastic solids that carry beside the oil; the defaults hold for every model with p_c of its own.
+    """Elastic solids that carry load with the oil; the defaults hold for every model with p_c of its own.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class ContactModel:
         ----------
         now, step : ndarray, shape (nodes, 2)
         film_after_release : float
-            Largest film that a node gets in the iteration in which its solids part, in a^2/R.
+            Largest film that a node gets in the iteration in which its solids separate, in a^2/R.
         """
         raise NotImplementedError
 

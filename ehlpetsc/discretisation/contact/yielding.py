@@ -159,7 +159,7 @@ class YieldingContact(Yielding, MixedContact):
 
 @compiled
 def pressure_change(now, step, stiffness, limit):
-    """As in mixed contact, the pressure bounded by `limit`; where it stays there, the solids' part."""
+    """As in mixed contact, the pressure bounded by `limit`; where it stays there, that of the solids."""
     largest = 0.0
     for i in range(len(now)):
         new_q, new_w = now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]

@@ -25,14 +25,14 @@ from ehlpetsc.physics.rheology import mobilities
 
 
 @compiled
-def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, kept, again, at):
+def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, last_evaluation, again, at):
     """Fill in what faces need of nodes, the viscosity at the film's temperature with its derivatives.
 
     Parameters
     ----------
     q, h, density, p0, film, unit, at
         As of :func:`.reynolds.nodal`; at the node beyond the outlet the temperature is that of the last one.
-    law, of_nodes, guess, kept
+    law, of_nodes, guess, last_evaluation
         :class:`ehlpetsc.physics.heat.film.FilmHeat` of these nodes, `law` as a tuple: numba looks up the type
         of a named one anew in some calls, slowly. `guess` becomes their temperature.
     again : bool
@@ -41,15 +41,15 @@ def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, kept, agai
     nodes, law = len(q), FilmLaw(*law)
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
-        if again and q[i] == kept[0, i] and h[i] == kept[1, i]:
-            at[FLUIDITY, i], at[THERMAL, i] = kept[2, i], kept[3, i]
+        if again and q[i] == last_evaluation[0, i] and h[i] == last_evaluation[1, i]:
+            at[FLUIDITY, i], at[THERMAL, i] = last_evaluation[2, i], last_evaluation[3, i]
             continue
         of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
         left = 1.0 + min(q[i], 0.0)
         t, t_p, t_h, _, _, _, viscosity = film_temperature(guess[i], p, at[H, i], left, *of_node)
         _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
-        guess[i], kept[0, i], kept[1, i] = t, q[i], h[i]
-        kept[2, i], kept[3, i] = at[FLUIDITY, i], at[THERMAL, i]
+        guess[i], last_evaluation[0, i], last_evaluation[1, i] = t, q[i], h[i]
+        last_evaluation[2, i], last_evaluation[3, i] = at[FLUIDITY, i], at[THERMAL, i]
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
         t = guess[nodes - 1]
@@ -81,7 +81,7 @@ def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
     law : tuple
         Of :func:`.finite_volumes.flux_through`.
     oil : ndarray of bool, shape (nodes,)
-        Nodes where the Reynolds equation holds: what flows beside others has no meaning.
+        Nodes where the Reynolds equation holds: flow through faces of other nodes has no meaning.
     most : (float, float)
         Largest pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
     couette : ndarray, shape (nodes + 1,)
@@ -106,10 +106,10 @@ def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
         couette[i + 1] = entrainment * drawn
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
-        known = oil[i] and oil[min(i + 1, nodes - 1)]
-        pressed = 0.5 * (left[0] + right[0]) * abs(slope) if known else 0.0
-        pressed = min(pressed, max(most[0] * film, most[1]))
-        heat = 0.5 * pressed * abs(slope)
+        between_oil_nodes = oil[i] and oil[min(i + 1, nodes - 1)]
+        pressure_flow = 0.5 * (left[0] + right[0]) * abs(slope) if between_oil_nodes else 0.0
+        pressure_flow = min(pressure_flow, max(most[0] * film, most[1]))
+        heat = 0.5 * pressure_flow * abs(slope)
         pressure_heat[i] += heat
         if i < nodes - 1:
             pressure_heat[i + 1] += heat

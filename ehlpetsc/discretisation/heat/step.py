@@ -17,7 +17,7 @@ from ehlpetsc.physics.heat.laws import film_law
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
-MAX_FLOW_RATIO = 2.0  # pressure flow beside direct contact, over that of the mean speed
+MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the largest one
 
 
@@ -55,7 +55,7 @@ class HeatStep:
         self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
         self.coldest = min(self.inlet, *self.bulk)
         self._film_law = None, None
-        self._inputs = self._heat = self._stored = self._moved = None
+        self._inputs = self._heat = self._stored = self._body_steps = None
 
     def prepare(self, record, inputs, step):
         """Inputs of the solve with the data of the film's temperature.
@@ -64,23 +64,28 @@ class HeatStep:
         isothermal.
         """
         n = self.scales.nx
-        self._moved, self._stored = None, np.zeros(n)
+        self._body_steps, self._stored = None, np.zeros(n)
         if step.dt is None:
             responses = [record.response_1, record.response_2]
             pairs = (record.wall_1, record.flux_1), (record.wall_2, record.flux_2)
             walls = [w - r * q for (w, q), r in zip(pairs, responses, strict=True)]
         else:
             records, speeds = (record.body_1, record.body_2), (step.conditions.u1, step.conditions.u2)
-            both = zip(self.bodies, records, step.travelled, speeds, strict=True)
-            self._moved = [body.advance(one, way, step.dt, speed) for body, one, way, speed in both]
-            walls = [bulk + one.history for bulk, one in zip(self.bulk, self._moved, strict=True)]
-            responses = [np.full(n, one.response) for one in self._moved]
+            movements = zip(self.bodies, records, step.travelled, speeds, strict=True)
+            self._body_steps = [
+                body.advance(body_heat, travelled, step.dt, speed)
+                for body, body_heat, travelled, speed in movements
+            ]
+            walls = [
+                bulk + body_step.history for bulk, body_step in zip(self.bulk, self._body_steps, strict=True)
+            ]
+            responses = [np.full(n, body_step.response) for body_step in self._body_steps]
             if inputs.history is not None:
                 self._stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
         t = record.film
-        known = *explicit_transport(self._stored, record.flow, t, self.inlet), record.source, record.spread
+        rows = *explicit_transport(self._stored, record.flow, t, self.inlet), record.source, record.spread
         law = self._law(step.conditions.sliding)
-        self._heat = FilmHeat.begun(law, (*known, *walls, *responses), t.copy())
+        self._heat = FilmHeat.begun(law, (*rows, *walls, *responses), t.copy())
         if record.solved and self.fluid is not None:
             inputs = replace(inputs, heat=self._heat)
         self._inputs = inputs
@@ -115,15 +120,18 @@ class HeatStep:
             unit = self.capacity * s.u * s.h / s.dx
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
             left = 1.0 + np.minimum(q, 0.0)
-            part = rubbing if self.thinnest else blank
-            then = (record.rate * step.dt, record.extrapolated / step.dt) if step.dt else (blank, blank)
-            film = Film(pressure, thickness, left, record.film, self._stored, *then, unit * couette, part)
+            film_rubbing = rubbing if self.thinnest else blank
+            last_step = (record.rate * step.dt, record.extrapolated / step.dt) if step.dt else (blank, blank)
+            old, flow = record.film, unit * couette
+            film = Film(pressure, thickness, left, old, self._stored, *last_step, flow, film_rubbing)
             source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
         heat = self._heat.with_rows((G, SPREAD), (source, spread))
         heat = heat._replace(law=heat.law._replace(thinnest=0.0))
-        found = self._steady(record, heat, film, step) if self._moved is None else self._moving(heat, film)
-        return found, film, source, spread
+        temperatures = (
+            self._steady(record, heat, film, step) if self._body_steps is None else self._moving(heat, film)
+        )
+        return temperatures, film, source, spread
 
     def _flow(self, q, h, oil):
         """Couette flow, heat of the pressure flow, `spread` and pressure gradient, see `film.faces`."""
@@ -174,39 +182,46 @@ class HeatStep:
 
     def _moving(self, heat, film):
         t, *fluxes, shear, extrapolated = self._nodes(heat, film, heat.guess)
-        before, responses = heat.of_nodes[[W1, W2]], heat.of_nodes[[R1, R2]]
-        walls = [w + r * q for w, r, q in zip(before, responses, fluxes, strict=True)]
-        bodies = [b.accept(one, q) for b, one, q in zip(self.bodies, self._moved, fluxes, strict=True)]
+        walls_before, responses = heat.of_nodes[[W1, W2]], heat.of_nodes[[R1, R2]]
+        walls = [w + r * q for w, r, q in zip(walls_before, responses, fluxes, strict=True)]
+        bodies = [
+            body.accept(body_step, q)
+            for body, body_step, q in zip(self.bodies, self._body_steps, fluxes, strict=True)
+        ]
         return Temperatures(t, walls, fluxes, shear, extrapolated, bodies, responses)
 
     def _steady(self, record, heat, film, step):
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
         speeds = step.conditions.u1, step.conditions.u2
         heated = (np.abs(self.scales.x) < HEATED) * 1.0
-        responses = [b.steady(heated, u)[0] for b, u in zip(self.bodies, speeds, strict=True)]
-        responses = [np.maximum(r, r.max() * MIN_RESPONSE) for r in responses]
-        found = None
+        responses = [body.steady(heated, u)[0] for body, u in zip(self.bodies, speeds, strict=True)]
+        responses = [np.maximum(response, response.max() * MIN_RESPONSE) for response in responses]
+        temperatures = None
 
         def fluxes(values):
-            nonlocal found
+            nonlocal temperatures
             q = np.split(values, 2)
-            risen = [b.steady(one, u) for b, one, u in zip(self.bodies, q, speeds, strict=True)]
+            risen = [body.steady(flux, u) for body, flux, u in zip(self.bodies, q, speeds, strict=True)]
             walls = [bulk + rise for bulk, (rise, _) in zip(self.bulk, risen, strict=True)]
-            known = [w - r * one for w, r, one in zip(walls, responses, q, strict=True)]
-            now = heat.with_rows((W1, W2, R1, R2), known + responses)
-            guess = record.film if found is None else found.film
-            t, *new, shear, extrapolated = self._nodes(now, film, guess)
-            bodies = [b.record(one, terms) for b, one, (_, terms) in zip(self.bodies, q, risen, strict=True)]
-            found = Temperatures(t, walls, new, shear, extrapolated, bodies, responses)
-            return np.concatenate(new)
+            walls_without_flux = [
+                w - response * flux for w, response, flux in zip(walls, responses, q, strict=True)
+            ]
+            now = heat.with_rows((W1, W2, R1, R2), walls_without_flux + responses)
+            guess = record.film if temperatures is None else temperatures.film
+            t, *new_fluxes, shear, extrapolated = self._nodes(now, film, guess)
+            bodies = [
+                body.record(flux, terms) for body, flux, (_, terms) in zip(self.bodies, q, risen, strict=True)
+            ]
+            temperatures = Temperatures(t, walls, new_fluxes, shear, extrapolated, bodies, responses)
+            return np.concatenate(new_fluxes)
 
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
-        return found
+        return temperatures
 
-    def balance(self, found, film, source):
+    def balance(self, temperatures, film, source):
         """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it."""
-        total = (found.shear + source).sum()
+        total = (temperatures.shear + source).sum()
         of_film = film.old, film.stored, film.extrapolated, film.couette
-        taken = heat_taken(*of_film, self.inlet, found.film, found.extrapolated)
-        missing = total - found.fluxes[0].sum() - found.fluxes[1].sum() - taken
+        taken = heat_taken(*of_film, self.inlet, temperatures.film, temperatures.extrapolated)
+        missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
         return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0

@@ -12,8 +12,8 @@ upstream, extrapolated by half an interval, and e is the heat of the oil extrapo
 
 :math:`\varphi` and :math:`\psi` half of van Leer's limiter (1974) of successive differences in space and in
 time; with 1/2 for both it would be second-order upwind differences and BDF2, which overshoot behind
-asperities. They are found at the temperatures of the last evaluation in the solve, so that the temperature of
-a node remains a monotone law. What leaves a cell enters the next one, and e is kept: the balance of heat
+asperities. They are computed at the temperatures of the last evaluation in the solve, so that the temperature
+of a node remains a monotone law. What leaves a cell enters the next one, and e is kept: the balance of heat
 closes whatever they are. Where an extrapolated temperature would be below the coldest of bodies and oil, the
 node has neither: upwind differences and backward Euler.
 
@@ -95,7 +95,7 @@ def explicit_transport(stored, flow, t, inlet):
 
 @compiled
 def _limited(difference, next_one):
-    """Half of van Leer's limiter: the share of a difference by which half an interval extrapolates."""
+    """Half of van Leer's limiter: the fraction of a difference by which half an interval extrapolates."""
     return next_one / (difference + next_one) if difference * next_one > 0.0 else 0.0
 
 
@@ -166,19 +166,19 @@ def transport(
             from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
             turned = turned or (from_left if backward else from_right) > 0.0
             before, after = t_new[i - 1] if i > 0 else inlet, t_new[i + 1] if i < nodes - 1 else inlet
-            known = stored[i] * old[i] + before_step[i]
+            first_order = stored[i] * old[i] + before_step[i]
             if from_left > 0.0:
                 drawn = in_space[i - 1] * (before - t_new[i - 2]) if i > 1 else 0.0
-                known += from_left * (before + drawn)
+                first_order += from_left * (before + drawn)
             if from_right > 0.0:
                 drawn = in_space[i + 1] * (after - t_new[i + 2]) if i < nodes - 2 else 0.0
-                known += from_right * (after + drawn)
+                first_order += from_right * (after + drawn)
             fixed = fixed_at(i, of_nodes, law)
             for _ in range(2):
                 beyond = stored[i] * in_time[i]
                 to_right, to_left = in_space[i] * max(flow[i + 1], 0.0), in_space[i] * max(-flow[i], 0.0)
                 a = stored[i] + from_left + from_right + beyond + to_right + to_left
-                b = known + beyond * old[i] + to_right * before + to_left * after
+                b = first_order + beyond * old[i] + to_right * before + to_left * after
                 value, _, _, q1[i], q2[i], shear_heat[i], _ = film_temperature(
                     t_new[i],
                     pressure[i],

@@ -90,11 +90,11 @@ class BandedJacobian:
     def _at(self, row, column):
         """Index of an entry in `values`; the last one where it does not exist."""
         (group, r), (other, c) = np.divmod(row, LINE), np.divmod(column, LINE)
-        beside = np.abs(other - group) <= 1
+        coupled = np.abs(other - group) <= 1
         starts = np.choose(
-            np.where(beside, other - group + 1, 1), [-FROM_LEFT, LEFT, LEFT + SIZE - FROM_RIGHT]
+            np.where(coupled, other - group + 1, 1), [-FROM_LEFT, LEFT, LEFT + SIZE - FROM_RIGHT]
         )
-        return np.where(beside, (group * WIDTH + starts + c) * LINE + r, self.values.size - 1)
+        return np.where(coupled, (group * WIDTH + starts + c) * LINE + r, self.values.size - 1)
 
     def _recurrences(self):
         p, groups = self.problem, np.arange(self.groups)
@@ -145,7 +145,7 @@ class BandedJacobian:
             values.append(far - d.curvature[abs(k)])
             bent.append(np.full(near.sum(), d.curvature_coefficient * bend.get(k, 0.0)))
         for end in d.ends:
-            near = self._beside(end)
+            near = self._nodes_in_group_of(end)
             rows.append(np.full(len(near), self._pressure(end)))
             nodes.append(near)
             values.append(d.end_row(end)[near])
@@ -166,11 +166,11 @@ class BandedJacobian:
         for k, end in enumerate((0, p.n - 1)):
             rows[k] = p.deflection.end_row(end)[self.nodes]
             if end in p.deflection.ends:
-                rows[k, self._beside(end) - p.first] = 0.0
+                rows[k, self._nodes_in_group_of(end) - p.first] = 0.0
         rows[2] = p.dx
         return rows
 
-    def _beside(self, end):
+    def _nodes_in_group_of(self, end):
         """Nodes of an end node's own group."""
         return self.nodes[self._group(self.nodes) == self._group(end)]
 
@@ -178,11 +178,11 @@ class BandedJacobian:
         """Indices of the Reynolds stencil, q and h of the nodes i-2 .. i+1 in each row."""
         p = self.problem
         node = self.nodes[:, None] + np.arange(-2, 2)
-        both = np.stack([self._pressure(node), self._film(node)], axis=2).reshape(len(node), -1)
-        there = np.repeat((node >= 0) & (node < p.n), 2, axis=1)
+        columns = np.stack([self._pressure(node), self._film(node)], axis=2).reshape(len(node), -1)
+        on_mesh = np.repeat((node >= 0) & (node < p.n), 2, axis=1)
         self.stencil = np.clip(node, 0, p.n - 1) - p.window.start
-        place = self._at(self._film(self.nodes)[:, None], both)
-        self.reynolds_place = np.where(there, place, self.values.size - 1)
+        place = self._at(self._film(self.nodes)[:, None], columns)
+        self.reynolds_place = np.where(on_mesh, place, self.values.size - 1)
 
     def fill(self, entries, inactive_nodes):
         """Entries at one state.
@@ -217,7 +217,7 @@ class BandedJacobian:
         node = self.pressure_nodes[some]
         values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
         self.values[self.pressure_place[some]] = values
-        pressure, depth, changed = (part[self.problem.owned] for part in (pressure, depth, changed))
+        pressure, depth, changed = (array[self.problem.owned] for array in (pressure, depth, changed))
         local = np.flatnonzero(changed)
         self.values[self.diagonal[local]] += pivot_regularisation(pressure[local], depth[local])
         self.dense = np.zeros((len(self.under_pressure), self.size))

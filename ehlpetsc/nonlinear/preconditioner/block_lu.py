@@ -76,8 +76,8 @@ def subtract_product(y, i, matrix, j, x, k, count):
 
     The columns start at `matrix[j]`. Four sums at a time stay in a register of the processor.
     """
-    for part in range(THREE):
-        here, column = i + part * FOUR, j + part * FOUR
+    for chunk in range(THREE):
+        here, column = i + chunk * FOUR, j + chunk * FOUR
         a, b, c, d = y[here], y[here + ONE], y[here + TWO], y[here + THREE]
         for n in range(unsigned(count)):
             value, at = x[k + n], column + n * unsigned(LINE)
@@ -89,8 +89,8 @@ def subtract_product(y, i, matrix, j, x, k, count):
 @compiled(fastmath=FAST)
 def subtract_column(y, i, column, factor):
     """Subtract a column times a factor from `y[i : i + LINE]`."""
-    for part in range(THREE):
-        k = part * FOUR
+    for chunk in range(THREE):
+        k = chunk * FOUR
         a, b = y[i + k] - factor * column[k], y[i + k + ONE] - factor * column[k + ONE]
         c, d = y[i + k + TWO] - factor * column[k + TWO], y[i + k + THREE] - factor * column[k + THREE]
         y[i + k], y[i + k + ONE], y[i + k + TWO], y[i + k + THREE] = a, b, c, d
@@ -102,21 +102,21 @@ def factor(columns, inverses, upper, work, column, free, pivots):
     line, size, right = unsigned(LINE), unsigned(SIZE), unsigned(RIGHT)
     for i in range(unsigned(len(inverses) // (SIZE * LINE))):
         left = i * unsigned(WIDTH * LINE)
-        own, inverse, part = left + unsigned(LEFT * LINE), i * size * line, i * right * line
+        diagonal_block, inverse, upper_block = left + unsigned(LEFT * LINE), i * size * line, i * right * line
         for j in range(unsigned((SIZE + RIGHT) * LINE)):
-            work[j] = columns[own + j]
+            work[j] = columns[diagonal_block + j]
         if i > 0:
-            before = part - right * line
+            before = upper_block - right * line
             for c in range(right):
-                place, known = (unsigned(FROM_RIGHT) + c) * line, before + c * line + unsigned(FROM_LEFT)
-                subtract_product(work, place, columns, left, upper, known, LEFT)
+                place, previous = (unsigned(FROM_RIGHT) + c) * line, before + c * line + unsigned(FROM_LEFT)
+                subtract_product(work, place, columns, left, upper, previous, LEFT)
         eliminate(work, column, free, pivots)
         for c in range(size):
             for k in range(size):
                 inverses[inverse + pivots[c] * line + k] = work[c * line + pivots[k]]
         for c in range(right):
             for k in range(size):
-                upper[part + c * line + k] = work[(size + c) * line + pivots[k]]
+                upper[upper_block + c * line + k] = work[(size + c) * line + pivots[k]]
 
 
 @compiled(fastmath=FAST)
@@ -152,7 +152,7 @@ def eliminate(a, column, free, pivots):
 @compiled(fastmath=FAST)
 def forward(factors, b, first):
     """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
-    columns, inverses, _, known = factors
+    columns, inverses, _, minus_b = factors
     line = unsigned(LINE)
     groups, first = unsigned(len(b) // LINE), unsigned(first)
     for i in range(first, groups):
@@ -161,8 +161,8 @@ def forward(factors, b, first):
             before = here - line + unsigned(FROM_LEFT)
             subtract_product(b, here, columns, i * unsigned(WIDTH) * line, b, before, LEFT)
         for k in range(line):
-            known[k], b[here + k] = -b[here + k], 0.0
-        subtract_product(b, here, inverses, i * unsigned(SIZE) * line, known, unsigned(0), SIZE)
+            minus_b[k], b[here + k] = -b[here + k], 0.0
+        subtract_product(b, here, inverses, i * unsigned(SIZE) * line, minus_b, unsigned(0), SIZE)
 
 
 @compiled(fastmath=FAST)

@@ -151,9 +151,9 @@ def combine(y, ends, border, dofs, units, solution):
     """Fill in the solution from those of the band and of the border."""
     for i in range(units.shape[1]):
         k, m = dofs[2 * i], dofs[2 * i + 1]
-        one = y[k] - border[0] * ends[0, k] - border[1] * ends[1, k]
-        two = y[m] - border[0] * ends[0, m] - border[1] * ends[1, m]
-        solution[2 * i] = units[0, i, 0] * one + units[1, i, 0] * two
-        solution[2 * i + 1] = units[0, i, 1] * one + units[1, i, 1] * two
+        first = y[k] - border[0] * ends[0, k] - border[1] * ends[1, k]
+        second = y[m] - border[0] * ends[0, m] - border[1] * ends[1, m]
+        solution[2 * i] = units[0, i, 0] * first + units[1, i, 0] * second
+        solution[2 * i + 1] = units[0, i, 1] * first + units[1, i, 1] * second
     if len(solution) > len(dofs):
         solution[-1] = border[2]

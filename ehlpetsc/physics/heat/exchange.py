@@ -29,9 +29,9 @@ def exchange_law(kind, r, walls):
     """Flux into both surfaces per temperature [W/(m^2 K)], and the temperature without flux [K]."""
     w1, w2, r1, r2 = walls
     if kind == PARABOLA:
-        share = (r1 - r2) / (r + r1 + r2)
-        resistance = r * (1.0 / 12.0) + 0.25 * (r1 + r2 - (r1 - r2) * share)
-        return 1.0 / resistance, 0.5 * (w1 + w2) - 0.5 * share * (w1 - w2)
+        skew = (r1 - r2) / (r + r1 + r2)
+        resistance = r * (1.0 / 12.0) + 0.25 * (r1 + r2 - (r1 - r2) * skew)
+        return 1.0 / resistance, 0.5 * (w1 + w2) - 0.5 * skew * (w1 - w2)
     if kind == INSULATED:
         return 1.0 / (r * (1.0 / 12.0) + 0.5 * (r2 if w1 < w2 else r1)), 0.5 * (w1 + w2)
     g1, g2 = 1.0 / (r / 6.0 + r1), 1.0 / (r / 6.0 + r2)
@@ -45,9 +45,9 @@ def fluxes(kind, t, r, walls, exchange, alpha):
     flow = (t - alpha) * exchange
     if kind == PARABOLA:
         over_total = 1.0 / (r + r1 + r2)
-        share = (r1 - r2) * over_total
-        between = -2.0 * (w1 - w2) * over_total - share * flow
-        by_r = -(0.5 * share * (w1 - w2) * over_total + flow * (1.0 / 12.0 + 0.25 * share * share)) * exchange
+        skew = (r1 - r2) * over_total
+        between = -2.0 * (w1 - w2) * over_total - skew * flow
+        by_r = -(0.5 * skew * (w1 - w2) * over_total + flow * (1.0 / 12.0 + 0.25 * skew * skew)) * exchange
         return 0.5 * (flow + between), 0.5 * (flow - between), by_r
     if kind == INSULATED:
         first = 0.0 if w1 < w2 else flow

@@ -72,8 +72,8 @@ def _log_rate(h, spread, law):
 
 
 @inlined
-def _balanced(guess, slope, known, heat, ln_rate, p, law):
-    """Temperature of `slope` T = `known` + `heat` times the shear stress, by a safeguarded Halley's method.
+def _balanced(guess, slope, intercept, heat, ln_rate, p, law):
+    """Temperature of `slope` T = `intercept` + `heat` times the shear stress, by safeguarded Halley steps.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def _balanced(guess, slope, known, heat, ln_rate, p, law):
         Of :func:`.thermal_viscosity.log_viscosity`.
     """
     pressure_law, thermal_law, eyring, limit = law.pressure_law, law.thermal_law, law.eyring, law.limit
-    low, high = known / slope, np.inf
+    low, high = intercept / slope, np.inf
     t = low if heat == 0.0 else max(guess, low)
     linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
     ln_eta, eta_p, eta_t = 0.0, 0.0, 0.0
@@ -99,7 +99,7 @@ def _balanced(guess, slope, known, heat, ln_rate, p, law):
             tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
         if last:
             break
-        f, over_f_t = slope * t - known - heat * tau, 1.0 / (slope - heat * by_ln_eta * eta_t)
+        f, over_f_t = slope * t - intercept - heat * tau, 1.0 / (slope - heat * by_ln_eta * eta_t)
         low, high = (low, min(high, t)) if f > 0.0 else (max(low, t), high)
         change = -f * over_f_t
         bend = -0.5 * heat * twice * eta_t * eta_t * over_f_t * change  # of f over a step of Newton's
@@ -161,8 +161,8 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     viscosity : tuple of 3 floats
         Of :func:`.thermal_viscosity.log_viscosity` at that temperature.
     """
-    more = 1.0 + law.conductivity_pressure * p
-    over_conductivity = 1.0 / (law.conductivity * more * max(left, MIN_CONDUCTING_FRACTION))
+    pressure_factor = 1.0 + law.conductivity_pressure * p
+    over_conductivity = 1.0 / (law.conductivity * pressure_factor * max(left, MIN_CONDUCTING_FRACTION))
     r = h * over_conductivity
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
@@ -181,12 +181,12 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     f_h = by_r * over_conductivity
     if heat > 0.0 and h == sheared:
         f_h += heat * by_ln_eta / h
-    f_p = -by_r * r * law.conductivity_pressure / more - heat * (by_ln_eta * viscosity[1] + by_p)
+    f_p = -by_r * r * law.conductivity_pressure / pressure_factor - heat * (by_ln_eta * viscosity[1] + by_p)
     return t, -f_p * over_f_t, -f_h * over_f_t, q1, q2, heat * tau, viscosity
 
 
 class FilmHeat(NamedTuple):
-    """Coefficients of the film's temperature that are fixed in a solve, and what its evaluations keep.
+    """Coefficients of the film's temperature that are fixed in a solve, and its last evaluation.
 
     Attributes
     ----------
@@ -196,15 +196,15 @@ class FilmHeat(NamedTuple):
         tuple anew in some calls, slowly.
     guess : ndarray, shape (nx,)
         Temperature to start from [K]; that of the last evaluation.
-    kept : ndarray, shape (4, nx)
-        Of the last evaluation: unknown of Reynolds' equation and film, not a number before it, and what
-        :func:`.discretisation.heat.film.heated_nodal` found.
+    last_evaluation : ndarray, shape (4, nx)
+        Unknown of the Reynolds equation and film, not a number before the first evaluation; fluidity and
+        thermal factor of :func:`.discretisation.heat.film.heated_nodal`.
     """
 
     law: FilmLaw
     of_nodes: np.ndarray
     guess: np.ndarray
-    kept: np.ndarray
+    last_evaluation: np.ndarray
 
     @classmethod
     def begun(cls, law, of_nodes, guess):
@@ -214,15 +214,15 @@ class FilmHeat(NamedTuple):
     def with_rows(self, rows, values):
         """Coefficients with other values in some rows of `of_nodes`."""
         of_nodes = self.of_nodes.copy()
-        for row, one in zip(rows, values, strict=True):
-            of_nodes[row] = one
+        for row, row_values in zip(rows, values, strict=True):
+            of_nodes[row] = row_values
         return self._replace(of_nodes=of_nodes)
 
     def mirrored(self):
         """Coefficients with the nodes in reverse order."""
-        return self.part(slice(None, None, -1))
+        return self.at_nodes(slice(None, None, -1))
 
-    def part(self, nodes):
+    def at_nodes(self, nodes):
         """Coefficients at a slice of the nodes."""
         if nodes == slice(0, len(self.guess)):
             return self

@@ -156,13 +156,13 @@ def advance_terms(terms, flux, shift, decay, begin, ratio, weights):
         Weighted sum of the terms.
     """
     cells, count = terms.shape
-    given, moved = np.zeros((cells, count)), np.zeros(cells)
+    undiffused, moved = np.zeros((cells, count)), np.zeros(cells)
     for i in range(max(-shift, 0), min(cells, cells - shift)):
         moved[i] = flux[i + shift]
         for m in range(count):
-            given[i, m] = decay[m] * terms[i + shift, m] + moved[i] * begin[m]
+            undiffused[i, m] = decay[m] * terms[i + shift, m] + moved[i] * begin[m]
     new, rise = np.empty((cells, count)), np.zeros(cells)
-    diffuse(given, ratio, new)
+    diffuse(undiffused, ratio, new)
     for i in range(cells):
         for m in range(count):
             rise[i] += new[i, m] * weights[m]

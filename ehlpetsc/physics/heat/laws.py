@@ -11,8 +11,8 @@ BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0
 
 def thermal_law(fluid, heat):
     """Kind, constants and reference temperature [K] for :func:`.thermal_viscosity.log_viscosity`."""
-    given = heat.reference_temperature or getattr(fluid, "temperature", None)
-    reference = given or heat.oil_inlet_temperature
+    reference_of_case = heat.reference_temperature or getattr(fluid, "temperature", None)
+    reference = reference_of_case or heat.oil_inlet_temperature
     if heat.roelands_s0 is not None:
         return thermal.ROELANDS, heat.roelands_s0, 0.0, reference
     if heat.viscosity_temperature is None and getattr(fluid, "grade", None) is not None:
