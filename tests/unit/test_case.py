@@ -44,7 +44,7 @@ def test_every_case_loads_and_has_a_description(path):
     head = path.read_text().splitlines()[:2]
     assert all(line.startswith("# ") for line in head)
     if path.stem not in ("fzg", "mixed", "life"):  # the project's own
-        assert "Holmes, Qiao, Evans & Snidle (2005)" in head[1]
+        assert "Holmes" in head[1] and "2005" in head[1]
 
 
 def test_omitted_sections_are_none_or_default():
@@ -112,10 +112,8 @@ def test_series_members_differ_in_the_series_key_only():
 
 
 def test_fault_names_file_key_value_and_range():
-    assert fault(SMOOTH, "contact.radius=-0.02") == (
-        f"{SMOOTH}: contact.radius = -0.02: "
-        "allowed: a number >= 1e-09 and <= 100 [m] (radius of relative curvature)"
-    )
+    line = fault(SMOOTH, "contact.radius=-0.02")
+    assert line.startswith(f"{SMOOTH}: contact.radius = -0.02: ") and ">= 1e-09 and <= 100 [m]" in line
 
 
 def test_all_faults_of_a_case_are_reported_together():
@@ -148,7 +146,10 @@ def test_all_faults_of_a_case_are_reported_together():
         ("contact.radius=inf", ["contact.radius", "allowed: a number"]),
         ("contact.radius=true", ["= true", "allowed: a number"]),
         ("contact.radius='big'", ['= "big"', "allowed: a number"]),
-        ("contact.youngs_modulus=[207e9]", ["a list of two numbers >= 1e+06", "[Pa]"]),
+        (
+            "contact.youngs_modulus=[207e9]",
+            ["contact.youngs_modulus = [207000000000.0]", ">= 1e+06 and <= 1e+18 [Pa]"],
+        ),
         ("contact.youngs_modulus=[207, 207]", ["contact.youngs_modulus", ">= 1e+06"]),
         ("contact.poisson_ratio=[0.3, 0.6]", ["<= 0.5"]),
         ("fluid.law='sead'", ['"seed", "barus", "roelands"']),
@@ -162,13 +163,13 @@ def test_all_faults_of_a_case_are_reported_together():
         ("mesh.points_per_half_with=100", ['did you mean "points_per_half_width"?']),
         ("output.fields=['presure']", ['"pressure"', "a list of"]),
         ("output.fields=[]", ["a list of"]),
-        ("petsc.-snes_monitor=''", ["without the dash"]),
+        ("petsc.-snes_monitor=''", ["petsc = ", '"-snes_monitor"', "dash"]),
         ("time=5", ["time = 5", "a table"]),
         (
             "surface.1.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}",
-            ["either file or synthetic"],
+            ["surface.1: ", "file or synthetic"],
         ),
-        ("surface.1.cutoff=0.05", ["at most the length of the profile"]),
+        ("surface.1.cutoff=0.05", ["surface.1.file", "cutoff = 0.05 m", "0.001712 m"]),
         ("post.b=0.09", ["post.b", "< 0"]),
     ],
 )
@@ -180,7 +181,8 @@ def test_every_kind_of_fault_is_reported(override, words):
 
 @pytest.mark.parametrize("key", ["radius", "viscosity", "kappa", "entrainment_speed", "outlet"])
 def test_missing_key_is_named(write, key):
-    assert f".{key} is missing; allowed: a number" in fault(write(f"\n{key} = ", "\n# "))
+    line = fault(write(f"\n{key} = ", "\n# "))
+    assert f".{key} " in line and "missing" in line and " <= " in line
 
 
 def test_missing_tables_are_named(write, tmp_path):
@@ -188,9 +190,8 @@ def test_missing_tables_are_named(write, tmp_path):
     path.write_text("")
     found = faults(path)
     assert [line.split(": ")[1].split()[0] for line in found] == ["title", "contact", "mesh"]
-    assert "motion is missing" in fault(
-        write("[motion]\nentrainment_speed = 5.0          # m/s, mean\nslide_roll_ratio = 0.25\n")
-    )
+    line = fault(write("[motion]\nentrainment_speed = 5.0          # m/s, mean\nslide_roll_ratio = 0.25\n"))
+    assert line.split(": ")[1].startswith("motion ") and "missing" in line
 
 
 def test_synthetic_surface_accepts_keys_of_its_kind():
@@ -229,10 +230,10 @@ def test_unreadable_files_are_refused(tmp_path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (None, "no such file"),
+        (None, "file: "),
         ("0,0\n1e-6,0\n2e-6,0\n", "3 points; allowed: at least 4"),
-        ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", "line 2: '1e-6,zero'; allowed: numbers alone"),
-        ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "x falls after x = 2e-06"),
+        ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", "line 2: '1e-6,zero'"),
+        ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "falls after x = 2e-06"),
         ("0,0\n1e-6,0\n1e-6,1e-7\n3e-6,0\n", "x = 1e-06 appears twice"),
         ("0,0\n1e-6,inf\n2e-6,0\n3e-6,0\n", "point 2 is not a number below"),
         ("0,0\n1,2\n2,0\n3,1\n", 'write unit = "um"'),

@@ -43,7 +43,7 @@ def test_deeply_nested_keys_are_refused_quickly(tmp_path, where):
         "heading": f"{CASE}\n[{chain}]\nb = 1\n",
         "spaced": f"{chain.replace('.', ' . ')} = 1\n{CASE}",
     }[where]
-    assert "a key of more than 50 parts" in faults(tmp_path, text)
+    assert "more than 50" in faults(tmp_path, text)
     assert "allowed: table.key=value" in faults(tmp_path, CASE, [f"{chain}=1"])
 
 
@@ -149,4 +149,4 @@ def test_numpy_warnings_are_hidden():
         )
         assert done.returncode == 0
         warnings_shown[words] = done.stderr
-    assert warnings_shown[()] == "" and "divide by zero" in warnings_shown["-W", "default"]
+    assert warnings_shown[()] == "" and "by zero" in warnings_shown["-W", "default"]

@@ -131,8 +131,8 @@ def test_collision_report_of_a_series(tmp_path, series, capsys):
     text = capsys.readouterr().out
     assert "2 collisions in 4 members, fluid.viscosity = 0.01, 0.008, 0.006, 0.004" in text
     assert "1 contact points" in text and "..xx" in text
-    assert "contact where the last two films extrapolate to: 1 of 1 (100 %)" in text
-    assert "from each member to the next: 1 of 1 (100 %)" in text
+    assert "extrapolate to: 1 of 1 (100 %)" in text
+    assert "to the next: 1 of 1 (100 %)" in text
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_slope_jumps_at_contact(film, jumps):
 
 def test_slope_jumps_need_films_and_contact():
     for film in ([3, 2, 1], [1, 0, 0], [0, 0, 0]):
-        with pytest.raises(ValueError, match="two films before contact"):
+        with pytest.raises(ValueError, match="two films"):
             film_breakdown.slope_jumps([3, 2, 1], film)
 
 
@@ -183,7 +183,7 @@ def test_entrapment_between_two_contacts_is_found(tmp_path):
 
 
 def test_pressure_peak_outside_contacts_is_no_entrapment(series):
-    with pytest.raises(OutputError, match="no pressure maximum between two contacts"):
+    with pytest.raises(OutputError, match=r"0\.004\.h5: .* 0\.05 a apart"):
         entrapment.find(series[-1])
 
 
@@ -266,7 +266,7 @@ def test_entrapment_picture_shows_four_instants(tmp_path, capsys, drawn):
 def test_foreign_json_is_no_series_index(tmp_path, capsys):
     (tmp_path / "x.series.json").write_text("[]")
     assert collisions.main([str(tmp_path / "x.series.json")]) == 2
-    assert "not the index of a series" in capsys.readouterr().err
+    assert "x.series.json: not the index" in capsys.readouterr().err
     (tmp_path / "y.series.json").write_text('{"members": [{"file": "no.h5"}]}')
     assert collisions.main([str(tmp_path / "y.series.json")]) == 2
-    assert "no member of the series has a result file" in capsys.readouterr().err
+    assert "y.series.json: no member" in capsys.readouterr().err

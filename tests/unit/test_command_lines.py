@@ -3,6 +3,7 @@
 import importlib
 
 import pytest
+from support import is_line_with
 
 from ehlpetsc.errors import ExitStatus, not_written
 
@@ -29,33 +30,35 @@ def message_of(name, words, capsys):
 @pytest.mark.parametrize("name", sorted(COMMANDS))
 def test_mistyped_option_is_refused_in_one_line(name, capsys):
     files = ["case.toml"] if name == "ehlpetsc.study" else ["a.h5", "b.h5"]
-    assert message_of(name, [*files, "--deph"], capsys) == (
-        f"{name}: unrecognized arguments: --deph; python3 -m {name} -h lists the options\n"
-    )
+    message = message_of(name, [*files, "--deph"], capsys)
+    assert is_line_with(message, f"{name}: ", " --deph;", f"; python3 -m {name} -h")
 
 
 @pytest.mark.parametrize(
     ("name", "words", "what"),
     [
-        ("ehlpetsc.post", ["a.h5", "--count", "all"], "argument --count: invalid choice: 'all'"),
-        ("ehlpetsc.post", ["a.h5", "--within", "-1"], "--within -1: must be 0 or more"),
-        ("ehlpetsc.post", [], "the following arguments are required: RESULT.h5"),
-        ("ehlpetsc.plot", ["a.h5", "--step", "one"], "argument --step: invalid int value: 'one'"),
-        ("ehlpetsc.plot", ["a.h5", "--map", "--movie"], "argument --movie: not allowed with argument --map"),
-        ("ehlpetsc.study", [], "which case? CASE.toml, --extremes or --random N"),
-        ("ehlpetsc.compare", ["a.h5"], "the following arguments are required: B.h5"),
-        ("ehlpetsc.compare", ["a.h5", "b.h5", "--rtol", "-1"], "argument --rtol: -1 is not a number >= 0"),
+        ("ehlpetsc.post", ["a.h5", "--count", "all"], ["--count: ", "'all'", "'von_mises'"]),
+        ("ehlpetsc.post", ["a.h5", "--within", "-1"], ["--within -1: ", " 0 "]),
+        ("ehlpetsc.post", [], ["required: RESULT.h5"]),
+        ("ehlpetsc.plot", ["a.h5", "--step", "one"], ["--step: ", "'one'"]),
+        ("ehlpetsc.plot", ["a.h5", "--map", "--movie"], ["--movie: ", " --map;"]),
+        ("ehlpetsc.study", [], ["CASE.toml, --extremes or --random N;"]),
+        ("ehlpetsc.compare", ["a.h5"], ["required: B.h5"]),
+        ("ehlpetsc.compare", ["a.h5", "b.h5", "--rtol", "-1"], ["--rtol: -1 ", " >= 0;"]),
     ],
 )
 def test_command_line_fault_is_named(name, words, what, capsys):
     message = message_of(name, words, capsys)
-    assert message.startswith(f"{name}: {what}")
-    assert message.count("\n") == 1 and message.endswith("lists the options\n")
+    assert message.startswith(f"{name}: ") and is_line_with(message, *what, f"; python3 -m {name} -h")
 
 
 def test_failed_write_names_its_file():
     full = "No space left on device"
-    assert not_written(OSError(28, full, "a.png")) == f"a.png: not written, {full}"
-    assert not_written(OSError(28, full), "a.h5") == f"a.h5: not written, {full}"
-    assert not_written(OSError("no room"), "a.h5") == "a.h5: not written, no room"
+    for fault, name, reason in (
+        (OSError(28, full, "a.png"), None, full),
+        (OSError(28, full), "a.h5", full),
+        (OSError("no room"), "a.h5", "no room"),
+    ):
+        message = not_written(fault, name)
+        assert message.startswith(f"{name or 'a.png'}: ") and message.endswith(f", {reason}")
     assert not_written(OSError("no room")) == "no room"

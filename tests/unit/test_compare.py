@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import is_line_with
 from support.made_results import P0, A, make_result
 
 from ehlpetsc.analysis.compare import LinearInterpolation, compare, main
@@ -95,12 +96,12 @@ def test_missing_field_and_different_status_are_differences(tmp_path, result, ca
     status, text, _ = run(capsys, result, other)
     assert status == 1
     assert f"film_thickness is stored in {result} alone" in text
-    assert "one run is done, the other not converged" in text
+    assert "done, the other not converged" in text
 
 
 def test_bad_input_to_compare_is_refused(tmp_path, result, capsys):
     status, _, text = run(capsys, result, tmp_path / "no.h5")
-    assert (status, text) == (2, f"ehlpetsc.compare: {tmp_path / 'no.h5'}: no such file\n")
+    assert status == 2 and is_line_with(text, f"ehlpetsc.compare: {tmp_path / 'no.h5'}: ", "such file")
     with pytest.raises(SystemExit) as stop:
         main([str(result), str(result), "--rtol", "-1"])
     assert stop.value.code == 2

@@ -44,4 +44,4 @@ def test_contact_table_of_a_series(tmp_path, capsys):
 
 def test_steady_results_have_no_contact_counts(tmp_path, capsys):
     assert counts.main([str(make_result(tmp_path / "s.h5", steps=1))]) == 2
-    assert "no contacts per millisecond" in capsys.readouterr().err
+    assert "s.h5: a steady" in capsys.readouterr().err

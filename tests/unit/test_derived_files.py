@@ -88,12 +88,12 @@ def test_picture_is_replaced(tmp_path):
 def test_study_overwrites_its_own_tables_only(tmp_path, capsys, words):
     other = foreign(tmp_path, "profile.csv")
     assert study([*words, "-o", str(tmp_path / "profile")]) == 2
-    assert "profile.csv: exists and is not of that kind" in capsys.readouterr().err
+    assert "profile.csv: exists" in capsys.readouterr().err
     assert other.read_text() == PROFILE
 
 
 def test_picture_name_without_a_format_is_refused(tmp_path):
-    with pytest.raises(OutputError, match=r"x\.xyz: allowed for -o: a name that ends in \.png, "):
+    with pytest.raises(OutputError, match=r"x\.xyz: .*-o: .* \.png, "):
         check_derived(tmp_path / "x.xyz", (), PICTURE_SIGNATURES)
 
 
@@ -120,7 +120,7 @@ def test_full_disk_keeps_the_older_table(tmp_path, capsys, name):
     before = (tmp_path / name).read_bytes()
     with file_size_limit(100):
         assert ensemble.main(words) == 2
-    assert f"{tmp_path / name}: not written, File too large" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, f"{tmp_path / name}: ", "File too large")
     assert (tmp_path / name).read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.h5", name]
 
