@@ -38,8 +38,8 @@ def drop_stale_code(package):
     package : Path
     """
     stamp = package / "__pycache__" / "compiled.stamp"
-    found = sorted((str(path.relative_to(package)), path.stat()) for path in package.rglob("*.py"))
-    text = repr([(name, about.st_size, about.st_mtime_ns) for name, about in found])
+    sources = sorted((str(path.relative_to(package)), path.stat()) for path in package.rglob("*.py"))
+    text = repr([(name, status.st_size, status.st_mtime_ns) for name, status in sources])
     digest = hashlib.sha256(text.encode()).hexdigest()
     with contextlib.suppress(OSError):  # read-only: numba then has its cache elsewhere
         if stamp.exists() and stamp.read_text() == digest:

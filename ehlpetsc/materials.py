@@ -163,5 +163,5 @@ def elastic_constants(contact):
     names = contact.get("material")
     steels = [STEELS[name] for name in ([names] * 2 if isinstance(names, str) else names or ())]
     keys = ("youngs_modulus", "poisson_ratio")
-    given = {key: [getattr(steel, key) for steel in steels] for key in keys if steels} | contact
-    return given["youngs_modulus"], given["poisson_ratio"]
+    constants = {key: [getattr(steel, key) for steel in steels] for key in keys if steels} | contact
+    return constants["youngs_modulus"], constants["poisson_ratio"]

@@ -139,7 +139,7 @@ STEP_SCALARS = {
     ),
     "thin_length": StepScalar("m", "length where the film is thin", compared=True, only="mixed"),
     "thin_share": StepScalar("1", "share of the load where the film is thin", compared=True, only="mixed"),
-    **{name: replace(one, only=kind.name) for kind in EFFECTS for name, one in kind.scalars.items()},
+    **{name: replace(scalar, only=kind.name) for kind in EFFECTS for name, scalar in kind.scalars.items()},
     "radius": StepScalar("m", "radius of relative curvature", only="variable"),
     "load_given": StepScalar("N/m", "load of the operating conditions", only="variable"),
     "speed_1": StepScalar("m/s", "speed of surface 1", only="variable"),

@@ -41,8 +41,8 @@ def read_text(path):
 def _meant(path):
     """Hint to a case file with a similar name in the same folder."""
     with contextlib.suppress(OSError, ValueError):
-        beside = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
-        close = difflib.get_close_matches(Path(path).stem, beside, n=1)
+        neighbours = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
+        close = difflib.get_close_matches(Path(path).stem, neighbours, n=1)
         if close:
             return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"
     return ""
@@ -55,9 +55,9 @@ def parse_toml(path, text):
     ------
     CaseError
     """
-    found = LONG_KEY.search(text)
-    if found:  # the time of tomllib grows as the square of their number
-        line = text.count("\n", 0, found.start()) + 1
+    long_key = LONG_KEY.search(text)
+    if long_key:  # the time of tomllib grows as the square of their number
+        line = text.count("\n", 0, long_key.start()) + 1
         raise CaseError(
             [f"{path}: line {line}: a key of more than {MAX_KEY_PARTS} parts; allowed: table.key"]
         )
@@ -71,5 +71,5 @@ def _comma(text, error):
     """Hint to a decimal comma in the line of an error."""
     line = re.search(r"at line (\d+)", error)
     typed = text.splitlines()[int(line[1]) - 1] if line else ""
-    found = re.search(r"=\s*([+-]?\d+),(\d+)", typed)
-    return f"; a decimal point, as in {found[1]}.{found[2]}?" if found else ""
+    decimal_comma = re.search(r"=\s*([+-]?\d+),(\d+)", typed)
+    return f"; a decimal point, as in {decimal_comma[1]}.{decimal_comma[2]}?" if decimal_comma else ""

@@ -47,8 +47,8 @@ def _kind(field):
 
 def _bounds(type_):
     signs = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
-    found = [(sign, getattr(type_, name, None)) for name, sign in signs]
-    return " and".join(f" {sign} {bound:g}" for sign, bound in found if bound is not None)
+    bounds = [(sign, getattr(type_, name, None)) for name, sign in signs]
+    return " and".join(f" {sign} {bound:g}" for sign, bound in bounds if bound is not None)
 
 
 def show(value):

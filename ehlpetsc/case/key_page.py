@@ -49,12 +49,12 @@ def tables():
         By dotted name, "" for the keys above all tables; kinds of synthetic profiles as
         ``surface.1.synthetic (ridge)``.
     """
-    found = {"": Case}
+    models = {"": Case}
     for name, model in _below(Case):
-        found[name] = model
+        models[name] = model
         if name == "surface.1":
-            found |= {f"{name}.synthetic ({kind})": made for kind, made in SYNTHETIC.items()}
-    return found
+            models |= {f"{name}.synthetic ({kind})": profile for kind, profile in SYNTHETIC.items()}
+    return models
 
 
 def _below(model, above=""):
@@ -97,18 +97,18 @@ def keys(table=None):
     UsageError
         There is no such table or key.
     """
-    found = tables()
+    models = tables()
     if table is not None:
         above, _, key = table.rpartition(".")
-        fields = [field for field in _keys(found[above]) if field.alias == key] if above in found else []
+        fields = [field for field in _keys(models[above]) if field.alias == key] if above in models else []
         if fields:
-            return "\n".join(_lines(found[above], fields))
-        found = {name: found[name] for name in found if name == table or name.startswith(f"{table}.")}
-        if not found:
+            return "\n".join(_lines(models[above], fields))
+        models = {name: models[name] for name in models if name == table or name.startswith(f"{table}.")}
+        if not models:
             names = [name for name in tables() if name and " " not in name]
             raise UsageError(f"--keys {table}: no such table or key; tables: {', '.join(names)}")
     lines = []
-    for name, model in found.items():
+    for name, model in models.items():
         lines += [f"[{name}]" if name else "above all tables", *_lines(model, _keys(model))]
     return "\n".join(lines)
 
@@ -151,8 +151,8 @@ def template():
         for field, value in zip(_keys(model), written, strict=True):
             if isinstance(field.default, dict):
                 continue
-            given = value or ("..." if field.default is None else json.dumps(field.default))
-            lines.append(f"{'' if value else '# '}{field.alias} = {given}  # {allowed(field)}")
+            shown = value or ("..." if field.default is None else json.dumps(field.default))
+            lines.append(f"{'' if value else '# '}{field.alias} = {shown}  # {allowed(field)}")
     return "\n".join(lines) + "\n"
 
 

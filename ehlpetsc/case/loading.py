@@ -105,8 +105,8 @@ def stored_case(text, overrides=None):
 def _override(path, data, overrides):
     """Set keys in the tables; returns the settings and a fault for each invalid one."""
     settings, faults = [], []
-    given = overrides.items() if isinstance(overrides, dict) else overrides or ()
-    for override in [given] if isinstance(given, str | int | float) else list(given):
+    items = overrides.items() if isinstance(overrides, dict) else overrides or ()
+    for override in [items] if isinstance(items, str | int | float) else list(items):
         try:
             settings.append(parsed(override))
             put(data, *settings[-1])

@@ -52,13 +52,13 @@ def _try(folder, table, case):
             return None
         return _sought(folder / table["file"])
     scales = case and Scales.of(case)
-    given = samples(folder, spec, scales and scales.dx)
+    profile_samples = samples(folder, spec, scales and scales.dx)
     if case is None:
         return None
     film = scales.h * expected_film(case, scales) if case.fluid else 0.0
-    fault = absurd(given, scales.a, scales.dx, scales.h, film)
+    fault = absurd(profile_samples, scales.a, scales.dx, scales.h, film)
     if fault:
-        likely = likely_unit(given.source or given, layout_of(spec), spec.scale)
+        likely = likely_unit(profile_samples.source or profile_samples, layout_of(spec), spec.scale)
         raise ProfileError(f"{fault}" + (f"; is it in another unit? write {likely}" if likely else ""))
     return None
 

@@ -62,17 +62,17 @@ def converted(value, unit, depth=2):
     """
     if isinstance(value, list) and depth:
         return [converted(item, unit, depth - 1) for item in value]
-    found = VALUE.fullmatch(value) if isinstance(value, str) else None
-    if not found:
+    match = VALUE.fullmatch(value) if isinstance(value, str) else None
+    if not match:
         return value
-    number, given = float(found[1]), re.sub(r"(?<=[a-zA-Zµ])(\d)", r"**\1", found[2])
+    number, unit_text = float(match[1]), re.sub(r"(?<=[a-zA-Zµ])(\d)", r"**\1", match[2])
     registry, errors = _registry()
     wanted = re.sub(r"(?<=[a-zA-Z])(\d)", r"**\1", unit)
     try:
         try:
-            quantity = registry.Quantity(number, given)  # units with offset, as degC
+            quantity = registry.Quantity(number, unit_text)  # units with offset, as degC
         except Exception:
-            quantity = number * registry.parse_expression(given)  # 1/GPa
+            quantity = number * registry.parse_expression(unit_text)  # 1/GPa
         return float(f"{quantity.to(wanted).magnitude:.{MAX_DIGITS}g}")
     except errors.DimensionalityError:
         raise UnitFault(f'"{value}": not a unit of this key; allowed: one of {unit}') from None

@@ -12,8 +12,8 @@ import numpy as np
 from ehlpetsc import __version__
 
 
-def versions(more):
-    """Names and versions in one line: of Python and its libraries, then of `more` (dict of str to str)."""
+def versions(other_versions):
+    """Names and versions in one line: of Python and its libraries, then of `other_versions` (by name)."""
     common = {
         "ehlpetsc": __version__,
         "python": platform.python_version(),
@@ -21,7 +21,7 @@ def versions(more):
         "h5py": h5py.__version__,
         "hdf5": h5py.version.hdf5_version,
     }
-    return ", ".join(f"{name} {version}" for name, version in (common | more).items())
+    return ", ".join(f"{name} {version}" for name, version in (common | other_versions).items())
 
 
 @cache
@@ -42,6 +42,6 @@ def earlier_runs(attrs, last_step):
     """JSON list of the configurations of all runs before a restart; `attrs` describes the last one."""
     runs = json.loads(attrs.get("history", "[]"))
     keys = ("case", "petsc_options", "ranks", "versions", "git_commit")
-    known = {key: attrs[key] for key in keys if key in attrs}
-    run = {key: value if isinstance(value, str) else int(value) for key, value in known.items()}
+    last_run = {key: attrs[key] for key in keys if key in attrs}
+    run = {key: value if isinstance(value, str) else int(value) for key, value in last_run.items()}
     return json.dumps([*runs, {"up_to_step": int(last_step), **run}])

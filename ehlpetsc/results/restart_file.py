@@ -88,8 +88,8 @@ def _check(path, content):
         )
         raise OutputError(f"{path}: not a restart file of this ehlpetsc, but {other}")
     if version != b"%d" % VERSION:
-        found = version[:20].decode(errors="replace")
-        raise OutputError(f"{path}: a restart file of version {found}, this ehlpetsc reads {VERSION}")
+        file_version = version[:20].decode(errors="replace")
+        raise OutputError(f"{path}: a restart file of version {file_version}, this ehlpetsc reads {VERSION}")
     if content[:HEADER_BYTES] != _header(memoryview(content)[HEADER_BYTES:]):
         raise OutputError(f"{path}: damaged restart file: its content does not agree with its checksum")
 

@@ -60,9 +60,9 @@ class Totals:
         scalars : dict of str to number
         """
         for name in REDUCED.keys() & scalars.keys():
-            one, other = self.values.get(name, scalars[name]), scalars[name]
-            both = [one, other] if name in self.values else [other]
-            self.values[name] = REDUCTIONS[REDUCED[name].over_run](both)
+            before, value = self.values.get(name, scalars[name]), scalars[name]
+            values = [before, value] if name in self.values else [value]
+            self.values[name] = REDUCTIONS[REDUCED[name].over_run](values)
 
     def __str__(self):
         """``name=value`` of the summary, then the means; 0 before the first step."""

@@ -69,8 +69,8 @@ class ResultWriter:
         self.written = None
         if contact_count is not None:
             self.contact_count[:] = contact_count
-        beside = contextlib.nullcontext() if path is None else replacing(self.path)
-        with self._plain_faults("not created"), beside as target:
+        replacement = contextlib.nullcontext() if path is None else replacing(self.path)
+        with self._plain_faults("not created"), replacement as target:
             self._file = create(target)
             with room(self._file, sum(8 * len(p[0]) * 3 for p in layout.profiles.values() if p)):
                 self._root_attributes(attributes)
@@ -180,15 +180,15 @@ class ResultWriter:
         with contextlib.suppress(Exception):  # the first fault is reported
             close(self._file, "stopped")
 
-    def _root_attributes(self, given):
-        own = {
+    def _root_attributes(self, attributes):
+        common = {
             "format_version": FORMAT_VERSION,
-            "versions": versions(given.get("versions", {})),
+            "versions": versions(attributes.get("versions", {})),
             "git_commit": git_commit(),
             "restarts": 0,
             "history": "[]",
             "status": "running",
             "limits": LIMITS_LENGTH * " ",
         }
-        put(self._file, given | own)
+        put(self._file, attributes | common)
         change(self._file, "limits", "")

@@ -67,7 +67,7 @@ class StopRequest:
 def _handle(handler):
     """Install a handler of all signals that are not ignored; returns the previous handlers."""
     before = [signal.getsignal(name) for name in SIGNALS]
-    for name, known in zip(SIGNALS, before, strict=True):
-        if known is not signal.SIG_IGN:
+    for name, previous in zip(SIGNALS, before, strict=True):
+        if previous is not signal.SIG_IGN:
             signal.signal(name, handler)
     return before

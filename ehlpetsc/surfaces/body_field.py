@@ -100,7 +100,7 @@ class BodyFields(NamedTuple):
     @property
     def volume(self):
         """Integral of both depths [m^2]."""
-        return sum(one.volume for one in self)
+        return sum(field.volume for field in self)
 
 
 class MeshOnBodies:
@@ -126,7 +126,7 @@ class MeshOnBodies:
 
     def means(self, fields, travelled):
         """Means of both bodies' depths over the cells of the mesh [m], shape (nx,) each."""
-        return [one.means(faces) for one, faces in zip(fields, self.faces(travelled), strict=True)]
+        return [field.means(faces) for field, faces in zip(fields, self.faces(travelled), strict=True)]
 
     def add(self, fields, travelled, depths):
         """Fields with depths at the nodes [m], shape (nx,) for each body, added.
@@ -139,13 +139,16 @@ class MeshOnBodies:
         depths : pair of ndarray
         """
         return BodyFields(
-            *(one.add(at, d) for one, at, d in zip(fields, self.faces(travelled), depths, strict=True))
+            *(
+                field.add(faces, depth)
+                for field, faces, depth in zip(fields, self.faces(travelled), depths, strict=True)
+            )
         )
 
     def at_points(self, fields, points):
         """Mean depths [m] around equally spaced points s of each body [m]; None without points."""
-        found = []
-        for one, s, offset in zip(fields, points, self.offsets, strict=True):
+        depths = []
+        for field, s, offset in zip(fields, points, self.offsets, strict=True):
             half = None if s is None else 0.5 * (s[1] - s[0])
-            found.append(None if s is None else one.means(np.append(s - half, s[-1] + half) + offset))
-        return found
+            depths.append(None if s is None else field.means(np.append(s - half, s[-1] + half) + offset))
+        return depths

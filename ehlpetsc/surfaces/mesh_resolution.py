@@ -20,12 +20,12 @@ def mesh_warnings(rough, scales):
     notes = []
     for side in ("1", "2"):
         profile = rough and rough.side(side)
-        share = profile.unresolved_variance(scales.dx) if profile else 0.0
-        if share > MAX_UNRESOLVED:
+        fraction = profile.unresolved_variance(scales.dx) if profile else 0.0
+        if fraction > MAX_UNRESOLVED:
             shortest = 1e6 * WAVE_NODES * scales.dx
             notes.append(
-                f"surface.{side}: the mesh is too coarse for the profile: {100 * share:.1f} % of its height "
-                f"variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
+                f"surface.{side}: the mesh is too coarse for the profile: {100 * fraction:.1f} % of its "
+                f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
                 f"points_per_half_width = {_needed(profile, scales)} brings that under "
                 f"{100 * MAX_UNRESOLVED:.0f} %"
             )
@@ -34,8 +34,8 @@ def mesh_warnings(rough, scales):
     return notes
 
 
-def _spike_warning(side, given, dx):
-    count, highest, abscissa = spikes(given, dx)
+def _spike_warning(side, samples, dx):
+    count, highest, abscissa = spikes(samples, dx)
     if not count:
         return []
     return [
@@ -46,12 +46,12 @@ def _spike_warning(side, given, dx):
     ]
 
 
-def spikes(given, dx):
+def spikes(samples, dx):
     """Points of spikes and pits narrower than a cell, by a running median over twice its width.
 
     Parameters
     ----------
-    given : ehlpetsc.surfaces.samples.Samples
+    samples : ehlpetsc.surfaces.samples.Samples
     dx : float
         Spacing of the mesh [m].
 
@@ -61,16 +61,16 @@ def spikes(given, dx):
     highest, abscissa : float
         Maximum distance from the median; abscissa of its first point [m].
     """
-    window = 2 * round(dx / given.spacing) + 1
-    if not given.measured or window < 3:  # the mesh is finer than the profile
+    window = 2 * round(dx / samples.spacing) + 1
+    if not samples.measured or window < 3:  # the mesh is finer than the profile
         return 0, 0.0, 0.0
-    rq, given = given.z.std(), given.source or given
-    window = 2 * round(dx / given.spacing) + 1
-    deviation = np.abs(given.z - _running_median(given.z, min(window, given.z.size)))
-    found = deviation > SPIKE_RQ_RATIO * rq
-    if not found.any():
+    rq, samples = samples.z.std(), samples.source or samples
+    window = 2 * round(dx / samples.spacing) + 1
+    deviation = np.abs(samples.z - _running_median(samples.z, min(window, samples.z.size)))
+    in_spike = deviation > SPIKE_RQ_RATIO * rq
+    if not in_spike.any():
         return 0, 0.0, 0.0
-    return int(found.sum()), float(deviation.max()), float(given.X[found.argmax()])
+    return int(in_spike.sum()), float(deviation.max()), float(samples.X[in_spike.argmax()])
 
 
 def _running_median(z, window):

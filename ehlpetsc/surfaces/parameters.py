@@ -77,12 +77,12 @@ def roughness_parameters(X, z):
     deviation = z - z.mean()
     rq = float(np.sqrt((deviation**2).mean()))
     edges = np.linspace(X[0], X[-1], SAMPLING_LENGTHS + 1)
-    parts = [z[(X >= low) & (X <= high)] for low, high in zip(edges, edges[1:], strict=False)]
-    found = core(*abbott_curve(X, z))
+    sections = [z[(X >= low) & (X <= high)] for low, high in zip(edges, edges[1:], strict=False)]
+    core_parameters = core(*abbott_curve(X, z))
     return {
         "ra": float(np.abs(deviation).mean()),
         "rq": rq,
-        "rz": float(np.mean([np.ptp(part) for part in parts if part.size])),
+        "rz": float(np.mean([np.ptp(section) for section in sections if section.size])),
         "rsk": float((deviation**3).mean() / rq**3) if rq > 0.0 else 0.0,
-        **{name: found[name] for name in ("rk", "rpk", "rvk")},
+        **{name: core_parameters[name] for name in ("rk", "rpk", "rvk")},
     }

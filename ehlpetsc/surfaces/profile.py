@@ -49,12 +49,12 @@ class Profile:
     """
 
     def __init__(
-        self, given, speed, moving, inlet, outlet, ramp, swept_length, begin=0.0, reach=None, is_flank=False
+        self, samples, speed, moving, inlet, outlet, ramp, swept_length, begin=0.0, reach=None, is_flank=False
     ):
         from scipy.interpolate import CubicSpline
 
-        X, z, self.repeats, self.speed = given.X, given.z, given.repeats, speed
-        self.given, self.X, self.heights = given, X, z
+        X, z, self.repeats, self.speed = samples.X, samples.z, samples.repeats, speed
+        self.given, self.X, self.heights = samples, X, z
         self.is_moving = moving and speed != 0.0 and not is_flank
         self._origin, self._sign = (inlet, -1.0) if self.is_moving and speed > 0 else (outlet, 1.0)
         if not self.is_moving:

@@ -106,8 +106,8 @@ def _turned(X, z, spec):
 
 def layout_of(spec):
     """Layout of the file of a surface."""
-    given = {key: getattr(spec, key) for key in KEYS}
-    return Layout(**given | {"columns": spec.columns and tuple(spec.columns)})
+    values = {key: getattr(spec, key) for key in KEYS}
+    return Layout(**values | {"columns": spec.columns and tuple(spec.columns)})
 
 
 def mean_deviation(z):

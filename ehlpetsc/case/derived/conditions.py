@@ -72,10 +72,10 @@ def with_columns(tables, folder):
     if "file" not in operation:
         return tables, []
     columns = read_table(folder / operation["file"])[0]
-    rest = {key: value for key, value in operation.items() if key != "file"}
+    other_keys = {key: value for key, value in operation.items() if key != "file"}
     settings = [(["operation", "file"], None)]
     settings += [(["operation", key], values) for key, values in columns.items()]
-    return tables | {"operation": rest | columns}, settings
+    return tables | {"operation": other_keys | columns}, settings
 
 
 def of_gears(path):
@@ -156,17 +156,17 @@ def _checked(columns, lines, tables, repeat):
 
 def _constants(tables):
     """Constant conditions in the other tables of a case."""
-    found = {}
+    constants = {}
     contact, motion = tables.get("contact"), tables.get("motion")
     for key in ("load", "radius"):
         value = contact.get(key) if isinstance(contact, dict) else None
         if _is_number(value) and value > 0.0:
-            found[key] = float(value)
+            constants[key] = float(value)
     if isinstance(motion, dict) and _is_number(motion.get("entrainment_speed")):
         u, xi = motion["entrainment_speed"], motion.get("slide_roll_ratio", 0.0)
         if _is_number(xi):
-            found["speed_1"], found["speed_2"] = u * (1.0 + xi / 2.0), u * (1.0 - xi / 2.0)
-    return found
+            constants["speed_1"], constants["speed_2"] = u * (1.0 + xi / 2.0), u * (1.0 - xi / 2.0)
+    return constants
 
 
 def _is_number(value):

@@ -79,14 +79,14 @@ def _numbers(line, separator):
 
 def _keys_of(number, line, separator):
     """Keys of the columns named in a line, without units in brackets."""
-    known = {name: key for key, names in COLUMNS.items() for name in names}
+    key_by_name = {name: key for key, names in COLUMNS.items() for name in names}
     keys = []
     for word in re.sub(r"\[[^\]]*\]|\([^)]*\)", "", line).split(separator):
         name = " ".join(word.strip(" \"'").lower().replace("_", " ").split())
-        if name not in known:
+        if name not in key_by_name:
             allowed = ", ".join(names[0] for names in COLUMNS.values())
             raise TableFault(f"line {number}: column {shown(name)!r}: allowed: {allowed}")
-        keys.append(known[name])
+        keys.append(key_by_name[name])
     if len(set(keys)) < len(keys):
         raise TableFault(f"line {number}: a column twice")
     return keys

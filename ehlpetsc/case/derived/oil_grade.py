@@ -18,15 +18,15 @@ def with_grade(tables):
         return tables
     v40, v100, density = (grade.get(key) for key in ("v40", "v100", "density"))
     temperature = _temperature(fluid, heat)
-    if not all(is_of(float, one) and one > 0.0 for one in (v40, v100, density, temperature)):
+    if not all(is_of(float, value) and value > 0.0 for value in (v40, v100, density, temperature)):
         return tables
     if not (2e-6 < v100 < v40 < 1.0 and 200.0 < temperature < 700.0):
         return tables
     from ehlpetsc.physics.heat.thermal_viscosity import gold_pressure_viscosity, walther, walther_constants
 
     nu = float(walther(temperature, *walther_constants(v40, v100))[0])
-    found = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}
-    tables = tables | {"fluid": found | fluid}
+    properties = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}
+    tables = tables | {"fluid": properties | fluid}
     return tables | {"heat": {"oil_density": density} | heat} if heat else tables
 
 
@@ -34,7 +34,7 @@ def _temperature(fluid, heat):
     """Temperature at which `viscosity` holds [K], None if there is none."""
     bulk = heat.get("bulk_temperature")
     if isinstance(bulk, (list, tuple)):
-        numbers = len(bulk) == 2 and all(is_of(float, one) for one in bulk)
+        numbers = len(bulk) == 2 and all(is_of(float, value) for value in bulk)
         bulk = 0.5 * sum(bulk) if numbers else None
     given = heat.get("reference_temperature"), fluid.get("temperature"), heat.get("inlet_temperature"), bulk
-    return next((one for one in given if one is not None), None)
+    return next((value for value in given if value is not None), None)

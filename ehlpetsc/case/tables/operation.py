@@ -43,7 +43,7 @@ class Operation(Table):
 
     @root_validator(skip_on_failure=True)
     def _file_or_columns(cls, values):
-        given = [key for key in COLUMNS if values[key] is not None]
-        if (values["file"] is None) == (not given):
+        columns = [key for key in COLUMNS if values[key] is not None]
+        if (values["file"] is None) == (not columns):
             raise ValueError("needs either file or time with load, radius, speed_1 or speed_2")
         return values

@@ -56,10 +56,10 @@ class Series(Table):
             return values
         if len(set(keys)) < len(keys):
             raise ValueError("keys: the same one twice")
-        if len(lists) != len(keys) or not all(isinstance(one, list) and one for one in lists):
+        if len(lists) != len(keys) or not all(isinstance(entries, list) and entries for entries in lists):
             raise ValueError(f"values: allowed: {len(keys)} lists of values, one for each of the keys")
-        if values["combine"] == "step" and len({len(one) for one in lists}) > 1:
-            counts = ", ".join(str(len(one)) for one in lists)
+        if values["combine"] == "step" and len({len(entries) for entries in lists}) > 1:
+            counts = ", ".join(str(len(entries)) for entries in lists)
             raise ValueError(
                 f'values: lists of {counts}; allowed with combine = "step": as long as each other'
             )

@@ -59,9 +59,9 @@ class LazyDataset:
         self.name, self.shape, self.dtype = dataset.name, dataset.shape, dataset.dtype
         self.ndim, self.chunks = dataset.ndim, dataset.chunks
 
-    def __getitem__(self, part):
+    def __getitem__(self, index):
         with reading(self._path, self.name):
-            return self._dataset[part]
+            return self._dataset[index]
 
     def __len__(self):
         return self.shape[0]

@@ -56,7 +56,7 @@ def parse_command_line(arguments):
         Two case files, or none although one is needed; a missing options file; -ehl_set without a value.
     """
     command = Command()
-    rest, sets = _without_sets(arguments)
+    words, sets = _without_sets(arguments)
     try:
         environment, earlier = _without_sets(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
     except ValueError as error:
@@ -65,27 +65,27 @@ def parse_command_line(arguments):
     if earlier or single != environment:
         os.environ["PETSC_OPTIONS"] = shlex.join(single)
     command.overrides = earlier + sets
-    command.explain, command.ranks = "--explain" in rest, "--ranks" in rest
-    rest = [word for word in rest if word not in ("--explain", "--ranks")]
-    cases = [at for at, word in enumerate(rest) if word.endswith(".toml") and not _is_value(rest, at)]
-    cases = cases or [at for at, word in enumerate(rest[:1]) if word[:1] != "-"]
+    command.explain, command.ranks = "--explain" in words, "--ranks" in words
+    words = [word for word in words if word not in ("--explain", "--ranks")]
+    cases = [at for at, word in enumerate(words) if word.endswith(".toml") and not _is_value(words, at)]
+    cases = cases or [at for at, word in enumerate(words[:1]) if word[:1] != "-"]
     if len(cases) > 1:
-        raise UsageError(f"one case file at a time, not {' and '.join(rest[at] for at in cases)}: {usage()}")
+        raise UsageError(f"one case file at a time, not {' and '.join(words[at] for at in cases)}: {usage()}")
     if cases:
-        command.case = rest.pop(cases[0])
+        command.case = words.pop(cases[0])
         if not command.case:
             raise UsageError(f"which case? an empty name is none: {usage()}")
-    elif not {"-help", "--help", "-h"} & set(rest):
+    elif not {"-help", "--help", "-h"} & set(words):
         raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
-    for word in [*rest, *sets]:
+    for word in [*words, *sets]:
         if not is_plain(word):
             raise UsageError(f"{word!r}: allowed: one line of UTF-8 text")
-    for word in rest:
+    for word in words:
         _check_name(word)
-    for word, name in itertools.pairwise(rest):
+    for word, name in itertools.pairwise(words):
         if _with_one_dash(word) == "-options_file" and not os.path.isfile(name):
             raise UsageError(f"-options_file {name}: no such file")
-    command.petsc = ["-help" if word == "-h" else _with_one_dash(word) for word in rest]
+    command.petsc = ["-help" if word == "-h" else _with_one_dash(word) for word in words]
     return command
 
 
@@ -113,7 +113,7 @@ def _is_value(words, at):
 
 
 def _without_sets(words):
-    rest, sets = [], []
+    other_words, sets = [], []
     words = iter(words)
     for word in words:
         if word in ("-ehl_set", "--ehl_set"):
@@ -124,5 +124,5 @@ def _without_sets(words):
                 raise UsageError(f"{word} {value}: write {word} {value}={next(words, 'VALUE')}")
             sets.append(value)
         else:
-            rest.append(word)
-    return rest, sets
+            other_words.append(word)
+    return other_words, sets

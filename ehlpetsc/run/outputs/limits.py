@@ -97,9 +97,11 @@ def _molecules(totals):
 
 def _mesh(rough, scales):
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
-    shares = {side: rough.side(side).unresolved_variance(scales.dx) for side in sides}
+    unresolved = {side: rough.side(side).unresolved_variance(scales.dx) for side in sides}
     coarse = [
-        f"{100 * share:.1f} % of surface.{side}" for side, share in shares.items() if share > MAX_UNRESOLVED
+        f"{100 * value:.1f} % of surface.{side}"
+        for side, value in unresolved.items()
+        if value > MAX_UNRESOLVED
     ]
     if not coarse:
         return None

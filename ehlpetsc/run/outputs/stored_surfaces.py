@@ -45,13 +45,16 @@ def body_depths(simulation):
     offsets, solution = _offsets(simulation), simulation.solution
     sides = profiles(simulation)
     points = [
-        None if one is None else one[0] - offset for one, offset in zip(sides.values(), offsets, strict=True)
+        None if profile is None else profile[0] - offset
+        for profile, offset in zip(sides.values(), offsets, strict=True)
     ]
     depths = []
     for effect in simulation.stepper.effects:
-        for name, both in effect.on_surfaces(solution.records[effect.name], points).items():
+        for name, depth_pair in effect.on_surfaces(solution.records[effect.name], points).items():
             depths += [
-                (side, name, depth) for side, depth in zip(sides, both, strict=True) if depth is not None
+                (side, name, depth)
+                for side, depth in zip(sides, depth_pair, strict=True)
+                if depth is not None
             ]
     return depths
 

@@ -47,16 +47,16 @@ def _regime(ratio):
 
 def _profile(case, s, profile):
     """Size, roughness and travel of one profile, a line each."""
-    given = profile.given
+    samples = profile.given
     lines = [
         f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}",
-        *given.notes,
+        *samples.notes,
     ]
-    if given.measured:
-        file = given.source or given
+    if samples.measured:
+        file = samples.source or samples
         size = f"{1e3 * file.length:.4g} mm long, {file.X.size} points {1e6 * file.spacing:.4g} um apart"
         lines.insert(1, size)
-        if profile.travelled > given.length:
+        if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
         if case.time is not None and profile.is_moving:
             lines += _part_in_contact(case, s, profile)
@@ -76,8 +76,12 @@ def _part_in_contact(case, s, profile):
     if through >= length:
         return []
     needed = reaches + (2.0 + length / s.a) * slower
-    part = f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
-    return [f"of {1e3 * length:.4g} mm {part}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"]
+    passing = (
+        f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
+    )
+    return [
+        f"of {1e3 * length:.4g} mm {passing}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"
+    ]
 
 
 def height_lines(rough, s):

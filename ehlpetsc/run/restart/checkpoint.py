@@ -212,6 +212,6 @@ def _misfit(arrays, attributes, earlier, case, scales):
 
 def changed_keys(earlier, now):
     """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics."""
-    one, other = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
-    keys = [key for key in {**one, **other} if one.get(key) != other.get(key)]
-    return [f"{key} was {one.get(key, 'left out')}, is {other.get(key, 'left out')}" for key in keys]
+    old, new = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
+    keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
+    return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]

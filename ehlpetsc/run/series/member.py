@@ -30,13 +30,15 @@ def named(settings):
     list of str
         For example ``viscosity=0.002`` or ``viscosity=0.002,entrainment_speed=5.0``.
     """
-    flat = [flat_keys({".".join(keys): value for keys, value in one}) for one in settings]
-    keys = dict.fromkeys(key for one in flat for key in one)
-    differing = [key for key in keys if any(one.get(key) != flat[0].get(key) for one in flat)] or list(keys)
+    flat = [flat_keys({".".join(keys): value for keys, value in member}) for member in settings]
+    keys = dict.fromkeys(key for member in flat for key in member)
+    differing = [key for key in keys if any(member.get(key) != flat[0].get(key) for member in flat)] or list(
+        keys
+    )
     label = settings[0][0][0][-1] if len(settings[0]) == 1 else "member"
     names = []
-    for number, one in enumerate(flat, 1):
-        values = {key.rpartition(".")[2]: one[key] for key in differing if key in one}
+    for number, member in enumerate(flat, 1):
+        values = {key.rpartition(".")[2]: member[key] for key in differing if key in member}
         text = ",".join(f"{key}={value}" for key, value in values.items())
         has_list = any(isinstance(value, list) for value in values.values())
         usable = values and len(text) <= MAX_NAME_LENGTH and not has_list

@@ -129,8 +129,8 @@ class Passes:
 
     def _note(self, number, simulation):
         with read_result(self.file(number)) as result:
-            found = pass_summary(result, filled_from(result))
-        row = {"pass": number, "file": self.file(number).name} | found
+            summary = pass_summary(result, filled_from(result))
+        row = {"pass": number, "file": self.file(number).name} | summary
         before = self.rows[-1]["set_volume"] if self.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
         self.rows.append(row)

@@ -122,10 +122,10 @@ class Series:
         out, err = PrefixedStream(member.name, sys.stdout), PrefixedStream(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
-            one = Run(
+            run = Run(
                 Simulation(member.case, group), member.output, PollingStop(self.queue, self.stop), out, err
             )
-            outcome = one.run(member.restart if begun else None, overwrite=True)  # checked before: it is ours
+            outcome = run.run(member.restart if begun else None, overwrite=True)  # checked before: it is ours
             return outcome.status, str(outcome.failure or "")
         except (CaseError, OutputError, UsageError) as error:
             if group.rank == 0:

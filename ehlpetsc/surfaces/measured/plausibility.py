@@ -13,22 +13,22 @@ MIN_CELLS = 4  # of the mesh, length of the profile
 TYPICAL_SPACING, TYPICAL_RQ = (5e-9, 3e-5), (3e-10, 2e-5)  # m: of measured profiles
 
 
-def absurd(given, a, dx, approach, film):
+def absurd(samples, a, dx, approach, film):
     """Message on an implausible measured profile, with the likely unit; None: plausible.
 
     Parameters
     ----------
-    given : ehlpetsc.surfaces.samples.Samples
+    samples : ehlpetsc.surfaces.samples.Samples
     a, dx : float
         Half width and spacing of the mesh [m].
     approach, film : float
         a^2/R and expected film [m].
     """
-    rq = float(given.z.std())
-    slope = float(np.sqrt(np.mean((np.diff(given.z) / np.diff(given.X)) ** 2)))
+    rq = float(samples.z.std())
+    slope = float(np.sqrt(np.mean((np.diff(samples.z) / np.diff(samples.X)) ** 2)))
     highest = min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film))
-    if given.spacing > MAX_SPACING * a:
-        fault = f"points {_um(given.spacing)} apart beside a half width of {_um(a)}"
+    if samples.spacing > MAX_SPACING * a:
+        fault = f"points {_um(samples.spacing)} apart beside a half width of {_um(a)}"
     elif rq > highest:
         fault = (
             f"Rq {_um(rq)} beside a half width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
@@ -37,32 +37,32 @@ def absurd(given, a, dx, approach, film):
         fault = f"slopes of {slope:.3g} in the root mean square"
     elif 0.0 < rq < MIN_RQ:
         fault = f"Rq {_um(rq)}, less than an atom"
-    elif given.length < MIN_CELLS * dx:
-        fault = f"{_um(given.length)} long beside cells of the mesh of {_um(dx)}"
+    elif samples.length < MIN_CELLS * dx:
+        fault = f"{_um(samples.length)} long beside cells of the mesh of {_um(dx)}"
     else:
         return None
     return f"{fault}: not a profile of this contact"
 
 
-def likely_unit(given, layout, scale):
+def likely_unit(samples, layout, scale):
     """Keys that make a profile plausible, e.g. ``unit = "um"``; None if there are none.
 
     Parameters
     ----------
-    given : ehlpetsc.surfaces.samples.Samples
+    samples : ehlpetsc.surfaces.samples.Samples
     layout : ehlpetsc.surfaces.measured.profile_files.Layout
         Layout of the file.
     scale : float
         Factor on the heights in the case.
     """
     now = (layout.unit or "m", layout.x_unit or layout.unit or "m")
-    rq, step = given.z.std() / (abs(scale) or 1.0) / UNITS[now[0]], given.spacing / UNITS[now[1]]
+    rq, step = samples.z.std() / (abs(scale) or 1.0) / UNITS[now[0]], samples.spacing / UNITS[now[1]]
     of_x = [now[1]] if layout.spacing is not None else list(UNITS)
-    pairs = [(one, other) for other in of_x for one in UNITS if (one, other) != now]
-    for one, other in sorted(pairs, key=lambda pair: pair[0] != pair[1]):
-        if _within(rq * UNITS[one], TYPICAL_RQ) and _within(step * UNITS[other], TYPICAL_SPACING):
-            alone = other == one or layout.spacing is not None
-            return f'unit = "{one}"' + ("" if alone else f' and x_unit = "{other}"')
+    pairs = [(unit, x_unit) for x_unit in of_x for unit in UNITS if (unit, x_unit) != now]
+    for unit, x_unit in sorted(pairs, key=lambda pair: pair[0] != pair[1]):
+        if _within(rq * UNITS[unit], TYPICAL_RQ) and _within(step * UNITS[x_unit], TYPICAL_SPACING):
+            alone = x_unit == unit or layout.spacing is not None
+            return f'unit = "{unit}"' + ("" if alone else f' and x_unit = "{x_unit}"')
     return None
 
 

@@ -134,9 +134,9 @@ def _chosen(columns, layout):
 def _from_surface_topography(path, layout):
     if path.suffix.lower() in OTHER_FORMATS:
         raise ProfileError(f"{path.suffix!r} is no profile file; allowed: two columns of text, x and z")
-    given = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
-    if given:
-        raise ProfileError(f"{given[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
+    text_keys = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
+    if text_keys:
+        raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
     try:
         from SurfaceTopography import read_topography
     except ModuleNotFoundError:

@@ -54,10 +54,10 @@ def text_columns(path, decimal=None, header_lines=None):
     words = _Words.of(text, begin, decimal)
     rows, comments, above = [], [], []
     for number, block in _blocks(text, begin):
-        found = words.table(block)
-        if found is not None:
+        table = words.table(block)
+        if table is not None:
             blank = block[: len(block) - len(block.lstrip())]
-            rows.append((number + blank.count("\n"), found))
+            rows.append((number + blank.count("\n"), table))
             continue
         comments += [line for line in block.splitlines() if line.lstrip().startswith("#")]
         read = []
