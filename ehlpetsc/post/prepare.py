@@ -127,7 +127,7 @@ def _warn(loads, gaps, motions, complete, report):
     if loads.status not in ("done", "unknown"):
         report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
     if gaps.every > 1:
-        steps = min(DAMAGE_LOSS, key=lambda known: abs(known - gaps.every))
+        steps = min(DAMAGE_LOSS, key=lambda studied: abs(studied - gaps.every))
         top, below = DAMAGE_LOSS[steps]
         report(
             f"warning: stored with output.every = {gaps.every}: peaks between frames are lost; with every "

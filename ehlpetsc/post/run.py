@@ -138,12 +138,12 @@ def _compute(job, prepared, cache, progress):
     with workers(job.jobs) as map_:
         for task in tasks:
 
-            def task_progress(part, done=done, task=task):
-                progress(done + part * len(task.depths), total)
+            def task_progress(fraction, done=done, task=task):
+                progress(done + fraction * len(task.depths), total)
 
             values = solve(job, prepared, task, map_, task_progress)
-            for depth, part in zip(task.depths, values, strict=True):
-                cache.save(task.surface, depth, part)
+            for depth, results in zip(task.depths, values, strict=True):
+                cache.save(task.surface, depth, results)
             done += len(task.depths)
 
 

@@ -107,14 +107,14 @@ def _coarse(kind, grid, stress, size, law, work, bounds):
     for g in np.argsort(-bounds):
         if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
             break
-        found = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE_RANGE, work)
+        damage = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE_RANGE, work)
         rank = STARTS
-        while rank > 0 and found > best[rank - 1]:
+        while rank > 0 and damage > best[rank - 1]:
             rank -= 1
         for k in range(STARTS - 1, rank, -1):
             best[k], angles[k] = best[k - 1], angles[k - 1]
         if rank < STARTS:
-            best[rank], angles[rank] = found, grid[g]
+            best[rank], angles[rank] = damage, grid[g]
     return angles, best
 
 
@@ -129,9 +129,9 @@ def _improve(kind, angles, damage, stress, size, law, work):
             for change in (-step, step):
                 trial[:] = angles
                 trial[axis] += change
-                found = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE_RANGE, work)
-                if found > damage:
-                    damage, better = found, True
+                trial_damage = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE_RANGE, work)
+                if trial_damage > damage:
+                    damage, better = trial_damage, True
                     angles[:] = trial
                     break
         if not better:
@@ -151,9 +151,9 @@ def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out)
         if damages[k] <= 0:
             continue
         _improve(kind, starts[k], damages[k], few, few_size, law, work)
-        found = plane_damage(kind, starts[k], stress, size, law, 0.0, work)
-        if found > out[0]:
-            out[0], out[1], out[2] = found, starts[k, 0], starts[k, 1]
+        damage = plane_damage(kind, starts[k], stress, size, law, 0.0, work)
+        if damage > out[0]:
+            out[0], out[1], out[2] = damage, starts[k, 0], starts[k, 1]
 
 
 @compiled(error_model="python", nogil=True)
@@ -162,6 +162,6 @@ def reduced(stress, size, nu, points, indices, few):
     equivalent_points(stress[:, :size], nu, points)
     count = turning_samples(points, size, indices)
     for k in range(count):
-        for part in range(3):
-            few[part, k] = stress[part, indices[k]]
+        for component in range(3):
+            few[component, k] = stress[component, indices[k]]
     return count

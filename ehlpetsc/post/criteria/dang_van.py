@@ -82,8 +82,8 @@ def _smallest_of_few(points, indices, count):
                 size += 1
         if size > 4:
             continue
-        found, centre = _centre(points, subset, size)
-        if not found:
+        has_ball, centre = _centre(points, subset, size)
+        if not has_ball:
             continue
         radius = _reach(points, subset, size, centre)
         if radius < best and _reach(points, indices, count, centre) <= radius * (1 + BALL_TOLERANCE):

@@ -8,7 +8,7 @@ that opens a shear crack:
     \frac{\Delta\gamma}{2}\Big(1+k\frac{\sigma_{n,\max}}{\sigma_y}\Big)
     = \frac{\tau_f'}{G}(2N)^b + \gamma_f'(2N)^c
 
-with :math:`\tau_f'=\sigma_f'/\sqrt3`, :math:`\gamma_f'=\sqrt3\,\varepsilon_f'` (von Mises). k is found from
+with :math:`\tau_f'=\sigma_f'/\sqrt3`, :math:`\gamma_f'=\sqrt3\,\varepsilon_f'` (von Mises). k is fitted to
 tests in torsion and in tension; 1 is customary for steel without tests. Torsion tests of a hardened
 spring steel: McClaflin & Fatemi (2004), Int. J. Fatigue 26, 773. Smith, Watson & Topper (1970), J. Mater. 5,
 is uniaxial; on a plane it was proposed by Socie (1987), J. Eng. Mater. Technol. 109, for tensile cracks:

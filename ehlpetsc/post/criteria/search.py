@@ -69,11 +69,11 @@ class PlaneCounter:
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): as in PlaneDamage."""
         nu, closed, sensitivity = self.head
         law = (nu, float(residual), closed, sensitivity, *self.tables)
-        found = np.empty((len(stress), 3))
+        worst = np.empty((len(stress), 3))
         stress = np.ascontiguousarray(stress, float)  # one compiled version for files and arrays
-        _worst_planes(self.kind, self.grid, stress, lengths, law, self.work, self.spare, found)
-        out[:, 0] = found[:, 0]
-        out[:, 1], out[:, 2] = described(found[:, 1], found[:, 2])
+        _worst_planes(self.kind, self.grid, stress, lengths, law, self.work, self.spare, worst)
+        out[:, 0] = worst[:, 0]
+        out[:, 1], out[:, 2] = described(worst[:, 1], worst[:, 2])
 
 
 class LimitCounter:

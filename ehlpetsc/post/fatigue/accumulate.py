@@ -39,9 +39,9 @@ class Counting(NamedTuple):
     def check(self):
         """Raise ValueError for an unknown option."""
         choices = (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES, STRAINS)
-        for name, value, known in zip(self._fields, self, choices, strict=True):
-            if value not in known:
-                raise ValueError(f"{name} = {value!r}: must be one of {', '.join(known)}")
+        for name, value, allowed in zip(self._fields, self, choices, strict=True):
+            if value not in allowed:
+                raise ValueError(f"{name} = {value!r}: must be one of {', '.join(allowed)}")
         return self
 
 
@@ -72,10 +72,10 @@ def _sum_cycles(stress, series, nu, n, first, second, weight, options, constants
         if morrow:
             dsv = sqrt(squared)
             mean = max((1 + nu) * (xi + xj + zi + zj) / 2 + 2 * residual, -dsv / 2)
-            part = cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c)
+            damage = cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c)
         else:
-            part = look_up(squared, table)
-        total += weight[k] * part
+            damage = look_up(squared, table)
+        total += weight[k] * damage
         number += weight[k]
         largest = max(largest, squared)
     return total, number, largest

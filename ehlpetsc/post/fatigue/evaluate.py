@@ -26,7 +26,9 @@ def evaluate(sx, sz, txz, counter_of, residual_stress):
     ValueError
         Unequal shapes, nan.
     """
-    stress = np.stack(np.broadcast_arrays(*(np.asarray(part, float) for part in (sx, sz, txz))), axis=-2)
+    stress = np.stack(
+        np.broadcast_arrays(*(np.asarray(component, float) for component in (sx, sz, txz))), axis=-2
+    )
     if not np.isfinite(stress).all():
         raise ValueError("stress histories must be finite")
     if not np.isfinite(residual_stress):

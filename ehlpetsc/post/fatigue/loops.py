@@ -69,9 +69,9 @@ def equivalent_points(stress, nu, points):
 @compiled(error_model="python", nogil=True)
 def repeat_points(points, size):
     """Repeat points[:, :size], so that a loop across the end of a history is one slice."""
-    for part in range(3):
+    for component in range(3):
         for k in range(size):
-            points[part, size + k] = points[part, k]
+            points[component, size + k] = points[component, k]
 
 
 @compiled(error_model="python", nogil=True)

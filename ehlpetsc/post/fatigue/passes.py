@@ -113,11 +113,11 @@ def largest_near(s, damage, positions, distance):
     -------
     ndarray, shape (..., n)
     """
-    known = np.where(np.isnan(damage), -np.inf, damage)
+    finite = np.where(np.isnan(damage), -np.inf, damage)
     out = np.empty((*damage.shape[:-1], len(positions)))
     for k, position in enumerate(positions):
         first = np.searchsorted(s, position - distance, "left")
         last = np.searchsorted(s, position + distance, "right")
         nearest = int(np.abs(s - position).argmin())
-        out[..., k] = known[..., min(first, nearest) : max(last, nearest + 1)].max(axis=-1)
+        out[..., k] = finite[..., min(first, nearest) : max(last, nearest + 1)].max(axis=-1)
     return np.where(np.isinf(out), np.nan, out)

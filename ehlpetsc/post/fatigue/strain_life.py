@@ -189,7 +189,7 @@ def cycles_to_failure(dsv, material, mean_stress=0.0, strain="direct"):
         A negative range or nan, an unknown rule.
     """
     rule = rule_of(strain)
-    dsv, mean = (np.array(part, float) for part in np.broadcast_arrays(dsv, mean_stress))
+    dsv, mean = (np.array(array, float) for array in np.broadcast_arrays(dsv, mean_stress))
     if not (dsv >= 0).all() or np.isnan(mean).any():
         raise ValueError("stress ranges must be numbers of 0 or more")
     out = np.empty(dsv.size)

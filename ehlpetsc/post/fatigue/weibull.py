@@ -91,13 +91,13 @@ def weibull_likelihood(values):
         while damping > 1e-12:
             trial = shift + damping * step[0], slope + damping * step[1]
             if trial[1] > 0:
-                found = _log_likelihood(trial[1] * y - trial[0], kind, trial[1], exact)
-                if found >= best:
+                trial_likelihood = _log_likelihood(trial[1] * y - trial[0], kind, trial[1], exact)
+                if trial_likelihood >= best:
                     break
             damping /= 2
         else:
             break
-        (shift, slope), best = trial, found
+        (shift, slope), best = trial, trial_likelihood
         if abs(step[1]) <= 1e-12 * slope and abs(step[0]) <= 1e-12 * (1 + abs(shift)):
             break
     return WeibullLikelihood(float(np.exp(middle + shift / slope)), float(slope))

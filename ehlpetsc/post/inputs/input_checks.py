@@ -22,9 +22,9 @@ def input_digest(loads, surfaces):
         A value is nan or infinite, a frame does not carry the load, a pressure is negative, ...
     """
     digest = hashlib.sha256()
-    profiles = [part for profile in loads.profiles.values() for part in profile or (None,)]
-    for part in (loads.case_text.encode(), loads.x, loads.time, loads.step, *profiles):
-        digest.update(b"none" if part is None else memoryview(np.ascontiguousarray(part)).cast("B"))
+    profiles = [array for profile in loads.profiles.values() for array in profile or (None,)]
+    for array in (loads.case_text.encode(), loads.x, loads.time, loads.step, *profiles):
+        digest.update(b"none" if array is None else memoryview(np.ascontiguousarray(array)).cast("B"))
     digest.update(repr((loads.a, loads.p0, loads.speeds, loads.status, surfaces)).encode())
     balance, nodes = Balance(loads), loads.x.size
     weights = np.stack([np.ones(nodes), np.arange(1, nodes + 1) * 0.6180339887498949 % 1], axis=1)

@@ -48,7 +48,7 @@ class Loads:
     load : ndarray (nt,)
         Load of the operating conditions at each frame, N/m.
     has_conditions : bool
-        Whether the case has its operating conditions; they may be in a file beside it.
+        Whether the case has its operating conditions; they may be in a separate file.
     travelled : dict
         Distance covered since time 0 at each frame, m, (nt,), by surface.
     profiles : dict
@@ -78,9 +78,9 @@ class Loads:
             self.a, self.p0 = float(attrs["a"]), float(attrs["p0"])
             self.speeds = {"1": float(attrs["u1"]), "2": float(attrs["u2"])}
             self._read_mesh()
-            found = {surface: self._profile(surface) for surface in SURFACES}
-            self.profiles = {surface: one and one[:2] for surface, one in found.items()}
-            self.profile_speeds = {surface: one[2] for surface, one in found.items() if one}
+            profiles = {surface: self._profile(surface) for surface in SURFACES}
+            self.profiles = {surface: profile and profile[:2] for surface, profile in profiles.items()}
+            self.profile_speeds = {surface: profile[2] for surface, profile in profiles.items() if profile}
         except BaseException:
             self._result.close()
             raise
@@ -106,20 +106,22 @@ class Loads:
         self.operation = operation_of(self.case, self.scales)
         stored = [self.step_scalar(name) for name in VARIABLE]
         if all(values is not None for values in stored):
-            one, other, self.load = stored
+            travelled_1, travelled_2, self.load = stored
             self.dt, self.has_conditions = None, self.case.conditions is not None
         else:
-            one, other = np.array([self.operation.travelled(t) for t in self.time]).reshape(-1, 2).T
+            travelled_1, travelled_2 = (
+                np.array([self.operation.travelled(t) for t in self.time]).reshape(-1, 2).T
+            )
             self.load = np.array([self.operation.at(t).load for t in self.time])
             self.dt = self.scales.dt
-        self.travelled = {"1": one, "2": other}
+        self.travelled = {"1": travelled_1, "2": travelled_2}
 
     def _profile(self, surface):
         """(s, z, speed) sorted by s; None for a smooth surface."""
-        found = self._result.profile(surface)
-        if found is None:
+        profile = self._result.profile(surface)
+        if profile is None:
             return None
-        s, z, speed = found
+        s, z, speed = profile
         if s.shape != z.shape or s.ndim != 1 or s.size < 2:
             raise PostError(f"datasets surface/{surface}/s and z: not one height a place")
         for name, values in (("s", s), ("z", z)):

@@ -47,7 +47,7 @@ def read_settings(case):
     """
     post, contact = case.post, case.contact
 
-    def given(constants):
+    def set_in_case(constants):
         values = {name: getattr(post, name, None) for name in constants}
         return {name: value for name, value in values.items() if value is not None}
 
@@ -58,7 +58,7 @@ def read_settings(case):
         )
     ]
     try:
-        criteria = Criteria(**given(Criteria.__dataclass_fields__))
+        criteria = Criteria(**set_in_case(Criteria.__dataclass_fields__))
     except ValueError as fault:
         raise PostError(f"post.{fault}") from None
     depths = tuple(sorted(set(post.depths or DEPTHS)))

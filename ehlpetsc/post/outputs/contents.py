@@ -64,8 +64,10 @@ class Contents:
         if surface not in prepared.loads.heated([surface]):
             return
         motion = prepared.motions[surface]
-        found = point_temperatures(prepared.loads, surface, motion, prepared.s.size)
-        self.datasets |= {f"temperature/{surface}_{name}": values for name, values in found._asdict().items()}
+        temperatures = point_temperatures(prepared.loads, surface, motion, prepared.s.size)
+        self.datasets |= {
+            f"temperature/{surface}_{name}": values for name, values in temperatures._asdict().items()
+        }
         bulk = {f"bulk_temperature_{surface}": prepared.loads.bulk_temperature(surface)}
         self.groups["temperature"] = self.groups.get("temperature", {}) | bulk
 

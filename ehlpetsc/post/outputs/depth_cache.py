@@ -13,7 +13,7 @@ FINGERPRINT_FILE = "mark"
 
 
 class DepthCache:
-    """Finished (surface, depth) results in a folder beside the output, each written atomically.
+    """Finished (surface, depth) results in a folder next to the output, each written atomically.
 
     The caller must hold the lock on the output.
 

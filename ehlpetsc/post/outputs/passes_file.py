@@ -90,9 +90,9 @@ def store_passes(path, results, surface):
     """
     check_output(path, [result.path for result in results])
     s, damages = same_points(results, surface)
-    found = pass_statistics(damages)
+    statistics = pass_statistics(damages)
     values = {"damage/s": s, "damage/z_over_a": results[0].z}
-    values |= {f"damage/{surface}_{name}": value for name, value in found._asdict().items()}
+    values |= {f"damage/{surface}_{name}": value for name, value in statistics._asdict().items()}
     sources = [str(result.path) for result in results]
     attributes = {
         "a": results[0].a,
@@ -101,4 +101,4 @@ def store_passes(path, results, surface):
         "passes": len(results),
     }
     write_result(path, values, attributes, {"damage": {"surface": surface}})
-    return found
+    return statistics

@@ -16,7 +16,7 @@ def is_of_passes(path):
 
 
 def note_damage(index):
-    """Add the damage found by post-processing to each pass of an index, under "damage".
+    """Add the damage of the post-processing to each pass of an index, under "damage".
 
     Parameters
     ----------
@@ -35,12 +35,12 @@ def note_damage(index):
     """
     index = Path(index)
     with Lock(index, "wait for it"):
-        content, found = read_index(index), []
+        content, damages = read_index(index), []
         for row in content["passes"]:
             with read_result(index.with_name(row["file"])) as result:
                 damage = damage_beside(result)
             if damage is not None:
                 row["damage"] = damage.summary()
-                found.append((row["pass"], row["damage"]))
+                damages.append((row["pass"], row["damage"]))
         atomic_write(index, json.dumps(content, indent=1).encode())
-    return found
+    return damages

@@ -18,7 +18,7 @@ UTILISATION_TICKS = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)  # of the fatigue limit
 
 
 def criteria_picture(result, surface):
-    """Maps below the profile on one scale of damage, each beside its values over the paper's damage."""
+    """Maps below the profile on one scale of damage, each next to its values over the paper's damage."""
     names = [name for name in NAMES if name in result.criteria]
     figure = Figure(figsize=(10, 1.4 + 1.75 * (len(names) + 1)), layout="constrained")
     heights = (0.5, *[1] * (len(names) + 1))
@@ -80,8 +80,8 @@ def _row(figure, row, result, surface, name, values, ends, levels):
         right.set_ylim(ends[0] / 100, ends[1])
     else:
         low, high = right.get_ylim()
-        shown = [share for share in UTILISATION_TICKS if low <= share <= high]
-        right.set_yticks(shown, [f"{share:g}" for share in shown])
+        shown = [utilisation for utilisation in UTILISATION_TICKS if low <= utilisation <= high]
+        right.set_yticks(shown, [f"{utilisation:g}" for utilisation in shown])
         right.set_yticks([], minor=True)
     ranks = rank_correlation(paper[:, complete].ravel(), values[:, complete].ravel())
     top = rank_correlation(paper[0, complete], values[0, complete])
@@ -96,7 +96,7 @@ def _colours(z):
 
 
 def _depth_colours(figure, axes, result):
-    """Draw the legend of depths in the empty axes beside the paper's map."""
+    """Draw the legend of depths in the empty axes next to the paper's map."""
     for z, colour in zip(result.z, _colours(result.z), strict=True):
         axes.plot([], [], "o", ms=4, color=colour, label=f"z/a = {z:g}")
     axes.legend(ncol=2, fontsize=8, frameon=False, loc="center", title="depths of the points below")

@@ -52,8 +52,8 @@ def _curve(axes, under, fit, label, color):
     if not damaged.size:
         axes.plot([], [], color=color, label=f"{label}: no damage")
         return
-    falling, share = exceedance(under)
-    axes.plot(falling[falling > 0], share[falling > 0], ".", ms=3, color=color)
+    falling, fraction = exceedance(under)
+    axes.plot(falling[falling > 0], fraction[falling > 0], ".", ms=3, color=color)
     low, high = np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5)
     values = np.logspace(low, max(high, low + 1), 300)
     axes.plot(values, fitted_exceedance(values, fit), color=color, lw=1.2, label=label)

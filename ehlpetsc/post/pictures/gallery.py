@@ -222,7 +222,7 @@ def history_picture(path, result, point):
     top, *between, bottom = figure.subplots(len(heights), 1, height_ratios=heights)
     cycles = plots.history(top, time, values, channel)
     i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)
-    dx, dz, dt = (part[j] - part[i] for part in values)
+    dx, dz, dt = (component[j] - component[i] for component in values)
     ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
     damages = 1 / cycles_to_failure(ranges, material, strain=result.attrs.get("strain", "direct"))
     for axes in between:

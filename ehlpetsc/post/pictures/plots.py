@@ -64,10 +64,10 @@ def profile(axes, result, surface, ends):
 
 def temperatures(axes, result, surface):
     """Draw flash and mean temperature rise of the points of a surface over mm."""
-    found, passed = result.temperatures[surface], result.complete[surface]
-    x, bulk = along_body(result, surface, result.s[passed]), found.highest - found.flash
-    axes.plot(x, found.flash[passed], color=HOT, lw=0.8, label="flash")
-    axes.plot(x, (found.mean - bulk)[passed], color=DARK, lw=0.8, ls="--", label="mean in\nthe contact")
+    temperature, passed = result.temperatures[surface], result.complete[surface]
+    x, bulk = along_body(result, surface, result.s[passed]), temperature.highest - temperature.flash
+    axes.plot(x, temperature.flash[passed], color=HOT, lw=0.8, label="flash")
+    axes.plot(x, (temperature.mean - bulk)[passed], color=DARK, lw=0.8, ls="--", label="mean in\nthe contact")
     axes.set_ylabel("temperature\nover bulk [K]")
     axes.set_ylim(bottom=0.0)
     axes.yaxis.set_major_locator(MaxNLocator(4))
@@ -82,9 +82,9 @@ def _under_surface(axes, result, surface, ends, depths, gap):
     axes.set_ylabel("z/a")
     if len(depth) > 1:
         axes.set_ylim(depth[-1], depth[0])
-        beside = axes.secondary_yaxis("right")
-        beside.set_yticks(depth[ticks], [f"{1e6 * z * result.a:.3g}" for z in depths[ticks]])
-        beside.set_ylabel("z [µm]")
+        right_axis = axes.secondary_yaxis("right")
+        right_axis.set_yticks(depth[ticks], [f"{1e6 * z * result.a:.3g}" for z in depths[ticks]])
+        right_axis.set_ylabel("z [µm]")
     return along_body(result, surface, result.s[result.complete[surface]]), depth
 
 

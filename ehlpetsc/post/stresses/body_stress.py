@@ -71,11 +71,11 @@ def kernel_table(nx, depth):
     last frequency that matters.
     """
     factor = low_pass(nx, depth)
-    kept = np.count_nonzero(factor)
+    count = np.count_nonzero(factor)
     spectra = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
     spectra *= half_element(nx).conj() * factor
     spectra[:, [1, 3, 4, 6]] *= -1j
-    return np.ascontiguousarray(np.moveaxis(np.stack([spectra.real, spectra.imag])[..., :kept], -1, 0))
+    return np.ascontiguousarray(np.moveaxis(np.stack([spectra.real, spectra.imag])[..., :count], -1, 0))
 
 
 @compiled(error_model="python", nogil=True, fastmath={"contract"})

@@ -168,7 +168,7 @@ def stress(x, z, pressure, shear, poisson_ratio):
     dx = spacing(x)
     field = _field(x.size, dx, tuple(np.atleast_1d(np.asarray(z, float))))
     result = field(pressure, shear)
-    return tuple(part[..., 0, :] for part in result) if np.ndim(z) == 0 else result
+    return tuple(component[..., 0, :] for component in result) if np.ndim(z) == 0 else result
 
 
 def out_of_plane(sx, sz, poisson_ratio):

@@ -27,9 +27,9 @@ def _collect(stress, begin, first, shift, enter, leave, quantum, histories):
         j = first + row
         for frame in range(max(begin, enter[j]), min(end, leave[j] + 1)):
             node, sample = j + shift[frame], frame - enter[j] + 1
-            for part in range(3):
-                value = stress[frame - begin, part, node]
-                histories[row, part, sample] = np.rint(value * inverse) * quantum
+            for component in range(3):
+                value = stress[frame - begin, component, node]
+                histories[row, component, sample] = np.rint(value * inverse) * quantum
 
 
 def runs_of_points(motion, memory, depths):
@@ -97,20 +97,20 @@ class HistoryCollector:
             list(self.map(partial(self._add_frames, loads, begin, points[0], histories), starts))
             if self.advance:
                 self.advance(end - begin)
-        parts = zip(np.array_split(np.arange(points.size), len(finish)), finish, strict=True)
-        list(self.map(partial(self._hand_over, points[0], histories), parts))
+        tasks = zip(np.array_split(np.arange(points.size), len(finish)), finish, strict=True)
+        list(self.map(partial(self._hand_over, points[0], histories), tasks))
 
     def _add_frames(self, loads, begin, point, histories, first):
         """Add the stresses of a batch of frames from `first` on, of loads from frame `begin` on."""
-        m, part = self.motion, slice(first - begin, first - begin + FRAMES_PER_BATCH)
-        spectra = self.stress.transform(*(load[part] for load in loads))
+        m, batch = self.motion, slice(first - begin, first - begin + FRAMES_PER_BATCH)
+        spectra = self.stress.transform(*(load[batch] for load in loads))
         weights = self.weights[:, first : first + len(spectra)]
         for depth in range(self.depths):
             fields = self.stress(depth, spectra, weights)
             _collect(fields, first, point, m.shift, m.enter, m.leave, self.quantum, histories[depth])
 
-    def _hand_over(self, point, histories, share):
-        rows, finish = share
+    def _hand_over(self, point, histories, task):
+        rows, finish = task
         if rows.size:
             first, last = rows[0], rows[-1] + 1
             for depth in range(self.depths):

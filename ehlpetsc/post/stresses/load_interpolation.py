@@ -1,7 +1,7 @@
-"""Interpolation of the load between nodes: cubic Hermite pieces with slopes limited beside steep peaks.
+"""Interpolation of the load between nodes: cubic Hermite pieces with slopes limited next to steep peaks.
 
 The solution has loads at nodes; the stress of a body point also depends on the loads between them. Linear
-interpolation reduces the peaks of short ripples. A spline does not, but beside a contact of one to three
+interpolation reduces the peaks of short ripples. A spline does not, but next to a contact of one to three
 nodes it overshoots by up to 14 % of the peak: tension on a surface under pressure. Here slopes are of sixth
 order, limited to three times the smaller adjacent secant, which preserves monotonicity (Fritsch & Carlson
 (1980), SIAM J. Numer. Anal. 17), or to the slopes of the adjacent parabolas if their curvatures have the
