@@ -153,8 +153,8 @@ def test_changed_physical_keys_are_listed(tmp_path):
 @pytest.mark.parametrize(
     "change, message",
     [
-        (["mesh.points_per_half_width=21"], "nodes, the case"),
-        (["mesh.inlet=-2.45", "mesh.outlet=1.55"], "its nodes lie from"),
+        (["mesh.points_per_half_width=21"], r"81 nodes, .* 85; \[mesh\]"),
+        (["mesh.inlet=-2.45", "mesh.outlet=1.55"], r"-2\.5 to 1\.5 .* -2\.45 to 1\.55 .* \[mesh\]"),
     ],
 )
 def test_state_of_another_mesh_is_refused(tmp_path, change, message):
@@ -167,7 +167,7 @@ def test_state_of_another_mesh_is_refused(tmp_path, change, message):
 def test_reversed_rough_body_is_refused(tmp_path):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
-    with pytest.raises(OutputError, match="surface.2 moved at 4.375 m/s, now at -1 m/s"):
+    with pytest.raises(OutputError, match=r"surface\.2 .* 4\.375 m/s, .* -1 m/s"):
         Scene("motion.slide_roll_ratio=2.5", "motion.entrainment_speed=4.0").load(tmp_path / "f.restart.h5")
 
 
@@ -194,28 +194,28 @@ def at_node(value):
 
 
 DAMAGE = [
-    (lambda arrays, _: arrays.pop("q"), "q .oil pressure.* is missing"),
-    (lambda _, numbers: numbers.pop("h00"), "h00 .approach.* is missing"),
-    (lambda arrays, _: arrays.update(other=np.zeros(3)), "unknown entry other"),
-    (change("q", at_node(NAN)), "q .* is not finite"),
-    (change("q", at_node(-1.5)), "q .* lies in -1.5 to"),
-    (change("h", at_node(-1e-9)), "h .* lies in -1e-09"),
-    (change("smooth_h", lambda v: v[:-1]), "smooth_h .* has the length 80 over node, others 81"),
-    (change("m", lambda v: v.astype("f4").view("i4")), "m .* is of the type int32"),
-    (change("earlier_q", lambda v: v[0]), "earlier_q .* has 1 dimensions, not 2"),
-    (lambda arrays, _: arrays.pop("earlier_h"), "of its earlier levels some fields are missing"),
-    (change("contact_count", at_node(9)), "contact_count is 9 after 3 steps"),
-    (change("x", lambda v: v[::-1]), "its nodes do not increase"),
-    (change("time", lambda v: -v), "time .* lies in -3e-06"),
-    (change("dt", lambda v: 1.0), "its last step is longer than its time"),
-    (change("step", lambda v: 3.5), "step .* is of the type float64"),
-    (change("p0", lambda v: "high"), "p0 .* is of the type"),
-    (change("case", lambda v: "[contact"), "its case cannot be read"),
-    (change("case", lambda v: 3.0), "case .* is missing or no text"),
+    (lambda arrays, _: arrays.pop("q"), r" q \(.*missing"),
+    (lambda _, numbers: numbers.pop("h00"), r" h00 \(.*missing"),
+    (lambda arrays, _: arrays.update(other=np.zeros(3)), " entry other$"),
+    (change("q", at_node(NAN)), r" q \(.*finite"),
+    (change("q", at_node(-1.5)), r" q \(.* -1\.5 to .* allowed: -1 to"),
+    (change("h", at_node(-1e-9)), r" h \(.* -1e-09 to .* allowed: 0 to"),
+    (change("smooth_h", lambda v: v[:-1]), r" smooth_h \(.* length 80 .* 81$"),
+    (change("m", lambda v: v.astype("f4").view("i4")), r" m \(.* int32$"),
+    (change("earlier_q", lambda v: v[0]), r" earlier_q \(.* 1 dimensions, not 2"),
+    (lambda arrays, _: arrays.pop("earlier_h"), "earlier levels .*missing"),
+    (change("contact_count", at_node(9)), "contact_count is 9 .* 3 steps"),
+    (change("x", lambda v: v[::-1]), "nodes .*increase"),
+    (change("time", lambda v: -v), r" time \(.* -3e-06 to .* allowed: 0 to"),
+    (change("dt", lambda v: 1.0), "last step .* time"),
+    (change("step", lambda v: 3.5), r" step \(.* float64$"),
+    (change("p0", lambda v: "high"), r" p0 \(.* <U4$"),
+    (change("case", lambda v: "[contact"), r" case .*table declaration"),
+    (change("case", lambda v: 3.0), r" case \(.* no text"),
     (change("total newton", lambda v: np.inf), "total newton is inf"),
-    (change("a", lambda v: 0.0), "a .half width"),
-    (change("a", lambda v: 2.0 * v), "its nodes lie from"),
-    (lambda arrays, _: arrays.pop("m_older"), "m, m_older are missing"),
+    (change("a", lambda v: 0.0), r" a \(.* 0 to 0, allowed: 1e-300 to"),
+    (change("a", lambda v: 2.0 * v), r"-1\.25 to 0\.75 .* \[mesh\]"),
+    (lambda arrays, _: arrays.pop("m_older"), "m, m_older .*missing"),
 ]
 
 
@@ -245,8 +245,8 @@ def test_a_file_from_before_depths_were_hidden_is_refused_in_one_sentence(tmp_pa
     save_restart(path, *({k: v for k, v in d.items() if "hidden" not in k} for d in (arrays, numbers)))
     with pytest.raises(OutputError) as refused:
         scene.load(path)
-    message = f"or of an earlier ehlpetsc: {name}.hidden.surface_1.spacing is missing"
-    assert str(refused.value) == f"{path}: damaged restart file, {message}"
+    message = f": {name}.hidden.surface_1.spacing is missing"
+    assert str(refused.value).startswith(f"{path}: damaged ") and str(refused.value).endswith(message)
 
 
 def test_every_changed_byte_is_detected(tmp_path):
@@ -255,11 +255,11 @@ def test_every_changed_byte_is_detected(tmp_path):
     whole = path.read_bytes()
     for place in range(0, len(whole), 997):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
-        with pytest.raises(OutputError, match="checksum|not a restart file|version"):
+        with pytest.raises(OutputError, match="checksum|not a restart|version"):
             scene.load(path)
     for length in (0, 100, 512, len(whole) - 1):
         path.write_bytes(whole[:length])
-        with pytest.raises(OutputError, match="checksum|not a restart file"):
+        with pytest.raises(OutputError, match="checksum|not a restart"):
             scene.load(path)
 
 
@@ -280,7 +280,7 @@ def test_resume_advice_names_matching_restart_files_only(tmp_path, stored, other
     scene.save(path, *state_of(scene))
     advice = resume_advice(path, Scene(*other).case, stored)
     assert advice.endswith(f"continue with -ehl_restart {path} (step 3)") == there
-    assert advice.startswith("there is no restart file of it") != there
-    assert there or advice.endswith("repeat it with -ehl_overwrite"), "an existing file would be refused"
+    assert ("no restart file" in advice) != there
+    assert there or advice.endswith(" -ehl_overwrite"), "an existing file would be refused"
     path.unlink()
-    assert resume_advice(path, scene.case, stored).endswith("the same command begins at time 0")
+    assert resume_advice(path, scene.case, stored).endswith(" at time 0")

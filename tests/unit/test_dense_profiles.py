@@ -1,6 +1,7 @@
 """Profiles of many more points than a mesh can tell apart: they are thinned first."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -125,7 +126,7 @@ def test_profile_of_a_million_points_runs(tmp_path):
     )
     status, peak, user = (float(word) for word in done.stderr.splitlines()[-1].split())
     assert status == 0, done.stdout + done.stderr
-    assert "1000000 points, thinned to " in done.stdout
+    assert " 1000000 points, thinned" in done.stdout
     assert peak < 600_000  # kB
     assert user < 30.0  # s
 
@@ -151,6 +152,6 @@ def test_foreign_file_is_no_profile(tmp_path, name):
     (tmp_path / name).write_bytes(b"\x89PNG")
     text = (ROOT / "cases" / "table1_rough.toml").read_text()
     (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", name))
-    with pytest.raises(CaseError, match="is no profile file; allowed: two columns of text") as refused:
+    with pytest.raises(CaseError, match=rf'surface\.1\.file = "{re.escape(name)}": ') as refused:
         load(tmp_path / "c.toml", {"surface.1.unit": "um"})
     assert "unit:" not in str(refused.value)

@@ -47,7 +47,7 @@ def test_film_of_a_near_inlet_equals_the_solver_result(inlet):
 
 def test_near_inlet_warning_gives_film_and_sufficient_inlet():
     (line,) = of({"mesh.inlet": -1.05})
-    assert line.startswith("mesh.inlet = -1.05 is too near: by Grubin's integral it leaves 43 % of the film")
+    assert line.startswith("mesh.inlet = -1.05 ") and " 43 % of the film" in line
     further = float(line.split("mesh.inlet = ")[2].split()[0])
     assert -2.5 < further < -1.8 and of({"mesh.inlet": further}) == []
 
@@ -70,7 +70,7 @@ def test_film_on_a_mesh_too_coarse_for_the_inlet_is_as_predicted():
 
 def test_coarse_mesh_warning_gives_the_sufficient_mesh():
     (line,) = of(SLOW | {"mesh.points_per_half_width": 400})
-    assert "the gap opens by 1.9 films" in line
+    assert " 1.9 films " in line
     points = int(line.split("points_per_half_width = ")[1].split(";")[0])
     assert of(SLOW | {"mesh.points_per_half_width": points}) == []
 
@@ -78,8 +78,8 @@ def test_coarse_mesh_warning_gives_the_sufficient_mesh():
 def test_mesh_without_a_film_is_refused():
     """At a/200 the film of this smooth contact is zero, at a/1600 1.06 nm."""
     (line,) = of(SLOW, about=domain_faults)
-    assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: the mesh is too coarse")
-    with pytest.raises(ehlpetsc.CaseError, match="which leaves no film"):
+    assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: ") and " 5.3 films " in line
+    with pytest.raises(ehlpetsc.CaseError, match=r"points_per_half_width = 200: .* 5\.3 films"):
         ehlpetsc.Simulation(load(SMOOTH, SLOW))
 
 
@@ -91,10 +91,7 @@ def test_boundary_film_needs_no_mesh_for_thinner_films():
 def test_contact_wider_than_the_domain_is_refused():
     soft = {"contact.model": "mixed", "contact.yield_pressure": 0.25e9}
     (line,) = of(soft | {"mesh.inlet": -3.0, "mesh.outlet": 3.0}, about=domain_faults)
-    assert (
-        "contact.yield_pressure = 0.25 GPa bears the load on 6.28 half widths or more, the domain has 6"
-        in line
-    )
+    assert "contact.yield_pressure = 0.25 GPa " in line and " 6.28 half widths " in line and " has 6;" in line
     assert of(soft | {"mesh.outlet": 4.0, "mesh.inlet": -4.0}, about=domain_faults) == []
 
 
@@ -102,7 +99,7 @@ def test_contact_at_the_domain_ends_is_an_error():
     """A dent of 50 um: without oil its flanks carry at the ends of the mesh."""
     dent = {"kind": "dent", "amplitude": 50e-6, "wavelength": 600e-6, "position": 340e-6}
     changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"2": {"synthetic": dent}}}
-    with pytest.raises(ehlpetsc.NotConverged, match="solids touch at the inlet, x = -1.01 a: .* further out"):
+    with pytest.raises(ehlpetsc.NotConverged, match=r"solids .* inlet, x = -1\.01 a: .* mesh\.inlet "):
         ehlpetsc.solve(load(CASES / "dry_hertz.toml", changed))
 
 
@@ -110,7 +107,7 @@ def test_pressure_at_the_outlet_is_an_error():
     x, dry = np.linspace(-2.0, 1.2, 5), np.zeros(5, bool)
     check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
     check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0099]), dry)
-    with pytest.raises(ehlpetsc.NotConverged, match="0.01 p0 at the outlet"):
+    with pytest.raises(ehlpetsc.NotConverged, match=r"^0\.01 p0 .* x = 1\.2 a: .* mesh\.outlet "):
         check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0102]), dry)
-    with pytest.raises(ehlpetsc.NotConverged, match="0.3 p0 at the outlet, x = 1.2 a"):
+    with pytest.raises(ehlpetsc.NotConverged, match=r"^0\.3 p0 .* x = 1\.2 a: .* mesh\.outlet "):
         check_ends(x, np.array([0.0, 0.5, 1.0, 1.0, 0.3]), dry)

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, is_line_with
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -58,10 +58,9 @@ def test_explained_minimum_film_within_four_percent(eta0, speed, film):
 
 
 def test_disabled_effects_are_listed():
-    assert starting(lines("dry_hertz.toml"), "Switched off") == [
-        "Switched off: Reynolds equation (no [fluid]), time (no [time]), roughness (no [surface]), "
-        "boundary friction at dry nodes"
-    ]
+    (dry,) = starting(lines("dry_hertz.toml"), "Switched off")
+    for part in ("Reynolds equation (no [fluid])", "(no [time])", "(no [surface])", "boundary friction"):
+        assert part in dry
     moes = starting(lines("moes.toml"), "Switched off")[0]
     assert "Newtonian" in moes and "compressibility" in moes
     full = lines("table1_rough.toml", "fluid.inlet_film=1e-6")
@@ -97,7 +96,7 @@ def test_predicted_result_size_within_ten_percent(tmp_path, overrides):
 def test_explain_lists_series_members():
     lines_shown = lines("fig6.toml")
     assert "mesh.points_per_half_width = 100, 200, 300, 400" in lines_shown[1]
-    assert lines_shown[2].startswith("All members on one rank: about ")
+    assert lines_shown[2].startswith("All members ") and " one rank: " in lines_shown[2]
 
 
 def test_coarse_mesh_and_stationary_roughness_are_warnings():
@@ -143,7 +142,7 @@ def test_prediction_includes_all_passes(monkeypatch):
     one, five = (case.load(CASES / "running_in.toml", [f"time.passes={passes}"]) for passes in (1, 5))
     times = [forecast.work_time(c, Scales.of(c), None) for c in (one, five)]
     assert times[1] == pytest.approx(5.0 * times[0])
-    assert " for each of 5 passes" in explain(five)
+    assert " 5 passes" in explain(five)
 
 
 @pytest.mark.parametrize(
@@ -174,7 +173,7 @@ def test_spike_warning_gives_its_height_on_the_mesh(tmp_path):
     z = np.where(np.arange(2000) == 1000, 3e-6, 0.0)
     spike = {"surface": {"2": {"x": x, "z": z}}, "time": {"travel": 4.0}}
     text = explain(case.load(CASES / "table1_smooth.toml", spike | {"mesh.points_per_half_width": 100}))
-    (line,) = [line for line in text.splitlines() if "heights from" in line]
+    (line,) = [line for line in text.splitlines() if "heights" in line]
     given, seen = (float(part.split(" to ")[1].split()[0]) for part in line.split(";"))
     area = 0.5e-6 * 3e-6 * 1.0  # of the spline, its undershoots beside the point included
     assert given == pytest.approx(3.0, rel=0.01)
@@ -187,11 +186,11 @@ def test_explained_passing_length_follows_from_travel():
     c = case.load(CASES / "fig1.toml")
     s = Scales.of(c)
     through = (c.time.travel - 1.5 - 2.0) * s.a
-    assert f"of 1.712 mm x = 0 to {1e3 * through:.3g} mm pass the contact" in lines_shown[2]
+    assert f"of 1.712 mm x = 0 to {1e3 * through:.3g} mm " in lines_shown[2]
     needed = int(lines_shown[2].rpartition("time.travel = ")[2].split()[0])
-    assert lines_shown[2].endswith("for all") and needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
+    assert needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
     whole = lines("fig1.toml", f"time.travel={needed}")
-    assert any(line.startswith("Surface 1: continued by reflection") for line in whole)
+    assert any(line.startswith("Surface 1: ") and "reflection" in line for line in whole)
 
 
 @pytest.mark.parametrize(
@@ -199,15 +198,15 @@ def test_explained_passing_length_follows_from_travel():
     [
         (
             ["contact.radius=12"],
-            "Hertz' pressure p0 = 0.0399 GPa: EHL contacts have 0.1 to 10 GPa; radius = 12",
+            r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12",
         ),
-        (["fluid.viscosity=15"], "the expected film"),
-        (["fluid.law='barus'"], 'fluid.kappa, fluid.chi: not used by law = "barus"'),
+        (["fluid.viscosity=15"], r"film, 49\.5 um, .* 336 um: viscosity = 15 Pa s"),
+        (["fluid.law='barus'"], r'^fluid\.kappa, fluid\.chi: .* law = "barus"'),
     ],
 )
 def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, words):
     c = case.load(CASES / "table1_smooth.toml", overrides)
-    assert any(words in line for line in warnings(c, Scales.of(c)))
+    assert any(re.search(words, line) for line in warnings(c, Scales.of(c)))
 
 
 @pytest.mark.parametrize(
@@ -222,7 +221,7 @@ def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, wor
 )
 def test_passes_of_solids_that_yield_under_the_smooth_contact_are_named(overrides, warned):
     c = case.load(CASES / "running_in.toml", overrides)
-    assert any("ahead of the profiles yields too" in line for line in warnings(c, Scales.of(c))) == warned
+    assert any("time.pass_shift" in line for line in warnings(c, Scales.of(c))) == warned
 
 
 @pytest.mark.parametrize("level", [False, True])
@@ -236,7 +235,7 @@ def test_tilted_profile_warning_names_the_key(level):
         assert found == []
     else:
         share = 5.0**2 / 12 / (5.0**2 / 12 + 0.4**2 / 2)
-        assert found[0].startswith(f"surface.1: {100 * share:.0f} % of the height variance")
+        assert found[0].startswith(f"surface.1: {100 * share:.0f} % ")
         assert "5 um over 4 mm" in found[0] and "level = true" in found[0]
 
 
@@ -245,26 +244,25 @@ def test_mesh_within_ten_percent_has_no_warning():
     base = ["motion.entrainment_speed=1"]
     for points, warned in ((300, False), (30, True)):
         c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={points}"])
-        assert any("too coarse for the inlet" in line for line in warnings(c, Scales.of(c))) == warned
-    lines_shown = next(line for line in warnings(c, Scales.of(c)) if "too coarse for the inlet" in line)
+        assert any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c))) == warned
+    lines_shown = next(line for line in warnings(c, Scales.of(c)) if "coarse" in line and "inlet" in line)
     needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
     c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
-    assert not any("too coarse for the inlet" in line for line in warnings(c, Scales.of(c)))
+    assert not any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c)))
 
 
 def test_explain_describes_each_surface():
     lines_shown = starting(lines("fig7.toml"), "Surface 2")
     assert lines_shown[0].endswith("Rsk 0.080")
     assert lines_shown[1] == "Surface 2: 1.712 mm long, 3425 points 0.5 um apart"
-    assert lines_shown[2] == "Surface 2: continued by reflection: 18.28 mm enter during the run"
-    assert lines_shown[3] == "Surface 2: reaches the contact at travel 1.93 a and fills it at 4.63 a"
-    assert lines_shown[4].endswith(
-        "heights from -0.275 to 0.325 um; means over cells, as the mesh has them, -0.265 to 0.314 um"
-    )
+    assert "reflection" in lines_shown[2] and " 18.28 mm " in lines_shown[2]
+    assert " travel 1.93 a " in lines_shown[3] and lines_shown[3].endswith(" 4.63 a")
+    assert " -0.275 to 0.325 um; means over cells" in lines_shown[4]
+    assert lines_shown[4].endswith(" -0.265 to 0.314 um")
     assert not [line for line in lines("fig1.toml") if "reflection" in line]
     ridge = starting(lines("ridge.toml"), "Surface")
     assert ridge[0] == "Surface 1: smooth"
-    assert ridge[2].endswith("at travel 1.67 a and has its middle at x = 0 at 3.73 a")
+    assert " travel 1.67 a " in ridge[2] and ridge[2].endswith(" x = 0 at 3.73 a")
 
 
 @pytest.mark.parametrize(
@@ -273,15 +271,15 @@ def test_explain_describes_each_surface():
         (
             "table1_rough.toml",
             1.0,
-            ["reaches the contact (1.50): it stays smooth", "contact (1.93): it stays"],
+            [("surface.1: ", "smooth", "(1.50)"), ("surface.2: ", "smooth", "(1.93)")],
         ),
-        ("table1_rough.toml", 4.0, ["fills the contact (4.63)"]),
+        ("table1_rough.toml", 4.0, [("surface.2: ", "fills", "(4.63)")]),
         ("table1_rough.toml", 4.7, []),
-        ("ridge.toml", 3.0, ["middle of the profile is at x = 0 (3.73)"]),
+        ("ridge.toml", 3.0, [("surface.2: ", "middle", "x = 0 (3.73)")]),
     ],
 )
 def test_run_shorter_than_the_roughness_entry_is_a_warning(name, travel, lines_shown):
     found = starting(lines(name, f"time.travel={travel}"), "Warning")
     assert len(found) == len(lines_shown)
     for line, words in zip(found, lines_shown, strict=True):
-        assert f"the run ends at time.travel = {travel:g}, before" in line and words in line
+        assert is_line_with(line, f" time.travel = {travel:g}, ", *words)

@@ -5,6 +5,7 @@ import math
 import h5py
 import numpy as np
 import pytest
+from support import is_line_with
 from support.made_results import make_result
 
 from ehlpetsc.case.loading import load
@@ -178,43 +179,46 @@ def test_hunting_teeth(teeth, partners):
 
 
 @pytest.mark.parametrize(
-    ("change", "sentence"),
+    ("change", "parts"),
     [
-        ({"tip_diameter": [72e-3, 108e-3]}, "the tips do not reach each other"),
-        ({"tip_diameter": [78e-3, 114e-3]}, "a pair leaves before the next one meets"),
-        ({"tip_diameter": [60e-3, 118.4e-3]}, "of the pinion: no involute flank below its base circle"),
-        ({"tip_diameter": [82.5e-3, 130e-3]}, "below the base circle of the pinion (interference)"),
-        ({"centre_distance": 80e-3}, "the base circles overlap"),
-        ({"load_sharing": "tip-relief"}, "tip_relief is missing"),
+        ({"tip_diameter": [72e-3, 108e-3]}, ["tip_diameter = [0.072, 0.108]: ", " 0.0915 m"]),
+        (
+            {"tip_diameter": [78e-3, 114e-3]},
+            ["tip_diameter = [0.078, 0.114]: contact ratio 0.786, ", " 1 to 2"],
+        ),
+        ({"tip_diameter": [60e-3, 118.4e-3]}, ["tip_diameter = 0.06 of the pinion: ", " 0.067658 m"]),
+        ({"tip_diameter": [82.5e-3, 130e-3]}, ["tip_diameter: ", "(interference)", " wheel: below 0.1232 m"]),
+        ({"centre_distance": 80e-3}, ["centre_distance = 0.08: ", " 0.084572 m"]),
+        ({"load_sharing": "tip-relief"}, ["tip_relief ", "missing"]),
     ],
 )
-def test_impossible_geometry_is_refused_in_one_line(change, sentence, case, capsys):
+def test_impossible_geometry_is_refused_in_one_line(change, parts, case, capsys):
     with pytest.raises(CaseError) as error:
         path_of_contact(FZG | change)
-    assert len(error.value.faults) == 1 and sentence in error.value.faults[0]
+    assert len(error.value.faults) == 1 and is_line_with(error.value.faults[0], *parts)
     path = case(**change)
     with pytest.raises(CaseError) as error:
         load(path)
-    assert len(error.value.faults) == 1 and sentence in error.value.faults[0]
+    assert len(error.value.faults) == 1 and is_line_with(error.value.faults[0], *parts)
     assert main([str(path)]) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
 @pytest.mark.parametrize(
-    ("change", "sentence"),
+    ("change", "pattern"),
     [
-        ({"teeth": [16]}, "gears.teeth"),
-        ({"teeth": [16.5, 24]}, "gears.teeth"),
-        ({"torque": "much"}, "gears.torque"),
-        ({"speed": -5.0}, "gears.speed"),
-        ({"modul": 1.0}, "gears.modul"),
-        ({"load_sharing": "halves"}, "gears.load_sharing"),
-        ({"module": None}, "gears.module is missing"),
-        ({"torque": math.nan}, "gears.torque"),
+        ({"teeth": [16]}, r"gears\.teeth = \[16\]: "),
+        ({"teeth": [16.5, 24]}, r"gears\.teeth = \[16\.5, 24\]: "),
+        ({"torque": "much"}, r"gears\.torque = much: .* > 0"),
+        ({"speed": -5.0}, r"gears\.speed = -5\.0: .* > 0"),
+        ({"modul": 1.0}, r"gears\.modul: "),
+        ({"load_sharing": "halves"}, r"gears\.load_sharing = 'halves': .*thirds, tip-relief"),
+        ({"module": None}, r"gears\.module .*missing"),
+        ({"torque": math.nan}, r"gears\.torque = nan: "),
     ],
 )
-def test_bad_keys_are_named(change, sentence):
-    with pytest.raises(CaseError, match=sentence) as error:
+def test_bad_keys_are_named(change, pattern):
+    with pytest.raises(CaseError, match=pattern) as error:
         path_of_contact(FZG | change)
     assert len(error.value.faults) == 1
 
@@ -238,7 +242,7 @@ def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsy
     rows = np.loadtxt(tmp_path / "mesh.csv", delimiter=",", skiprows=1)
     assert rows[0, 0] == 0.0 and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1] > 0).all()
     assert main(["no.toml"]) == 2
-    assert "cannot be read" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, "no.toml: ", "No such file")
 
 
 def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
@@ -254,8 +258,8 @@ def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
     found = FlankDamage(tmp_path / "run.post.h5", (1e-5, 5e-5))
     assert found.arcs[0][0] == pytest.approx(1e-5) and (np.diff(found.arcs[1]) > 0).all()
     pinion, wheel = found.lines()
-    assert "pinion: 0.002 at an arc length of 6.010 mm from A, 25.0 um deep" in pinion
-    assert "wheel: 0.001 at an arc length of 6.050 mm from A, 25.0 um deep" in wheel
+    assert is_line_with(pinion, "pinion: 0.002 ", " 6.010 mm from A, 25.0 um ")
+    assert is_line_with(wheel, "wheel: 0.001 ", " 6.050 mm from A, 25.0 um ")
     found.draw(path.pair, tmp_path / "flanks.png", "made")
     assert (tmp_path / "flanks.png").stat().st_size > 10_000
     with h5py.File(tmp_path / "run.post.h5", "a") as file:

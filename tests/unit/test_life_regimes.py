@@ -65,7 +65,7 @@ def test_regime_picture_is_drawn_from_the_index(tmp_path, capsys):
     assert main([str(path)]) == 0
     assert (tmp_path / "a.life.series.png").read_bytes().startswith(b"\x89PNG")
     path.write_text("{}")
-    assert "not an index of lives" in refused(capsys, main, path)
+    assert "a.life.series.json: not an index" in refused(capsys, main, path)
 
 
 def test_movie_has_a_frame_per_round(tmp_path, capsys):

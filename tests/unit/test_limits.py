@@ -48,19 +48,19 @@ def test_no_limit_line_without_a_step():
 
 
 @pytest.mark.parametrize(
-    "changed, words",
+    "changed, parts",
     [
-        ({"p_max": 6.65e9}, "pressure: up to 6.65 GPa"),
-        ({"oil_pressure": 9e9}, "viscosity: 5.0e+08"),
-        ({"mass_error": 0.44}, "oil balance: the mass defect of one step is 44 % of"),
-        ({"mass_error": 101.3}, "oil balance: the mass defect of one step is 101 times"),
-        ({"nodes_below_1nm": 7}, "film: 7 times a node"),
-        ({"nodes_below_1nm": 1}, "film: 1 time a node"),
+        ({"p_max": 6.65e9}, ["pressure: ", " 6.65 GPa"]),
+        ({"oil_pressure": 9e9}, ["viscosity: 5.0e+08"]),
+        ({"mass_error": 0.44}, ["oil balance: ", " 44 % of "]),
+        ({"mass_error": 101.3}, ["oil balance: ", " 101 times "]),
+        ({"nodes_below_1nm": 7}, ["film: 7 times "]),
+        ({"nodes_below_1nm": 1}, ["film: 1 time "]),
     ],
 )
-def test_each_limit_line_has_its_figure(changed, words):
+def test_each_limit_line_has_its_figure(changed, parts):
     (line,) = limit_lines(**changed)
-    assert line.startswith(words)
+    assert line.startswith(parts[0]) and parts[-1] in line
 
 
 def test_measured_viscosity_range_has_no_limit_line():
@@ -81,4 +81,4 @@ def test_yielding_solids_have_no_pressure_limit():
 
 def test_unresolved_asperities_are_given_with_their_height_fraction():
     (line,) = limit_lines("table1_rough", ["mesh.points_per_half_width=50"])
-    assert line.startswith("mesh: of the height variance, 51.1 % of surface.1 and 51.1 % of surface.2")
+    assert line.startswith("mesh: ") and " 51.1 % of surface.1 and 51.1 % of surface.2 " in line
