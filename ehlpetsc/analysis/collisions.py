@@ -94,7 +94,7 @@ def find(results):
     labels = _label(points, spacing, interval)
     at = [_Reader(result) for result in results]
     collisions = []
-    for label in range(1, 1 + max((int(part.max(initial=0)) for part in labels), default=0)):
+    for label in range(1, 1 + max((int(numbers.max(initial=0)) for numbers in labels), default=0)):
         points_of_collision = [
             (t[own == label], x[own == label]) for (t, x), own in zip(points, labels, strict=True)
         ]
@@ -112,11 +112,11 @@ def _label(points, spacing, interval):
     from scipy.ndimage import binary_dilation, label
 
     cells = [(np.rint(t / interval).astype(int), np.rint(x / spacing).astype(int)) for t, x in points]
-    every = [np.concatenate(part) for part in zip(*cells, strict=True)]
+    every = [np.concatenate(indices) for indices in zip(*cells, strict=True)]
     if not len(every[0]):
         return [np.empty(0, int) for _ in points]
-    low = [part.min() for part in every]
-    grid = np.zeros([part.max() - least + 1 for part, least in zip(every, low, strict=True)], bool)
+    low = [indices.min() for indices in every]
+    grid = np.zeros([indices.max() - least + 1 for indices, least in zip(every, low, strict=True)], bool)
     for row, column in cells:
         grid[row - low[0], column - low[1]] = True
     numbers, _ = label(binary_dilation(grid, np.ones((2 * MAX_INTERRUPTION - 1, 3))), np.ones((3, 3)))

@@ -65,10 +65,10 @@ class LinearInterpolation:
         width = np.where(self.right > at, grid[self.right] - grid[at], 1.0)
         self.weight = np.clip((points - grid[at]) / width, 0.0, 1.0)
 
-    def __call__(self, values, part=slice(None), begin=0):
-        """Values at the points of `part`, `values` starting at grid point `begin` on the first axis."""
-        weight = self.weight[part].reshape(-1, *[1] * (values.ndim - 1))
-        low, high = values[self.left[part] - begin], values[self.right[part] - begin]
+    def __call__(self, values, selection=slice(None), begin=0):
+        """Values at the points of `selection`, `values` starting at grid point `begin` on the first axis."""
+        weight = self.weight[selection].reshape(-1, *[1] * (values.ndim - 1))
+        low, high = values[self.left[selection] - begin], values[self.right[selection] - begin]
         return np.where(weight == 0.0, low, (1.0 - weight) * low + weight * high)
 
 
@@ -118,9 +118,9 @@ def compare(one, other):
             yield _field(one, other, name, x, times, same_mesh or name != "in_contact")
     fractions = [LinearInterpolation(r.x, x)(r.contact_count / len(r.steps("time"))) for r in (one, other)]
     yield _curves(Difference("contact_count", "share"), fractions, x=x)
-    both = set(one.scalars) & set(other.scalars)
+    common = set(one.scalars) & set(other.scalars)
     step_times = common_points(one.steps("time"), other.steps("time"), "time steps")
-    for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in both]:
+    for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in common]:
         values = [_scalar(r, name, step_times) for r in (one, other)]
         units = "share" if name == "contacts" else STEP_SCALARS[name].units
         yield _curves(Difference(f"steps/{name}", units), values, time=step_times)
@@ -154,8 +154,8 @@ def _field(one, other, name, x, times, by_node):
     block = max(1, BLOCK_BYTES // (8 * max(len(one.x), len(other.x))))
     square = 0.0
     for begin in range(0, len(times), block):
-        part = slice(begin, min(begin + block, len(times)))
-        values = [reader(part) for reader in readers]
+        rows = slice(begin, min(begin + block, len(times)))
+        values = [reader(rows) for reader in readers]
         if not by_node:
             values = [v.mean(axis=1, keepdims=True) for v in values]
         apart = np.abs(values[0] - values[1])
@@ -180,10 +180,10 @@ class _Reader:
             LinearInterpolation(result.x, x),
         )
 
-    def __call__(self, part):
-        first, last = self._in_time.left[part].min(), self._in_time.right[part].max()
+    def __call__(self, rows):
+        first, last = self._in_time.left[rows].min(), self._in_time.right[rows].max()
         frames = self._dataset[first : last + 1].astype(float)
-        return self._in_x(self._in_time(frames, part, first).T).T
+        return self._in_x(self._in_time(frames, rows, first).T).T
 
 
 def table(differences, a, rtol, atol):

@@ -112,14 +112,14 @@ def ensembles(results):
     return made
 
 
-def table(found, resamples=RESAMPLES, seed=1):
+def table(all_ensembles, resamples=RESAMPLES, seed=1):
     """Rows of the table, one for each scalar of each ensemble, with the keys `COLUMNS`."""
     rows = []
-    for one in found:
-        for name, values in one.scalars.items():
+    for ensemble in all_ensembles:
+        for name, values in ensemble.scalars.items():
             low, high = bootstrap(values, resamples, seed)
             row = (
-                one.name,
+                ensemble.name,
                 name,
                 _units(name),
                 values.size,

@@ -90,9 +90,9 @@ def smooth_films(results):
     return [float(result.steps("h_min")[0]) for result in results]
 
 
-def breakdown(found, values, smooth):
+def breakdown(collisions, values, smooth):
     """Report on film breakdown and the pressures after it, as lines of text."""
-    points = contact_points(found)
+    points = contact_points(collisions)
     if not points:
         return ["no point with two full films before contact and two members in contact after them"]
     steps = [pressure_steps(c.film, c.pressure) for c in points]

@@ -56,14 +56,14 @@ def statistics(result):
     rows = []
     for name in [name for name in STEP_SCALARS if name in result.scalars and name not in EXCLUDED_SCALARS]:
         values = result.steps(name).astype(float)
-        known = np.isfinite(values) & (weights > 0.0)
-        if known.any():
-            v, w = values[known], weights[known]
+        usable = np.isfinite(values) & (weights > 0.0)
+        if usable.any():
+            v, w = values[usable], weights[usable]
             percentiles = weighted_percentiles(v, w, PERCENTILES)
             reduced = (np.average(v, weights=w), *percentiles, v.min(), v.max(), v[-1])
             unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
-            begin = (time - dt)[known][0]
-            rows.append((name, unit, *(f"{x:.6g}" for x in reduced), f"{begin:.6g}", int(known.sum())))
+            begin = (time - dt)[usable][0]
+            rows.append((name, unit, *(f"{x:.6g}" for x in reduced), f"{begin:.6g}", int(usable.sum())))
     return rows
 
 

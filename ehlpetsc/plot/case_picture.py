@@ -105,24 +105,24 @@ def _description(profile, case, scales, begin, end):
     if case.time is None or not profile.is_moving:
         return f"under the domain from the start; {mesh}"
     if end >= profile.X[-1] > begin:
-        part = f"all of it passes the whole contact within travel {case.time.travel:g} a"
+        passing = f"all of it passes the whole contact within travel {case.time.travel:g} a"
     elif end > begin:
-        part = f"dark: passes the whole contact within travel {case.time.travel:g} a"
+        passing = f"dark: passes the whole contact within travel {case.time.travel:g} a"
     else:
-        part = f"none of it passes the contact within travel {case.time.travel:g} a"
+        passing = f"none of it passes the contact within travel {case.time.travel:g} a"
     arrives = entry_times(profile, scales)
     enters = f"its left end enters first and reaches the contact at travel {arrives[0]:.2f} a"
-    return f"{enters}\n{part}; {mesh}"
+    return f"{enters}\n{passing}; {mesh}"
 
 
 def _abbott(axes, profile):
     ratio, height = abbott_curve(profile.X, profile.heights)
-    found, about = roughness_parameters(profile.X, profile.heights), core(ratio, height)
+    parameters, fit = roughness_parameters(profile.X, profile.heights), core(ratio, height)
     axes.plot(100.0 * ratio, 1e6 * height, color=PASSING_COLOUR, lw=1.2)
     axes.plot(
-        [0.0, 100.0], [1e6 * about["top"], 1e6 * about["bottom"]], color=labels.SECOND_COLOUR, lw=0.9, ls="--"
+        [0.0, 100.0], [1e6 * fit["top"], 1e6 * fit["bottom"]], color=labels.SECOND_COLOUR, lw=0.9, ls="--"
     )
     axes.set(xlabel="material ratio [%]", ylabel="height [µm]", xlim=(0.0, 100.0))
-    lines = [f"{name} {1e6 * found[key]:.3f} µm" for key, name in NAMES.items()]
-    lines.insert(3, f"Rsk {found['rsk']:.2f}")
+    lines = [f"{name} {1e6 * parameters[key]:.3f} µm" for key, name in NAMES.items()]
+    lines.insert(3, f"Rsk {parameters['rsk']:.2f}")
     axes.text(1.04, 0.5, "\n".join(lines), transform=axes.transAxes, va="center", fontsize="small")

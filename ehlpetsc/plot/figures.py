@@ -38,8 +38,8 @@ def window(results, options):
 def panel_title(results, indices=None):
     """Common title of results, and the instant of stored frames."""
     titles = {result.attrs["title"] for result in results}
-    parts = [titles.pop() if len(titles) == 1 else "", indices and frames.instant(results, indices)]
-    return ": ".join(part for part in parts if part)
+    texts = [titles.pop() if len(titles) == 1 else "", indices and frames.instant(results, indices)]
+    return ": ".join(text for text in texts if text)
 
 
 def fill_frame(axes, results, indices, options):
@@ -48,11 +48,11 @@ def fill_frame(axes, results, indices, options):
     frames.pressure_and_film(axes, results, indices, colours, window(results, options))
     if len(results) > 1:
         hertz = Line2D([], [], color=frames.HERTZ_GREY, label="Hertz", **frames.HERTZ_STYLE)
-        more = [hertz] if labels.share_hertz_contact(results) else []
+        hertz_handles = [hertz] if labels.share_hertz_contact(results) else []
         dashed = len(results) == 2
         about = labels.UNITS.get(key, key)
         names = labels.labels_with_hertz(names, results)
-        labels.series_legend(axes[0], colours, names, about, more, dashed)
+        labels.series_legend(axes[0], colours, names, about, hertz_handles, dashed)
     else:
         frames.frame_legend(axes, results[0], indices[0], colours[0])
     frames.x_in_mm(axes[0], results)
@@ -104,8 +104,8 @@ def draw_contacts(results, options):
     names = [f"{n}: {mean:.3g}" for n, mean in zip(names, means, strict=True)]
     if len(results) > 1:
         about += "\n(ratio to the first)"
-        parts = [mean / means[0] if means[0] else np.nan for mean in means]
-        names = [f"{name} ({part:.2f})" for name, part in zip(names, parts, strict=True)]
+        ratios = [mean / means[0] if means[0] else np.nan for mean in means]
+        names = [f"{name} ({ratio:.2f})" for name, ratio in zip(names, ratios, strict=True)]
     labels.series_legend(axes[1], colours, names, f"{labels.UNITS.get(key, key) or 'result'}:\n{about}")
     title = "\n".join(filter(None, [panel_title(results), labels.conditions(results)]))
     axes[0].set_title(title, fontsize="medium")
@@ -114,11 +114,13 @@ def draw_contacts(results, options):
 
 def draw_collision(results, options):
     """Figure of collisions in all members of a series, one column each; by default the two first ranked."""
-    found = collisions.find(from_thick_to_thin(results)[0])
-    numbers = options.collision or film_breakdown.ranked(found)[:2]
-    if not numbers or not 0 <= min(numbers) <= max(numbers) < len(found):
-        raise OutputError(f"{len(found)} collisions; allowed: --collision 0 to {len(found) - 1}")
-    chosen = [found[number] for number in numbers]
+    all_collisions = collisions.find(from_thick_to_thin(results)[0])
+    numbers = options.collision or film_breakdown.ranked(all_collisions)[:2]
+    if not numbers or not 0 <= min(numbers) <= max(numbers) < len(all_collisions):
+        raise OutputError(
+            f"{len(all_collisions)} collisions; allowed: --collision 0 to {len(all_collisions) - 1}"
+        )
+    chosen = [all_collisions[number] for number in numbers]
     colours, names, key = labels.series_colours(results)
     size = (SIZE[0] * max(1.0, 0.6 * len(chosen)), SIZE[1])
     figure, axes = labels.new_figure(2, len(chosen), size, squeeze=False, sharex="col")
@@ -145,8 +147,8 @@ def draw_entrapment(results, options):
     """Figure of the strongest entrapment of a result at four instants."""
     size = (1.6 * SIZE[0], SIZE[1])
     figure, axes = labels.new_figure(2, 4, size, sharex="col", sharey="row")
-    found = entrapment.find(results[0])[0]
-    panels.draw_entrapment(axes, results[0], found, options.width or COLLISION_WIDTH)
+    strongest = entrapment.find(results[0])[0]
+    panels.draw_entrapment(axes, results[0], strongest, options.width or COLLISION_WIDTH)
     figure.suptitle(labels.title(results), fontsize="medium")
     return figure
 

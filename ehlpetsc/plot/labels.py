@@ -76,7 +76,7 @@ def conditions(results):
     results : list of ehlpetsc.results.reader.Result
     """
     of_each = [_conditions(result) for result in results]
-    return ", ".join(part for part in of_each[0] if part and all(part in other for other in of_each))
+    return ", ".join(text for text in of_each[0] if text and all(text in other for other in of_each))
 
 
 def title(results):
@@ -119,8 +119,8 @@ def labels_with_hertz(labels, results):
     ]
 
 
-def series_legend(axes, colours, labels, title, more=(), dashed=False):
-    """Legend right of the axes: at most `LEGEND_ENTRIES` members of a series, and `more`.
+def series_legend(axes, colours, labels, title, handles=(), dashed=False):
+    """Legend right of the axes: at most `LEGEND_ENTRIES` members of a series, and `handles`.
 
     With `dashed` the second line is dashed, so that two equal curves are both visible.
     """
@@ -128,7 +128,7 @@ def series_legend(axes, colours, labels, title, more=(), dashed=False):
     lines = [Line2D([], [], color=c, label=n) for c, n in list(zip(colours, labels, strict=True))[::step]]
     if dashed:
         lines[1].set_linestyle("--")
-    legend_beside(axes, [*lines, *more], title)
+    legend_beside(axes, [*lines, *handles], title)
 
 
 def legend_beside(axes, handles=None, title=None):

@@ -127,8 +127,8 @@ def frames(result):
     """Pressure, film and contacts of stored frames in view."""
     low, high = default_window([result])
     x = result.x / result.attrs["a"]
-    part = np.flatnonzero((x >= low) & (x <= high))
-    columns, width = slice(part[0], part[-1] + 1), -(-len(part) // MAX_NODES)
+    in_view = np.flatnonzero((x >= low) & (x <= high))
+    columns, width = slice(in_view[0], in_view[-1] + 1), -(-len(in_view) // MAX_NODES)
     last = len(result.time) - 1
     fullest = frame_to_show(result)
     chosen = np.unique(
@@ -162,8 +162,8 @@ def scalars_over_time(result):
     width, figures = -(-len(time) // MAX_ROWS), []
     for name in sorted(set(result.scalars) - HIDDEN_SCALARS, key=_sort_key):
         values = result.steps(name).astype(float)[1:]
-        known = values[np.isfinite(values)]
-        if not known.size or np.ptp(known) <= MIN_CHANGE * max(np.abs(known).max(), name in ERROR_SCALARS):
+        finite = values[np.isfinite(values)]
+        if not finite.size or np.ptp(finite) <= MIN_CHANGE * max(np.abs(finite).max(), name in ERROR_SCALARS):
             continue
         about = result[f"steps/{name}"].attrs
         units = about.get("units", "1")
@@ -177,10 +177,10 @@ def scalars_over_time(result):
 
 def _sort_key(name):
     """Sort key of the charts: `LEADING_SCALARS` first, then in the order of the table of quantities."""
-    known = list(STEP_SCALARS)
+    order = list(STEP_SCALARS)
     return (
         LEADING_SCALARS.index(name) if name in LEADING_SCALARS else len(LEADING_SCALARS),
-        known.index(name) if name in known else len(known),
+        order.index(name) if name in order else len(order),
         name,
     )
 

@@ -10,20 +10,20 @@ from ehlpetsc.results.contacts import in_contact
 COLOURS = ("#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#17becf", "#7f7f7f")
 
 
-def draw_collisions(axes, results, found, colours, width):
+def draw_collisions(axes, results, collisions, colours, width):
     """Draw pressure and film at each collision, one column each, with the contacts of every member.
 
     Parameters
     ----------
     axes : ndarray of matplotlib Axes, shape (2, n)
     results : list of Result
-    found : list of ehlpetsc.analysis.collisions.Collision
+    collisions : list of ehlpetsc.analysis.collisions.Collision
     colours : list
     width : float
         Of the view [half widths].
     """
     a = results[0].attrs["a"]
-    for column, collision in enumerate(found):
+    for column, collision in enumerate(collisions):
         window = (collision.x / a - width / 2.0, collision.x / a + width / 2.0)
         frames = [result.nearest_frame(time=collision.time) for result in results]
         upper, lower = axes[:, column]
@@ -70,20 +70,20 @@ def draw_contact_points(axes, points, values, key, a):
     lower.set_xlim(left=0.0)
 
 
-def draw_entrapment(axes, result, found, width):
+def draw_entrapment(axes, result, event, width):
     """Draw pressure and the deformed surfaces at instants around an entrapment, one column each.
 
     Parameters
     ----------
     axes : ndarray of matplotlib Axes, shape (2, n)
     result : Result
-    found : ehlpetsc.analysis.entrapment.Entrapment
+    event : ehlpetsc.analysis.entrapment.Entrapment
     width : float
         Of the view [half widths].
     """
     a, highest = result.attrs["a"], 0.0
     x = result.x / a
-    for column, (frame, centre) in enumerate(entrapment.instants(result, found, count=axes.shape[1])):
+    for column, (frame, centre) in enumerate(entrapment.instants(result, event, count=axes.shape[1])):
         upper, lower = axes[:, column]
         in_view = np.abs(result.x - centre) <= 0.5 * width * a
         pressure, touching = 1e-9 * result.frame("pressure", frame), in_contact(result, frame) & in_view

@@ -208,8 +208,8 @@ def deformed_surfaces(axes, result, index, window):
     in_view = (x >= window[0]) & (x <= window[1])
     lower, upper = (1e6 * height for height in entrapment.surfaces(result, index))
     inside = in_view & (np.abs(x) <= 1.0)
-    part = inside if inside.any() else in_view
-    bottom, top = lower[part].min(), upper[part].max()
+    shown = inside if inside.any() else in_view
+    bottom, top = lower[shown].min(), upper[shown].max()
     room = 0.15 * (top - bottom)
     for height, end, colour, name in (
         (upper, top + room, SECOND_COLOUR, 0),

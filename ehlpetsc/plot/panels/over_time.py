@@ -67,8 +67,8 @@ def _pressures(result, window):
         raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
     x, time = result.x / result.attrs["a"], 1e6 * result.time
     stride = -(-len(time) // MAX_MAP_ROWS)
-    part = np.flatnonzero((x >= window[0]) & (x <= window[1]))
-    columns = slice(part[0], part[-1] + 1)
+    in_view = np.flatnonzero((x >= window[0]) & (x <= window[1]))
+    columns = slice(in_view[0], in_view[-1] + 1)
     pressure = 1e-9 * result["pressure"][: len(time) : stride, columns].astype(float)
     return x[columns], time, pressure, columns, stride
 

@@ -25,17 +25,17 @@ PANELS = {  # scalar: label, factor from SI units
 
 def draw_ensemble(results, _options):
     """Figure of the scalars of runs, one panel each, over the key that differs apart from seeds."""
-    found = ensembles(results)
-    names = [name for name in PANELS if all(name in one.scalars for one in found)]
+    all_ensembles = ensembles(results)
+    names = [name for name in PANELS if all(name in ensemble.scalars for ensemble in all_ensembles)]
     if not names:
         raise OutputError("no scalar that all runs have")
     rows = -(-len(names) // COLUMNS)
     figure, axes = new_figure(
         rows, COLUMNS, (PANEL_SIZE[0] * COLUMNS + 1.2, PANEL_SIZE[1] * rows), squeeze=False
     )
-    abscissae, label, ticks = _abscissae(found)
+    abscissae, label, ticks = _abscissae(all_ensembles)
     for panel, name in zip(axes.flat, names, strict=False):
-        _draw_panel(panel, found, abscissae, name)
+        _draw_panel(panel, all_ensembles, abscissae, name)
         panel.set_xlabel(label, fontsize="small")
         panel.set_xlim(_margins(abscissae))
         if ticks:
@@ -56,16 +56,16 @@ def _mean_and_interval():
     return f"mean and its\n{100 * CONFIDENCE:g} % interval\n(bootstrap)"
 
 
-def _abscissae(found):
+def _abscissae(all_ensembles):
     """Abscissas of the ensembles, their label, and tick labels if they are not numbers."""
-    keys = list(found[0].values)
+    keys = list(all_ensembles[0].values)
     if len(keys) == 1:
-        values = [one.values[keys[0]] for one in found]
+        values = [ensemble.values[keys[0]] for ensemble in all_ensembles]
         if all(isinstance(value, int | float) for value in values):
             return [float(v) for v in values], UNITS.get(keys[0], keys[0]), None
-    if len(found) == 1:
-        return [0.0], f"{len(next(iter(found[0].scalars.values())))} runs", [" "]
-    return list(map(float, range(len(found)))), "", [one.name for one in found]
+    if len(all_ensembles) == 1:
+        return [0.0], f"{len(next(iter(all_ensembles[0].scalars.values())))} runs", [" "]
+    return list(map(float, range(len(all_ensembles)))), "", [ensemble.name for ensemble in all_ensembles]
 
 
 def _margins(abscissae):
@@ -73,12 +73,12 @@ def _margins(abscissae):
     return min(abscissae) - 0.3 * span, max(abscissae) + 0.3 * span
 
 
-def _draw_panel(panel, found, abscissae, name):
+def _draw_panel(panel, all_ensembles, abscissae, name):
     label, factor = PANELS[name]
     low, high = _margins(abscissae)
     shift = 0.02 * (high - low)
-    for x, one in zip(abscissae, found, strict=True):
-        values = factor * one.scalars[name]
+    for x, ensemble in zip(abscissae, all_ensembles, strict=True):
+        values = factor * ensemble.scalars[name]
         panel.plot(np.full(values.size, x - shift), values, "o", color=RUNS_COLOUR, ms=3, mew=0)
         mean, ends = values.mean(), bootstrap(values)
         panel.plot(x + shift, mean, "o", color=SINGLE_COLOUR, ms=5)

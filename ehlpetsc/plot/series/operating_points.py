@@ -66,10 +66,10 @@ def scalar_over_time(result, name):
 
 def time_statistics(values, weights):
     """Weighted mean and percentiles of the finite values."""
-    known = np.isfinite(values) & (weights > 0.0)
-    if not known.any():
+    usable = np.isfinite(values) & (weights > 0.0)
+    if not usable.any():
         return TimeStatistics(np.nan, np.nan, np.nan)
-    values, weights = values[known], weights[known]
+    values, weights = values[usable], weights[usable]
     low, high = weighted_percentiles(values, weights, BAND)
     return TimeStatistics(float(np.average(values, weights=weights)), float(low), float(high))
 

@@ -38,16 +38,16 @@ def draw_running_in(results, _options):
     if any("set_volume" not in result.scalars for result in results):
         raise OutputError("solids that do not yield: no plastic deformation; needs contact.yield_pressure")
     rows = [pass_summary(result, filled_from(result)) for result in results]
-    found = [damage_beside(result) for result in results]
-    known = all(found)
-    damages = [one.summary() for one in found] if known else []
-    figure, axes = labels.new_figure(2, 3 if known else 2, SIZE_WITH_DAMAGE if known else SIZE)
+    post_results = [damage_beside(result) for result in results]
+    has_damage = all(post_results)
+    damages = [post_result.summary() for post_result in post_results] if has_damage else []
+    figure, axes = labels.new_figure(2, 3 if has_damage else 2, SIZE_WITH_DAMAGE if has_damage else SIZE)
     draw_surface(axes[0, 0], results)
     draw_pressure(axes[1, 0], results)
     time = tomllib.loads(results[0].attrs["case"]).get("time", {})
     draw_plastic_area(axes[0, 1], rows, bool(time.get("pass_shift")))
     draw_contact(axes[1, 1], rows)
-    if known:
+    if has_damage:
         for row, side in zip(axes, ("1", "2"), strict=True):
             draw_fatigue(row[2], damages, side)
     figure.suptitle(labels.title(results), fontsize="medium")
@@ -95,7 +95,7 @@ def draw_pressure(axes, results):
 
 def legend_above(axes, *others, title=None):
     """Draw the legend of the axes and of others in a row above the axes."""
-    handles = [handle for one in (axes, *others) for handle in one.get_legend_handles_labels()[0]]
+    handles = [handle for panel in (axes, *others) for handle in panel.get_legend_handles_labels()[0]]
     position = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
     if handles:
         axes.legend(handles=handles, title=title, fontsize="small", title_fontsize="small", **position)
@@ -105,9 +105,9 @@ def draw_plastic_area(axes, rows, is_shifted):
     """Draw the plastic area added by each pass, relative to the first, and Ra of both surfaces."""
     numbers = np.arange(1, len(rows) + 1)
     volumes = np.array([row["set_volume"] for row in rows])
-    parts = np.diff(volumes, prepend=0.0) / volumes[0]
+    added = np.diff(volumes, prepend=0.0) / volumes[0]
     axes.set_yscale("log")
-    draw_course(axes, numbers, parts, LAST_COLOUR, "o-", MIN_ADDED)
+    draw_course(axes, numbers, added, LAST_COLOUR, "o-", MIN_ADDED)
     axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
     axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=ticks(numbers))
     axes.set_ylim(bottom=0.8 * MIN_ADDED)
@@ -165,12 +165,12 @@ def draw_fatigue(axes, damages, side):
     """Draw the maximum damage of a surface at each depth over the passes."""
     numbers = np.arange(1, len(damages) + 1)
     depths = damages[0]["z_over_a"]
-    if any(side not in one or one["z_over_a"] != depths for one in damages):
+    if any(side not in damage or damage["z_over_a"] != depths for damage in damages):
         axes.set_axis_off()
         return
     for k, depth in enumerate(depths):
         colour = labels.mpl.colormaps["viridis"](0.9 * k / max(len(depths) - 1, 1))
-        largest = [one[side]["largest"][k] for one in damages]
+        largest = [damage[side]["largest"][k] for damage in damages]
         axes.semilogy(numbers, largest, "o-", ms=4, color=colour, label=f"{depth:g} a")
     axes.set(xlabel="pass", ylabel=f"largest damage D of surface {side}", xticks=ticks(numbers))
     labels.legend_beside(axes, title="depth")

@@ -61,7 +61,7 @@ def curves_by_contact(results):
         )
         key = *law, points, "heat" in case
         groups.setdefault(key, []).append(result)
-    several, heated = (len({key[part] for key in groups}) > 1 for part in (2, 3))
+    several, heated = (len({key[position] for key in groups}) > 1 for position in (2, 3))
     curves = sorted(groups.items(), key=lambda item: -len(item[1]))
     return {_label(*key, several, heated): members for key, members in curves}
 
@@ -84,8 +84,8 @@ def draw_stribeck(results, _options):
     figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
     for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
-        found = [point.scalars[name] for point in points]
-        mean, low, high = np.transpose([(one.mean, one.low, one.high) for one in found])
+        statistics = [point.scalars[name] for point in points]
+        mean, low, high = np.transpose([(s.mean, s.low, s.high) for s in statistics])
         panel.fill_between(speeds, low, high, color=SINGLE_COLOUR, alpha=0.2, lw=0)
         panel.plot(speeds, mean, "o-", color=SINGLE_COLOUR, ms=3.5, lw=1.2)
         panel.set_ylabel(label)
@@ -132,8 +132,8 @@ def _share_axis(axes, points):
 def _hersey_axis(axes, results):
     """Add an axis of the Hersey number eta0 u/w if all results have the same viscosity and load."""
     cases = [tomllib.loads(result.attrs["case"]) for result in results]
-    given = {(c.get("fluid", {}).get("viscosity"), c.get("contact", {}).get("load")) for c in cases}
-    if len(given) == 1 and None not in (pair := given.pop()):
+    pairs = {(c.get("fluid", {}).get("viscosity"), c.get("contact", {}).get("load")) for c in cases}
+    if len(pairs) == 1 and None not in (pair := pairs.pop()):
         ratio = pair[0] / pair[1]
         above = axes.secondary_xaxis("top", functions=(lambda u: u * ratio, lambda hersey: hersey / ratio))
         above.set_xlabel("Hersey number: viscosity × speed over load per length", fontsize="small")
@@ -146,9 +146,9 @@ def _minor_label(value, _):
 
 
 def _draw_means(axes, results, label, colour):
-    given = [tomllib.loads(result.attrs["case"])["motion"]["entrainment_speed"] for result in results]
-    found = [operating_point(*pair) for pair in zip(results, given, strict=True)]
-    points = sorted(filter(None, found), key=lambda point: point.speed)
+    case_speeds = [tomllib.loads(result.attrs["case"])["motion"]["entrainment_speed"] for result in results]
+    operating_points = [operating_point(*pair) for pair in zip(results, case_speeds, strict=True)]
+    points = sorted(filter(None, operating_points), key=lambda point: point.speed)
     speeds = [abs(point.speed) for point in points]
     for panel, name in zip(axes, QUANTITIES, strict=True):
         means = [point.scalars[name].mean for point in points]

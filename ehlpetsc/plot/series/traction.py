@@ -16,20 +16,20 @@ SIZE = (8.5, 4.6)  # inches
 def draw_traction(results, _options):
     """Figure of the friction coefficient over the slide/roll ratio.
 
-    Results that differ in other keys form separate curves; isothermal ones are dashed beside those with heat.
+    Results that differ in other keys form separate curves; isothermal ones are dashed if others have heat.
 
     Raises
     ------
     OutputError
         No curve has two ratios.
     """
-    found = {heat: _curves([r for r in results if _is_heated(r) == heat]) for heat in (False, True)}
-    if not any(len(curve[0]) > 1 for curves in found.values() for curve in curves.values()):
+    curves_by_heat = {heat: _curves([r for r in results if _is_heated(r) == heat]) for heat in (False, True)}
+    if not any(len(curve[0]) > 1 for curves in curves_by_heat.values() for curve in curves.values()):
         raise OutputError(f"a traction curve needs a series over {RATIO}")
     figure, axes = new_figure(1, 1, SIZE)
-    names = list(dict.fromkeys([*found[False], *found[True]]))
-    compared = all(found.values())
-    for heat, curves in found.items():
+    names = list(dict.fromkeys([*curves_by_heat[False], *curves_by_heat[True]]))
+    compared = all(curves_by_heat.values())
+    for heat, curves in curves_by_heat.items():
         for name, (ratios, friction) in curves.items():
             style = "--" if compared and not heat else "-"
             colour = f"C{names.index(name)}"
@@ -65,12 +65,12 @@ def _curves(results):
         names = distinguishing_names(same) if len(same) > 1 else [""]
         for name, result in zip(names or [""], same, strict=False):
             groups.setdefault(name, []).append((ratio, result))
-    found = {}
+    curves = {}
     for name, members in groups.items():
         points = [(ratio, operating_point(result, ratio)) for ratio, result in members]
         rows = [(ratio, point.scalars["friction_coefficient"].mean) for ratio, point in points if point]
-        found[name] = np.array(rows).reshape(-1, 2).T
-    return found
+        curves[name] = np.array(rows).reshape(-1, 2).T
+    return curves
 
 
 def _mark_largest(axes, ratios, friction, colour):
