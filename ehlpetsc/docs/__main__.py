@@ -27,8 +27,8 @@ def lacking():
     -------
     list of str
     """
-    found = [package for module, package in DEBIAN_PACKAGES.items() if not has(module)]
-    return found if mathjax_folder() else [*found, "libjs-mathjax"]
+    packages = [package for module, package in DEBIAN_PACKAGES.items() if not has(module)]
+    return packages if mathjax_folder() else [*packages, "libjs-mathjax"]
 
 
 def cache_folder():

@@ -32,10 +32,10 @@ def _complete(app, failure):
     if failure is None:
         shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
         folder = mathjax_folder()
-        for part in MATHJAX_FILES:
-            target = Path(app.outdir, "_static", "mathjax", part)
+        for name in MATHJAX_FILES:
+            target = Path(app.outdir, "_static", "mathjax", name)
             if not target.exists():
-                (shutil.copytree if (folder / part).is_dir() else shutil.copy)(folder / part, _made(target))
+                (shutil.copytree if (folder / name).is_dir() else shutil.copy)(folder / name, _made(target))
 
 
 def _made(path):

@@ -71,23 +71,23 @@ def _run_of(chosen):
 
     if chosen.csv is not None:
         raise OutputError(f"{chosen.case}: a result; allowed for --csv: a case with a [gears] table")
-    found = GearRun(chosen.case)
+    gear_run = GearRun(chosen.case)
     post = Path(chosen.case).with_suffix(".post.h5")
     target = _picture(chosen)
     flanks = target and target.with_suffix(".flanks.png")
     if flanks and post.exists():
         check_derived(flanks, [Path(chosen.case), post], PICTURE_SIGNATURES)
-    print("\n".join(found.lines()))
+    print("\n".join(gear_run.lines()))
     if target:
         with replacing(target, keep_ending=True) as temporary:
-            found.draw(temporary)
+            gear_run.draw(temporary)
         print(target)
     if post.exists():
-        damage = FlankDamage(post, found.profile_offsets)
+        damage = FlankDamage(post, gear_run.profile_offsets)
         print("\n".join(damage.lines()))
         if flanks:
             with replacing(flanks, keep_ending=True) as temporary:
-                damage.draw(found.path.pair, temporary, found.title)
+                damage.draw(gear_run.path.pair, temporary, gear_run.title)
             print(flanks)
 
 

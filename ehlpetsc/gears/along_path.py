@@ -72,7 +72,7 @@ class GearRun:
     def lines(self):
         """Lines of text: extremes and losses."""
         friction = self.friction_on_path()
-        found = [
+        lines = [
             f"gear loss factor H_V {gear_loss_factor(self.path):.4f} of the load sharing",
             f"mean friction coefficient {mean_friction(self.path, friction):.4f}",
             f"power lost over power transmitted {1e2 * loss(self.path, friction):.3f} %",
@@ -81,8 +81,8 @@ class GearRun:
             values = self.scalars.get(name)
             if values is not None and np.isfinite(values).any():
                 low, high = (factor * f(values) for f in (np.nanmin, np.nanmax))
-                found.append(f"{' '.join(label.split())}: {low:.4g} to {high:.4g}")
-        return found
+                lines.append(f"{' '.join(label.split())}: {low:.4g} to {high:.4g}")
+        return lines
 
     def averaged(self, values):
         """Means over `AVERAGING_LENGTH` of the path around each step."""

@@ -53,16 +53,16 @@ class FlankDamage:
 
     def lines(self):
         """Lines of text: maximum damage of each flank with its position and depth."""
-        found = []
+        lines = []
         for flank, damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
             if damage is None or not np.isfinite(damage).any():
                 continue
             depth, point = np.unravel_index(np.nanargmax(damage), damage.shape)
-            found.append(
+            lines.append(
                 f"largest damage of the {flank}: {damage[depth, point]:.3g} at an arc length of "
                 f"{1e3 * arc[point]:.3f} mm from A, {1e6 * self.depths[depth]:.1f} um deep"
             )
-        return found
+        return lines
 
     def draw(self, pair, target, title):
         """Draw the damage along both flanks into a file.

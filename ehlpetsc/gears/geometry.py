@@ -151,52 +151,52 @@ class GearPair:
         list of str
         """
         r_b = self.base_radii
-        found = []
+        faults = []
         if not 0.0 < self.pressure_angle < 45.0:
             return [f"gears.pressure_angle = {self.pressure_angle:g}: allowed: > 0 and < 45 degrees"]
         if self.load_sharing == "tip-relief" and self.tip_relief == 0.0:
-            found.append('tip_relief is missing; load_sharing = "tip-relief" needs its depth')
+            faults.append('tip_relief is missing; load_sharing = "tip-relief" needs its depth')
         if self.centre_distance <= sum(r_b):
-            found.append(
+            faults.append(
                 f"centre_distance = {self.centre_distance:g}: the base circles overlap; allowed: above "
                 f"{sum(r_b):.5g} m, the sum of their radii"
             )
         for name, d, r in zip(("pinion", "wheel"), self.tip_diameter, r_b, strict=True):
             if d <= 2.0 * r:
-                found.append(
+                faults.append(
                     f"tip_diameter = {d:g} of the {name}: no involute flank below its base circle; allowed: "
                     f"above {2.0 * r:.5g} m"
                 )
-        return [f"gears.{fault}" for fault in (found or self._faults_of_the_path())]
+        return [f"gears.{fault}" for fault in (faults or self._faults_of_the_path())]
 
     def _faults_of_the_path(self):
         (a, e), length, r_b = self._a_and_e(), self.line_of_action, self.base_radii
-        found = []
+        faults = []
         for name, other, over, r in (
             ("wheel", "pinion", a <= 0.0, r_b[1]),
             ("pinion", "wheel", e >= length, r_b[0]),
         ):
             if over:
-                found.append(
+                faults.append(
                     f"tip_diameter: the tips of the {name} reach below the base circle of the {other} "
                     f"(interference); allowed for the {name}: below {2.0 * math.hypot(length, r):.5g} m"
                 )
         ratio = self.contact_ratio
-        if found:
-            return found
+        if faults:
+            return faults
         if ratio <= 0.0:
-            found.append(
+            faults.append(
                 f"tip_diameter = {list(self.tip_diameter)}: the tips do not reach each other at a centre "
                 f"distance of {self.centre_distance:g} m"
             )
         elif ratio < 1.0:
-            found.append(
+            faults.append(
                 f"tip_diameter = {list(self.tip_diameter)}: contact ratio {ratio:.3f}, a pair leaves before "
                 "the next one meets; allowed: 1 to 2"
             )
         elif ratio >= 2.0:
-            found.append(
+            faults.append(
                 f"tip_diameter = {list(self.tip_diameter)}: contact ratio {ratio:.3f}, three pairs share the "
                 "load; allowed: 1 to 2"
             )
-        return found
+        return faults

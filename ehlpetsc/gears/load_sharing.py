@@ -65,8 +65,8 @@ def kinks(pair):
     """Positions of kinks of the load of a pair other than A, B, D and E [m]."""
     points = pair.points
     return [
-        end + s * (one - end)
-        for end, one in ((points["A"], points["B"]), (points["E"], points["D"]))
+        end + s * (inner - end)
+        for end, inner in ((points["A"], points["B"]), (points["E"], points["D"]))
         for s in _rule(pair)[1]
     ]
 

@@ -24,10 +24,10 @@ def hertz(path, contact):
     try:
         modulus = reduced_modulus(*elastic_constants(contact))
         pairs = zip(path.load, path.radius, strict=True)
-        found = [hertz_line(w, r, modulus) if w > 0 else (0.0, 0.0) for w, r in pairs]
+        stresses = [hertz_line(w, r, modulus) if w > 0 else (0.0, 0.0) for w, r in pairs]
     except (KeyError, TypeError, ValueError, ZeroDivisionError):
         return None
-    values = np.array(found).T
+    values = np.array(stresses).T
     return (values[0], values[1]) if np.isfinite(values).all() else None
 
 
@@ -82,8 +82,8 @@ def _shown(value):
 
 def csv(path):
     """Loaded part of the path as CSV text for ``[operation]``."""
-    kept = path.load > 0.0
-    values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[kept]
+    loaded = path.load > 0.0
+    values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[loaded]
     values[:, 0] -= values[0, 0]
     lines = [", ".join(COLUMNS)] + [", ".join(f"{value:.12g}" for value in row) for row in values]
     return "\n".join(lines) + "\n"

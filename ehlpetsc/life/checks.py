@@ -33,7 +33,7 @@ def check_case(case):
 
 
 def pass_file(path, position, positions):
-    """Result of the last solved pass in a position of surface 2, beside the life `path`."""
+    """Result of the last solved pass in a position of surface 2, in the folder of the life `path`."""
     return path.with_suffix(".pass.h5" if positions == 1 else f".pass{position + 1}.h5")
 
 

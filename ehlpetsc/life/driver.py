@@ -102,10 +102,10 @@ class _Life:
             self.show(opening_line(self.case, self.scales, self._scene, self.positions.count))
         while self._is_living and (most is None or rounds < most):
             begun = clock.monotonic()
-            one = self._solve(stop)
+            solved_round = self._solve(stop)
             bodies = self.history.bodies[-1] if self.history.rows else None
-            self._jump(one, bodies or self.positions.new_bodies(one.passes[0]))
-            remaining = self.jumps.expected_rounds(self.history.bodies[-1], one, self.history.done)
+            self._jump(solved_round, bodies or self.positions.new_bodies(solved_round.passes[0]))
+            remaining = self.jumps.expected_rounds(self.history.bodies[-1], solved_round, self.history.done)
             self.show(progress.line(self.history, clock.monotonic() - begun, remaining))
             rounds += 1
 
@@ -142,33 +142,38 @@ class _Life:
         from ehlpetsc.effects.effect import unflat
         from ehlpetsc.effects.plastic_deformation import PlasticRecord
 
-        found = self.history.plastic[-1] if self.history.rows else None
-        return unflat(PlasticRecord, found, "plastic_deformation") if found else None
+        fields = self.history.plastic[-1] if self.history.rows else None
+        return unflat(PlasticRecord, fields, "plastic_deformation") if fields else None
 
-    def _jump(self, one, bodies):
+    def _jump(self, solved_round, bodies):
         """Jump with the rates of a solved round, and store the row."""
         from ehlpetsc.effects.effect import flat
         from ehlpetsc.run.on_root import on_root
 
         done = self.history.done
-        after, jump, rates = self.jumps.jump(bodies, one, done, self._smooth_since(one))
-        row = {"passes": done + jump, "jump": jump, "solved": len(one.passes), "yielded": one.yielded}
+        after, jump, rates = self.jumps.jump(bodies, solved_round, done, self._smooth_since(solved_round))
+        row = {
+            "passes": done + jump,
+            "jump": jump,
+            "solved": len(solved_round.passes),
+            "yielded": solved_round.yielded,
+        }
         row["broken_out"] = sum(new.broken_out_since(old) for new, old in zip(after, bodies, strict=True))
-        row |= one.figures()
+        row |= solved_round.figures()
         for k, (body, rate) in enumerate(zip(after, rates, strict=True), 1):
             row[f"damage_ahead_{k}"] = body.damage_ahead(rate.wear, rate.damage)
             row |= {f"pits_{k}": body.pits, f"pitted_share_{k}": body.pitted_share, f"ra_{k}": body.ra}
             row |= {f"wear_volume_{k}": body.volume, f"damage_{k}": body.largest_damage}
             row |= {f"wear_rate_{k}": float(rate.wear.max()), f"damage_rate_{k}": float(rate.damage.max())}
-        plastic = flat(one.plastic, "plastic_deformation") if one.plastic else {}
+        plastic = flat(solved_round.plastic, "plastic_deformation") if solved_round.plastic else {}
         self.history.add(row, after, plastic)
         on_root(self.comm, self.file.store, self.history)
 
-    def _smooth_since(self, one):
+    def _smooth_since(self, solved_round):
         """Passes of the last jump; 0 if the rates were discontinuous in it."""
         if not self.history.rows:
             return 0
         last = self.history.rows[-1]
-        parted = last["broken_out"] or last["solved"] != len(one.passes)
-        yields = self.jumps.is_yielding(max(last["yielded"], one.yielded))
+        parted = last["broken_out"] or last["solved"] != len(solved_round.passes)
+        yields = self.jumps.is_yielding(max(last["yielded"], solved_round.yielded))
         return 0 if parted or yields else int(last["jump"])

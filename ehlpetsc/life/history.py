@@ -59,10 +59,10 @@ class LifeHistory:
 
     def up_to(self, count):
         """Copy of the life up to a row."""
-        found = LifeHistory(self.case, self.title)
+        life = LifeHistory(self.case, self.title)
         for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
-            found.add(*values)
-        return found
+            life.add(*values)
+        return life
 
     def save(self, path):
         """Write all rows to `path`, replacing it; OutputError."""
@@ -100,7 +100,7 @@ def read_life(path):
 
 
 def _read(file):
-    found = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]))
+    life = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]))
     count = len(file[f"figures/{COMMIT_DATASET}"])
     figures = {name: dataset[:count] for name, dataset in file["figures"].items()}
     groups = [file[f"surface/{k}"] for k in (1, 2)]
@@ -109,15 +109,15 @@ def _read(file):
     plastic = {name: _records(file, name, count) for name in file.get("records", {})}
     for row in range(count):
         bodies = tuple(
-            LifeBody(*one, *(values[row] for values in other))
-            for one, other in zip(fixed, changing, strict=True)
+            LifeBody(*fixed_values, *(values[row] for values in row_values))
+            for fixed_values, row_values in zip(fixed, changing, strict=True)
         )
-        found.add(
+        life.add(
             {name: values[row].item() for name, values in figures.items()},
             bodies,
             {name: values[row] for name, values in plastic.items()},
         )
-    return found
+    return life
 
 
 def _records(file, name, count):

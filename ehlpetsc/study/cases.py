@@ -123,15 +123,15 @@ def read_cases(*groups):
     return [_case(tables["synthetic"], **entry) for group in groups for entry in tables[group]]
 
 
-def _case(synthetic, axis, value, base="table_1", travel=None, short=False, before=None, **given):
+def _case(synthetic, axis, value, base="table_1", travel=None, short=False, before=None, **keys):
     """Case of the table; with `travel` on a short domain, so that few time steps fill the contact."""
     settings = () if travel is None else (*SHORT_DOMAIN, f"time.travel={travel}")
     for side in ("1", "2"):
-        if f"surface_{side}" in given:
-            settings += (f"surface.{side}.synthetic={synthetic[given[f'surface_{side}']]}",)
+        if f"surface_{side}" in keys:
+            settings += (f"surface.{side}.synthetic={synthetic[keys[f'surface_{side}']]}",)
 
     def with_settings(overrides):
         return (*settings, *(text.replace("{profiles}", str(PROFILES)) for text in overrides))
 
-    overrides = with_settings(given.get("set", ()))
+    overrides = with_settings(keys.get("set", ()))
     return StudyCase(axis, value, overrides, BASES[base], short, before and with_settings(before))

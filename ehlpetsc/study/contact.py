@@ -94,10 +94,10 @@ def measured(path, boundary_film, seconds):
         filled = both_fill(result, result.steps("time"))
         dt, load = result.steps("dt"), result.steps("load").mean()
         touching = (result.steps("contacts") * dt)[filled].sum() / dt[filled].sum()
-        share, below, thin, below_5, below_10, greatest = rows.mean(axis=0)
+        solids_load, below, thin, below_5, below_10, greatest = rows.mean(axis=0)
         return Measured(
             touching * dx / a,
-            share * dx / load,
+            solids_load * dx / load,
             below * dx / a,
             thin * dx / load,
             below_5 * dx / load,
@@ -128,11 +128,11 @@ def _damages(path):
 
 def order(coarse, middle, fine):
     """Observed order and limit of three values at halved spacings; nan where they do not converge."""
-    one, other = coarse - middle, middle - fine
-    if one * other <= 0.0 or abs(other) >= abs(one):
+    coarse_change, fine_change = coarse - middle, middle - fine
+    if coarse_change * fine_change <= 0.0 or abs(fine_change) >= abs(coarse_change):
         return np.nan, np.nan
-    exponent = observed_order((abs(one), abs(other)))
-    return exponent, float(fine - richardson_error(other, exponent))
+    exponent = observed_order((abs(coarse_change), abs(fine_change)))
+    return exponent, float(fine - richardson_error(fine_change, exponent))
 
 
 def settings(models, meshes, courants, boundary_films):
@@ -164,14 +164,14 @@ def for_direct_contact(case, overrides, folder):
     path-like, list of str
     """
     names = tuple(f"contact.{key}" for key in OF_MIXED_CONTACT)
-    kept = [override for override in overrides if override.partition("=")[0].strip() not in names]
+    remaining = [override for override in overrides if override.partition("=")[0].strip() not in names]
     try:
         tables = tomllib.loads(Path(case).read_text(encoding="utf-8-sig"))
     except (OSError, ValueError):  # the run reports it
-        return case, kept
+        return case, remaining
     of_contact = tables.get("contact", {})
     if not any(key in of_contact for key in OF_MIXED_CONTACT):
-        return case, kept
+        return case, remaining
     for key in OF_MIXED_CONTACT:
         of_contact.pop(key, None)
     for side in tables.get("surface", {}).values():
@@ -179,7 +179,7 @@ def for_direct_contact(case, overrides, folder):
             side["file"] = str((Path(case).parent / side["file"]).absolute())
     shortened = Path(folder) / f"{Path(case).stem}.direct.toml"
     shortened.write_text(toml_text(tables), encoding="utf-8")
-    return shortened, kept
+    return shortened, remaining
 
 
 def table(case, overrides, chosen, path, folder, limit, say=print, damage=False):
@@ -195,15 +195,15 @@ def table(case, overrides, chosen, path, folder, limit, say=print, damage=False)
     with csv_table(path, COLUMNS) as append:
         for setting in chosen:
             outcome = _run(case, overrides, setting, damage, folder, limit)
-            found = None
+            scalars = None
             if outcome.status == ExitStatus.DONE:
-                found = measured(outcome.result, setting.values[FILM], outcome.processor)
-                found = replace(found, **_damages(outcome.result)) if damage else found
-            rows.append((setting, found))
-            row = _described(setting) | (asdict(found) if found else {})
+                scalars = measured(outcome.result, setting.values[FILM], outcome.processor)
+                scalars = replace(scalars, **_damages(outcome.result)) if damage else scalars
+            rows.append((setting, scalars))
+            row = _described(setting) | (asdict(scalars) if scalars else {})
             append(row)
             shown = [f"{v:.4g}" if isinstance(v, float) else str(v) for v in row.values()]
-            say(" ".join(f"{v:>13}" for v in shown) + ("" if found else f" {outcome.message}"))
+            say(" ".join(f"{v:>13}" for v in shown) + ("" if scalars else f" {outcome.message}"))
             if outcome.result:
                 Path(outcome.result).unlink()
     for line in orders(rows):
@@ -225,13 +225,13 @@ def _run(case, overrides, setting, damage, folder, limit):
 
 def orders(rows):
     """Lines of observed orders and limits, for each three meshes of which one is twice the other."""
-    found = {tuple(setting.values.values()): value for setting, value in rows if value}
+    by_setting = {tuple(setting.values.values()): value for setting, value in rows if value}
     for setting, fine in rows:
         mesh = setting.values[MESH]
         coarser = [tuple((setting.values | {MESH: mesh // k}).values()) for k in (4, 2)]
-        if not fine or mesh % 4 or not found.keys() >= set(coarser):
+        if not fine or mesh % 4 or not by_setting.keys() >= set(coarser):
             continue
         described = ", ".join(f"{column}={value}" for column, value in _described(setting).items())
         for name in REPORTED_ORDERS:
-            exponent, limit = order(*(getattr(found[key], name) for key in coarser), getattr(fine, name))
+            exponent, limit = order(*(getattr(by_setting[key], name) for key in coarser), getattr(fine, name))
             yield f"{described}: {name} order {exponent:.2f}, limit {limit:.4g}"

@@ -43,8 +43,8 @@ def cases(short=False, far=False, model=None):
     """
     selected = read_cases("far") if far else read_cases("steady", "time")
     if short:
-        selected = [_shortened(one) for one in selected if one.short]
-    return [_of_model(one, model) for one in selected] if model else selected
+        selected = [_shortened(case) for case in selected if case.short]
+    return [_of_model(case, model) for case in selected] if model else selected
 
 
 def _of_model(case, model):

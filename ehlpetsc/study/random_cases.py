@@ -26,7 +26,7 @@ from ehlpetsc.study.runs import csv_table, run
 
 COLUMNS = ("number", "status", "steps", "retries", "newton", "file", "message", "overrides")
 STEPS = 50  # time steps of a case
-MAX_OPENING = 3.0  # films by which the gap opens from node to node beside the contact
+MAX_OPENING = 3.0  # films by which the gap opens from node to node outside the contact
 STEEL, SOFT_AND_HARD = [207e9, 207e9], ([3e9, 207e9], [600e9, 600e9])  # Young's moduli [Pa]
 MODELS = ("direct", "mixed")
 EVERY_SLIDING = (0.0, 0.1, 1.0, 1.9, 2.0, 4.0)

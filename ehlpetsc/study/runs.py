@@ -223,8 +223,8 @@ def _read_scalars(path, case, message):
     if not totals:
         return {}
     names = ("newton", "retries", "h_min", "p_max", "wall", "load_error", "mass_error")
-    found = {"result": path, "steps": totals["step"]} | {name: totals[name] for name in names}
+    scalars = {"result": path, "steps": totals["step"]} | {name: totals[name] for name in names}
     if case.fluid:
         ratio = viscosity(np.array([totals["p_max"]]), case.fluid)[0][0]
-        found["viscosity"] = float(case.fluid.viscosity * np.exp(min(ratio, 700.0)))
-    return found
+        scalars["viscosity"] = float(case.fluid.viscosity * np.exp(min(ratio, 700.0)))
+    return scalars

@@ -24,13 +24,13 @@ class Jumps:
         """Whether a pass yields more [m] than a jump may wear: plastic deformation is not multiplied."""
         return yielded > self.wear_allowed
 
-    def jump(self, bodies, one, done, before=0):
+    def jump(self, bodies, solved_round, done, before=0):
         """Jump with the rates of a solved round, up to the allowed wear or damage or the next break-out.
 
         Parameters
         ----------
         bodies : pair of body.LifeBody
-        one : rounds.Round
+        solved_round : rounds.Round
         done : int
             Passes before it.
         before : int
@@ -43,14 +43,14 @@ class Jumps:
             Passes of the jump, including the solved ones.
         rates : pair of rates.Rates
         """
-        rates, most = one.rates(bodies), self.passes - done
+        rates, most = solved_round.rates(bodies), self.passes - done
         if before:
             rates = tuple(
                 rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before)
                 for rate, body in zip(rates, bodies, strict=True)
             )
             most = min(most, int(MAX_EXTRAPOLATION * before))
-        jump = self._allowed(bodies, rates, one, most)
+        jump = self._allowed(bodies, rates, solved_round, most)
         return self._after(bodies, rates, jump, done), jump, rates
 
     def _after(self, bodies, rates, jump, done):
@@ -58,9 +58,9 @@ class Jumps:
             body.after(rate, jump, done, self.life.pits) for body, rate in zip(bodies, rates, strict=True)
         )
 
-    def _allowed(self, bodies, rates, one, left):
+    def _allowed(self, bodies, rates, solved_round, left):
         """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
-        most = 1 if self.is_yielding(one.yielded) else left
+        most = 1 if self.is_yielding(solved_round.yielded) else left
         for body, rate in zip(bodies, rates, strict=True):
             most = min(most, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
         most = max(int(most), 1)
@@ -68,9 +68,9 @@ class Jumps:
             late = min(left, int(BREAK_OUT_DELAY * most))
             ends = min(body.passes_to_break_out(rate, late) for body, rate in zip(bodies, rates, strict=True))
             most = ends if ends < late else most
-        return min(left, max(most, len(one.passes)))
+        return min(left, max(most, len(solved_round.passes)))
 
-    def expected_rounds(self, bodies, one, done):
+    def expected_rounds(self, bodies, solved_round, done):
         """Least and largest expected number of rounds until the end of the life, at the rates of this one.
 
         In one count columns that break out carry no load, in the other they carry as before: a pit unloads
@@ -79,26 +79,28 @@ class Jumps:
         Parameters
         ----------
         bodies : pair of body.LifeBody
-        one : rounds.Round
+        solved_round : rounds.Round
         done : int
 
         Returns
         -------
         (int, int)
         """
-        counts = [self._rounds_to_come(bodies, one, done, are_relieved) for are_relieved in (True, False)]
+        counts = [
+            self._rounds_to_come(bodies, solved_round, done, are_relieved) for are_relieved in (True, False)
+        ]
         return min(counts), max(counts)
 
-    def _rounds_to_come(self, bodies, one, done, are_relieved):
+    def _rounds_to_come(self, bodies, solved_round, done, are_relieved):
         rounds, jump, begin = 0, 1, bodies
         while done < self.passes and rounds < MAX_LOOKAHEAD:
-            rates = one.rates(bodies)
+            rates = solved_round.rates(bodies)
             if are_relieved:
                 rates = tuple(
                     rate.without(body.pit > new.pit)
                     for rate, body, new in zip(rates, bodies, begin, strict=True)
                 )
-            jump = self._allowed(bodies, rates, one, self.passes - done)
+            jump = self._allowed(bodies, rates, solved_round, self.passes - done)
             bodies = self._after(bodies, rates, jump, done)
             rounds, done = rounds + 1, done + jump
         return rounds + -(-(self.passes - done) // jump)

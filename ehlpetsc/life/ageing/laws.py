@@ -32,8 +32,8 @@ def passes_to(amount, rate, slope):
     positive = np.where(np.asarray(rate) > 0.0, rate, 1.0)
     constant = amount / positive
     root = 1.0 + 2.0 * slope * constant / positive
-    found = 2.0 * constant / (1.0 + np.sqrt(np.maximum(root, 0.0)))
-    return np.where((np.asarray(rate) > 0.0) & (root >= 0.0), found, np.inf)
+    passes = 2.0 * constant / (1.0 + np.sqrt(np.maximum(root, 0.0)))
+    return np.where((np.asarray(rate) > 0.0) & (root >= 0.0), passes, np.inf)
 
 
 def cell_edges(thickness, deepest):
@@ -87,15 +87,17 @@ def damage_at(depths, damage, at):
     """
     if len(depths) == 1:
         return np.where(at <= depths[0], damage[0], 0.0)
-    known = np.isfinite(at)
-    z = np.where(known, np.maximum(at, depths[0]), depths[-1])
+    exists = np.isfinite(at)
+    z = np.where(exists, np.maximum(at, depths[0]), depths[-1])
     k = np.clip(np.searchsorted(depths, z, "right") - 1, 0, len(depths) - 2)
     weight = (z - depths[k]) / (depths[k + 1] - depths[k])
     low, high = np.take_along_axis(damage, k, 0), np.take_along_axis(damage, k + 1, 0)
-    both = (low > 0.0) & (high > 0.0)
-    logs = np.log(np.where(both, low, 1.0)), np.log(np.where(both, high, 1.0))
-    found = np.where(both, np.exp(logs[0] + weight * (logs[1] - logs[0])), low + weight * (high - low))
-    return np.where(known & (z <= depths[-1]), found, 0.0)
+    both_positive = (low > 0.0) & (high > 0.0)
+    logs = np.log(np.where(both_positive, low, 1.0)), np.log(np.where(both_positive, high, 1.0))
+    interpolated = np.where(
+        both_positive, np.exp(logs[0] + weight * (logs[1] - logs[0])), low + weight * (high - low)
+    )
+    return np.where(exists & (z <= depths[-1]), interpolated, 0.0)
 
 
 def broken_out(damage, edges, recession):

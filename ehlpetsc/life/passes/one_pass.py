@@ -86,17 +86,17 @@ def run_pass(simulation, before, file, stop=None):
     if status is ExitStatus.STOPPED:
         raise Stopped
     comm, records = simulation.comm, simulation.solution.records
-    found = fault = None
+    outcome = fault = None
     if comm.rank == 0:
         Path(recorder.restart).unlink(missing_ok=True)
         try:
-            found = _damage(file), _means(file)
+            outcome = _damage(file), _means(file)
         except (PostError, OutputError) as error:
             fault = error
-    found, fault = comm.bcast((found, fault))
+    outcome, fault = comm.bcast((outcome, fault))
     if fault:
         raise fault
-    damage, figures = found
+    damage, figures = outcome
     offsets = simulation.scene.mesh_on_bodies.offsets
     worn = [_depths(before, records, "wear", k) for k in range(2)]
     set_ = [_depths(before, records, "plastic_deformation", k) for k in range(2)]
@@ -109,8 +109,8 @@ def run_pass(simulation, before, file, stop=None):
 
 def _depths(before, after, name, k):
     """Depths of body k before and after; zero where there is no record."""
-    found = (records[name].depth[k] if name in records else NO_DEPTH for records in (before, after))
-    return tuple(found)
+    depths = (records[name].depth[k] if name in records else NO_DEPTH for records in (before, after))
+    return tuple(depths)
 
 
 def _largest_increase(depths):
@@ -122,9 +122,9 @@ def _largest_increase(depths):
 
 def _means(file):
     with read_result(file) as result:
-        found = means(result)
-        found["p_max"] = float(result.steps("p_max").max())
-    return found
+        figures = means(result)
+        figures["p_max"] = float(result.steps("p_max").max())
+    return figures
 
 
 def _damage(file):
@@ -132,7 +132,7 @@ def _damage(file):
     with Loads(file) as loads:
         job = Job(str(file), "", counting=Counting(strain=loads.case.post.strain))
         prepared = prepare(loads, SIDES, lambda text: None)
-        found = []
+        damages = []
         for side in SIDES:
             motion, depths = prepared.motions[side], prepared.settings.depths
             passed = motion.complete
@@ -141,5 +141,5 @@ def _damage(file):
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
             values = solve(job, prepared, Task(side, depths))[..., 0]
-            found.append((prepared.s[passed], loads.a * np.array(depths), values[:, passed]))
-    return found
+            damages.append((prepared.s[passed], loads.a * np.array(depths), values[:, passed]))
+    return damages

@@ -47,17 +47,19 @@ class Ranks:
         """
         if len(positions) == 1 or self._group is self.comm:
             return [solve(position, self.comm, stop) for position in positions]
-        found, report = {}, None
-        queue = WorkQueue(self.comm, self.each, positions, lambda one: found.update([one]), self._group)
-        while (position := queue.next(report, any(map(_is_fault, found.values())))) is not None:
+        outcomes, report = {}, None
+        queue = WorkQueue(
+            self.comm, self.each, positions, lambda entry: outcomes.update([entry]), self._group
+        )
+        while (position := queue.next(report, any(map(_is_fault, outcomes.values())))) is not None:
             try:
                 report = position, solve(position, self._group, PollingStop(queue, stop))
             except FAULTS as fault:
                 report = position, (type(fault), str(fault))
-        found = queue.finish(lambda: found)
-        for kind, text in filter(_is_fault, found.values()):
+        outcomes = queue.finish(lambda: outcomes)
+        for kind, text in filter(_is_fault, outcomes.values()):
             raise kind(text)
-        return [found[position] for position in positions]
+        return [outcomes[position] for position in positions]
 
 
 def _is_fault(outcome):
@@ -88,17 +90,17 @@ class Round(NamedTuple):
         -------
         pair of rates.Rates
         """
-        found = []
+        rates = []
         for k, (body, factor) in enumerate(zip(bodies, (1.0, self.passes_2), strict=True)):
-            parts = [(*body.rates(one.bodies[k]), one.bodies[k].volume) for one in self.passes]
-            means = [sum(values) / len(parts) for values in zip(*parts, strict=True)]
-            found.append(Rates(*(factor * mean for mean in means)))
-        return tuple(found)
+            pass_rates = [(*body.rates(pass_.bodies[k]), pass_.bodies[k].volume) for pass_ in self.passes]
+            means = [sum(values) / len(pass_rates) for values in zip(*pass_rates, strict=True)]
+            rates.append(Rates(*(factor * mean for mean in means)))
+        return tuple(rates)
 
     @property
     def yielded(self):
         """Largest depth by which a point yielded [m]."""
-        return max(one.yielded for one in self.passes)
+        return max(pass_.yielded for pass_ in self.passes)
 
     @property
     def plastic(self):
@@ -107,7 +109,7 @@ class Round(NamedTuple):
         A point that yielded in several passes of the round has the largest of their depths: once yielded
         under an asperity, it carries less under the next.
         """
-        records = [one.plastic for one in self.passes]
+        records = [pass_.plastic for pass_ in self.passes]
         if records[0] is None:
             return None
         depth = BodyFields(*(_deepest([record.depth[k] for record in records]) for k in range(2)))
@@ -115,10 +117,10 @@ class Round(NamedTuple):
 
     def figures(self):
         """Friction and share of the solids, means over the round; largest pressure [Pa]."""
-        found = {"p_max": max(one.figures["p_max"] for one in self.passes)}
+        figures = {"p_max": max(pass_.figures["p_max"] for pass_ in self.passes)}
         for name, source in (("friction", "friction_coefficient"), ("contact_share", "contact_share")):
-            found[name] = float(np.mean([one.figures.get(source, np.nan) for one in self.passes]))
-        return found
+            figures[name] = float(np.mean([pass_.figures.get(source, np.nan) for pass_ in self.passes]))
+        return figures
 
 
 def _deepest(fields):

@@ -64,22 +64,23 @@ def errors(values, reference):
     """Relative errors; film: maximum local error over h_c, damage: difference in decades."""
     inside = np.abs(values.x) <= 1.0
     film = np.abs(values.h - np.interp(values.x, reference.x, reference.h))[inside].max() / reference.h_c
-    found = {"film": film, "damage": np.nan, "contact": np.nan}
+    by_measure = {"film": film, "damage": np.nan, "contact": np.nan}
     for name in ("h_min", "h_c", "p_max", "contact"):
         true = getattr(reference, name)
         if true > 0.0:
-            found[name] = abs(getattr(values, name) / true - 1.0)
+            by_measure[name] = abs(getattr(values, name) / true - 1.0)
     if reference.damage is not None:
-        found["damage"] = abs(values.damage - reference.damage)
-    return {name: found.get(name, np.nan) for name in MEASURES}
+        by_measure["damage"] = abs(values.damage - reference.damage)
+    return {name: by_measure.get(name, np.nan) for name in MEASURES}
 
 
 def uncertainty(fine, middle, coarse):
     """Estimated error of the finest of three runs, for each measure."""
-    one, two = errors(middle, fine), errors(coarse, fine)
+    middle_errors, coarse_errors = errors(middle, fine), errors(coarse, fine)
     estimate = {}
     for name in MEASURES:
-        change, coarser = one[name], two[name] - one[name]  # |f1 - f2| and |f2 - f3|
+        change = middle_errors[name]  # |f1 - f2|
+        coarser = coarse_errors[name] - change  # |f2 - f3|
         order = observed_order((coarser, change)) if min(change, coarser) > 0.0 else ORDERS[0]
         estimate[name] = richardson_error(change, np.clip(order, *ORDERS))
     return estimate

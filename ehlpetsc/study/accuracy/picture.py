@@ -80,11 +80,11 @@ def ticks(low, high):
     """
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
     for mantissas in MANTISSAS:
-        found = [d * m for d in decades for m in mantissas if low <= d * m <= high]
-        if 2 <= len(found) <= MAX_TICKS:
-            return found
-    if len(found) > MAX_TICKS:  # many decades: every so many of them
-        return found[:: -(-len(found) // MAX_TICKS)]
+        values = [d * m for d in decades for m in mantissas if low <= d * m <= high]
+        if 2 <= len(values) <= MAX_TICKS:
+            return values
+    if len(values) > MAX_TICKS:  # many decades: every so many of them
+        return values[:: -(-len(values) // MAX_TICKS)]
     step = 10.0 ** np.floor(np.log10((high - low) / 2.0))
     step *= next(m for m in (5, 2, 1) if m * step <= (high - low) / 2.0)
     first = np.ceil(low / step - 1e-9)

@@ -39,6 +39,6 @@ def plan(case, meshes, steps, ranks):
         references.append(Setting(values, "reference", f"{coarser}"))
     runs = [Setting(base, label="as it is")]
     for key, values in varied:
-        known = {*values, base[key]} if key in base else values
-        runs += [Setting({**base, key: value}, key, value) for value in sorted(known)]
+        distinct = {*values, base[key]} if key in base else values
+        runs += [Setting({**base, key: value}, key, value) for value in sorted(distinct)]
     return references, runs

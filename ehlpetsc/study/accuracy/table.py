@@ -44,13 +44,13 @@ class Study:
         self.path, self.overrides, self.folder = path, list(overrides), Path(folder)
         self.limit, self.damage = limit, damage
         self.case = load(path, overrides)
-        self._known = {}
+        self._outcomes = {}
 
     def run(self, setting, number):
         """Outcome and measures of one run, None if it did not converge; equal runs are run once."""
-        known = tuple(setting.values.items())
-        if known in self._known:
-            return self._known[known]
+        key = tuple(setting.values.items())
+        if key in self._outcomes:
+            return self._outcomes[key]
         shear = ("shear_stress_1", "shear_stress_2") if self.damage else ()
         output = stored(("pressure", "film_thickness", *shear), 1 if self.damage else self._steps(setting))
         outcome = run(
@@ -62,9 +62,9 @@ class Study:
             name=f"run{number}",
             limit=self.limit,
         )
-        found = measures(outcome.result, self.damage) if outcome.status == ExitStatus.DONE else None
-        self._known[known] = outcome, found
-        return outcome, found
+        measured = measures(outcome.result, self.damage) if outcome.status == ExitStatus.DONE else None
+        self._outcomes[key] = outcome, measured
+        return outcome, measured
 
     def _steps(self, setting):
         """Steps of the whole run, so that its last state is a frame."""
@@ -82,12 +82,12 @@ class Study:
         say(text(dict(zip(COLUMNS, COLUMNS, strict=True))))
         say(text(rows[0]))
         for number, setting in enumerate(runs):
-            outcome, found = self.run(setting, number)
-            rows.append(row(setting, outcome, errors(found, true) if found else NO_MEASURES))
+            outcome, measured = self.run(setting, number)
+            rows.append(row(setting, outcome, errors(measured, true) if measured else NO_MEASURES))
             say(text(rows[-1]))
         with csv_table(csv_path, COLUMNS) as append:
-            for one in rows:
-                append(one)
+            for entries in rows:
+                append(entries)
         return rows
 
 
