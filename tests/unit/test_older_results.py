@@ -101,7 +101,5 @@ def test_every_command_accepts_older_results(folder, monkeypatch, capsys, comman
 
 
 def test_older_restart_file_is_refused_by_version(folder):
-    with pytest.raises(
-        OutputError, match=r"direct\.restart\.h5: a restart file of version 2, this ehlpetsc reads \d"
-    ):
+    with pytest.raises(OutputError, match=r"direct\.restart\.h5: .* version 2, .* \d$"):
         load_restart(folder / "direct.restart.h5")

@@ -1,5 +1,6 @@
 """Tables of operating conditions: what they may hold, and their interpolation, integrals and time levels."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -63,20 +64,20 @@ def test_omitted_column_is_constant(with_table):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        (TABLE.replace("3e-4", "0.5e-4"), "line 4: time 5e-05 s is not after 0.0001 s"),
-        (TABLE.replace("3e-4", "1e-4"), "line 4: time 0.0001 s is not after 0.0001 s"),
+        (TABLE.replace("3e-4", "0.5e-4"), "line 4: time 5e-05 s "),
+        (TABLE.replace("3e-4", "1e-4"), "line 4: time 0.0001 s "),
         (TABLE.replace("300e3", "-300e3"), "line 4: load -300000 N/m"),
         (TABLE.replace("527e3", "0"), "line 3: load 0 N/m"),
         (TABLE.replace("0.018", "-1"), "line 4: radius -1 m"),
-        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "both speeds are zero"),
-        (TABLE.replace("4.0, 4.5", "4.0"), "line 4"),
-        (TABLE.replace("527e3", "lots"), "line 3"),
+        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "up to line 3: both speeds"),
+        (TABLE.replace("4.0, 4.5", "4.0"), "line 4: "),
+        (TABLE.replace("527e3", "lots"), "line 3: "),
         (TABLE.replace("527e3", "nan"), "line 3: load = nan"),
         (TABLE.replace("speed 1", "velocity"), "line 1: column 'velocity'"),
         (TABLE.replace("radius [m]", "load"), "line 1: a column twice"),
-        ("time, load\n0, 1e5\n", "two times at least"),
-        ("time\n0\n1\n", "no column but time"),
-        ("load\n1e5\n1e5\n", "no column time"),
+        ("time, load\n0, 1e5\n", "two times"),
+        ("time\n0\n1\n", ": load, radius, speed 1, speed 2,"),
+        ("load\n1e5\n1e5\n", "no column time;"),
         ("", "no lines"),
     ],
 )
@@ -91,7 +92,9 @@ def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
 def test_missing_table_is_named(with_table, tmp_path):
     path = with_table(TABLE)
     (tmp_path / "mesh.csv").unlink()
-    with pytest.raises(CaseError, match="no such file"):
+    with pytest.raises(
+        CaseError, match=rf'operation\.file = "mesh\.csv": .*{re.escape(str(tmp_path / "mesh.csv"))}$'
+    ):
         load(path)
 
 
@@ -119,7 +122,7 @@ def test_columns_from_the_case_or_from_python():
 
 def test_reversing_entrainment_needs_a_symmetric_domain(with_table):
     text = "time, speed 1, speed 2\n0, 1, 1\n1e-3, -1, -1\n"
-    with pytest.raises(CaseError, match="mesh.outlet = 1.5: oil enters there"):
+    with pytest.raises(CaseError, match=r"mesh\.outlet = 1\.5: .* 4, .* mesh\.inlet$"):
         load(with_table(text))
     case = load(with_table(text), {"mesh.outlet": 4.0})
     assert operation_of(case, Scales.of(case)).is_reversing

@@ -118,7 +118,7 @@ def test_damaged_field_is_named_and_not_read(tmp_path):
     raw[raw.index(frame) + 11] ^= 4
     (tmp_path / "r.h5").write_bytes(raw)
     with read_result(tmp_path / "r.h5") as result:
-        with pytest.raises(OutputError, match="r.h5: /?pressure: cannot be read, the file is damaged"):
+        with pytest.raises(OutputError, match=r"r\.h5: /?pressure: .*damaged"):
             result.frame("pressure", 1)
         assert result.frame("film_thickness", 1)[3] == 1.03
 
@@ -126,16 +126,16 @@ def test_damaged_field_is_named_and_not_read(tmp_path):
 @pytest.mark.parametrize(
     "name, values, fault",
     [
-        ("steps/step", [0, 1, 5], "a frame is of a step that it does not have"),
-        ("steps/step", [0, 2, 1], "its numbers of steps do not increase"),
-        ("time", [0.0, 2.0, 1.0], "its times do not increase"),
+        ("steps/step", [0, 1, 5], "frame"),
+        ("steps/step", [0, 2, 1], "numbers of steps"),
+        ("time", [0.0, 2.0, 1.0], "times"),
     ],
 )
 def test_contradictory_numbers_are_refused(tmp_path, name, values, fault):
     path = written(tmp_path / "r.h5", range(3))
     with h5py.File(path, "r+") as file:
         file[name][:] = values
-    with pytest.raises(OutputError, match=f"r.h5: damaged, {fault}"):
+    with pytest.raises(OutputError, match=rf"r\.h5: damaged, .*\b{fault}\b"):
         read_result(path)
 
 
@@ -210,7 +210,7 @@ def file_size_limit(size):
 
 def test_older_result_is_kept_if_the_start_fails(tmp_path):
     path = written(tmp_path / "r.h5", range(3))
-    with file_size_limit(100_000), pytest.raises(OutputError, match="not created, File too large"):
+    with file_size_limit(100_000), pytest.raises(OutputError, match=r"r\.h5: .*created, File too large$"):
         make_writer(path)
     with read_result(path) as result:
         assert len(result.time) == 3
@@ -219,7 +219,7 @@ def test_older_result_is_kept_if_the_start_fails(tmp_path):
 
 def test_resuming_on_a_full_disk_keeps_the_original(tmp_path):
     path = written(tmp_path / "r.h5", range(2000))
-    with file_size_limit(3_000_000), pytest.raises(OutputError, match="not created, File too large"):
+    with file_size_limit(3_000_000), pytest.raises(OutputError, match=r"r\.h5: .*created, File too large$"):
         make_writer(path, resume_step=1999)
     assert_same_content(path, written(tmp_path / "whole.h5", range(2000)))
 
@@ -324,11 +324,11 @@ def test_resuming_twice_keeps_the_history(tmp_path):
 @pytest.mark.parametrize(
     "changes, message",
     [
-        ({"x": X * 2, "resume_step": 9}, "another mesh"),
-        ({"fields": ["pressure"], "resume_step": 9}, "stores other fields"),
-        ({"resume_step": 12}, "ends at step 9, before step 12"),
-        ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, "for another speed .u1 = 5.6"),
-        ({"resume_step": 5}, "contacts up to step 5 are unknown"),
+        ({"x": X * 2, "resume_step": 9}, "mesh"),
+        ({"fields": ["pressure"], "resume_step": 9}, r"fields \(film_thickness, in_contact, "),
+        ({"resume_step": 12}, "at step 9, before step 12 "),
+        ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, r"speed \(u1 = 5\.6\)"),
+        ({"resume_step": 5}, "contacts up to step 5 "),
     ],
 )
 def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
@@ -344,10 +344,10 @@ def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
 def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, limit):
     writer = make_writer(tmp_path / "r.h5")
     with file_size_limit(limit):
-        with pytest.raises(OutputError, match="File too large; the file is whole up to step") as fault:
+        with pytest.raises(OutputError, match=r"r\.h5: .* File too large; .* step \d") as fault:
             put(writer, range(20_000))
         writer.close("stopped")
-    last, time = re.search(r"up to step (\d+) \((\S+) us\)$", str(fault.value)).groups()
+    last, time = re.search(r" step (\d+) \((\S+) us\)$", str(fault.value)).groups()
     last = int(last)
     assert float(time) == pytest.approx(0.1 * last)
     with h5py.File(tmp_path / "r.h5", "r"):
@@ -362,7 +362,7 @@ def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, limit):
 def test_disk_full_before_the_first_flush_leaves_no_steps(tmp_path):
     writer = make_writer(tmp_path / "r.h5")
     put(writer, range(3))
-    message = "not written on, File too large; no step is in it yet$"
+    message = r"r\.h5: .* File too large; no step "
     with file_size_limit(100_000), pytest.raises(OutputError, match=message):
         writer.flush()
     with read_result(tmp_path / "r.h5") as result:
@@ -372,12 +372,12 @@ def test_disk_full_before_the_first_flush_leaves_no_steps(tmp_path):
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda path: None, "no such file"),
-        (lambda path: path.write_text("x" * 3000), "not an HDF5 file"),
-        (lambda path: h5py.File(path, "w").close(), "not a result of ehlpetsc"),
-        (lambda path: save_restart(path, {"p": X}, {}), "not a result of ehlpetsc"),
-        (lambda path: later_version(path), "format version 2"),
-        (lambda path: without_rows(path), "pressure: damaged, it has no rows"),
+        (lambda path: None, "such file$"),
+        (lambda path: path.write_text("x" * 3000), "r.h5: not an HDF5"),
+        (lambda path: h5py.File(path, "w").close(), "r.h5: an HDF5 .*not a result"),
+        (lambda path: save_restart(path, {"p": X}, {}), "r.h5: an HDF5 .*not a result"),
+        (lambda path: later_version(path), r"version 2, .* 1: "),
+        (lambda path: without_rows(path), "pressure: damaged, .* rows"),
     ],
 )
 def test_foreign_result_files_are_refused(tmp_path, make, message):
@@ -401,20 +401,20 @@ def without_rows(path):
 
 
 @pytest.mark.parametrize(
-    "act, message",
+    "act",
     [
-        (lambda path: check_output_path(path, []), "cannot be read"),
-        (lambda path: check_index(path, "members"), "cannot be read"),
-        (read_result, "not read"),
-        (load_restart, "not read"),
+        lambda path: check_output_path(path, []),
+        lambda path: check_index(path, "members"),
+        read_result,
+        load_restart,
     ],
 )
-def test_inaccessible_folder_is_reported(tmp_path, monkeypatch, act, message):
+def test_inaccessible_folder_is_reported(tmp_path, monkeypatch, act):
     def forbidden(self, **_):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
 
     monkeypatch.setattr(Path, "stat", forbidden)
-    with pytest.raises(OutputError, match=f"r.h5: {message}, Permission denied$"):
+    with pytest.raises(OutputError, match=r"r\.h5: .*, Permission denied$"):
         act(tmp_path / "r.h5")
 
 
@@ -431,13 +431,13 @@ def test_restart_content_round_trip(tmp_path):
 
 def test_restart_faults_are_reported(tmp_path):
     result = written(tmp_path / "r.h5", range(2))
-    with pytest.raises(OutputError, match="not a restart file of this ehlpetsc, but a result file"):
+    with pytest.raises(OutputError, match=r"r\.h5: not a restart .* a result"):
         load_restart(result)
-    with pytest.raises(OutputError, match="No such file or directory"):
+    with pytest.raises(OutputError, match=r"r\.h5: .*, No such file or directory$"):
         save_restart(tmp_path / "no" / "r.h5", {"p": X}, {})
     path = tmp_path / "s.h5"
     save_restart(path, {"p": X}, {"step": 1})
-    with file_size_limit(10_000), pytest.raises(OutputError, match="File too large"):
+    with file_size_limit(10_000), pytest.raises(OutputError, match=r"s\.h5: .*, File too large$"):
         save_restart(path, {"p": np.zeros(100_000)}, {"step": 2})
     assert load_restart(path)[1]["step"] == 1
 

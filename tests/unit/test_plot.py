@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image as image
+from support import is_line_with
 from support.made_results import P0, A, make_result, with_solids
 
 from ehlpetsc.case.loading import Case
@@ -204,7 +205,7 @@ def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
     frames = drawing.choose_frames([fast, slow])
     assert drawing.travel_of(slow)[frames[1]] == pytest.approx(drawing.travel_of(fast)[frames[0]])
     assert drawing.instant([slow, fast], [40, 10]) == "travel 0.67 a"
-    with pytest.raises(OutputError, match="ends at travel 0.6673 a, before travel 2.669 a"):
+    with pytest.raises(OutputError, match=r"5\.0\.h5: .* 0\.6673 a, .* 2\.669 a$"):
         drawing.choose_frames([fast, slow], step=40)
 
 
@@ -237,7 +238,7 @@ def test_derived_files_are_skipped_or_named(tmp_path, result, drawn, capsys):
     capsys.readouterr()
     assert draw(beside[0]) == 2
     message = capsys.readouterr().err
-    assert "a file of post-processing" in message and f"give the result, {tmp_path / 'one.h5'}" in message
+    assert is_line_with(message, f"{beside[0]}: ", f", {tmp_path / 'one.h5'}")
 
 
 def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
@@ -338,23 +339,23 @@ def test_map_includes_contacts_of_skipped_frames(result):
 
 
 @pytest.mark.parametrize(
-    "options, message",
+    "options, parts",
     [
-        (["--around", 40], "fewer than two nodes from 39.75 a to 40.25 a"),
-        (["--step", 99999], "--step 99999; allowed: 0 to 40"),
-        (["--step", -1], "--step -1; allowed: 0 to 40"),
-        (["--time", 1], "--time 1; allowed: 0 to 4e-05 s"),
-        (["--movie", "-o", "movie.avi"], "movie.avi: allowed for -o: a name that ends in .gif, .mp4, .webm"),
-        (["--report", "-o", "page.csv"], "page.csv: allowed for -o: a name that ends in .html, .htm"),
-        (["--stribeck"], "needs a series over motion.entrainment_speed"),
-        (["-o", "/no/where.png"], "No such file or directory"),
-        (["-o", "picture.xyz"], "xyz"),
+        (["--around", 40], [" 39.75 a to 40.25 a"]),
+        (["--step", 99999], ["--step 99999; allowed: 0 to 40"]),
+        (["--step", -1], ["--step -1; allowed: 0 to 40"]),
+        (["--time", 1], ["--time 1; allowed: 0 to 4e-05 s"]),
+        (["--movie", "-o", "movie.avi"], ["movie.avi: ", " .gif, .mp4, .webm"]),
+        (["--report", "-o", "page.csv"], ["page.csv: ", " .html, .htm"]),
+        (["--stribeck"], [" motion.entrainment_speed"]),
+        (["-o", "/no/where.png"], ["/no/where.png: ", "No such file or directory"]),
+        (["-o", "picture.xyz"], ["picture.xyz: "]),
     ],
 )
-def test_plot_faults_are_reported(result, options, message, capsys):
+def test_plot_faults_are_reported(result, options, parts, capsys):
     assert draw(result, *options) == 2
     fault = capsys.readouterr().err
-    assert fault.startswith("ehlpetsc.plot: ") and message in fault
+    assert fault.startswith("ehlpetsc.plot: ") and is_line_with(fault, *parts)
 
 
 @pytest.mark.parametrize(
@@ -366,17 +367,19 @@ def test_picture_never_overwrites_its_input(tmp_path, result, name, kind, capsys
     (tmp_path / "link.gif").symlink_to(path)
     for place in (path, tmp_path / "link.gif") if kind == ["--movie"] else (path,):
         assert draw(path, *kind, "-o", place) == 2
-        assert "is read by this run" in capsys.readouterr().err and path.read_bytes() == before
+        assert (
+            is_line_with(capsys.readouterr().err, f"{place}: ", f"({path})") and path.read_bytes() == before
+        )
 
 
 def test_undrawable_result_is_reported(tmp_path, capsys):
     steady = make_result(tmp_path / "one.h5", steps=1)
     assert draw(steady, "--map") == 2
-    assert "more than one stored frame" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, "one.h5: ", "map", "frame")
     assert draw(steady, "--contacts") == 2
-    assert "no contacts per millisecond" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, "one.h5: ", "steady", "contacts")
     assert draw(make_result(tmp_path / "two.h5", fields=("pressure",))) == 2
-    assert "does not store film_thickness" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, "two.h5: ", " film_thickness")
 
 
 def test_contact_pressure_is_drawn_under_the_total(tmp_path):
@@ -511,12 +514,12 @@ def test_stribeck_means_start_when_the_contact_is_filled(tmp_path, capsys):
     points, short = stribeck.stribeck_points([slow, fast])
     assert ([p.speed for p in points], short) == ([40.0], ["5.0.h5"])  # 40 us are too short for 5 m/s
     assert np.isnan(points[0].scalars["contact_share"].mean)
-    with pytest.raises(OutputError, match="needs a series over motion.entrainment_speed"):
+    with pytest.raises(OutputError, match=r"one result .* motion\.entrainment_speed$"):
         stribeck.stribeck_points([slow])
     unfinished = [read_result(make_result(tmp_path / f"u{u}.h5", speed=u, status="running")) for u in (1, 2)]
-    with pytest.raises(OutputError, match="no member is done yet"):
+    with pytest.raises(OutputError, match="no member .*two or more"):
         stribeck.stribeck_points(unfinished)
-    with pytest.raises(OutputError, match="no member lasts"):
+    with pytest.raises(OutputError, match=r"no member .* time\.travel "):
         stribeck.stribeck_points([slow, read_result(make_result(tmp_path / "4.h5", speed=4.0, rough=True))])
 
 
