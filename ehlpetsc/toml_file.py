@@ -27,10 +27,10 @@ def read_text(path):
         if not str(path):
             raise CaseError(["'': no name of a case file; allowed: a TOML file"])
         with open(path, "rb") as file:  # a device has no size and no end
-            whole = file.read(MAX_BYTES + 1)
-        if len(whole) > MAX_BYTES:
+            content = file.read(MAX_BYTES + 1)
+        if len(content) > MAX_BYTES:
             raise CaseError([f"{path}: larger than {MAX_BYTES >> 20} MB; allowed: a TOML file of a case"])
-        return whole.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:

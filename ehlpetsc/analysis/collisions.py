@@ -92,13 +92,13 @@ def find(results):
     interval = max(float(np.diff(result.time).max()) for result in results)
     points = [_points(result) for result in results]
     labels = _label(points, spacing, interval)
-    at = [_Reader(result) for result in results]
+    readers = [_Reader(result) for result in results]
     collisions = []
     for label in range(1, 1 + max((int(numbers.max(initial=0)) for numbers in labels), default=0)):
         points_of_collision = [
-            (t[own == label], x[own == label]) for (t, x), own in zip(points, labels, strict=True)
+            (t[numbers == label], x[numbers == label]) for (t, x), numbers in zip(points, labels, strict=True)
         ]
-        collisions.append(_collision(points_of_collision, at))
+        collisions.append(_collision(points_of_collision, readers))
     return sorted(collisions, key=lambda collision: collision.time)
 
 
@@ -141,17 +141,17 @@ class _Reader:
         return 0.0 if in_contact(self.result, frame, node) else film, pressure
 
 
-def _collision(parts, at):
-    touching = tuple(bool(len(t)) for t, _ in parts)
+def _collision(points, readers):
+    touching = tuple(bool(len(t)) for t, _ in points)
     first = touching.index(True)
     best, chosen = (-1, -1, -1.0), None
-    for time, x in zip(*parts[first], strict=True):
-        film, pressure = zip(*(read(x, time) for read in at), strict=True)
-        rank = (sum(read.has(time) for read in at), sum(h <= 0.0 for h in film), max(pressure))
+    for time, x in zip(*points[first], strict=True):
+        film, pressure = zip(*(read(x, time) for read in readers), strict=True)
+        rank = (sum(read.has(time) for read in readers), sum(h <= 0.0 for h in film), max(pressure))
         if rank > best:
             best, chosen = rank, (float(x), float(time), film, pressure)
     x, time, film, pressure = chosen
-    times = np.concatenate([t for t, _ in parts])
+    times = np.concatenate([t for t, _ in points])
     return Collision(x, time, float(times.min()), float(times.max()), touching, film, pressure)
 
 

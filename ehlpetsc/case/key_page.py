@@ -122,17 +122,17 @@ def _lines(model, fields):
 
 def page():
     """Markdown page of all keys."""
-    parts = [PAGE, SYMBOLS]
+    texts = [PAGE, SYMBOLS]
     for name, model in tables().items():
         heading = f"`[{name}]`" if name else "Above all tables"
         equations = any(_equation(model, field) for field in _keys(model))
         head = ["key", "takes", "default", *["equation"] * equations]
-        parts.append(f"\n## {heading}\n\n{_row(head)}{'|---' * len(head)}|\n")
+        texts.append(f"\n## {heading}\n\n{_row(head)}{'|---' * len(head)}|\n")
         for field in _keys(model):
             cells = [f"`{field.alias}`", allowed(field), _default(field)]
             cells += [_equation(model, field)] * equations
-            parts.append(_row([cell.replace("|", r"\|").replace("*", r"\*") for cell in cells]))
-    return "".join(parts)
+            texts.append(_row([cell.replace("|", r"\|").replace("*", r"\*") for cell in cells]))
+    return "".join(texts)
 
 
 def _row(cells):

@@ -18,8 +18,8 @@ def toml_text(tables):
     simple = [f"{_key(k)} = {_value(v)}\n" for k, v in tables.items() if not isinstance(v, dict)]
     headed = [(k, v) for k, v in tables.items() if isinstance(v, dict)]
     sections = ["".join(f"{_key(k)} = {_value(v)}\n" for k, v in table.items()) for _, table in headed]
-    parts = [f"\n[{_key(name)}]\n{text}" for (name, _), text in zip(headed, sections, strict=True)]
-    return "".join(simple + parts)
+    headed_tables = [f"\n[{_key(name)}]\n{text}" for (name, _), text in zip(headed, sections, strict=True)]
+    return "".join(simple + headed_tables)
 
 
 def _key(name):

@@ -56,15 +56,15 @@ def exponentials(kernel, nearest, tolerance=TOLERANCE):
     far = kernel[nearest:]
     if len(far) == 0:
         return np.zeros(0), np.zeros(0)
-    some = np.unique(np.geomspace(1, len(far), SAMPLES).astype(int)) - 1
+    sampled = np.unique(np.geomspace(1, len(far), SAMPLES).astype(int)) - 1
     a, fastest = LINEAR_RATES / len(kernel), (CUT_OFF - np.log(tolerance)) / (nearest - 2)
     length = np.log1p(fastest / a)
     for terms in itertools.count(MIN_TERMS):
-        places, weights = np.polynomial.legendre.leggauss(terms)
-        t = a * np.expm1(0.5 * length * (1.0 + places))
+        abscissae, weights = np.polynomial.legendre.leggauss(terms)
+        t = a * np.expm1(0.5 * length * (1.0 + abscissae))
         weights = weights * 0.5 * length * (a + t) * t * (np.sinh(0.5 * t) / (0.5 * t)) ** 4
         weights *= np.exp(-nearest * t)
-        if np.abs(np.exp(-np.outer(some, t)) @ weights / far[some] - 1.0).max() < tolerance:
+        if np.abs(np.exp(-np.outer(sampled, t)) @ weights / far[sampled] - 1.0).max() < tolerance:
             return t, weights
 
 

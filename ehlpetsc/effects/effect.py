@@ -231,8 +231,8 @@ def unflat(kind, values, name):
 
 
 def _checked(value, kind, path):
-    whole = kind is int
-    if value.dtype.kind != ("i" if whole else "f") or (kind is np.ndarray) != bool(value.ndim):
+    is_integer = kind is int
+    if value.dtype.kind != ("i" if is_integer else "f") or (kind is np.ndarray) != bool(value.ndim):
         raise ValueError(f"{path} is of the type {value.dtype} with {value.ndim} dimensions")
     if not np.isfinite(value).all():
         raise ValueError(f"{path} is not finite")

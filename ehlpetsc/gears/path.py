@@ -142,8 +142,8 @@ def pair_of(gears):
             except (TypeError, ValueError):
                 values[key] = [np.nan]
             lowest = 0.0 if key == "tip_relief" else np.nextafter(0.0, 1.0)
-            whole = key != "teeth" or np.array_equal(values[key], np.round(values[key]))
-            if not (np.isfinite(values[key]).all() and min(values[key]) >= lowest and whole):
+            is_whole = key != "teeth" or np.array_equal(values[key], np.round(values[key]))
+            if not (np.isfinite(values[key]).all() and min(values[key]) >= lowest and is_whole):
                 kind = ("two " if count == 2 else "a ") + ("whole number" if key == "teeth" else "number")
                 faults.append(f"gears.{key} = {value}: allowed: {kind}{'s' * (count == 2)} > 0")
             values[key] = tuple(values[key]) if count == 2 else values[key][0]

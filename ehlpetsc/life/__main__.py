@@ -99,10 +99,10 @@ def _run_lives(chosen):
 
     comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)
     path = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
-    made = index_of(path) if case.series else path
+    output = index_of(path) if case.series else path
     is_root = comm.rank == 0
-    if made.name and not chosen.no_picture:
-        on_root(comm, _pictures, chosen, made, inputs_of(case))
+    if output.name and not chosen.no_picture:
+        on_root(comm, _pictures, chosen, output, inputs_of(case))
     if case.series and chosen.after:
         raise UsageError(f"--after {chosen.after}: of a life; allowed with a series: left out")
 
@@ -115,8 +115,8 @@ def _run_lives(chosen):
         run_regimes(case, path, **shared)
     else:
         run_life(case, path, after=chosen.after, **shared)
-    show(str(made))
-    return made, is_root
+    show(str(output))
+    return output, is_root
 
 
 if __name__ == "__main__":

@@ -155,13 +155,13 @@ def orthonormalise(v, new, column, sums, rank, collective):
     for _ in range(2):
         np.dot(v[: new + 1], w, out=mine[: new + 1])
         exchange(collective, sums)
-        whole = square = sums[:, new].sum()
+        square_before = square = sums[:, new].sum()
         for i in range(new):
             mine[i] = sums[:, i].sum()
             column[i] += mine[i]
             square -= mine[i] * mine[i]
         w -= np.dot(mine[:new], v[:new])
-        if square > CANCELLED * whole:
+        if square > CANCELLED * square_before:
             break
     norm = np.sqrt(max(square, 0.0)) if square == square else square
     if norm > 0.0:

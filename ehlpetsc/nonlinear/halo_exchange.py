@@ -91,17 +91,17 @@ def exchange_unknowns(
     load : ndarray, shape (4,)
         As of `deflection.PressureSums`, and the number of ranks with the flag.
     """
-    mine, last, own = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)]
+    mine, last, local_unknowns = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)]
     np.dot(load_weights, pressure, out=mine[LOAD : LOAD + 3])
     mine[LOAD + 3] = flag
     mine[LOAD - 1] = vector[-1]  # h00 on the last rank
     pack(rank, matrices, room, pressure, mine[BEHIND_LOAD:])
-    nodes = own.reshape(-1, 2)
+    nodes = local_unknowns.reshape(-1, 2)
     if last > 0:
-        mine[:EDGE], mine[EDGE : 2 * EDGE] = own[:EDGE], own[-EDGE:]
+        mine[:EDGE], mine[EDGE : 2 * EDGE] = local_unknowns[:EDGE], local_unknowns[-EDGE:]
         exchange(collective, messages)
         nodes, unknowns, first = window, window.ravel(), EDGE if rank > 0 else 0
-        unknowns[first : first + len(own)] = own
+        unknowns[first : first + len(local_unknowns)] = local_unknowns
         if rank > 0:
             unknowns[:EDGE] = messages[rank - 1, EDGE : 2 * EDGE]
         if rank < last:

@@ -41,21 +41,21 @@ def petsc_message(error):
     return str(error).splitlines()[-1].split("] ")[-1]
 
 
-def check_options(options, own):
+def check_options(options, program_count):
     """Refuse options that PETSc would accept although they fail later or end the process.
 
     Parameters
     ----------
     options : dict of str to str
         Options of the user.
-    own : int
+    program_count : int
         Number of options that the program sets.
 
     Raises
     ------
     UsageError
     """
-    if len(options) + own > MAX_OPTIONS:
+    if len(options) + program_count > MAX_OPTIONS:
         raise UsageError(
             f"{len(options)} options for PETSc, whose table holds {MAX_OPTIONS} with the program's own; "
             "give fewer"
@@ -73,10 +73,10 @@ def _check_class(path):
     """Refuse a class that is not a preconditioner, which PETSc would notice during the first solve."""
     module, _, name = path.rpartition(".")
     try:
-        made = getattr(importlib.import_module(module), name)()
+        preconditioner = getattr(importlib.import_module(module), name)()
     except Exception as error:
         raise UsageError(f"-pc_python_type {path}: {error}; allowed: a class, package.module.Class") from None
-    if not callable(getattr(made, "apply", None)):
+    if not callable(getattr(preconditioner, "apply", None)):
         raise UsageError(f"-pc_python_type {path}: has no method apply(pc, x, y), as a preconditioner has")
 
 
@@ -91,10 +91,12 @@ def loose_tolerances(values, atol):
         Default of ``-snes_atol``.
     """
     lines = []
-    for name, own in {"snes_atol": atol, **DEFAULT_TOLERANCES}.items():
-        value = _number(values.get(name, own))
-        if value is not None and value > own:
-            lines.append(f"-{name} {value:g} is looser than the program's {own:g}: results are less certain")
+    for name, default in {"snes_atol": atol, **DEFAULT_TOLERANCES}.items():
+        value = _number(values.get(name, default))
+        if value is not None and value > default:
+            lines.append(
+                f"-{name} {value:g} is looser than the program's {default:g}: results are less certain"
+            )
     return lines
 
 

@@ -16,14 +16,14 @@ def owned(owner, *objects):
 
     Destroyed by PetscFinalize they would call Python objects that no longer exist.
     """
-    made = list(objects)
-    weakref.finalize(owner, _destroy, made)
-    return made
+    petsc_objects = list(objects)
+    weakref.finalize(owner, _destroy, petsc_objects)
+    return petsc_objects
 
 
-def _destroy(made):
-    while made:
-        made.pop().destroy()
+def _destroy(petsc_objects):
+    while petsc_objects:
+        petsc_objects.pop().destroy()
 
 
 def create(comm, kind, f, function, pre_check, user_options):

@@ -51,10 +51,10 @@ def draw_case(path, overrides=()):
 
 def conditions(case, scales):
     """Text with half-width, Hertz pressure and speeds."""
-    parts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
+    texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.motion:
-        parts.append(f"u = {scales.u:g} m/s, slide/roll ratio {scales.xi:g}")
-    return ", ".join(parts)
+        texts.append(f"u = {scales.u:g} m/s, slide/roll ratio {scales.xi:g}")
+    return ", ".join(texts)
 
 
 def passing(profile, case, scales):

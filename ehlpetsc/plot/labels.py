@@ -87,20 +87,20 @@ def title(results):
 def _conditions(result):
     case, attrs = tomllib.loads(str(result.attrs["case"])), result.attrs
     motion, fluid = case.get("motion", {}), case.get("fluid", {})
-    parts = []
+    texts = []
     if "operation" in case or "gears" in case:
-        parts.append("conditions over time")
+        texts.append("conditions over time")
     elif "entrainment_speed" in motion:
-        parts += [
+        texts += [
             f"u = {motion['entrainment_speed']:g} m/s",
             f"slide/roll ratio {motion.get('slide_roll_ratio', 0.0):g}",
         ]
-    parts += [f"a = {1e3 * attrs['a']:.3g} mm", f"p0 = {1e-9 * attrs['p0']:.3g} GPa"]
+    texts += [f"a = {1e3 * attrs['a']:.3g} mm", f"p0 = {1e-9 * attrs['p0']:.3g} GPa"]
     if "viscosity" in fluid:
-        parts.append(f"oil {1e3 * fluid['viscosity']:g} mPa s")
+        texts.append(f"oil {1e3 * fluid['viscosity']:g} mPa s")
     elif not fluid:
-        parts.append("dry")
-    return parts
+        texts.append("dry")
+    return texts
 
 
 def share_hertz_contact(results):

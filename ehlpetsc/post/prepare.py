@@ -152,15 +152,15 @@ def _warn(loads, gaps, motions, complete, report):
 
 def _travel_needed(loads, surface, why, passed=0.0):
     """Text of the travel for `passed` half widths of a surface to cross the mesh; "" if it hardly moves."""
-    way, longest = (abs(w[-1] - w[0]) for w in (loads.travelled[surface], _longest(loads)))
-    if way < MIN_SPEED * longest:
+    distance, longest = (abs(w[-1] - w[0]) for w in (loads.travelled[surface], _longest(loads)))
+    if distance < MIN_SPEED * longest:
         return ""
     width = (loads.x[-1] - loads.x[0]) / loads.a + passed
-    return f"; time.travel = {np.ceil(10 * width * longest / way + 0.5) / 10:g} or more {why}"
+    return f"; time.travel = {np.ceil(10 * width * longest / distance + 0.5) / 10:g} or more {why}"
 
 
 def _longest(loads):
-    return max(loads.travelled.values(), key=lambda way: abs(way[-1] - way[0]))
+    return max(loads.travelled.values(), key=lambda distances: abs(distances[-1] - distances[0]))
 
 
 def _report_gaps(loads, gaps, motions, complete, report):
@@ -170,15 +170,15 @@ def _report_gaps(loads, gaps, motions, complete, report):
     frame = gaps.after[0]
     where = f"after step {loads.step[frame]}"
     positions = f"{gaps.after.size} places, first" if gaps.after.size > 1 else "one place,"
-    what = f"{gaps.missing.sum()} frames are missing in {positions} {where}"
+    lost = f"{gaps.missing.sum()} frames are missing in {positions} {where}"
     if not any(motion.complete.any() for motion in complete.values()):
         raise PostError(
-            f"{what}, while every point that passed was in the contact: peaks are lost, so no damage is given"
+            f"{lost}, while every point that passed was in the contact: peaks are lost, so no damage is given"
         )
     for surface, motion in motions.items():
         passed, left = motion.complete.sum(), complete[surface].complete.sum()
         if left < passed:
             report(
-                f"warning: {what}: {passed - left} of {passed} points of surface {surface} were in the "
+                f"warning: {lost}: {passed - left} of {passed} points of surface {surface} were in the "
                 f"contact then; their damage is nan (damage/{surface}_missed)"
             )

@@ -24,14 +24,14 @@ class _Note:
     def __init__(self):
         self._shared, self._count = mmap.mmap(-1, 1024), 0
 
-    def write(self, what):
-        """`what` is being read; empty: nothing."""
-        text = what.encode(errors="replace")[: len(self._shared) - NOTE_HEADER.size]
+    def write(self, dataset):
+        """`dataset` is being read; empty: none."""
+        text = dataset.encode(errors="replace")[: len(self._shared) - NOTE_HEADER.size]
         self._count += 1
         self._shared[: NOTE_HEADER.size + len(text)] = NOTE_HEADER.pack(self._count, len(text)) + text
 
     def read(self):
-        """(count, what)."""
+        """(count, dataset)."""
         count, size = NOTE_HEADER.unpack(self._shared[: NOTE_HEADER.size])
         return count, self._shared[NOTE_HEADER.size : NOTE_HEADER.size + size].decode(errors="replace")
 
@@ -126,17 +126,17 @@ class SubprocessGuard:
         return False
 
     def _explain(self, name, status, note, hung):
-        what = note.read()[1]
+        dataset = note.read()[1]
         if self._asked:
             return ExitStatus.STOPPED
         if status >= 0:
             return status
         if hung:
-            self.say(f"{name}: {what}: HDF5 does not return from reading it, the file is damaged")
+            self.say(f"{name}: {dataset}: HDF5 does not return from reading it, the file is damaged")
             return ExitStatus.BAD_INPUT
         killed_by = signal.Signals(-status).name
-        if what and -status != signal.SIGKILL:
-            self.say(f"{name}: {what}: HDF5 crashes on it ({killed_by}), the file is damaged")
+        if dataset and -status != signal.SIGKILL:
+            self.say(f"{name}: {dataset}: HDF5 crashes on it ({killed_by}), the file is damaged")
             return ExitStatus.BAD_INPUT
         if -status == signal.SIGKILL:
             self.say(f"{name}: killed, as when memory runs out; the same command continues from there")

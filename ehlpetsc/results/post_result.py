@@ -13,7 +13,7 @@ from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.hdf5.opening import open_for_reading
 
 SURFACES = ("2", "1")
-BOUNDS = tuple(f"{name}_{what}" for name in ("alpha", "beta") for what in ("likelihood", "low", "high"))
+BOUNDS = tuple(f"{name}_{kind}" for name in ("alpha", "beta") for kind in ("likelihood", "low", "high"))
 
 
 class WeibullFit(NamedTuple):

@@ -34,10 +34,10 @@ def advected(values, nodes):
     asperities, two or three nodes wide, a cubic undershoots, and the resulting cavity costs Newton's method
     iterations.
     """
-    whole, last, moved = int(np.floor(nodes)), len(values) - 1, np.empty_like(values)
-    t = 1.0 - (nodes - whole)
+    shift, last, moved = int(np.floor(nodes)), len(values) - 1, np.empty_like(values)
+    t = 1.0 - (nodes - shift)
     for i in range(len(values)):
-        k = i - whole - 1
+        k = i - shift - 1
         a, b = values[min(max(k - 1, 0), last)], values[min(max(k, 0), last)]
         c, d = values[min(max(k + 1, 0), last)], values[min(max(k + 2, 0), last)]
         value = (

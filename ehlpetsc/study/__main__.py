@@ -37,11 +37,11 @@ def arguments():
     add("case", nargs="?", help="case file")
     shared = "change of the case that all runs share; may be repeated"
     add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=shared)
-    for name, (kind, default, what) in VALUE_LISTS.items():
+    for name, (kind, default, text) in VALUE_LISTS.items():
         shown = " ".join(f"{value:g}" for value in default)
-        add(name, type=kind, nargs="+", default=default, metavar="N", help=f"{what} (default: {shown})")
-    for name, what in SWITCHES.items():
-        add(name, action="store_true", help=what)
+        add(name, type=kind, nargs="+", default=default, metavar="N", help=f"{text} (default: {shown})")
+    for name, text in SWITCHES.items():
+        add(name, action="store_true", help=text)
     models = ["direct", "mixed", "compliant"]
     shown = "contact models (default: direct mixed); compliant: with --extremes"
     add("--models", nargs="+", choices=models, default=models[:2], help=shown)

@@ -50,9 +50,9 @@ def cases(short=False, far=False, model=None):
 def _of_model(case, model):
     chosen = (f"contact.model={LAWS.get(model, model)}",)
     chosen += (LAYER,) if model == "compliant" else ()
-    own = any(override.startswith("contact.model") for override in case.overrides)
+    sets_model = any(override.startswith("contact.model") for override in case.overrides)
     before = case.before and (*chosen, *case.before)
-    return case if own else replace(case, overrides=(*chosen, *case.overrides), before=before)
+    return case if sets_model else replace(case, overrides=(*chosen, *case.overrides), before=before)
 
 
 def _shortened(case):

@@ -88,8 +88,8 @@ def _running_median(z, window):
     if size == 1:
         return median_filter(z, window, mode="mirror")
     block_count = z.size // size
-    parts = np.median(z[: block_count * size].reshape(block_count, size), axis=1)
-    return median_filter(parts, window // size | 1, mode="mirror")[
+    block_medians = np.median(z[: block_count * size].reshape(block_count, size), axis=1)
+    return median_filter(block_medians, window // size | 1, mode="mirror")[
         np.minimum(np.arange(z.size) // size, block_count - 1)
     ]
 

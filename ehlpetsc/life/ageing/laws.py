@@ -121,14 +121,14 @@ def broken_out(damage, edges, recession):
     """
     from scipy.ndimage import label
 
-    there = edges[1:, None] > recession
-    failed = there & (damage >= 1.0)
+    remains = edges[1:, None] > recession
+    failed = remains & (damage >= 1.0)
     if not failed.any():
         return np.array(recession, float)
-    numbers, _ = label(there & (damage >= WEAKENED_DAMAGE))
-    top = there.argmax(axis=0)
+    numbers, _ = label(remains & (damage >= WEAKENED_DAMAGE))
+    top = remains.argmax(axis=0)
     columns = np.arange(damage.shape[1])
-    at_surface = numbers[top, columns][there.any(axis=0)]
+    at_surface = numbers[top, columns][remains.any(axis=0)]
     breaks = np.isin(numbers, np.intersect1d(at_surface, numbers[failed]))
     bottom = np.where(breaks, edges[1:, None], 0.0).max(axis=0)
     return np.maximum(bottom, recession)

@@ -89,7 +89,7 @@ class Positions:
         averaged = FLANK_END_LENGTH * self.scales.a if self._are_flanks else np.inf
         fields = []
         for k, body in enumerate(bodies):
-            faces = np.concatenate([scene.mesh_on_bodies.faces(way)[k][[0, -1]] for way in ends])
+            faces = np.concatenate([scene.mesh_on_bodies.faces(travelled)[k][[0, -1]] for travelled in ends])
             stretch = self._stretch(body, k, position)
             fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged))
         records = {"wear": WearRecord(BodyFields(*fields), BodyFields.zero(self.scales.dx))}

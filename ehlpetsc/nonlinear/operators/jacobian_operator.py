@@ -135,10 +135,10 @@ class NearFieldMatrix:
         """Columns of the local deflection rows; -1: no entry."""
         p, n = self.problem, self.problem.n
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-self.near_field, self.near_field + 1)
-        self.there = (nodes >= 0) & (nodes < n)
+        self.on_mesh = (nodes >= 0) & (nodes < n)
         self.nodes = np.clip(nodes, 0, n - 1)
-        by_q = np.where(self.there, q_index(self.nodes), -1)
-        by_w = np.where(self.there, w_index(self.nodes), -1)
+        by_q = np.where(self.on_mesh, q_index(self.nodes), -1)
+        by_w = np.where(self.on_mesh, w_index(self.nodes), -1)
         approach = np.full((p.local, 1), -1)
         for end in p.deflection.ends:
             approach[end - p.first] = n_dofs(n)
@@ -207,6 +207,6 @@ def python_matrix(context, sizes, comm):
         Rows on this rank, and of all ranks.
     comm : petsc4py.PETSc.Comm
     """
-    made = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
-    made.setUp()
-    return made
+    matrix = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
+    matrix.setUp()
+    return matrix

@@ -211,12 +211,12 @@ class BandedJacobian:
         changed = np.ones(len(pressure), dtype=bool)
         if before is not None:
             changed = np.any([now != old for now, old in zip(entries[:3], before[:3], strict=True)], axis=0)
-        some = np.flatnonzero(changed[self.film_nodes])
-        self.values[self.film_place[some]] = self.by_film[some] * film[self.film_nodes[some]]
-        some = np.flatnonzero(changed[self.pressure_nodes])
-        node = self.pressure_nodes[some]
-        values = self.by_pressure[some] * pressure[node] + self.by_depth[some] * depth[node]
-        self.values[self.pressure_place[some]] = values
+        stale = np.flatnonzero(changed[self.film_nodes])
+        self.values[self.film_place[stale]] = self.by_film[stale] * film[self.film_nodes[stale]]
+        stale = np.flatnonzero(changed[self.pressure_nodes])
+        node = self.pressure_nodes[stale]
+        values = self.by_pressure[stale] * pressure[node] + self.by_depth[stale] * depth[node]
+        self.values[self.pressure_place[stale]] = values
         pressure, depth, changed = (array[self.problem.owned] for array in (pressure, depth, changed))
         local = np.flatnonzero(changed)
         self.values[self.diagonal[local]] += pivot_regularisation(pressure[local], depth[local])

@@ -44,9 +44,9 @@ def exponentials(shortest, longest):
     y = high - STEP * np.arange(count)
     rates, weights = np.exp(y), STEP / np.pi * np.exp(0.5 * y)
     # geometric series of the weights and of the first moments of all slower terms
-    half, whole = np.exp(-0.5 * STEP), np.exp(-1.5 * STEP)
-    weight = weights[-1] * half / (1.0 - half)
-    rate = rates[-1] * whole / (1.0 - whole) * (1.0 - half) / half
+    weight_ratio, moment_ratio = np.exp(-0.5 * STEP), np.exp(-1.5 * STEP)
+    weight = weights[-1] * weight_ratio / (1.0 - weight_ratio)
+    rate = rates[-1] * moment_ratio / (1.0 - moment_ratio) * (1.0 - weight_ratio) / weight_ratio
     return tuple(np.append(rates, rate)), tuple(np.append(weights, weight))
 
 

@@ -211,8 +211,8 @@ def binned(values, width, reduce):
     if width == 1:
         return values
     short = -len(values) % width
-    whole = np.concatenate([values, np.repeat(values[-1:], short)])
-    return reduce(whole.reshape(-1, width), axis=-1)
+    padded = np.concatenate([values, np.repeat(values[-1:], short)])
+    return reduce(padded.reshape(-1, width), axis=-1)
 
 
 def _packed(values, kind=np.float32):

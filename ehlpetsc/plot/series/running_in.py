@@ -58,14 +58,14 @@ def draw_surface(axes, results):
     """Draw the surface with the deepest indentation: original, after the first and after the last pass."""
     sides = [side for side in ("1", "2") if heights(results[-1], side) is not None]
     side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
-    s, made, last = heights(results[-1], side)
+    s, original, last = heights(results[-1], side)
     first = heights(results[0], side)[2]
     a = results[0].attrs["a"]
-    in_view = np.abs(s - s[np.argmax(made - last)]) <= 0.5 * PROFILE_WIDTH * a
+    in_view = np.abs(s - s[np.argmax(original - last)]) <= 0.5 * PROFILE_WIDTH * a
     forward = results[0].attrs["u1" if side == "1" else "u2"] > 0.0
     abscissa = 1e3 * (s.max() - s if forward else s - s.min())
     for z, colour, name, style in (
-        (made, "k", "before", ":"),
+        (original, "k", "before", ":"),
         (first, FIRST_COLOUR, "after pass 1", "-"),
         (last, LAST_COLOUR, f"after pass {len(results)}", "-"),
     ):

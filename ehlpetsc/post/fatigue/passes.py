@@ -52,13 +52,13 @@ def pass_statistics(damages):
         raise ValueError("there must be one pass or more")
     if (damages < 0).any():
         raise ValueError("damages must not be negative")
-    there = ~np.isnan(damages)
-    count = there.sum(axis=0)
+    passed = ~np.isnan(damages)
+    count = passed.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.where(there, damages, 0).sum(axis=0) / count
-        squares = np.where(there, (damages - mean) ** 2, 0).sum(axis=0)
+        mean = np.where(passed, damages, 0).sum(axis=0) / count
+        squares = np.where(passed, (damages - mean) ** 2, 0).sum(axis=0)
         deviation = np.where(count > 1, np.sqrt(squares / (count - 1)), np.nan)
-        largest = np.where(count > 0, np.where(there, damages, -np.inf).max(axis=0), np.nan)
+        largest = np.where(count > 0, np.where(passed, damages, -np.inf).max(axis=0), np.nan)
         return Passes(mean, deviation, largest, count, 1 / mean)
 
 

@@ -41,9 +41,9 @@ def _derivatives(z, kind):
 def _log_likelihood(z, kind, slope, exact):
     hazard = np.exp(np.minimum(z, 700.0))
     below = kind < 0
-    parts = np.where(kind == 0, z - hazard, -hazard)
-    parts[below] = np.log(-np.expm1(-hazard[below]))
-    return exact * np.log(slope) + parts.sum()
+    terms = np.where(kind == 0, z - hazard, -hazard)
+    terms[below] = np.log(-np.expm1(-hazard[below]))
+    return exact * np.log(slope) + terms.sum()
 
 
 def weibull_likelihood(values):

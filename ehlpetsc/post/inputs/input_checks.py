@@ -59,11 +59,11 @@ def _check_finite(loads, name, first, rows, sums):
     wrong = np.argwhere(~np.isfinite(rows))
     if len(wrong):
         frame, node = wrong[0]
-        what = rows[frame, node]
+        shown = rows[frame, node]
     else:
         frame, node = np.unravel_index(np.abs(rows).argmax(), rows.shape)
-        what = f"{rows[frame, node]:.3g}"
+        shown = f"{rows[frame, node]:.3g}"
     raise PostError(
-        f"dataset {name} is {what} at frame {first + frame} (t = {loads.time[first + frame]:.6g} s), "
+        f"dataset {name} is {shown} at frame {first + frame} (t = {loads.time[first + frame]:.6g} s), "
         f"x/a = {loads.x[node] / loads.a:.4g}"
     )

@@ -64,9 +64,9 @@ DESCRIPTIONS = {
 }
 
 
-def fingerprint(*parts):
+def fingerprint(*items):
     """Hash of all inputs of a result: digest of the loads, settings, version of the program."""
-    return hashlib.sha256(json.dumps([__version__, FORMAT_VERSION, parts], default=repr).encode()).hexdigest()
+    return hashlib.sha256(json.dumps([__version__, FORMAT_VERSION, items], default=repr).encode()).hexdigest()
 
 
 def check_output(path, inputs):

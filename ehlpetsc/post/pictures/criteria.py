@@ -69,8 +69,8 @@ def _row(figure, row, result, surface, name, values, ends, levels):
         _map(left, result, surface, values, ends, levels, NAMES[name])
     for k, colour in enumerate(_colours(result.z)):
         x, y = paper[k, complete], values[k, complete]
-        there = (x > 0) & (y > 0)
-        right.plot(x[there], y[there], ".", ms=1.5, color=colour, rasterized=True)
+        positive = (x > 0) & (y > 0)
+        right.plot(x[positive], y[positive], ".", ms=1.5, color=colour, rasterized=True)
     right.set_xscale("log")
     right.set_yscale("log")
     if name != "dang-van":

@@ -79,19 +79,19 @@ class StressField:
         q = None if shear is None else fft.rfft(shear, self.n)[..., None, :]
         fields = np.empty((3, *p.shape[:-2], len(self.depths), self.nx))
         for first in range(0, len(self.depths), DEPTHS_AT_ONCE):
-            some = slice(first, first + DEPTHS_AT_ONCE)
-            fields[..., some, :] = fft.irfft(self._spectra(some, p, q), self.n, overwrite_x=True)[
+            block = slice(first, first + DEPTHS_AT_ONCE)
+            fields[..., block, :] = fft.irfft(self._spectra(block, p, q), self.n, overwrite_x=True)[
                 ..., : self.nx
             ]
         self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
         return fields[0], fields[1], fields[2]
 
-    def _spectra(self, some, p, q):
+    def _spectra(self, block, p, q):
         """Spectra (3, ..., depths, f) of the stresses at some depths."""
-        normal, cross, along = self.normal[some], self.cross[some], self.along[some]
+        normal, cross, along = self.normal[block], self.cross[block], self.along[block]
         out = np.stack([along * p, normal * p, cross * p])
         if q is not None:
-            out[0] += self.shear[some] * q
+            out[0] += self.shear[block] * q
             out[1] += cross * q
             out[2] += along * q
         return out

@@ -158,8 +158,8 @@ def _scaled(scalars):
     """Columns and scaled values of the scalars of a step."""
     for name, column in _COLUMNS.items():
         if name in scalars:
-            whole = STEP_SCALARS[name].dtype[0] == "i"
-            yield column, int(scalars[name]) if whole else column.factor * scalars[name]
+            is_integer = STEP_SCALARS[name].dtype[0] == "i"
+            yield column, int(scalars[name]) if is_integer else column.factor * scalars[name]
 
 
 def _heading(scalars):

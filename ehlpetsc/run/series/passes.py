@@ -138,8 +138,8 @@ class Passes:
         try:
             atomic_write(self.index, text.encode())
         except OSError as error:
-            whole = f"{self.file(number).name} is whole"
-            raise OutputError(f"{self.index}: index not written, {error.strerror}; {whole}") from error
+            pass_state = f"{self.file(number).name} is whole"
+            raise OutputError(f"{self.index}: index not written, {error.strerror}; {pass_state}") from error
         self._print(line(row))
 
     def _print_end(self):
@@ -160,12 +160,12 @@ class Passes:
 
 def line(row):
     """Printed line of a pass."""
-    parts = [
+    texts = [
         f"pass {row['pass']}: set {1e12 * row['set_volume']:.4g} um^2, added {1e12 * row['added']:.4g} um^2"
     ]
     for side in ("1", "2"):
         if row[side]:
-            parts.append(f"Ra {side} {1e6 * row[side]['ra']:.4f} um")
+            texts.append(f"Ra {side} {1e6 * row[side]['ra']:.4f} um")
     if row.get("contact_share") is not None:
-        parts.append(f"share on solids {row['contact_share']:.4f}")
-    return ", ".join(parts)
+        texts.append(f"share on solids {row['contact_share']:.4f}")
+    return ", ".join(texts)

@@ -214,21 +214,21 @@ def _filled(x, z, longest, notes):
     """Profile with missing heights filled by the spline, and cut off at its ends."""
     from scipy.interpolate import CubicSpline
 
-    there = np.flatnonzero(~np.isnan(z))
-    missing = z.size - there.size
-    if there.size < 4:
-        raise ProfileError(f"{there.size} heights are not missing; allowed: at least 4")
-    gaps = np.diff(x[there]) * (np.diff(there) > 1)
-    ends = max(x[there[0]] - x[0], x[-1] - x[there[-1]])
+    present = np.flatnonzero(~np.isnan(z))
+    missing = z.size - present.size
+    if present.size < 4:
+        raise ProfileError(f"{present.size} heights are not missing; allowed: at least 4")
+    gaps = np.diff(x[present]) * (np.diff(present) > 1)
+    ends = max(x[present[0]] - x[0], x[-1] - x[present[-1]])
     widest = max(gaps.max(), ends)
     if longest is None or widest > longest:
-        worst = x[there[gaps.argmax()]] if gaps.max() >= ends else x[0] if there[0] else x[there[-1]]
+        worst = x[present[gaps.argmax()]] if gaps.max() >= ends else x[0] if present[0] else x[present[-1]]
         raise ProfileError(
             f"{missing} heights missing, the longest gap {widest:.3g} m behind x = {worst:g}; "
             f"write fill_gaps = {widest * 1.01:.2g} or more to have the spline bridge gaps of that length [m]"
         )
-    inside = slice(there[0], there[-1] + 1)
+    inside = slice(present[0], present[-1] + 1)
     notes.append(
         f"{missing} missing heights filled or, at the ends, cut off; longest gap {1e6 * widest:.3g} um"
     )
-    return x[inside], CubicSpline(x[there], z[there])(x[inside])
+    return x[inside], CubicSpline(x[present], z[present])(x[inside])
