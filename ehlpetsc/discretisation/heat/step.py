@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.heat.bodies import Body
 from ehlpetsc.discretisation.heat.film import faces
 from ehlpetsc.discretisation.heat.mixing import mixing
@@ -51,7 +52,7 @@ class HeatStep:
         self.bodies = [Body(solid, u, s, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
         self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
         # of films that close the shear would heat without limit, and not at all once they are closed
-        self.thinnest = MOLECULES if case.contact.model == "direct" else 0.0
+        self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
         self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
         self.coldest = min(self.inlet, *self.bulk)
         self._film_law = None, None
