@@ -17,7 +17,7 @@ class Field:
     long_name : str
         Name for axes and headings.
     dims : tuple of str
-        Names of the dimension scales, each beside the dataset or in a group above it.
+        Names of the dimension scales, each in the group of the dataset or in one above it.
     dtype : str
         Type on disk; fields may be stored as float32 on request.
     only : str

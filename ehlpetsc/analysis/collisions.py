@@ -112,11 +112,13 @@ def _label(points, spacing, interval):
     from scipy.ndimage import binary_dilation, label
 
     cells = [(np.rint(t / interval).astype(int), np.rint(x / spacing).astype(int)) for t, x in points]
-    every = [np.concatenate(indices) for indices in zip(*cells, strict=True)]
-    if not len(every[0]):
+    all_indices = [np.concatenate(indices) for indices in zip(*cells, strict=True)]
+    if not len(all_indices[0]):
         return [np.empty(0, int) for _ in points]
-    low = [indices.min() for indices in every]
-    grid = np.zeros([indices.max() - least + 1 for indices, least in zip(every, low, strict=True)], bool)
+    low = [indices.min() for indices in all_indices]
+    grid = np.zeros(
+        [indices.max() - lowest + 1 for indices, lowest in zip(all_indices, low, strict=True)], bool
+    )
     for row, column in cells:
         grid[row - low[0], column - low[1]] = True
     numbers, _ = label(binary_dilation(grid, np.ones((2 * MAX_INTERRUPTION - 1, 3))), np.ones((3, 3)))

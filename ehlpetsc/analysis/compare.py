@@ -134,14 +134,14 @@ def _scalar(result, name, times):
 
 def _curves(difference, values, x=None, time=None):
     one, other = values
-    apart = np.abs(one - other)
-    apart[np.isnan(one) & np.isnan(other)] = 0.0
-    worst = int(np.argmax(apart))  # a nan counts as the greatest
+    deviation = np.abs(one - other)
+    deviation[np.isnan(one) & np.isnan(other)] = 0.0
+    worst = int(np.argmax(deviation))  # a nan counts as the greatest
     return replace(
         difference,
         scale=float(np.nanmax(np.abs(values), initial=0.0)),
-        greatest=float(apart[worst]),
-        rms=float(np.sqrt(np.mean(apart**2))),
+        greatest=float(deviation[worst]),
+        rms=float(np.sqrt(np.mean(deviation**2))),
         x=None if x is None else float(x[worst]),
         time=None if time is None else float(time[worst]),
     )
@@ -158,13 +158,13 @@ def _field(one, other, name, x, times, by_node):
         values = [reader(rows) for reader in readers]
         if not by_node:
             values = [v.mean(axis=1, keepdims=True) for v in values]
-        apart = np.abs(values[0] - values[1])
-        apart[np.isnan(values[0]) & np.isnan(values[1])] = 0.0
-        square += float(np.sum(apart**2)) / (len(times) * apart.shape[1])
+        deviation = np.abs(values[0] - values[1])
+        deviation[np.isnan(values[0]) & np.isnan(values[1])] = 0.0
+        square += float(np.sum(deviation**2)) / (len(times) * deviation.shape[1])
         difference.scale = max(difference.scale, *(float(np.nanmax(np.abs(v), initial=0.0)) for v in values))
-        frame, node = np.unravel_index(np.argmax(apart), apart.shape)
-        if not apart[frame, node] <= difference.greatest and not np.isnan(difference.greatest):
-            difference.greatest, difference.time = float(apart[frame, node]), float(times[begin + frame])
+        frame, node = np.unravel_index(np.argmax(deviation), deviation.shape)
+        if not deviation[frame, node] <= difference.greatest and not np.isnan(difference.greatest):
+            difference.greatest, difference.time = float(deviation[frame, node]), float(times[begin + frame])
             difference.x = float(x[node]) if by_node else None
     difference.rms = float(np.sqrt(square))
     return difference
@@ -227,8 +227,8 @@ def _tolerance(text):
 
 def main(arguments=None):
     """Run the command; returns its exit status."""
-    about = "Compare two result files field by field."
-    parser = CommandParser("ehlpetsc.compare", about)
+    description = "Compare two result files field by field."
+    parser = CommandParser("ehlpetsc.compare", description)
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")

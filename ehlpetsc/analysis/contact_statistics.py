@@ -69,9 +69,9 @@ def report(results):
 
 def main(arguments=None):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    about = __doc__.split("\n")[0]
+    description = __doc__.split("\n")[0]
     name = "ehlpetsc.analysis.contact_statistics"
-    return command(name, about, lambda results: report(in_order(results)), arguments)
+    return command(name, description, lambda results: report(in_order(results)), arguments)
 
 
 if __name__ == "__main__":

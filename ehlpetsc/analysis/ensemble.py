@@ -177,12 +177,12 @@ def arguments(argv):
     return parser.parse_args(argv)
 
 
-def _within(least, most):
+def _within(low, high):
     """Argument type: integer in a range."""
 
     def number(text):
-        if not text.isascii() or not text.isdigit() or not least <= int(text[:20]) <= most:
-            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {most}")
+        if not text.isascii() or not text.isdigit() or not low <= int(text[:20]) <= high:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {low} to {high}")
         return int(text)
 
     return number

@@ -41,8 +41,8 @@ def find(result):
     """
     frames, nodes = points_in_contact(result)
     widest = MAX_GAP * result.attrs["a"] / float(np.diff(result.x).min())
-    apart = np.diff(nodes)
-    pairs = np.flatnonzero((np.diff(frames) == 0) & (apart >= MIN_GAP_NODES) & (apart <= widest))
+    distances = np.diff(nodes)
+    pairs = np.flatnonzero((np.diff(frames) == 0) & (distances >= MIN_GAP_NODES) & (distances <= widest))
     entrapments = []
     for frame, left, right in zip(frames[pairs], nodes[pairs], nodes[pairs + 1], strict=True):
         pressure = result["pressure"][frame, left : right + 1].astype(float)

@@ -106,13 +106,13 @@ def breakdown(collisions, values, smooth):
         before = np.concatenate([slope_jumps(abscissa, c.film)[:-1] for c in points])
         if len(before):
             lines.append(f"  against the {name} {100 * np.median(before):.1f} %, {100 * before.max():.1f} %")
-    every = np.concatenate(steps)
+    changes = np.concatenate(steps)
     return [
         *lines,
         "pressure grows once the film is gone:",
         f"  from each member to the next: {count_of([(s > 0.0).all() for s in steps])}",
         f"  from the first in contact to the last: {count_of([np.prod(1.0 + s) > 1.0 for s in steps])}",
-        f"  in single changes: {count_of(every > 0.0)}",
+        f"  in single changes: {count_of(changes > 0.0)}",
     ]
 
 

@@ -80,8 +80,8 @@ def table(results):
 
 def main(arguments=None):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    about = "Means, percentiles and extremes of every scalar of runs, as CSV."
-    parser = CommandParser("ehlpetsc.summary", about)
+    description = "Means, percentiles and extremes of every scalar of runs, as CSV."
+    parser = CommandParser("ehlpetsc.summary", description)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
     parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
     chosen = parser.parse_args(arguments)

@@ -131,8 +131,8 @@ def _near(kernel):
     """Matrices of the sums over a block at itself, at the block on its right and at that on its left."""
     padded = np.zeros(2 * BLOCK)
     padded[: len(kernel)] = kernel[: 2 * BLOCK]
-    apart = np.arange(BLOCK) - np.arange(BLOCK)[:, None]
-    return [padded[np.abs(apart + shift)] for shift in (0, BLOCK, -BLOCK)]
+    offset = np.arange(BLOCK) - np.arange(BLOCK)[:, None]
+    return [padded[np.abs(offset + shift)] for shift in (0, BLOCK, -BLOCK)]
 
 
 def _translation(cuts, rank, rates):

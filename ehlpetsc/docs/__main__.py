@@ -93,8 +93,8 @@ def build(folder):
 
 def main(arguments=None):
     """Run the command; returns its exit status."""
-    about = "Build the pages as one site, with search and typeset equations, and open it in a browser."
-    parser = CommandParser("ehlpetsc.docs", about)
+    description = "Build the pages as one site, with search and typeset equations, and open it in a browser."
+    parser = CommandParser("ehlpetsc.docs", description)
     folder = "build it here, to publish it, and open nothing"
     parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
     chosen = parser.parse_args(arguments)

@@ -81,11 +81,11 @@ class _Life:
         self.ranks, self.file = Ranks(comm, self.positions.count), LifeFile(path)
         self._scene = scene(1)
 
-    def run(self, stop, most):
+    def run(self, stop, max_rounds):
         """Solve rounds until the end of the life."""
         status = "stopped"
         try:
-            self._run(stop, most)
+            self._run(stop, max_rounds)
             status = "done" if self.history.done >= self.jumps.passes else status
         except NotConverged:
             status = "not converged"
@@ -96,11 +96,11 @@ class _Life:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
         return self.history
 
-    def _run(self, stop, most):
+    def _run(self, stop, max_rounds):
         progress, rounds = Progress(self.jumps.passes), 0
         if not self.history.rows:
             self.show(opening_line(self.case, self.scales, self._scene, self.positions.count))
-        while self._is_living and (most is None or rounds < most):
+        while self._is_living and (max_rounds is None or rounds < max_rounds):
             begun = clock.monotonic()
             solved_round = self._solve(stop)
             bodies = self.history.bodies[-1] if self.history.rows else None

@@ -76,8 +76,8 @@ class LifeFile:
         with replacing(self.path) as temporary:
             file = self._file = create(temporary)
             with room(file, 0):
-                about = {"kind": KIND, "case": history.case, "title": history.title}
-                put(file, about | {"format_version": FORMAT, "status": "running", "limits": " "})
+                attributes = {"kind": KIND, "case": history.case, "title": history.title}
+                put(file, attributes | {"format_version": FORMAT, "status": "running", "limits": " "})
                 _lay_out(file, history)
             self._append(history, range(len(history.rows)))
             file.swmr_mode = True

@@ -106,8 +106,8 @@ class GaussSeidelSolver:
         SolveFailed
         """
         q, h = q.copy(), np.maximum(h, self.bound)
-        most = max_it or MAX_EVALUATIONS
-        for iteration in range(most):
+        max_sweeps = max_it or MAX_EVALUATIONS
+        for iteration in range(max_sweeps):
             if watch:
                 watch()
             p = np.maximum(q, 0.0)
@@ -118,7 +118,7 @@ class GaussSeidelSolver:
             if not np.isfinite(norm):
                 raise SolveFailed("sweeps", "NOT_FINITE", iteration)
             self._sweep(q, h, p, gap_is_open, inputs)
-        raise SolveFailed("sweeps", "MAX_IT", most)
+        raise SolveFailed("sweeps", "MAX_IT", max_sweeps)
 
     def _correct(self, p, h, h00, phi):
         """Balance the load by h00; set h of the open gap and of the ends to the integral of p, in place."""

@@ -101,7 +101,7 @@ def iterations(
     border,
     room,
     units,
-    most,
+    max_it,
     rtol,
     atol,
     divtol,
@@ -120,7 +120,7 @@ def iterations(
         Of `RankFactors`.
     units : ndarray
         As of :func:`.distributed_solve.solve`.
-    most : int
+    max_it : int
     rtol, atol, divtol : float
 
     Returns
@@ -137,7 +137,7 @@ def iterations(
             jacobian_product(state, changes, halo, z[new - 1], v[new])
         norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
         norms[new] = least_residual(numbers, new, norm)
-        if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == most:
+        if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == max_it:
             combine(vectors, numbers, new)
             return new
         new += 1

@@ -206,7 +206,7 @@ def first_nodes(n, ranks):
     UsageError
         A rank would have no block.
     """
-    most = max(n // BLOCK, 1)
-    if ranks > most:
-        raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {most}")
+    max_ranks = max(n // BLOCK, 1)
+    if ranks > max_ranks:
+        raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {max_ranks}")
     return [n * k // ranks // BLOCK * BLOCK for k in range(ranks)] + [n]

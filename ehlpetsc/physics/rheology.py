@@ -197,6 +197,6 @@ def _limited_mean(mean, fluid, p):
     if getattr(fluid, "limiting_shear", None) is None:
         return mean
     size, limit = np.abs(mean), fluid.limiting_shear * p
-    least, ratio = np.minimum(size, limit), np.ones_like(mean)
-    np.divide(least, np.maximum(size, limit), out=ratio, where=np.maximum(size, limit) > 0.0)
-    return np.sign(mean) * least * (1.0 + ratio**4) ** -0.25
+    smaller, ratio = np.minimum(size, limit), np.ones_like(mean)
+    np.divide(smaller, np.maximum(size, limit), out=ratio, where=np.maximum(size, limit) > 0.0)
+    return np.sign(mean) * smaller * (1.0 + ratio**4) ** -0.25

@@ -52,8 +52,8 @@ def _check(results, kind, options):
 
 
 def _parser():
-    about = "Draw results, a series by its index, or the profiles of a case as they will be used."
-    parser = CommandParser("ehlpetsc.plot", about)
+    description = "Draw results, a series by its index, or the profiles of a case as they will be used."
+    parser = CommandParser("ehlpetsc.plot", description)
     parser.add_argument("results", nargs="+", metavar="RESULT.h5", help="results, an index; or one CASE.toml")
     settings = "of a case: a key set, as in a run"
     parser.add_argument("-ehl_set", action="append", metavar="TABLE.KEY=VALUE", help=settings)

@@ -50,9 +50,9 @@ def fill_frame(axes, results, indices, options):
         hertz = Line2D([], [], color=frames.HERTZ_GREY, label="Hertz", **frames.HERTZ_STYLE)
         hertz_handles = [hertz] if labels.share_hertz_contact(results) else []
         dashed = len(results) == 2
-        about = labels.UNITS.get(key, key)
+        legend_title = labels.UNITS.get(key, key)
         names = labels.labels_with_hertz(names, results)
-        labels.series_legend(axes[0], colours, names, about, hertz_handles, dashed)
+        labels.series_legend(axes[0], colours, names, legend_title, hertz_handles, dashed)
     else:
         frames.frame_legend(axes, results[0], indices[0], colours[0])
     frames.x_in_mm(axes[0], results)
@@ -100,13 +100,13 @@ def draw_contacts(results, options):
     colours, names, key = labels.series_colours(results)
     figure, axes = two_panels()
     means = over_time.contact_rates(axes, results, colours, options.polynomial)
-    about = "mean in |x| < a [1/ms]"
+    quantity = "mean in |x| < a [1/ms]"
     names = [f"{n}: {mean:.3g}" for n, mean in zip(names, means, strict=True)]
     if len(results) > 1:
-        about += "\n(ratio to the first)"
+        quantity += "\n(ratio to the first)"
         ratios = [mean / means[0] if means[0] else np.nan for mean in means]
         names = [f"{name} ({ratio:.2f})" for name, ratio in zip(names, ratios, strict=True)]
-    labels.series_legend(axes[1], colours, names, f"{labels.UNITS.get(key, key) or 'result'}:\n{about}")
+    labels.series_legend(axes[1], colours, names, f"{labels.UNITS.get(key, key) or 'result'}:\n{quantity}")
     title = "\n".join(filter(None, [panel_title(results), labels.conditions(results)]))
     axes[0].set_title(title, fontsize="medium")
     return figure

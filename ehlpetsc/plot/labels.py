@@ -58,9 +58,9 @@ def series_colours(results):
 def names(results):
     """Labels of results: titles if they differ, otherwise keys that differ, otherwise file names."""
     titles = [result.attrs["title"] for result in results]
-    apart = distinguishing_names(results)
-    if len(set(titles)) == 1 and apart:
-        return apart
+    distinct = distinguishing_names(results)
+    if len(set(titles)) == 1 and distinct:
+        return distinct
     if len(set(titles)) == len(titles):
         return titles
     if len(set(titles)) == 1:

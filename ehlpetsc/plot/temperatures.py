@@ -50,8 +50,8 @@ def temperatures(results, window, options):
     _instant(axes[0], result, index, window)
     frames.pressure_and_film(axes[1:3], results, [index], [SINGLE_COLOUR], window)
     frames.frame_legend(axes[1:3], result, index, SINGLE_COLOUR)
-    about = ": ".join(filter(None, [result.attrs["title"], frames.instant(results, [index])]))
-    axes[0].set_title(f"{about}\n{conditions(results)}", fontsize="medium")
+    title = ": ".join(filter(None, [result.attrs["title"], frames.instant(results, [index])]))
+    axes[0].set_title(f"{title}\n{conditions(results)}", fontsize="medium")
     if not steady:
         image, side = _over_time(axes[3], result, window)
         figure.colorbar(image, ax=axes[3], label=f"temperature of\nsurface {side} [K]", pad=0.01)

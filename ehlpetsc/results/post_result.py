@@ -42,7 +42,7 @@ class PointTemperatures(NamedTuple):
 
 
 def post_path(path):
-    """``RESULT.post.h5`` beside ``RESULT.h5``."""
+    """``RESULT.post.h5`` in the folder of ``RESULT.h5``."""
     path = Path(path)
     return path.with_name(f"{path.stem}.post.h5")
 
@@ -171,7 +171,7 @@ def _array(file, name, default):
 
 
 def damage_beside(result):
-    """Post-processing result beside a result; None if it is missing or of another case.
+    """Post-processing result of a result, ``RESULT.post.h5``; None if it is missing or of another case.
 
     Parameters
     ----------

@@ -156,8 +156,8 @@ class Result:
         import xarray
 
         def variable(dims, name, values):
-            about = {key: self[name].attrs[key] for key in ("units", "long_name")}
-            return xarray.Variable(dims, values, about)
+            attributes = {key: self[name].attrs[key] for key in ("units", "long_name")}
+            return xarray.Variable(dims, values, attributes)
 
         fields = {name: variable(("time", "x"), name, getattr(self, name)) for name in self.fields}
         names = set(self.scalars) - {"step", "time"}

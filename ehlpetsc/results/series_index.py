@@ -22,7 +22,7 @@ DEFAULTS = {  # of keys that are missing in a case
     "time.pass_shift": 0.0,
     "output.every": 1,
 }
-OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files beside results that match the same shell pattern
+OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that match the same shell pattern
 WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which the film increases
 
 
@@ -58,14 +58,14 @@ def _result_of(path):
     return f"{path}.h5"
 
 
-def command(name, about, report, arguments):
+def command(name, description, report, arguments):
     """Run a command that prints the lines of a report on results.
 
     Parameters
     ----------
     name : str
         Module of the command.
-    about : str
+    description : str
         Description for ``--help``.
     report : callable
         Returns the lines of the report on a list of results.
@@ -76,7 +76,7 @@ def command(name, about, report, arguments):
     int
         Exit status: 0 done, 2 bad input.
     """
-    parser = CommandParser(name, about)
+    parser = CommandParser(name, description)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     chosen = parser.parse_args(arguments)
 

@@ -81,10 +81,10 @@ def check_pass(case, scales, after, pass_number):
     ------
     UsageError
     """
-    least = after.pass_number + 1 if after is not None and hasattr(after, "pass_number") else 1
-    number = least if pass_number is None else pass_number
-    if not isinstance(number, Integral) or isinstance(number, bool) or number < least:
-        raise UsageError(f"pass_number = {number!r}: allowed: a whole number from {least} on")
+    min_number = after.pass_number + 1 if after is not None and hasattr(after, "pass_number") else 1
+    number = min_number if pass_number is None else pass_number
+    if not isinstance(number, Integral) or isinstance(number, bool) or number < min_number:
+        raise UsageError(f"pass_number = {number!r}: allowed: a whole number from {min_number} on")
     if after is None:
         return int(number)
     if not hasattr(after, "solution") or not hasattr(after, "scales"):

@@ -80,9 +80,9 @@ def predict(problem, smooth, levels, nodes):
     h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
     q = q0 + advected(level.q - q0, distance)
     # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
-    least = np.minimum(*neighbours(level.q, distance))
-    in_cavity = np.minimum(np.minimum(least, level.q), PRESSURE_AFTER_REFILL)  # of the smooth solution
-    full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, least), in_cavity)
+    smallest = np.minimum(*neighbours(level.q, distance))
+    in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the smooth solution
+    full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, smallest), in_cavity)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
     interpolated = model.w_from_film(h0 * advected(film / h0, distance))
     return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, distance)))

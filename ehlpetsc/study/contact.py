@@ -144,8 +144,8 @@ def settings(models, meshes, courants, boundary_films):
 
 def output_of(setting, damage=False):
     """Overrides of the stored fields; for damage every step, else frames at equal times on all meshes."""
-    apart = round(2.0 * setting.values[MESH] / 100 * 0.5 / setting.values[STEP])
-    return stored((*FIELDS, *SHEAR) if damage else FIELDS, 1 if damage else max(1, apart))
+    stride = round(2.0 * setting.values[MESH] / 100 * 0.5 / setting.values[STEP])
+    return stored((*FIELDS, *SHEAR) if damage else FIELDS, 1 if damage else max(1, stride))
 
 
 def for_direct_contact(case, overrides, folder):

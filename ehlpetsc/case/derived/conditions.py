@@ -85,14 +85,14 @@ def of_gears(path):
     ----------
     path : ehlpetsc.gears.Path
     """
-    least = MIN_LOAD_FRACTION * path.load.max()
-    carries = np.flatnonzero(path.load >= least)
+    min_load = MIN_LOAD_FRACTION * path.load.max()
+    carries = np.flatnonzero(path.load >= min_load)
     first, last = carries[0], carries[-1]
     begin, end = path.time[first], path.time[last]
     if first > 0:
-        begin = np.interp(least, path.load[first - 1 : first + 1], path.time[first - 1 : first + 1])
+        begin = np.interp(min_load, path.load[first - 1 : first + 1], path.time[first - 1 : first + 1])
     if last < len(path.load) - 1:
-        end = np.interp(least, path.load[[last + 1, last]], path.time[[last + 1, last]])
+        end = np.interp(min_load, path.load[[last + 1, last]], path.time[[last + 1, last]])
     inside = path.time[(path.time > begin) & (path.time < end)]
     time = np.concatenate([[begin], inside, [end]])
     rho = np.interp(time, path.time, path.rho)

@@ -72,7 +72,7 @@ def _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at):
 
 
 @compiled
-def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
+def faces(at, law, oil, max_flow, couette, pressure_heat, spread, gradient):
     r"""Couette flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
 
     Parameters
@@ -82,7 +82,7 @@ def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
         Of :func:`.finite_volumes.flux_through`.
     oil : ndarray of bool, shape (nodes,)
         Nodes where the Reynolds equation holds: flow through faces of other nodes has no meaning.
-    most : (float, float)
+    max_flow : (float, float)
         Largest pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
     couette : ndarray, shape (nodes + 1,)
         Filled in: mass flow of the surfaces' mean speed through the faces i-1/2, in u a^2/R.
@@ -108,7 +108,7 @@ def faces(at, law, oil, most, couette, pressure_heat, spread, gradient):
             slope = 0.0
         between_oil_nodes = oil[i] and oil[min(i + 1, nodes - 1)]
         pressure_flow = 0.5 * (left[0] + right[0]) * abs(slope) if between_oil_nodes else 0.0
-        pressure_flow = min(pressure_flow, max(most[0] * film, most[1]))
+        pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))
         heat = 0.5 * pressure_flow * abs(slope)
         pressure_heat[i] += heat
         if i < nodes - 1:

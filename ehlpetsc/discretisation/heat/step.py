@@ -147,7 +147,7 @@ class HeatStep:
             at,
             self.reynolds.face_law(inputs),
             oil,
-            self._most(h, oil, inputs),
+            self._max_flow(h, oil, inputs),
             couette,
             pressure_heat,
             spread,
@@ -159,7 +159,7 @@ class HeatStep:
             return -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
         return couette, pressure_heat, spread, gradient
 
-    def _most(self, h, oil, inputs):
+    def _max_flow(self, h, oil, inputs):
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
         if oil.all():
             return np.inf, np.inf

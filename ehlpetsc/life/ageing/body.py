@@ -179,13 +179,13 @@ class LifeBody(NamedTuple):
         reached = rates.passes_to_damage(damage)
         return min(rates.passes_to_wear(wear).min(), np.min(reached, initial=np.inf, where=intact))
 
-    def passes_to_break_out(self, rates, most):
-        """Passes after which the first cells break out, `most` where none do before.
+    def passes_to_break_out(self, rates, max_passes):
+        """Passes after which the first cells break out, `max_passes` where none do before.
 
         Parameters
         ----------
         rates : rates.Rates
-        most : int
+        max_passes : int
         """
 
         def breaks(passes):
@@ -193,13 +193,13 @@ class LifeBody(NamedTuple):
             recession = self.recession + wear
             return bool((laws.broken_out(self.damage + added, self.edges, recession) > recession).any())
 
-        if not breaks(most):
-            return most
+        if not breaks(max_passes):
+            return max_passes
         levels = np.array([1.0, laws.WEAKENED_DAMAGE])[:, None, None] - self.damage
         reached = rates.passes_to_damage(np.maximum(levels, 0.0))
         uncovered = rates.passes_to_wear(np.maximum(self.edges[1:, None] - self.recession, 0.0))
         times = np.floor(np.append(reached, uncovered)) + 1.0
-        times = np.unique(np.append(times[times < most], most))
+        times = np.unique(np.append(times[times < max_passes], max_passes))
         return int(times[bisect_left(times, True, hi=len(times) - 1, key=breaks)])
 
     def after(self, rates, passes, done, breaks):

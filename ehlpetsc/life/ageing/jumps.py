@@ -43,14 +43,14 @@ class Jumps:
             Passes of the jump, including the solved ones.
         rates : pair of rates.Rates
         """
-        rates, most = solved_round.rates(bodies), self.passes - done
+        rates, max_passes = solved_round.rates(bodies), self.passes - done
         if before:
             rates = tuple(
                 rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before)
                 for rate, body in zip(rates, bodies, strict=True)
             )
-            most = min(most, int(MAX_EXTRAPOLATION * before))
-        jump = self._allowed(bodies, rates, solved_round, most)
+            max_passes = min(max_passes, int(MAX_EXTRAPOLATION * before))
+        jump = self._allowed(bodies, rates, solved_round, max_passes)
         return self._after(bodies, rates, jump, done), jump, rates
 
     def _after(self, bodies, rates, jump, done):
@@ -60,15 +60,15 @@ class Jumps:
 
     def _allowed(self, bodies, rates, solved_round, left):
         """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
-        most = 1 if self.is_yielding(solved_round.yielded) else left
+        passes = 1 if self.is_yielding(solved_round.yielded) else left
         for body, rate in zip(bodies, rates, strict=True):
-            most = min(most, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
-        most = max(int(most), 1)
+            passes = min(passes, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
+        passes = max(int(passes), 1)
         if self.life.pits:
-            late = min(left, int(BREAK_OUT_DELAY * most))
+            late = min(left, int(BREAK_OUT_DELAY * passes))
             ends = min(body.passes_to_break_out(rate, late) for body, rate in zip(bodies, rates, strict=True))
-            most = ends if ends < late else most
-        return min(left, max(most, len(solved_round.passes)))
+            passes = ends if ends < late else passes
+        return min(left, max(passes, len(solved_round.passes)))
 
     def expected_rounds(self, bodies, solved_round, done):
         """Least and largest expected number of rounds until the end of the life, at the rates of this one.

@@ -58,7 +58,7 @@ def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, sto
     from ehlpetsc.results.output_guard import Lock, check_index
     from ehlpetsc.run.on_root import on_root
 
-    import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they part
+    import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they split
     comm = comm or MPI.COMM_SELF
     lives = _Lives(case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite)
     on_root(comm, check_index, lives.index, "members")
@@ -139,9 +139,9 @@ class _Lives:
     def _write(self):
         from ehlpetsc.results.atomic_write import atomic_write
 
-        about = {"title": self.case.title, "keys": self.keys, "members": self.rows, "case": self.case.text}
+        content = {"title": self.case.title, "keys": self.keys, "members": self.rows, "case": self.case.text}
         try:
-            atomic_write(self.index, (json.dumps(about, indent=1, default=str) + "\n").encode())
+            atomic_write(self.index, (json.dumps(content, indent=1, default=str) + "\n").encode())
         except OSError as error:
             raise OutputError(f"{self.index}: index not written, {error.strerror}") from error
 

@@ -137,11 +137,11 @@ class BandedJacobian:
         nodes, values = [repeated], [np.tile(-2.0 * np.sinh(self.rates), len(self.nodes))]
         bend, bent = dict(zip((-1, 0, 1), SECOND_DIFFERENCE, strict=True)), [np.zeros(len(repeated))]
         for k in range(1 - 2 * GROUP, 2 * GROUP):
-            apart = np.abs(self._group(inner + k) - self._group(inner))
-            near = (apart <= 1) & (inner + k >= 0) & (inner + k < p.n)
+            group_distance = np.abs(self._group(inner + k) - self._group(inner))
+            near = (group_distance <= 1) & (inner + k >= 0) & (inner + k < p.n)
             rows.append(self._pressure(inner[near]))
             nodes.append(inner[near] + k)
-            far = np.exp(-np.outer(apart[near], self.rates)) @ self.weights
+            far = np.exp(-np.outer(group_distance[near], self.rates)) @ self.weights
             values.append(far - d.curvature[abs(k)])
             bent.append(np.full(near.sum(), d.curvature_coefficient * bend.get(k, 0.0)))
         for end in d.ends:

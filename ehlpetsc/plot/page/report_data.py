@@ -95,14 +95,14 @@ def facts(result):
     attrs = result.attrs
     case = tomllib.loads(str(attrs["case"]))
     motion, fluid, solids = (case.get(name, {}) for name in ("motion", "fluid", "contact"))
-    about = [
+    contact_details = [
         f"radius {1e3 * solids['radius']:g} mm" if "radius" in solids else None,
         f"load {1e-3 * solids['load']:g} N/mm" if "load" in solids else None,
         f"{solids.get('model', 'direct')} contact",
     ]
     rows = [
         ("ended as", str(attrs.get("status", "unknown"))),
-        ("contact", ", ".join(filter(None, about))),
+        ("contact", ", ".join(filter(None, contact_details))),
         _oil(fluid) if fluid else None,
         ("half width a, pressure p0", f"{1e3 * attrs['a']:.4g} mm, {1e-9 * attrs['p0']:.4g} GPa"),
         ("speeds of surface 1 and 2", f"{attrs['u1']:.4g} and {attrs['u2']:.4g} m/s") if motion else None,
@@ -135,7 +135,7 @@ def frames(result):
         np.append(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int), fullest)
     )
     names = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
-    stored = {name: how for name, how in names.items() if name in result}
+    stored = {name: scaling for name, scaling in names.items() if name in result}
     fields = {
         name: _packed([binned(factor * result.frame(name, k)[columns], width, reduce) for k in chosen])
         for name, (factor, reduce) in stored.items()
@@ -165,10 +165,10 @@ def scalars_over_time(result):
         finite = values[np.isfinite(values)]
         if not finite.size or np.ptp(finite) <= MIN_CHANGE * max(np.abs(finite).max(), name in ERROR_SCALARS):
             continue
-        about = result[f"steps/{name}"].attrs
-        units = about.get("units", "1")
+        attributes = result[f"steps/{name}"].attrs
+        units = attributes.get("units", "1")
         unit, factor = SHOWN_UNITS.get(units, (units, 1.0))
-        words = about.get("long_name", name.replace("_", " "))
+        words = attributes.get("long_name", name.replace("_", " "))
         reduce = np.fmin.reduce if name in MINIMUM_SCALARS else np.fmax.reduce
         label = f"{words} [{unit}]" if unit else words
         figures.append({"name": label, "y": _packed(binned(factor * values, width, reduce))})

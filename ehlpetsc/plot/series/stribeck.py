@@ -38,15 +38,15 @@ def stribeck_points(results):
         raise OutputError(
             f"a Stribeck curve needs a series over {SPEED}, these differ in {key or 'more than that'}"
         )
-    points, short = [], []
+    points, early = [], []
     for speed, result in sorted(zip(speeds, results, strict=True), key=lambda pair: pair[0]):
         point = operating_point(result, speed)
-        points, short = (points + [point], short) if point else (points, [*short, result.path.name])
+        points, early = (points + [point], early) if point else (points, [*early, result.path.name])
     if not points:
         raise OutputError(
             "no member lasts until both surfaces fill the contact: a longer time.travel is needed"
         )
-    return points, short
+    return points, early
 
 
 def curves_by_contact(results):
@@ -70,8 +70,8 @@ def _label(height, film, mesh, heat, with_mesh, with_heat):
     law = f"layer of {1e9 * height:g} nm" if height else "direct contact"
     if film and not height:
         law = f"rigid, boundary film {1e9 * film:g} nm"
-    how = ("with heat" if heat else "isothermal") if with_heat else ""
-    return ", ".join(filter(None, [law, with_mesh and f"a/{mesh}", how]))
+    heating = ("with heat" if heat else "isothermal") if with_heat else ""
+    return ", ".join(filter(None, [law, with_mesh and f"a/{mesh}", heating]))
 
 
 def draw_stribeck(results, _options):
@@ -80,7 +80,7 @@ def draw_stribeck(results, _options):
     With several contact laws or meshes the longest curve is drawn with its scatter, the others as means.
     """
     (main, members), *others = curves_by_contact(results).items()
-    points, short = stribeck_points(members)
+    points, early = stribeck_points(members)
     figure, axes = new_figure(3, 1, SIZE, sharex=True)
     speeds = np.array([abs(point.speed) for point in points])
     for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
@@ -106,9 +106,9 @@ def draw_stribeck(results, _options):
     handles = [Line2D([], [], color=SINGLE_COLOUR, marker="o", ms=3.5, lw=1.2, label=label)]
     legend_beside(axes[1], [*handles, Patch(color=SINGLE_COLOUR, alpha=0.2, lw=0, label=band)])
     title = results[0].attrs["title"]
-    note = f"\nnot shown, ended too early: {', '.join(short)}" if short else ""
-    about = conditions(results)
-    axes[0].set_title("\n".join(filter(None, [title, about])) + note, fontsize="medium")
+    note = f"\nnot shown, ended too early: {', '.join(early)}" if early else ""
+    common = conditions(results)
+    axes[0].set_title("\n".join(filter(None, [title, common])) + note, fontsize="medium")
     for panel in axes:
         panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
         panel.xaxis.set_minor_formatter(

@@ -33,8 +33,8 @@ def draw_traction(results, _options):
         for name, (ratios, friction) in curves.items():
             style = "--" if compared and not heat else "-"
             colour = f"C{names.index(name)}"
-            how = ("with heat" if heat else "isothermal") if compared else ""
-            label = ", ".join(filter(None, [name.replace("_", " "), how])) or "friction"
+            heating = ("with heat" if heat else "isothermal") if compared else ""
+            label = ", ".join(filter(None, [name.replace("_", " "), heating])) or "friction"
             axes.plot(ratios, friction, style, color=colour, marker="o", ms=3, lw=1.2, label=label)
             _mark_largest(axes, ratios, friction, colour)
     axes.set_xlabel(UNITS[RATIO])
@@ -42,8 +42,8 @@ def draw_traction(results, _options):
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.grid(lw=0.3)
-    about = filter(None, [results[0].attrs["title"], conditions(results)])
-    axes.set_title("\n".join(about), fontsize="medium")
+    title_lines = filter(None, [results[0].attrs["title"], conditions(results)])
+    axes.set_title("\n".join(title_lines), fontsize="medium")
     legend_beside(axes)
     return figure
 

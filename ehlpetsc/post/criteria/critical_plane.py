@@ -4,8 +4,8 @@ A criterion is a quantity whose cycles are counted on a plane and a parameter P 
 :mod:`ehlpetsc.post.criteria.laws`). The largest normal stress of a cycle is that within its closed loop.
 
 First all planes of a coarse grid are evaluated on the samples at which the path turns, in the order of their
-widest range, until no other plane can reach the damage found. The best two planes are then improved by a
-pattern search, and the damage of the best plane is counted on all samples.
+widest range, until no other plane can reach the largest damage so far. The best two planes are then improved
+by a pattern search, and the damage of the best plane is counted on all samples.
 """
 
 from math import exp, log, pi
@@ -76,13 +76,13 @@ def plane_damage(kind, angles, stress, size, law, threshold, work):
     stack, first, second, weight, series, normal = work
     _on_plane(kind, angles, stress, size, nu, residual, series, normal)
     n = find_cycles(series[:size], closed, stack, first, second, weight)
-    least = 0.0
+    min_range = 0.0
     if threshold > 0:
-        least = threshold * (series[:size].max() - series[:size].min())
+        min_range = threshold * (series[:size].max() - series[:size].min())
     total = 0.0
     for k in range(n):
         width = abs(series[first[k]] - series[second[k]])
-        if width <= least:
+        if width <= min_range:
             continue
         highest = 0.0
         if kind != SHEAR:

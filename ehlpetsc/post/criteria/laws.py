@@ -60,8 +60,8 @@ class Criteria:
     def __post_init__(self):
         for name in ("normal_sensitivity", "yield_strength", "torsion_limit", "bending_limit"):
             value = getattr(self, name)
-            least = 0 <= value if name == "normal_sensitivity" else value is None or value > 0
-            if not least or value is not None and not value < inf:
+            is_allowed = 0 <= value if name == "normal_sensitivity" else value is None or value > 0
+            if not is_allowed or value is not None and not value < inf:
                 raise ValueError(f"{name} = {value}: must be a finite number above 0")
         if self.torsion_limit < self.bending_limit / 2:
             raise ValueError(

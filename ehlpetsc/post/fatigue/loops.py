@@ -119,8 +119,8 @@ def _far_from(x, y, z, middle, best):
     for k in range(x.size):
         squared[k] = (x[k] - middle[0]) ** 2 + (y[k] - middle[1]) ** 2 + (z[k] - middle[2]) ** 2
         largest = max(largest, squared[k])
-    least = max(sqrt(best) - sqrt(largest), 0.0)
-    return np.flatnonzero(squared >= least * least * (1 - 1e-12))
+    min_distance = max(sqrt(best) - sqrt(largest), 0.0)
+    return np.flatnonzero(squared >= min_distance * min_distance * (1 - 1e-12))
 
 
 @compiled(error_model="python", nogil=True)
@@ -142,8 +142,8 @@ def widest(points, first, count):
     middles, radii = _balls(x, y, z, far)
     for m in range(radii.size):
         for n in range(m + 1):
-            apart = sqrt(_squared_distance(x, y, z, middles[m], middles[n]))
-            if apart + radii[m] + radii[n] <= sqrt(best):
+            distance = sqrt(_squared_distance(x, y, z, middles[m], middles[n]))
+            if distance + radii[m] + radii[n] <= sqrt(best):
                 continue
             for i in far[m * POINTS_PER_BALL : (m + 1) * POINTS_PER_BALL]:
                 for j in far[n * POINTS_PER_BALL : (n + 1) * POINTS_PER_BALL]:

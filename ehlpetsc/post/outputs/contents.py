@@ -78,16 +78,16 @@ class Contents:
         under = damage[:, peaks.point]
         near = largest_near(prepared.s, damage, peaks.s, self.within * prepared.loads.a)
         fits = np.array([weibull_fit(log_life(row), self.regression) for row in under]).reshape(-1, 3)
-        beyond = (under >= 1).sum(axis=1)
+        failed = (under >= 1).sum(axis=1)
         self._put("asperities", inner, s=peaks.s, height=peaks.height, damage=under, largest=near)
         self._put("weibull", inner, **dict(zip(("alpha", "beta", "r_squared"), fits.T, strict=True)))
         self._put_confidence(inner, [log_life(row) for row in under])
-        self._put("weibull", inner, at_least_one=beyond, undamaged=(under == 0).sum(axis=1))
+        self._put("weibull", inner, at_least_one=failed, undamaged=(under == 0).sum(axis=1))
         for group in ("asperities", "weibull"):
             self.groups[f"{group}/{inner}".rstrip("/")] = {"surface": surface}
         if profile is not None:
             self.datasets[f"profile/{surface}/s"], self.datasets[f"profile/{surface}/z"] = profile
-        for depth, count in zip(prepared.settings.depths, beyond, strict=True):
+        for depth, count in zip(prepared.settings.depths, failed, strict=True):
             if count:
                 self.notes.append(
                     f"note: {count} of {peaks.s.size} asperities of surface {surface} have damage of 1 "

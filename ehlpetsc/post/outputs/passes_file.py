@@ -63,8 +63,8 @@ def _is_same_profile(one, other, shift):
     inside = (s + shift >= other_s[0]) & (s + shift <= other_s[-1])
     if np.count_nonzero(inside) < 2:
         return False
-    apart = np.abs(np.interp(s[inside] + shift, other_s, other_z) - z[inside])
-    return apart.max() <= PROFILE_TOLERANCE * np.ptp(z)
+    deviation = np.abs(np.interp(s[inside] + shift, other_s, other_z) - z[inside])
+    return deviation.max() <= PROFILE_TOLERANCE * np.ptp(z)
 
 
 def store_passes(path, results, surface):

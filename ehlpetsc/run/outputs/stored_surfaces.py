@@ -72,8 +72,8 @@ def _offsets(simulation):
 def _smooth_side(simulation, side, offset, depths):
     """Body points of a smooth surface that pass the mesh, for its depths; `side` 0: surface 1."""
     scales = simulation.scales
-    least, largest = simulation.operation.extent()[side]
+    smallest, largest = simulation.operation.extent()[side]
     ends = scales.x[[0, -1]] * scales.a
-    s = np.arange(ends[0] - largest, ends[1] - least, scales.dx)
+    s = np.arange(ends[0] - largest, ends[1] - smallest, scales.dx)
     flat = {"ra": 0.0, "rq": 0.0, "rsk": 0.0}
     return s + offset, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths

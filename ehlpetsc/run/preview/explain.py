@@ -80,12 +80,12 @@ def _layer(contact, s):
 def _film(case, s, rough):
     if case.fluid is None:
         return ["Film: none, dry contact"]
-    central, least = smooth_films(case.fluid, s.E, s.conditions)
+    central, minimum = smooth_films(case.fluid, s.E, s.conditions)
     lines = [
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
         f"Expected smooth film (Moes, and the density under p0): central {central * 1e6:.3g} um, "
-        f"minimum {least * 1e6:.3g} um",
+        f"minimum {minimum * 1e6:.3g} um",
     ]
     return [*lines, *lambda_line(case, s, rough)]
 

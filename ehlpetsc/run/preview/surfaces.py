@@ -94,5 +94,5 @@ def height_lines(rough, s):
                 " to ".join(f"{1e6 * round(z, 12):.3g}" for z in pair)
                 for pair in (heights, profile.extremes_of_cells(s.dx))
             )
-            about = "means over cells, as the mesh has them"
-            yield f"Surface {side}: heights from {heights} um; {about}, {means} um"
+            note = "means over cells, as the mesh has them"
+            yield f"Surface {side}: heights from {heights} um; {note}, {means} um"

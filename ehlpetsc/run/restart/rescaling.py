@@ -3,7 +3,7 @@ r"""Conversion of a state to another load, radius or elasticity, with other scal
 Fields keep their position x/a, that is, their node:
 
 * pressures in p0 do not change: their sum over the nodes carries the new load;
-* the excess of the film over the gap beside Hertz' dry contact keeps its thickness in metres, and the gap is
+* the excess of the film over the gap outside Hertz' dry contact keeps its thickness in metres, and the gap is
   that of the new contact, :math:`h=g+r(h_0-g)` in a^2/R, :math:`r` the old a^2/R over the new one and g as in
   :func:`ehlpetsc.physics.exact_solutions.hertz_gap`;
 * a cavity keeps its oil film in metres, :math:`(1+q)h=r(1+q_0)h_0`.

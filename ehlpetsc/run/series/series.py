@@ -1,8 +1,8 @@
 """Series of a case: members distributed to groups of ranks, one result file each and one index file.
 
 The index ``OUTPUT.series.json`` contains the varied key, or keys, and for each member its value, result file
-(beside the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". Members with a
-complete file of the same case text are not computed again; members with a restart file are continued.
+(in the folder of the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". Members
+with a complete file of the same case text are not computed again; members with a restart file are continued.
 """
 
 import json

@@ -57,9 +57,9 @@ def mean_line(x, z, cutoff, key):
     if cutoff > length:
         raise ProfileError(f"{key} = {cutoff:g} m; allowed: at most the length of the profile, {length:g} m")
     if cutoff < MIN_SPACINGS * step:
-        least = MIN_SPACINGS * step
+        limit = MIN_SPACINGS * step
         raise ProfileError(
-            f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {least:g} m; "
+            f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {limit:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
     size, beyond = (
