@@ -1,8 +1,11 @@
 """Result files refused by post-processing: wrong units, another case, missing frames, non-numbers."""
 
+import re
+
 import h5py
 import numpy as np
 import pytest
+from support import is_line_with
 from support.made_loads import LOAD, A, Scene, write
 
 from ehlpetsc.case.loading import load
@@ -58,36 +61,48 @@ def replaced(name, change):
 @pytest.mark.parametrize(
     "edit, message",
     [
-        (scaled("pressure", by=1e-6), "dataset pressure: its integral over x at frame 0"),
-        (scaled("pressure", by=1 / 0.999455e9), "dataset pressure: its integral over x at frame 0"),
-        (scaled("pressure", by=1.02), "it must be 527000 N/m, the case's load"),
-        (scaled("pressure", by=-1.0), "dataset pressure: its integral"),
-        (scaled("a", by=1e3), "attribute a = 0.335682: its case gives 0.000335682 m"),
-        (scaled("a", "x", by=1e3), "attribute a ="),
-        (scaled("x", by=1e3), "dataset x: begins at -0.839205 with a spacing of 0.0167841, its case's"),
-        (scaled("p0", by=1e-9), "attribute p0 = 0.999455: its case gives 9.99455e+08 Pa"),
-        (scaled("u1", "u2", by=1e3), "attribute u1 = 31250: its case gives 31.25 m/s"),
-        (swapped, "attribute u1 = 18.75: its case gives 31.25 m/s"),
-        (scaled("time", by=1e3), "dataset time: a step takes 0.000269, by the case 2.69e-07 s"),
-        (scaled("time", by=1e6), "times must be in s"),
-        (scaled("time", by=1e-6), "times must be in s"),
-        (scaled("shear_stress_1", by=1e6), "dataset shear_stress_1"),
-        (lambda file: file["pressure"].attrs.__setitem__("units", "MPa"), 'unit is "MPa", it must be "Pa"'),
-        (lambda file: file["time"].attrs.__setitem__("units", b"us"), 'unit is "us", it must be "s"'),
+        (scaled("pressure", by=1e-6), r"^dataset pressure: .* frame 0 .* 0\.527, .* 527000 N/m"),
+        (
+            scaled("pressure", by=1 / 0.999455e9),
+            r"^dataset pressure: .* 0\.000527\d*, .* 527000 N/m",
+        ),
+        (scaled("pressure", by=1.02), r"^dataset pressure: .* frame 0 .* 537540, .* 527000 N/m"),
+        (scaled("pressure", by=-1.0), r"^dataset pressure: .* frame 0 .* -527000, .* 527000 N/m"),
+        (scaled("a", by=1e3), r"^attribute a = 0\.335682: .* 0\.000335682 m"),
+        (scaled("a", "x", by=1e3), r"^attribute a = 0\.335682: "),
+        (scaled("x", by=1e3), r"^dataset x: .* -0\.839205 .* 0\.0167841, "),
+        (scaled("p0", by=1e-9), r"^attribute p0 = 0\.999455: .* 9\.99455e\+08 Pa"),
+        (scaled("u1", "u2", by=1e3), r"^attribute u1 = 31250: .* 31\.25 m/s"),
+        (swapped, r"^attribute u1 = 18\.75: .* 31\.25 m/s"),
+        (scaled("time", by=1e3), r"^dataset time: .* 0\.000269, .* 2\.69e-07 s"),
+        (scaled("time", by=1e6), r"^dataset time: .* 0\.269, .* 2\.69e-07 s"),
+        (scaled("time", by=1e-6), r"^dataset time: .* 2\.69e-13, .* 2\.69e-07 s"),
+        (scaled("shear_stress_1", by=1e6), "^dataset shear_stress_1: "),
+        (
+            lambda file: file["pressure"].attrs.__setitem__("units", "MPa"),
+            '^dataset pressure: .*"MPa", .*"Pa"$',
+        ),
+        (lambda file: file["time"].attrs.__setitem__("units", b"us"), '^dataset time: .*"us", .*"s"$'),
         (lambda file: file["surface/2"].attrs.__setitem__("speed", 3.0), "surface/2 = 3 m/s"),
-        (lambda file: file["surface/1/z"].__setitem__(7, np.nan), "surface/1/z is nan at point 7"),
-        (replaced("surface/1/z", lambda z: z[:-1]), "not one height a place"),
-        (replaced("pressure", lambda p: p.astype(complex)), "pressure is no row of numbers"),
+        (lambda file: file["surface/1/z"].__setitem__(7, np.nan), "^dataset surface/1/z is nan .* 7$"),
+        (replaced("surface/1/z", lambda z: z[:-1]), "^datasets surface/1/s and z: "),
+        (replaced("pressure", lambda p: p.astype(complex)), r"a\.h5: damaged: pressure "),
         (replaced("pressure", lambda p: p[:, :-1]), "pressure has 80 nodes, x 81"),
-        (replaced("pressure", lambda p: p[0]), "no dataset pressure of frames"),
+        (replaced("pressure", lambda p: p[0]), "no dataset pressure "),
         (replaced("time", lambda t: np.stack([t, t])), "time has 361 nodes, x 81"),
-        (replaced("step", lambda s: s[::-1]), "numbers of steps do not increase"),
-        (lambda file: file["pressure"].__setitem__((40, 30), -2e6), "its least value at frame 40"),
-        (lambda file: file["pressure"].__setitem__((40, 30), 1e300), "its integral over x at frame 40"),
+        (replaced("step", lambda s: s[::-1]), r"a\.h5: damaged, .*steps"),
+        (
+            lambda file: file["pressure"].__setitem__((40, 30), -2e6),
+            r"^dataset pressure: .* frame 40 .* -2e\+06, .* 0 or",
+        ),
+        (
+            lambda file: file["pressure"].__setitem__((40, 30), 1e300),
+            r"^dataset pressure: .* frame 40 .*e\+295, .* 527000 N/m",
+        ),
     ],
 )
 def test_inconsistent_result_file_is_refused(edit, message, scene, tmp_path):
-    assert message in refused(write(tmp_path / "a.h5", scene, edit=edit))
+    assert re.search(message, refused(write(tmp_path / "a.h5", scene, edit=edit)))
 
 
 def with_steps(spoil):
@@ -110,19 +125,22 @@ def with_steps(spoil):
 @pytest.mark.parametrize(
     "spoil, message",
     [
-        (scaled("shear_stress_2", by=1e-6), "dataset shear_stress_2: its integral over x at frame 0"),
+        (
+            scaled("shear_stress_2", by=1e-6),
+            r"^dataset shear_stress_2: .* frame 0 .* 0\.02635, .* 26350 .*steps/friction",
+        ),
         (
             lambda file: file["pressure"].__setitem__((40, slice(30, 32)), [1.5e9, 0.0]),
-            "dataset pressure: its integral over x at frame 40",
+            r"^dataset pressure: .* frame 40 .* 552176, .* 527000 N/m",
         ),
-        (scaled("steps/p_max", by=1.001), "as steps/p_max has it"),
+        (scaled("steps/p_max", by=1.001), "^dataset pressure: .* steps/p_max"),
     ],
 )
 def test_frames_must_agree_with_step_scalars(spoil, message, scene, tmp_path):
     prepare_whole = write(tmp_path / "whole.h5", scene, edit=with_steps(lambda file: None))
     with Loads(prepare_whole) as loads:
         prepare(loads, ("2",), print)
-    assert message in refused(write(tmp_path / "a.h5", scene, edit=with_steps(spoil)))
+    assert re.search(message, refused(write(tmp_path / "a.h5", scene, edit=with_steps(spoil))))
 
 
 def without(first, last, numbers=True):
@@ -150,7 +168,7 @@ def test_points_with_missing_frames_have_no_damage(numbers, tmp_path):
     message = []
     for path in (whole, cut):
         run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)), message.append)
-    assert any("40 frames are missing in one place, after" in line for line in message)
+    assert any(" 40 frames " in f" {line}" and " one place, after" in line for line in message)
     with h5py.File(f"{whole}.post") as a, h5py.File(f"{cut}.post") as b:
         for surface, speed in (("2", scene.u2), ("1", scene.u1)):
             passed, left = (file[f"damage/{surface}_complete"][:].astype(bool) for file in (a, b))
@@ -170,9 +188,8 @@ def test_refused_if_every_point_misses_frames(scene, tmp_path):
             replaced(name, lambda values: values[keep])(file)
 
     message = refused(write(tmp_path / "a.h5", scene, edit=every_tenth))
-    assert (
-        f"{(scene.time.size - 1) // 10} frames are missing in" in message and "no damage is given" in message
-    )
+    count = (scene.time.size - 1) // 10
+    assert is_line_with(message, f"{count} frames ", f" {count} places, ", " 8, ", "no damage")
 
 
 def test_history_contains_every_sample_of_every_point(scene, tmp_path):
@@ -199,7 +216,7 @@ def test_picture_point_must_have_passed(scene, tmp_path):
     allowed = result.s[result.complete[result.main]] / A
     history_picture(path, result, (allowed[-1], 0.0))
     for s in (0.0, allowed[-1] + 0.1, allowed[0] - 0.1):  # began inside the contact, did not go through it
-        with pytest.raises(PostError, match=f"{allowed[0]:.6g} to {allowed[-1]:.6g} is allowed"):
+        with pytest.raises(PostError, match=f"--point s/a = .* {allowed[0]:.6g} to {allowed[-1]:.6g} "):
             history_picture(path, result, (s, 0.0))
 
 
@@ -226,7 +243,7 @@ def test_text_types_and_checksums_are_read(scene, tmp_path):
     assert digests[0] == digests[1]
     with h5py.File(paths[1], "r+") as file:
         file["pressure"].attrs["units"] = np.bytes_(b"MPa")
-    assert 'its unit is "MPa", it must be "Pa"' in refused(paths[1])
+    assert is_line_with(refused(paths[1]), "dataset pressure: ", '"MPa"', '"Pa"')
 
 
 @pytest.mark.parametrize("table", ["file", "columns"])

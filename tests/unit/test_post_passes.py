@@ -49,7 +49,7 @@ def test_fold_aligns_equal_points():
     assert passes[1][1] == pytest.approx([14, 15, 16, 17])
     assert np.isnan(passes[2][0, 0]) and passes[2][0, 1:] == pytest.approx([1, 2, 3])
     for stretch in (0.2e-6, 1e-4, np.nan):
-        with pytest.raises(ValueError, match="does not fit"):
+        with pytest.raises(ValueError, match=rf" {stretch:.3g} m .* 9e-06 m"):
             fold(s, damage, stretch)
 
 
@@ -135,7 +135,7 @@ def test_shifted_passes_are_aligned(shift, tmp_path):
     j = np.argmin(np.abs(results[1].s - points[k] - step))
     assert abs(results[1].s[j] - points[k] - step) <= 0.51 * scenes[0].dx
     assert damages[1, :, k] == pytest.approx(results[1].damage["2"][:, j], rel=1e-12)
-    with pytest.raises(PostError, match="profiles of surface 1 differ"):
+    with pytest.raises(PostError, match="profiles of surface 1 "):
         scenes[1].profiles["1"] = scenes[1].profiles["2"]
         write(paths[1], scenes[1], depths=(0.1,), edit=edit)
         assert main([paths[1]]) == ExitStatus.DONE
