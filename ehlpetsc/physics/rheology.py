@@ -180,10 +180,9 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
     sigma = np.abs(half) / tau0
     # ln(sinh(s)/s), so that neither a huge viscosity nor a steep gradient overflows
     small = sigma < SERIES_LIMIT
-    s = np.where(small, 1.0, sigma)
-    log_sinh_ratio = np.where(
-        small, sigma**2 / 6 - sigma**4 / 180 + sigma**6 / 2835, s + np.log1p(-np.exp(-2 * s)) - np.log(2 * s)
-    )
+    s, square = np.where(small, 1.0, sigma), sigma * sigma
+    series = square * (1 / 6 - square * (1 / 180 - square / 2835))
+    log_sinh_ratio = np.where(small, series, s + np.log1p(-np.exp(-2 * s)) - np.log(2 * s))
     with np.errstate(divide="ignore"):
         ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - log_sinh_ratio
     large = ln_argument > 20.0
