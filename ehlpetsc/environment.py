@@ -135,7 +135,7 @@ def first_rank():
     return next((os.environ[name] for name in RANK_VARIABLES if name in os.environ), "0") == "0"
 
 
-def _own(names):
+def _is_own_python(names):
     """Whether this Python has all packages without Debian's PETSc, whose environment run_mpi.sh sets."""
     if sys.version_info < OLDEST_PYTHON:
         return False
@@ -149,7 +149,7 @@ def _own(names):
     return petsc.ScalarType.__name__ in ("float", "float64")
 
 
-def _found(names):
+def _python_report(names):
     lacks = f"without {', '.join(missing(names))}" if missing(names) else "with all packages"
     return f"{sys.executable} is Python {sys.version.split()[0]}, {lacks}"
 
@@ -157,9 +157,9 @@ def _found(names):
 def _answer(question, *names):
     sys.path.pop(0)  # this file's folder, whose modules are part of a package
     if question == "own":
-        return 0 if _own(names) else 1
+        return 0 if _is_own_python(names) else 1
     prepare()
-    print(_found(names) if question == "found" else "\n".join(missing(names)))
+    print(_python_report(names) if question == "found" else "\n".join(missing(names)))
     return 0
 
 

@@ -35,10 +35,10 @@ def read_text(path):
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError([f"{path}: cannot be read: {reason}{_meant(path)}"]) from None
+        raise CaseError([f"{path}: cannot be read: {reason}{_similar_name_hint(path)}"]) from None
 
 
-def _meant(path):
+def _similar_name_hint(path):
     """Hint to a case file with a similar name in the same folder."""
     with contextlib.suppress(OSError, ValueError):
         neighbours = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
@@ -64,10 +64,10 @@ def parse_toml(path, text):
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # some errors of number conversions pass tomllib
-        raise CaseError([f"{path}: not valid TOML: {error}{_comma(text, str(error))}"]) from None
+        raise CaseError([f"{path}: not valid TOML: {error}{_decimal_comma_hint(text, str(error))}"]) from None
 
 
-def _comma(text, error):
+def _decimal_comma_hint(text, error):
     """Hint to a decimal comma in the line of an error."""
     line = re.search(r"at line (\d+)", error)
     typed = text.splitlines()[int(line[1]) - 1] if line else ""

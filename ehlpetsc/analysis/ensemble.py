@@ -172,12 +172,14 @@ def arguments(argv):
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
     samples = f"of the bootstrap, 1 to {MAX_RESAMPLES} [{RESAMPLES}]"
-    parser.add_argument("--resamples", type=_within(1, MAX_RESAMPLES), default=RESAMPLES, help=samples)
-    parser.add_argument("--seed", type=_within(0, 2**63), default=1, help="of the bootstrap [1]")
+    parser.add_argument(
+        "--resamples", type=_whole_number_within(1, MAX_RESAMPLES), default=RESAMPLES, help=samples
+    )
+    parser.add_argument("--seed", type=_whole_number_within(0, 2**63), default=1, help="of the bootstrap [1]")
     return parser.parse_args(argv)
 
 
-def _within(low, high):
+def _whole_number_within(low, high):
     """Argument type: integer in a range."""
 
     def number(text):

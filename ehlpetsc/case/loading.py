@@ -73,7 +73,7 @@ def load(case, overrides=None):
         raise CaseError(faults)
     stored, columns = with_columns(data, Path(path).parent)
     text = toml_text(stored) if from_python else text_with(text, [*settings, *columns], stored)
-    return _made(path, data, text)
+    return _case_from(path, data, text)
 
 
 def stored_case(text, overrides=None):
@@ -99,7 +99,7 @@ def stored_case(text, overrides=None):
     faults += _table_faults(DICT_NAME, data, stored=True)[1]
     if faults:
         raise CaseError(faults)
-    return _made(DICT_NAME, data, text, stored=True)
+    return _case_from(DICT_NAME, data, text, stored=True)
 
 
 def _override(path, data, overrides):
@@ -139,11 +139,11 @@ def members(case):
         tables = member_tables(data, settings)
         text = partial(text_with, alone, settings, tables)
         values = tuple(value for _, value in settings)
-        result.append((values[0] if case.series.key else values, _made(case.path, tables, text)))
+        result.append((values[0] if case.series.key else values, _case_from(case.path, tables, text)))
     return result
 
 
-def _made(path, data, text, stored=False):
+def _case_from(path, data, text, stored=False):
     data = with_grade(with_material(data))
     table, _ = _conditions(path, data, stored)
     return Case.of(with_reference_state(data, table), text, Path(path), table)

@@ -36,13 +36,13 @@ def profile_faults(folder, surface, case):
         key, kind = ("z", list) if "z" in table else ("file", str)
         if isinstance(table.get(key), kind) and table[key]:
             try:
-                _try(folder, table, case)
+                _check_profile(folder, table, case)
             except ProfileError as error:
                 faults.append(f"surface.{side}.{key} = {show(table[key])}: {error}")
     return faults
 
 
-def _try(folder, table, case):
+def _check_profile(folder, table, case):
     try:
         spec = SurfaceProfile(**table)
     except ValidationError:  # reported with its keys; only the existence of the file can be checked
@@ -50,7 +50,7 @@ def _try(folder, table, case):
     if spec is None:
         if "file" not in table:
             return None
-        return _sought(folder / table["file"])
+        return _check_file(folder / table["file"])
     scales = case and Scales.of(case)
     profile_samples = samples(folder, spec, scales and scales.dx)
     if case is None:
@@ -63,7 +63,7 @@ def _try(folder, table, case):
     return None
 
 
-def _sought(path):
+def _check_file(path):
     try:
         if path.is_file():
             return

@@ -42,7 +42,7 @@ def in_si(path, data, model):
     CaseError
     """
     settings, faults = [], []
-    for keys, table, name, unit in list(_texts(data, model)):
+    for keys, table, name, unit in list(_texts_with_unit(data, model)):
         try:
             table[name] = converted(table[name], unit)
             settings.append((keys, table[name]))
@@ -91,7 +91,7 @@ def _registry():
     return pint.UnitRegistry(cache_folder=None), pint.errors
 
 
-def _texts(data, model, above=()):
+def _texts_with_unit(data, model, above=()):
     """Texts in place of numbers with a unit: keys, their table, name and unit."""
     for field in model.__fields__.values():
         name, value = field.alias, data.get(field.alias) if isinstance(data, dict) else None
@@ -99,7 +99,7 @@ def _texts(data, model, above=()):
         if isinstance(value, dict):
             inner = SYNTHETIC.get(str(value.get("kind"))) if name == "synthetic" else field.type_
             if isinstance(inner, type) and issubclass(inner, Table):
-                yield from _texts(value, inner, keys)
+                yield from _texts_with_unit(value, inner, keys)
         elif unit and unit not in TEXT_UNITS and _has_text(value):
             yield keys, data, name, unit
     if not above and isinstance(data.get("series"), dict):

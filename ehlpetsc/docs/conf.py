@@ -27,7 +27,7 @@ def _with_contents(_app, page, source):
         source[0] += contents()
 
 
-def _complete(app, failure):
+def _copy_site_files(app, failure):
     """Copy MathJax, and the front page to index.html."""
     if failure is None:
         shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
@@ -35,10 +35,12 @@ def _complete(app, failure):
         for name in MATHJAX_FILES:
             target = Path(app.outdir, "_static", "mathjax", name)
             if not target.exists():
-                (shutil.copytree if (folder / name).is_dir() else shutil.copy)(folder / name, _made(target))
+                (shutil.copytree if (folder / name).is_dir() else shutil.copy)(
+                    folder / name, _with_parents(target)
+                )
 
 
-def _made(path):
+def _with_parents(path):
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
 
@@ -46,4 +48,4 @@ def _made(path):
 def setup(app):
     """Connect the table of contents and further files of the site to Sphinx."""
     app.connect("source-read", _with_contents)
-    app.connect("build-finished", _complete)
+    app.connect("build-finished", _copy_site_files)

@@ -53,7 +53,7 @@ class NewtonSolver:
     def __init__(self, system, options=None):
         self.system, self.problem = system, system.problem
         self._options = options or RunOptions()
-        self._made = owned(self)
+        self._petsc_objects = owned(self)
         self._watch, self._needs_renewal = None, False
         self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
         # other line searches may end at another point than the last trial point
@@ -84,7 +84,7 @@ class NewtonSolver:
         system = self.system
         callbacks = self._function, self._before_step
         snes = snes_objects.create(system.comm, kind, system.f, *callbacks, self._options.given)
-        self._made.append(snes)
+        self._petsc_objects.append(snes)
         return snes
 
     def _set_jacobian(self, snes):
@@ -218,8 +218,8 @@ class NewtonSolver:
     def _renew(self, snes):
         """Create PETSc's objects anew after a failed solve; return the successor of `snes`."""
         unconstrained = snes is self._unconstrained_snes
-        while self._made:
-            self._made.pop().destroy()
+        while self._petsc_objects:
+            self._petsc_objects.pop().destroy()
         self._create()
         return self._unconstrained_snes if unconstrained else self.snes
 

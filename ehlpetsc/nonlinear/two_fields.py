@@ -82,7 +82,7 @@ class TwoFields:
         if self.model.lower_bound is not None:
             w_of(self.lower.array, self.local)[:] = self.model.lower_bound
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
-        self._made = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
+        self._petsc_objects = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
 
     def create_matrices(self, with_band):
         """Create the Jacobian and the matrix for preconditioners.
@@ -98,11 +98,11 @@ class TwoFields:
         self.jacobian = JacobianOperator(self.problem, self.linear_halo, self.ranks, self.factors)
         self.operator = python_matrix(self.jacobian, sizes, self.comm)
         self.assembled, self.preconditioned = None, self.operator
-        self._made.append(self.operator)
+        self._petsc_objects.append(self.operator)
         if not with_band:
             self.preconditioned = PETSc.Mat().createAIJ((sizes, sizes), comm=self.comm)
             self.assembled = NearFieldMatrix(self.problem, self.near_field, self.preconditioned)
-            self._made.append(self.preconditioned)
+            self._petsc_objects.append(self.preconditioned)
 
     def set_initial_guess(self, q, w, h00, inputs):
         """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve.

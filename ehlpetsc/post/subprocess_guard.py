@@ -79,7 +79,7 @@ class SubprocessGuard:
         child = os.fork()
         if child == 0:
             os.close(ours)
-            self._work(work, note)
+            self._run_child(work, note)
         self._child = child
         os.close(theirs)
         try:
@@ -90,7 +90,7 @@ class SubprocessGuard:
         self._child = None
         return self._explain(name, status, note, hung)
 
-    def _work(self, work, note):
+    def _run_child(self, work, note):
         """Run in the child; never returns."""
         status = ExitStatus.BUG
         try:

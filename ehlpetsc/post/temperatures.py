@@ -33,7 +33,7 @@ def point_temperatures(loads, surface, motion, points):
     lasts = _weights(loads.time)
     for begin in range(0, loads.time.size, FRAMES_PER_READ):
         frames = np.arange(begin, min(begin + FRAMES_PER_READ, loads.time.size))
-        rows = _between(loads, surface, frames, motion.offset[frames])
+        rows = _temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
         for frame, values in zip(frames, rows, strict=True):
             x = loads.x[: values.size] + motion.offset[frame] * loads.dx
             first = motion.shift[frame]  # node of point 0
@@ -53,7 +53,7 @@ def temperature_history(loads, surface, s):
     """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
     motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
     frames = np.arange(int(motion.enter[0]), int(motion.leave[0]) + 1)
-    rows = _between(loads, surface, frames, motion.offset[frames])
+    rows = _temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
     return rows[np.arange(frames.size), motion.shift[frames]]
 
 
@@ -63,7 +63,7 @@ def _weights(time):
     return 0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))
 
 
-def _between(loads, surface, frames, offset):
+def _temperatures_between_nodes(loads, surface, frames, offset):
     """Temperatures (frames, nodes), `offset` (frames,) elements right of the nodes, by limited cubics.
 
     The last node has no following element; its temperature is returned.

@@ -136,13 +136,13 @@ def run_one(seed, folder, limit):
         "steps": outcome.steps,
         "retries": outcome.retries,
         "newton": outcome.newton,
-        "file": _whole(folder / "run.h5"),
+        "file": _file_state(folder / "run.h5"),
         "message": outcome.message,
         "overrides": "; ".join(overrides),
     }
 
 
-def _whole(path):
+def _file_state(path):
     """Whether a result file, if it exists, can be opened and is complete."""
     if not path.exists():
         return "none"

@@ -26,7 +26,7 @@ def mesh_warnings(rough, scales):
             notes.append(
                 f"surface.{side}: the mesh is too coarse for the profile: {100 * fraction:.1f} % of its "
                 f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
-                f"points_per_half_width = {_needed(profile, scales)} brings that under "
+                f"points_per_half_width = {_needed_points(profile, scales)} brings that under "
                 f"{100 * MAX_UNRESOLVED:.0f} %"
             )
         if profile and profile.given.measured:
@@ -94,7 +94,7 @@ def _running_median(z, window):
     ]
 
 
-def _needed(profile, scales):
+def _needed_points(profile, scales):
     points = scales.a / scales.dx
     while profile.unresolved_variance(scales.a / points) > MAX_UNRESOLVED:
         points *= 1.1

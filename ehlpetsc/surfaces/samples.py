@@ -89,15 +89,15 @@ def samples(folder, spec, cell=None):
     source = None
     if z.size < before[1].size:
         notes.append(f"{before[1].size} points, thinned to {z.size} local means")
-        source = Samples(*_turned(*before, spec), True, True)
+        source = Samples(*_flipped_and_scaled(*before, spec), True, True)
     mean = float(z.mean())
     if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
         z = z - mean
         notes.append(f"mean height of {1e6 * mean:.4g} um subtracted")
-    return Samples(*_turned(X, z, spec), True, True, tuple(notes), source)
+    return Samples(*_flipped_and_scaled(X, z, spec), True, True, tuple(notes), source)
 
 
-def _turned(X, z, spec):
+def _flipped_and_scaled(X, z, spec):
     """Heights flipped and scaled."""
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]

@@ -15,7 +15,7 @@ class Mesh(Table):
     near_field: int = Field(3, ge=2, le=1000, description="nodes of deflection in the matrix, each side")
 
     @validator("points_per_half_width")
-    def _affordable(cls, value, values):
+    def _check_node_count(cls, value, values):
         if value * (values.get("outlet", 0.0) - values.get("inlet", 0.0)) > MAX_NODES:
             raise ValueError("too many nodes")
         return value

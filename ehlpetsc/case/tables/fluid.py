@@ -87,7 +87,7 @@ class Fluid(Table):
         return value
 
     @validator("kappa", "lambda_")
-    def _below(cls, value, values, field):
+    def _check_upper_bound(cls, value, values, field):
         # kappa >= eta0 reverses the sign of the exponent; lambda > gamma makes the density fall with pressure
         limit = values.get("viscosity" if field.name == "kappa" else "gamma")
         equal_too = field.name == "kappa"

@@ -37,7 +37,7 @@ class Gears(Table):
     )
 
     @root_validator(skip_on_failure=True)
-    def _possible(cls, values):
+    def _check_geometry(cls, values):
         faults = GearPair(**values).faults()
         if faults:
             raise ValueError("; ".join(fault.removeprefix("gears.") for fault in faults))

@@ -51,9 +51,9 @@ class Jumps:
             )
             max_passes = min(max_passes, int(MAX_EXTRAPOLATION * before))
         jump = self._allowed(bodies, rates, solved_round, max_passes)
-        return self._after(bodies, rates, jump, done), jump, rates
+        return self._bodies_after(bodies, rates, jump, done), jump, rates
 
-    def _after(self, bodies, rates, jump, done):
+    def _bodies_after(self, bodies, rates, jump, done):
         return tuple(
             body.after(rate, jump, done, self.life.pits) for body, rate in zip(bodies, rates, strict=True)
         )
@@ -101,6 +101,6 @@ class Jumps:
                     for rate, body, new in zip(rates, bodies, begin, strict=True)
                 )
             jump = self._allowed(bodies, rates, solved_round, self.passes - done)
-            bodies = self._after(bodies, rates, jump, done)
+            bodies = self._bodies_after(bodies, rates, jump, done)
             rounds, done = rounds + 1, done + jump
         return rounds + -(-(self.passes - done) // jump)

@@ -113,14 +113,14 @@ class _Lives:
         queue = WorkQueue(comm, 1, list(range(len(self.members))), record)
         serving, report = PollingStop(queue, stop), None
         while (number := queue.next(report, serving(queue.group))) is not None:
-            report = number, self._live(self.members[number], queue.group, serving)
+            report = number, self._run_life(self.members[number], queue.group, serving)
         states = queue.finish(lambda: [row["state"] for row in self.rows])
         on_root(comm, self._write)
         if {"waiting", "stopped"} & set(states):
             raise Stopped
         return self.index
 
-    def _live(self, member, group, stop):
+    def _run_life(self, member, group, stop):
         from ehlpetsc.life.driver import run_life
         from ehlpetsc.life.history import read_life
 

@@ -87,7 +87,7 @@ class BandedJacobian:
         """Number of h of a node."""
         return self._dof(self._group(node), FILMS[self._in_group(node)])
 
-    def _at(self, row, column):
+    def _index_of(self, row, column):
         """Index of an entry in `values`; the last one where it does not exist."""
         (group, r), (other, c) = np.divmod(row, LINE), np.divmod(column, LINE)
         coupled = np.abs(other - group) <= 1
@@ -99,19 +99,19 @@ class BandedJacobian:
     def _recurrences(self):
         p, groups = self.problem, np.arange(self.groups)
         row = self._sums(groups)
-        self.values[self._at(row, row)] = 2.0 * np.cosh(self.rates)
+        self.values[self._index_of(row, row)] = 2.0 * np.cosh(self.rates)
         for towards, outer, at_end in ((-1, 0, p.first == 0), (1, -1, p.last == p.n)):
-            beyond = self._at(row, self._sums(groups + towards))
+            beyond = self._index_of(row, self._sums(groups + towards))
             self.values[beyond] = -1.0
             if at_end:  # no pressure beyond: the sum decays as the exponential
                 self.values[beyond[outer]] = 0.0
-                self.values[self._at(row[outer], row[outer])] -= np.exp(-self.rates)
+                self.values[self._index_of(row[outer], row[outer])] -= np.exp(-self.rates)
 
     def _padding(self):
         """Unknowns of a last group that is not full: zero."""
         none = np.arange(self.nodes[-1] + 1, self.problem.first + self.groups * GROUP)
         for spare in (self._pressure(none), self._film(none)):
-            self.values[self._at(spare, spare)] = 1.0
+            self.values[self._index_of(spare, spare)] = 1.0
 
     def _under_films(self):
         """Entries of the deflection rows: films (nodes of the window, values, indices), and sums."""
@@ -126,8 +126,8 @@ class BandedJacobian:
             [*[len(inner)] * 3, len(ends)],
         )
         rows = np.concatenate([row, row, row, self._pressure(ends)])
-        self.film_place = self._at(rows, self._film(nodes))
-        self.values[self._at(row[:, None], self._sums(self._group(inner)))] = -self.weights
+        self.film_place = self._index_of(rows, self._film(nodes))
+        self.values[self._index_of(row[:, None], self._sums(self._group(inner)))] = -self.weights
 
     def _under_pressures(self):
         """Entries of recurrences and deflection rows in the columns of first unknowns."""
@@ -152,9 +152,9 @@ class BandedJacobian:
             bent.append(np.where(near == end, d.end_row_coefficient, 0.0))
         nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
         self.by_depth, self.pressure_nodes = np.concatenate(bent), nodes - p.window.start
-        self.pressure_place = self._at(np.concatenate(rows), self._pressure(nodes))
+        self.pressure_place = self._index_of(np.concatenate(rows), self._pressure(nodes))
         pressures = self._pressure(self.nodes)
-        self.diagonal = self._at(pressures, pressures)
+        self.diagonal = self._index_of(pressures, pressures)
 
     def _inner(self):
         return self.nodes[(self.nodes > 0) & (self.nodes < self.problem.n - 1)]
@@ -181,7 +181,7 @@ class BandedJacobian:
         columns = np.stack([self._pressure(node), self._film(node)], axis=2).reshape(len(node), -1)
         on_mesh = np.repeat((node >= 0) & (node < p.n), 2, axis=1)
         self.stencil = np.clip(node, 0, p.n - 1) - p.window.start
-        place = self._at(self._film(self.nodes)[:, None], columns)
+        place = self._index_of(self._film(self.nodes)[:, None], columns)
         self.reynolds_place = np.where(on_mesh, place, self.values.size - 1)
 
     def fill(self, entries, inactive_nodes):

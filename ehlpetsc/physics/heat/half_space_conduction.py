@@ -73,13 +73,13 @@ class StepWeights:
     def of(cls, rates, weights, dt, effusivity):
         """Coefficients of a step of `dt` [s]; `rates` and `weights` as of :func:`exponentials`."""
         # equal steps of a run differ by rounding, which the cache must not see
-        return cls._of(
+        return cls._cached(
             np.asarray(rates).tobytes(), np.asarray(weights).tobytes(), float(f"{dt:.12g}"), effusivity
         )
 
     @classmethod
     @lru_cache(maxsize=8)
-    def _of(cls, rates, weights, dt, effusivity):
+    def _cached(cls, rates, weights, dt, effusivity):
         rates, weights = np.frombuffer(rates), np.frombuffer(weights)
         z = rates * dt
         decay = np.exp(-z)

@@ -61,7 +61,7 @@ def _centre(points, corners, count):
 
 
 @compiled(error_model="python", nogil=True)
-def _reach(points, corners, count, centre):
+def _max_distance(points, corners, count, centre):
     reach = 0.0
     for k in range(count):
         reach = max(reach, np.sum((points[:, corners[k]] - centre) ** 2))
@@ -85,8 +85,8 @@ def _smallest_of_few(points, indices, count):
         has_ball, centre = _centre(points, subset, size)
         if not has_ball:
             continue
-        radius = _reach(points, subset, size, centre)
-        if radius < best and _reach(points, indices, count, centre) <= radius * (1 + BALL_TOLERANCE):
+        radius = _max_distance(points, subset, size, centre)
+        if radius < best and _max_distance(points, indices, count, centre) <= radius * (1 + BALL_TOLERANCE):
             best, best_centre, best_count = radius, centre, size
             best_subset[:size] = subset[:size]
     return best, best_centre, best_subset, best_count

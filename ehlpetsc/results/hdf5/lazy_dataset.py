@@ -24,7 +24,7 @@ def announced_to(listener):
         _listeners.remove(listener)
 
 
-def _announce():
+def _call_listeners():
     for listener in _listeners:
         listener(_names[-1] if _names else "")
 
@@ -33,7 +33,7 @@ def _announce():
 def reading(path, name=""):
     """Context manager that converts exceptions of HDF5 on a damaged file to an OutputError."""
     _names.append(name or "the file")
-    _announce()
+    _call_listeners()
     try:
         yield
     except (OSError, RuntimeError, KeyError, AttributeError, ValueError, TypeError, MemoryError) as fault:
@@ -41,7 +41,7 @@ def reading(path, name=""):
         raise OutputError(f"{place}: cannot be read, the file is damaged ({one_line(fault)})") from None
     finally:
         _names.pop()
-        _announce()
+        _call_listeners()
 
 
 class LazyDataset:

@@ -136,21 +136,23 @@ class ProgressOutput:
 
     def __init__(self, simulation, stream):
         self._simulation, self._stream = simulation, stream
-        self._progress = None if simulation.solution is None else self._of(simulation.solution.time)
+        self._progress = (
+            None if simulation.solution is None else self._progress_from(simulation.solution.time)
+        )
 
     def write(self, state):
         """Show a step, but not the steady start."""
         if self._progress is not None:
             self._progress.step(state.scalars)
         elif not self._simulation.finished:  # a steady case has no steps
-            self._progress = self._of(state.time)
+            self._progress = self._progress_from(state.time)
 
     def close(self, status):
         """Show the last step."""
         if self._progress is not None:
             self._progress.close()
 
-    def _of(self, time):
+    def _progress_from(self, time):
         return Progress(time, self._simulation.end, self._stream)
 
 

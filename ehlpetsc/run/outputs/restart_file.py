@@ -60,9 +60,9 @@ class RestartFile:
         """Remember the state up to which the result file on rank 0 is complete."""
         state = self.simulation.solution
         if self.path and self.simulation.case.time and self.result.holds(state):
-            self._stored = self._now()
+            self._stored = self._checkpoint()
 
-    def _now(self):
+    def _checkpoint(self):
         return checkpoint.Checkpoint.of(
             self.simulation, self.result.contact_count(), dict(self.totals.values)
         )
@@ -70,7 +70,7 @@ class RestartFile:
     def _save(self):
         self.result.flush()
         self.note_stored()
-        self._write(self._now())
+        self._write(self._checkpoint())
 
     def _write(self, state):
         simulation = self.simulation

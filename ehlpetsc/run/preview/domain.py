@@ -33,9 +33,9 @@ def domain_warnings(case, scales):
     if case.fluid is None:
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
-    opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
+    opening = inlet_opening(_smallest_expected_film(case, scales), case.mesh.points_per_half_width)
     if MESH_MARGIN * MAX_FILM_SLOPE < opening:
-        notes.append(f"{_coarse(opening)}: the film comes out too thin; {_cure(case, scales)}")
+        notes.append(f"{_coarse(opening)}: the film comes out too thin; {_finer_mesh_hint(case, scales)}")
     return notes
 
 
@@ -48,12 +48,12 @@ def domain_faults(case, scales):
         return _too_narrow(case, scales)
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
-    opening = inlet_opening(_thinnest(case, scales), case.mesh.points_per_half_width)
+    opening = inlet_opening(_smallest_expected_film(case, scales), case.mesh.points_per_half_width)
     if opening <= MAX_OPENING:
         return []
     points = case.mesh.points_per_half_width
     where = f"{case.path}: mesh.points_per_half_width = {points}"
-    return [f"{where}: {_coarse(opening)}, which leaves no film; {_cure(case, scales)}"]
+    return [f"{where}: {_coarse(opening)}, which leaves no film; {_finer_mesh_hint(case, scales)}"]
 
 
 def _too_narrow(case, scales):
@@ -68,7 +68,7 @@ def _too_narrow(case, scales):
     ]
 
 
-def _thinnest(case, scales):
+def _smallest_expected_film(case, scales):
     """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
     return max(expected_film(case, scales), smallest_film(case.contact, scales))
 
@@ -95,7 +95,7 @@ def _coarse(opening):
     )
 
 
-def _cure(case, scales):
-    points = math.ceil(points_for_opening(_thinnest(case, scales), MAX_FILM_SLOPE))
+def _finer_mesh_hint(case, scales):
+    points = math.ceil(points_for_opening(_smallest_expected_film(case, scales), MAX_FILM_SLOPE))
     other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
     return f"try mesh.points_per_half_width = {points}{other}"

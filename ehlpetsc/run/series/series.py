@@ -100,7 +100,7 @@ class Series:
         missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
         self.queue = WorkQueue(world, ranks, missing, self._note_end)
         self.failures, self.unwritten = {}, None
-        self._announce(ranks, len(missing))
+        self._print_opening(ranks, len(missing))
 
     def run(self):
         """Run the missing members; returns the exit status."""
@@ -140,7 +140,7 @@ class Series:
             self.failures[number] = failure
         self._keep_index()
 
-    def _announce(self, ranks, missing):
+    def _print_opening(self, ranks, missing):
         if self.world.rank:
             return
         names = ", ".join(m.name for m in self.members)

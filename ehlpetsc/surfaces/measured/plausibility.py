@@ -60,13 +60,13 @@ def likely_unit(samples, layout, scale):
     of_x = [now[1]] if layout.spacing is not None else list(UNITS)
     pairs = [(unit, x_unit) for x_unit in of_x for unit in UNITS if (unit, x_unit) != now]
     for unit, x_unit in sorted(pairs, key=lambda pair: pair[0] != pair[1]):
-        if _within(rq * UNITS[unit], TYPICAL_RQ) and _within(step * UNITS[x_unit], TYPICAL_SPACING):
+        if _is_within(rq * UNITS[unit], TYPICAL_RQ) and _is_within(step * UNITS[x_unit], TYPICAL_SPACING):
             alone = x_unit == unit or layout.spacing is not None
             return f'unit = "{unit}"' + ("" if alone else f' and x_unit = "{x_unit}"')
     return None
 
 
-def _within(value, limits):
+def _is_within(value, limits):
     return limits[0] <= value <= limits[1]
 
 
