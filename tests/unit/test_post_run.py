@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -171,15 +172,15 @@ with h5py.File({str(path)!r}) as old, h5py.File({str(path) + ".new"!r}, "w", lib
 @pytest.mark.parametrize(
     "name, words",
     [
-        ("pressure", 'no dataset pressure of frames: list "pressure" in output.fields'),
-        ("shear_stress_2", "no dataset shear_stress_2"),
-        ("time", "time is no row of numbers"),
-        ("x", "not a result of ehlpetsc"),
+        ("pressure", 'no dataset pressure .*"pressure" in output.fields'),
+        ("shear_stress_2", "no dataset shear_stress_2 "),
+        ("time", r"a\.h5: damaged: time "),
+        ("x", r"a\.h5: an HDF5 .*not a result"),
     ],
 )
 def test_missing_dataset(name, words, scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__(name))
-    assert words in refused(capsys, main, path)
+    assert re.search(words, refused(capsys, main, path))
 
 
 def test_nan_in_pressure_is_located(scene, tmp_path, capsys):
@@ -187,7 +188,7 @@ def test_nan_in_pressure_is_located(scene, tmp_path, capsys):
         file["pressure"][300, 70] = np.nan
 
     message = refused(capsys, main, write(tmp_path / "a.h5", scene, edit=spoil))
-    assert "dataset pressure is nan at frame 300" in message and "x/a = -0.75" in message
+    assert is_line_with(message, "dataset pressure is nan ", " frame 300 ", "x/a = -0.75")
     assert not list(tmp_path.glob("a.post.h5*"))
 
 
@@ -199,7 +200,7 @@ def test_non_numeric_attributes_are_refused(name, value, scene, tmp_path, capsys
 
 def test_nan_in_x(scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, edit=lambda file: file["x"].__setitem__(3, np.nan))
-    assert "x are not increasing numbers" in refused(capsys, main, path)
+    assert f"ehlpetsc.post: {path}: damaged: x " in refused(capsys, main, path)
 
 
 def test_truncated_file(result, capsys):
@@ -209,11 +210,11 @@ def test_truncated_file(result, capsys):
 
 def test_not_a_result(tmp_path, capsys):
     (tmp_path / "a.h5").write_text("no HDF5")
-    assert "not an HDF5 file" in refused(capsys, main, tmp_path / "a.h5")
-    assert "no such file" in refused(capsys, main, tmp_path / "b.h5")
+    assert "a.h5: not an HDF5 " in refused(capsys, main, tmp_path / "a.h5")
+    assert "b.h5: no such file" in refused(capsys, main, tmp_path / "b.h5")
     with h5py.File(tmp_path / "c.h5", "w") as file:
         file["x"] = [1.0]
-    assert "not a result of ehlpetsc" in refused(capsys, main, tmp_path / "c.h5")
+    assert "c.h5: an HDF5 " in refused(capsys, main, tmp_path / "c.h5")
 
 
 def test_file_in_an_inaccessible_folder_is_refused(tmp_path, capsys, monkeypatch):
@@ -229,7 +230,7 @@ def test_file_in_an_inaccessible_folder_is_refused(tmp_path, capsys, monkeypatch
 
 def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
     assert "steady run" in refused(capsys, main, write(tmp_path / "a.h5", scene, steady=True, frames=1))
-    assert "one stored frame" in refused(capsys, main, write(tmp_path / "b.h5", scene, frames=1))
+    assert "output.every = 1" in refused(capsys, main, write(tmp_path / "b.h5", scene, frames=1))
     assert "raise time.travel" in refused(capsys, main, write(tmp_path / "c.h5", scene, frames=40))
 
 
@@ -254,17 +255,14 @@ def test_bad_depths(result, capsys):
 def test_thinned_frames_are_a_warning(scene, tmp_path, capsys):
     assert main([str(write(tmp_path / "a.h5", scene, every=4))]) == 0
     message = capsys.readouterr().err
-    assert (
-        "output.every = 4" in message
-        and "16 % of a typical point's damage at z = 0 and 14 % at z/a" in message
-    )
+    assert re.search(r"output\.every = 4: .* 16 % .* z = 0 .* 14 % .* z/a", message)
 
 
 def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
     frames = int(1.1 * 4 * 40 / 0.5)  # surface 1 has passed, the slow one not
     assert main([str(write(tmp_path / "a.h5", scene, frames=frames))]) == 0
     message = capsys.readouterr().err
-    assert "no point of surface 2" in message and "time.travel = 6.8 or more lets some through" in message
+    assert "no point of surface 2 " in message and "time.travel = 6.8 " in message
     with h5py.File(tmp_path / "a.post.h5") as file:
         assert np.isnan(file["damage/2"]).all() and np.isfinite(file["damage/1"]).any()
         assert file["asperities"].attrs["surface"] == "1"
@@ -307,7 +305,7 @@ def test_pictures_for_two_slide_roll_ratios(tmp_path, legends, capsys, monkeypat
         monkeypatch.setattr(gallery, drawn_already, lambda *_: [])
     assert "frames 0 to" in refused(capsys, main, paths[0], "--pictures", "--frame", "99999")
     message = refused(capsys, main, paths[0], "--pictures", "--point", "400", "0.1")
-    assert "passed the whole contact" in message and "s/a = -5.1 to -2.5 is allowed" in message
+    assert is_line_with(message.splitlines()[-1], "--point s/a = 400: ", "s/a = -5.1 to -2.5 ")
 
 
 @pytest.mark.slow
@@ -331,8 +329,10 @@ def test_picture_of_repeated_passes_of_one_surface(tmp_path, legends, capsys, mo
         assert file["damage/2_life"][:] == pytest.approx(1 / damages.mean(axis=0), rel=1e-12)
         assert (file["damage/2_count"][:] == 2).all() and file.attrs["passes"] == 2
         assert file["damage/s"][:] == pytest.approx(s)
-    assert f"first failure after {1 / damages.mean(axis=0)[1].max():.4g} passes" in capsys.readouterr().out
-    assert "profiles of surface 1 differ" in refused(capsys, main, *paths, "--passes", "1", "--pictures")
+    assert f" {1 / damages.mean(axis=0)[1].max():.4g} passes" in capsys.readouterr().out
+    assert "--passes: the profiles of surface 1 " in refused(
+        capsys, main, *paths, "--passes", "1", "--pictures"
+    )
     with pytest.raises(SystemExit):
         main([paths[0], "--passes", "2"])
 
@@ -399,7 +399,7 @@ def test_asperity_distribution_has_confidence_bounds(judged):
 def test_residual_stress_without_a_mean_stress_term_is_a_note(scene, tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, depths=(0.5,), post="residual_stress = [[0.0, -4e8]]")
     assert main([str(path), "--surface", "1"]) == 0
-    assert "residual_stress changes nothing without" in capsys.readouterr().err
+    assert "note: residual_stress " in capsys.readouterr().err
     damages = []
     for post in ("", "residual_stress = [[0.0, 1e9], [1.0, 8e8]]"):
         path = write(tmp_path / "b.h5", scene, depths=(0.5,), post=post)
@@ -419,7 +419,7 @@ def test_residual_stress_without_a_mean_stress_term_is_a_note(scene, tmp_path, c
         ),
         ("residual_stress = [[0.0, 1e12]]", "post.residual_stress = [[0.0, 1000000000000.0]]"),
         ("residual_stress = [[0.0, nan]]", "post.residual_stress"),
-        ("torsion_limit = 1e8", "torsion_limit = 100000000.0: must be half of bending_limit"),
+        ("torsion_limit = 1e8", "post.torsion_limit = 100000000.0: "),
         ("normal_sensitivity = true", "post.normal_sensitivity"),
     ],
 )
@@ -473,4 +473,8 @@ def test_cycles_without_damage_are_not_drawn():
     cycles = np.array([[2.0, 0, 1, 0, 1], [1.0, 0, 1, 0, 1], [1e-3, 0, 1, 0, 1]])
     plots.cycle_histogram(axes, cycles, np.array([1e-3, 1e-9, 1e-30]))
     assert axes.collections[0].get_offsets()[:, 0].tolist() == [2.0, 1.0]
-    assert "1 cycles of less than 1e-12" in axes.get_title("left") and axes.get_ylim()[0] > 1e-12
+    assert (
+        axes.get_title("left").startswith("1 cycles ")
+        and " 1e-12 " in axes.get_title("left")
+        and axes.get_ylim()[0] > 1e-12
+    )

@@ -1,5 +1,7 @@
 """Surface temperatures of body points from stored temperatures of known form."""
 
+import re
+
 import h5py
 import numpy as np
 import pytest
@@ -74,7 +76,7 @@ def test_highest_mean_and_flash_temperature(scene, result, tmp_path, capsys):
         assert np.isnan(known.highest[~found.complete[side]]).all()
         assert f"surface {side} temperature: highest={bulk + 112:.4g}"[:-1] in output.out
         assert found.summary()[side]["flash_temperature"] == pytest.approx(112.0, rel=2e-3)
-    assert output.err.count("thermal stresses are not computed") == 1
+    assert output.err.count("note: thermal stresses") == 1
 
 
 def test_units_and_names_are_stored(result, tmp_path):
@@ -104,14 +106,14 @@ def test_missing_temperature_is_named(result, tmp_path, capsys):
 @pytest.mark.parametrize(
     "changes, message",
     [
-        (dict(less=273.15), "dataset temperature_2: its least value at frame 0"),
+        (dict(less=273.15), "dataset temperature_2: .* frame 0 .* 100 K"),
         (dict(factor=np.nan), "dataset temperature_2 is nan"),
-        (dict(units="degC"), 'its unit is "degC", it must be "K"'),
+        (dict(units="degC"), 'dataset temperature_2: .*"degC", .*"K"$'),
     ],
 )
 def test_inconsistent_temperatures_are_refused(changes, message, result, capsys):
     assert main([str(result(**changes))]) == 2
-    assert message in capsys.readouterr().err
+    assert re.search(message, capsys.readouterr().err.rstrip())
 
 
 def test_changed_temperatures_are_another_input(scene, result, tmp_path, capsys):

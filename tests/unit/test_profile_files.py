@@ -1,6 +1,7 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
 import random
+import re
 import sys
 
 import numpy as np
@@ -71,7 +72,7 @@ def test_decreasing_x_is_reversed(tmp_path):
     x, z, notes = read_profile(path)
     np.testing.assert_allclose(x, X, atol=1e-18)
     np.testing.assert_array_equal(z, Z)
-    assert notes == ("x falls in the file: read from its end",)
+    assert len(notes) == 1 and notes[0].startswith("x falls")
 
 
 def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
@@ -82,16 +83,15 @@ def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
         words[gap] = [how] * (gap.stop - gap.start)
     path = tmp_path / "p.csv"
     path.write_text("".join(f"{a:.7e};{word}\n" for a, word in zip(x, words, strict=True)))
-    with pytest.raises(
-        ProfileError, match="6 heights missing, the longest gap 4e-06 m behind x = 4.9e-05; write"
-    ):
+    with pytest.raises(ProfileError, match="^6 .* 4e-06 m .* x = 4.9e-05; .* fill_gaps = 4e-06 "):
         read_profile(path)
-    with pytest.raises(ProfileError, match="fill_gaps = 4e-06 or more"):
+    with pytest.raises(ProfileError, match="fill_gaps = 4e-06 "):
         read_profile(path, Layout(fill_gaps=3.9e-6))
     X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
     assert len(X) == 398 and X[0] == 0.0  # the ends are not guessed
     np.testing.assert_allclose(filled, z[2:], atol=1e-12)
-    assert notes == ("6 missing heights filled or, at the ends, cut off; longest gap 4 um",)
+    (note,) = notes
+    assert note.startswith("6 missing ") and note.endswith(" 4 um")
 
 
 def test_omitted_lines_are_missing_heights(tmp_path):
@@ -105,15 +105,16 @@ def test_omitted_lines_are_missing_heights(tmp_path):
         path.write_text("".join(f"{x[k]:.7e};{z[k]:.12e}\n" for k in kept))
 
     write([50, 51, 52, 200])
-    message = "4 heights missing, the longest gap 4e-06 m behind x = 4.9e-05; write fill_gaps = 4e-06"
+    message = "^4 .* 4e-06 m .* x = 4.9e-05; .* fill_gaps = 4e-06 "
     with pytest.raises(ProfileError, match=message):
         read_profile(path)
     X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
     np.testing.assert_allclose(X, x, atol=1e-15)
     np.testing.assert_allclose(filled, z, atol=1e-12)
-    assert notes == ("4 missing heights filled or, at the ends, cut off; longest gap 4 um",)
+    (note,) = notes
+    assert note.startswith("4 missing ") and note.endswith(" 4 um")
     write(np.arange(60, 399))
-    message = "points 1e-06 m apart, and none for 0.00034 m behind x = 5.9e-05; allowed: no more than half"
+    message = "1e-06 m apart, .* 0.00034 m .* x = 5.9e-05; .* half"
     with pytest.raises(ProfileError, match=message):
         read_profile(path, Layout(fill_gaps=1.0))
 
@@ -129,23 +130,27 @@ def test_uneven_spacing_is_no_gap(tmp_path, x):
 
 
 REFUSED = {
-    "several columns": (lines("1;{0};{1}\n"), {}, "3 columns; write columns = \\[1, 2\\]"),
-    "heights alone": (lines("{1}\n"), {}, "heights alone: write spacing"),
-    "decimal or separator": (german(lines("{1:.9f}\n")), {"spacing": 1e-6}, 'decimal = ","'),
-    "both signs": (lines("{0:,.1f};{1:,.3f}\n", 1e9, 1e9), {}, 'write decimal = "," or decimal = "."'),
-    "no such column": (lines("{},{}\n"), {"columns": (1, 3)}, "columns = \\[1, 3\\]: the file has 2"),
+    "several columns": (lines("1;{0};{1}\n"), {}, r"^3 columns; .*columns = \[1, 2\]"),
+    "heights alone": (lines("{1}\n"), {}, "^heights alone: .*spacing"),
+    "decimal or separator": (
+        german(lines("{1:.9f}\n")),
+        {"spacing": 1e-6},
+        r'spacing .* columns = \[2\] .* decimal = "," ',
+    ),
+    "both signs": (lines("{0:,.1f};{1:,.3f}\n", 1e9, 1e9), {}, r'decimal = "," or decimal = "\."'),
+    "no such column": (lines("{},{}\n"), {"columns": (1, 3)}, r"^columns = \[1, 3\]: .* 2$"),
     "unit in the header": (
         "x [mm];z [um]\n" + lines("{};{}\n"),
         {},
-        'write unit = "um" .* and x_unit = "mm"',
+        'mm and um, .* unit = "um" .* x_unit = "mm"',
     ),
-    "header of numbers": ("4000\n" + lines("{},{}\n"), {}, "line 1: 1 numbers, .* header_lines = 1"),
-    "text in it": (lines("{},{}\n") + "end\n", {}, "line 7: 'end'; allowed: numbers alone below"),
-    "no numbers": ("a\nb\n", {}, "0 points"),
-    "few points": ("0,0\n1,1\n", {}, "2 points; allowed: at least 4"),
-    "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, "point 7 is not a number below"),
-    "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, "point 7 is not a number below"),
-    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "appears twice; allowed: every x once, or spacing"),
+    "header of numbers": ("4000\n" + lines("{},{}\n"), {}, "^line 1: 1 numbers, .* 2; .* header_lines = 1 "),
+    "text in it": (lines("{},{}\n") + "end\n", {}, "^line 7: 'end'; .*header_lines"),
+    "no numbers": ("a\nb\n", {}, "^0 points"),
+    "few points": ("0,0\n1,1\n", {}, "^2 points; .* 4$"),
+    "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, r"^point 7 .* 1e\+06 m;"),
+    "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, r"^point 7 .* 1e\+06 m;"),
+    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "^x = 1e-05 appears twice; .*spacing"),
 }
 
 
@@ -170,13 +175,13 @@ def measured(tmp_path, x=1.0, z=1.0):
 @pytest.mark.parametrize(
     ("x", "z", "keys", "message"),
     [
-        (1e3, 1e3, (), 'unit = "mm"'),
-        (1e3, 1e6, (), 'unit = "um" and x_unit = "mm"'),
-        (1, 1e6, (), "unit = "),
-        (1, 1e3, (), 'unit = "mm" and x_unit = "m"'),
-        (1e3, 1e3, ("cutoff=0.8e-3",), "at least 2 spacings"),
-        (1e6, 1e6, ("unit='nm'",), 'unit = "um"'),
-        (1, 1, ("scale=1e4",), "not a profile of this contact"),
+        (1e3, 1e3, (), 'points 500 um apart .* 336 um: .* unit = "mm"$'),
+        (1e3, 1e6, (), 'points 500 um apart .* 336 um: .* unit = "um" and x_unit = "mm"$'),
+        (1, 1e6, (), r"Rq 1\.98e\+05 um .* unit = "),
+        (1, 1e3, (), 'Rq 198 um .* unit = "mm" and x_unit = "m"$'),
+        (1e3, 1e3, ("cutoff=0.8e-3",), r"cutoff = 0\.0008 m; .* 2 spacings .* 0\.001 m;"),
+        (1e6, 1e6, ("unit='nm'",), r'1\.71 um long .* 1\.68 um: .* unit = "um"$'),
+        (1, 1, ("scale=1e4",), r"Rq 1\.98e\+03 um .* contact$"),
     ],
 )
 def test_implausible_profile_names_the_likely_unit(tmp_path, x, z, keys, message):
@@ -188,7 +193,7 @@ def test_implausible_profile_names_the_likely_unit(tmp_path, x, z, keys, message
 
 
 @pytest.mark.parametrize(
-    "rq, message", [(0.0, None), (0.9e-11, "less than an atom"), (1.1e-11, None), (2.2e-7, "Rq 0.22 um")]
+    "rq, message", [(0.0, None), (0.9e-11, "atom"), (1.1e-11, None), (2.2e-7, "Rq 0.22 um")]
 )
 def test_flat_profile_is_plausible_and_sub_atomic_roughness_is_not(rq, message):
     """Beside a film of 7 nm, of which 30 are allowed."""
@@ -209,7 +214,7 @@ def test_suggested_unit_is_accepted(tmp_path):
     path = measured(tmp_path, 1e3, 1e6)
     case.load(path, ["surface.2.unit='um'", "surface.2.x_unit='mm'"])
     case.load(measured(tmp_path))
-    with pytest.raises(CaseError, match='unit = "feet": allowed'):
+    with pytest.raises(CaseError, match='unit = "feet": .*"m", "mm", "um", "nm"'):
         case.load(path, ["surface.2.unit='feet'"])
 
 
@@ -217,7 +222,7 @@ def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
     path = tmp_path / "p.x3p"
     path.write_bytes(b"PK")
-    with pytest.raises(ProfileError, match="'.x3p' needs the package SurfaceTopography"):
+    with pytest.raises(ProfileError, match=r"'\.x3p' .*SurfaceTopography"):
         read_profile(path)
 
 
@@ -245,7 +250,7 @@ def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("error", "message"),
-    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "in none of its formats")],
+    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "formats")],
 )
 def test_surface_topography_errors_are_one_line(tmp_path, monkeypatch, error, message):
     def read_topography(path):
@@ -258,7 +263,7 @@ def test_surface_topography_errors_are_one_line(tmp_path, monkeypatch, error, me
     path.write_bytes(b"PK nonsense")
     with pytest.raises(ProfileError) as caught:
         read_profile(path)
-    assert str(caught.value) == f"SurfaceTopography cannot read it: {message}"
+    assert re.search(f"^SurfaceTopography .*: .*{message}$", str(caught.value))
 
 
 def test_failing_package_import_is_one_line(tmp_path, monkeypatch):
@@ -269,7 +274,7 @@ def test_failing_package_import_is_one_line(tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "SurfaceTopography", raising=False)
     path = tmp_path / "p.x3p"
     path.write_bytes(b"PK")
-    with pytest.raises(ProfileError, match="does not start: module 'numpy' has no attribute") as caught:
+    with pytest.raises(ProfileError, match="SurfaceTopography .*'numpy' .*'no_such_thing'") as caught:
         read_profile(path)
     assert "\n" not in str(caught.value)
 

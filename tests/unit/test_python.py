@@ -154,18 +154,18 @@ def test_divergence_raises_with_the_last_good_state(case, result, tmp_path, monk
     simulation.advance()
     monkeypatch.setattr(simulation.stepper.solver, "solve", fail)
     before = table()
-    with pytest.raises(ehlpetsc.NotConverged, match="step 1, time ") as caught:
+    with pytest.raises(ehlpetsc.NotConverged, match="^step 1, .*MADE_UP after 1 .*time.courant") as caught:
         simulation.advance()
     assert caught.value.state.step == 0 and table() == before
     np.testing.assert_array_equal(caught.value.state.pressure, result.pressure[0])
-    with pytest.raises(ehlpetsc.NotConverged, match="steady start") as caught:
+    with pytest.raises(ehlpetsc.NotConverged, match="^steady start: .*DIVERGED_MAX_IT after 1 ") as caught:
         ehlpetsc.solve(case, tmp_path / "r.h5", options={"snes_max_it": 1, "snes_atol": 1e-30})
     assert caught.value.state is None and not list(tmp_path.iterdir())
 
 
 def test_invalid_options_raise(case):
     before = table()
-    with pytest.raises(ehlpetsc.UsageError, match="nosuch"):
+    with pytest.raises(ehlpetsc.UsageError, match="-pc_type nosuch: "):
         ehlpetsc.solve(case, options={"pc_type": "nosuch"})
     assert table() == before
 

@@ -1,5 +1,6 @@
 """Arguments that Python callers may get wrong: refused by name before anything is computed."""
 
+import re
 import threading
 
 import matplotlib
@@ -88,7 +89,7 @@ def test_a_time_step_is_a_number_within_the_time_left(case, dt):
     simulation = Simulation(case)
     simulation.advance()
     before = simulation.solution
-    with pytest.raises(UsageError, match="dt = .* a number from 1.49e-15 to the 5.96767e-06 s left"):
+    with pytest.raises(UsageError, match=r"^dt = .*: .* 1\.49e-15 to .* 5\.96767e-06 s "):
         simulation.advance(dt)
     assert simulation.solution is before
     assert simulation.advance(1e-6).time == pytest.approx(1e-6)
@@ -97,20 +98,20 @@ def test_a_time_step_is_a_number_within_the_time_left(case, dt):
 def test_no_step_after_the_end(case):
     simulation = Simulation(case)
     list(simulation)
-    with pytest.raises(UsageError, match="at its end"):
+    with pytest.raises(UsageError, match="^advance: "):
         simulation.advance()
-    with pytest.raises(UsageError, match="no time step"):
+    with pytest.raises(UsageError, match="^dt = 1e-07: .*steady start"):
         Simulation(case).advance(1e-7)
 
 
 @pytest.mark.parametrize(
     "changes, message",
     [
-        ({"mesh__points_per_half_width": 30}, "other nodes"),
-        ({"contact__load": 400e3}, "other nodes"),
+        ({"mesh__points_per_half_width": 30}, r"^after: .*nodes.* \[mesh\] "),
+        ({"contact__load": 400e3}, r"^after: .*nodes.* \[mesh\] "),
         (
             {"contact__model": "direct", "contact__asperity_height": None, "contact__yield_pressure": None},
-            "direct, of the pass before compliant",
+            "^after: contact.law .*direct, .* compliant$",
         ),
     ],
 )
@@ -122,23 +123,23 @@ def test_pass_follows_a_pass_of_the_same_contact(first, changes, message):
 
 def test_pass_follows_a_complete_pass(first):
     half = Simulation(running_in())
-    with pytest.raises(UsageError, match="not at its end"):
+    with pytest.raises(UsageError, match="^after: .* end; .*states"):
         Simulation(running_in(), after=half)
     half.advance()
-    with pytest.raises(UsageError, match="not at its end"):
+    with pytest.raises(UsageError, match="^after: .* end; .*states"):
         Simulation(running_in(), after=half)
-    with pytest.raises(UsageError, match="after = 'pass1.h5'"):
+    with pytest.raises(UsageError, match=r"^after = 'pass1\.h5': "):
         Simulation(running_in(), after="pass1.h5")
 
 
 @pytest.mark.parametrize("number", [-3, 0, 1.5, "2", True])
 def test_passes_are_counted_from_one(number):
-    with pytest.raises(UsageError, match="pass_number = .*: allowed: a whole number from 1 on"):
+    with pytest.raises(UsageError, match=rf"^pass_number = {re.escape(repr(number))}: .* from 1 "):
         Simulation(running_in(), pass_number=number)
 
 
 def test_passes_are_counted_onwards(first):
-    with pytest.raises(UsageError, match="a whole number from 2 on"):
+    with pytest.raises(UsageError, match="^pass_number = 1: .* from 2 "):
         Simulation(running_in(), after=first, pass_number=1)
 
 
@@ -150,7 +151,7 @@ def test_members_need_a_series(case):
 
 @pytest.mark.parametrize("window", [(1,), (1, 2, 3), "ab", 5, (2, -2), (float("nan"), 1.0), (5, 6)])
 def test_window_must_contain_nodes(result, window):
-    with pytest.raises(UsageError, match="window = .*: allowed: two limits of x/a .* from -2.5 to 1.5"):
+    with pytest.raises(UsageError, match=rf"^window = {re.escape(repr(window))}: .* from -2\.5 to 1\.5$"):
         result.plot(window=window)
 
 
@@ -169,13 +170,13 @@ def test_output_must_be_a_file_name(case, name):
 @pytest.mark.parametrize("given", [5, None, 0, 1.5])
 def test_case_must_be_a_file_or_a_dict(given):
     """A number would be taken for an open file: 0 is what is typed."""
-    with pytest.raises(CaseError, match="allowed: the name of a TOML file"):
+    with pytest.raises(CaseError, match=f"^{given}: .* TOML "):
         ehlpetsc.load(given)
 
 
 @pytest.mark.parametrize("given", [5, [5], {5: 1}, ["contact.load"], [("contact.load", 1, 2)]])
 def test_overrides_must_be_settings(given):
-    with pytest.raises(CaseError, match="allowed: table.key=value"):
+    with pytest.raises(CaseError, match=r"^cases/ridge\.toml: .*: .*table\.key=value"):
         ehlpetsc.load("cases/ridge.toml", given)
 
 
@@ -186,7 +187,7 @@ def test_single_override_may_be_text():
 def test_nearest_frame_needs_one_criterion(result):
     assert result.nearest_frame(step=3) == 3
     for given in ({}, {"step": 1, "time": 0.0}):
-        with pytest.raises(OutputError, match="either time or step"):
+        with pytest.raises(OutputError, match=r"memory\.h5: nearest_frame .*time or step$"):
             result.nearest_frame(**given)
 
 
@@ -209,5 +210,5 @@ def test_argument_of_wrong_type_is_named(case, name, value):
 
 @pytest.mark.parametrize("path", [5, None, b"x.h5"])
 def test_read_result_needs_a_name(path):
-    with pytest.raises(OutputError, match="allowed: the name of a result file"):
+    with pytest.raises(OutputError, match=f"^{path}: .* result "):
         ehlpetsc.read_result(path)

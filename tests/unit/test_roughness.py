@@ -86,11 +86,11 @@ def test_short_cutoff_note_gives_ra_before_and_after():
 
 def test_invalid_filter_input_is_refused():
     x = np.array([0, 1, 3, 4, 5]) * 1e-6
-    with pytest.raises(ProfileError, match="equally spaced"):
+    with pytest.raises(ProfileError, match="^cutoff: .*spaced"):
         high_pass(x, x, 2e-6)
-    with pytest.raises(ProfileError, match="at most the length"):
+    with pytest.raises(ProfileError, match="^cutoff = 5e-06 m; .* 4e-06 m"):
         high_pass(np.arange(5) * 1e-6, np.zeros(5), 5e-6)
-    with pytest.raises(ProfileError, match="short_cutoff = 1.9e-06 m; allowed: at least 2 spacings"):
+    with pytest.raises(ProfileError, match=r"^short_cutoff = 1\.9e-06 m; .* 2e-06 m"):
         low_pass(np.arange(5) * 1e-6, np.zeros(5), 1.9e-6)
 
 
@@ -313,7 +313,7 @@ def test_constant_offset_is_removed_with_a_note(tmp_path):
     np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
     spec = SurfaceProfile(file="p.csv", scale=0.5)
     given = samples(tmp_path, spec)
-    assert given.notes == ("mean height of 1 um subtracted",)
+    assert len(given.notes) == 1 and "mean height of 1 um " in given.notes[0]
     np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
     assert samples(ALICONA.parent, SurfaceProfile(file=ALICONA.name)).notes == ()
 
