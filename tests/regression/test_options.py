@@ -88,13 +88,13 @@ def test_two_dashes_equal_one(monkeypatch):
     command = parse_command_line(["x.toml", "--ehl_output", "a--b.h5", "--ehl_overwrite", "--help", "--1"])
     assert command.petsc == ["-ehl_output", "a--b.h5", "-ehl_overwrite", "-help", "--1"]
     assert os.environ["PETSC_OPTIONS"] == "-ksp_rtol 1e-3 -snes_rtol 1e-4"
-    with pytest.raises(UsageError, match="-options_file none: no such file"):
+    with pytest.raises(UsageError, match="^-options_file none: "):
         parse_command_line(["x.toml", "--options_file", "none"])
 
 
 def test_output_option_with_two_dashes(case, tmp_path):
     done = run(case, "--ehl_output", "a.h5", "--ehl_overwite", cwd=tmp_path)
-    assert done.returncode == 2 and done.stderr.startswith("-ehl_overwite: unknown option; did you mean")
+    assert done.returncode == 2 and is_line_with(done.stderr, "-ehl_overwite: ", "-ehl_overwrite?")
     done = run(case, "--ehl_output", "a.h5", cwd=tmp_path)
     assert done.returncode == 0 and (tmp_path / "a.h5").exists()
 
@@ -111,9 +111,11 @@ def test_misspelt_own_options_are_refused_together(case, tmp_path):
 
 def test_own_option_faults():
     (line,) = faults([*OWN, "snes_monitor"])
-    assert line == "-ehl_set in an options file: allowed on the command line and in PETSC_OPTIONS"
-    assert faults(["ehl-output"]) == ["-ehl-output: unknown option; did you mean -ehl_output?"]
-    assert faults(["ehl_outputs", "ehloutput"])[1].endswith("did you mean -ehl_output?")
+    assert is_line_with(line, "-ehl_set in an options file", "PETSC_OPTIONS")
+    (line,) = faults(["ehl-output"])
+    assert line.startswith("-ehl-output: ") and line.endswith(" -ehl_output?")
+    line = faults(["ehl_outputs", "ehloutput"])[1]
+    assert line.startswith("-ehloutput: ") and line.endswith(" -ehl_output?")
 
 
 @pytest.mark.parametrize(
@@ -121,8 +123,8 @@ def test_own_option_faults():
     [
         ([], "which case?"),
         (["-snes_monitor"], "which case?"),
-        (["a.toml", "b.toml"], "one case file at a time"),
-        (["a.toml", "-options_file", "nofile"], "-options_file nofile: no such file"),
+        (["a.toml", "b.toml"], "one case file"),
+        (["a.toml", "-options_file", "nofile"], "-options_file nofile: "),
     ],
 )
 def test_exactly_one_case_file_is_required(arguments, message):
@@ -133,46 +135,49 @@ def test_exactly_one_case_file_is_required(arguments, message):
 @pytest.mark.parametrize(
     "words, message",
     [
-        (["-ehl_output"], "-ehl_output has no value; allowed: -ehl_output FILE.h5"),
-        (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: allowed: a number > 0"),
-        (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: allowed: a number > 0"),
-        (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: result file not created, No such file or directory"),
-        (["-ehl_restart", "none.h5"], "the case is steady"),
-        (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls needs"),
-        (["-options_file", "nofile"], "-options_file nofile: no such file"),
-        (["-pc_type", "nosuch"], "PETSc refuses -pc_type nosuch: Unable to find requested PC type nosuch"),
-        (["-ksp_rtol", "abc"], "PETSc refuses -ksp_rtol abc: Input string abc has no numeric value"),
-        (["-ksp_pc_side", "left"], "PETSc refuses -ksp_pc_side left: KSP fgmres does not support"),
-        (["-ksp_type", "minres"], "PETSc refuses -ksp_type minres: KSP minres does not support"),
-        (["-snes_max_it", "-7"], "PETSc refuses -snes_max_it -7: Maximum number of iterations"),
-        (["-pc_type", "galerkin"], "PETSc refuses -pc_type galerkin: Must set operator"),
-        (["-snes_mf"], "-snes_mf: PETSc's finite differences would"),
-        (["-snes_mf_operator"], "-snes_mf_operator: PETSc's finite differences would"),
-        (["-snes_type"], "PETSc refuses -snes_type: Unable to find requested SNES type"),
-        (["-ksp_diagonal_scale"], "PETSc refuses -ksp_diagonal_scale: method getDiagonal()"),
-        (["-pc_python_type", "numpy.array"], "-pc_python_type numpy.array: array() missing"),
-        (["-pc_python_type", "collections.Counter"], "has no method apply(pc, x, y)"),
-        (["-snes_atol", "nan"], "-snes_atol nan: allowed: a number"),
-        (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: allowed: a number"),
-        (["-ehl_set", "mesh.inlet"], "-ehl_set mesh.inlet: write -ehl_set mesh.inlet=VALUE"),
-        (["-ehl_set", "mesh.inlet", "-2"], "-ehl_set mesh.inlet: write -ehl_set mesh.inlet=-2"),
-        (["-restart", "x.h5"], "-restart: unknown option; did you mean -ehl_restart?"),
-        (["--output", "x.h5"], "--output: unknown option; did you mean -ehl_output?"),
-        (["--frobnicate"], "--frobnicate: unknown option; "),
-        (["-n", "2"], "-n is an option of mpirun and run_mpi.sh"),
-        (["-ehl_set", "-help"], "-ehl_set has no value; allowed: -ehl_set TABLE.KEY=VALUE"),
+        (["-ehl_output"], r"^ehlpetsc: -ehl_output .* -ehl_output FILE\.h5"),
+        (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: .* > 0"),
+        (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: .* > 0"),
+        (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: .*, No such file or directory"),
+        (["-ehl_restart", "none.h5"], r"none\.h5: .*steady"),
+        (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls "),
+        (["-options_file", "nofile"], "-options_file nofile: "),
+        (["-pc_type", "nosuch"], "PETSc .*-pc_type nosuch: "),
+        (["-ksp_rtol", "abc"], "PETSc .*-ksp_rtol abc: "),
+        (["-ksp_pc_side", "left"], "PETSc .*-ksp_pc_side left: .*fgmres"),
+        (["-ksp_type", "minres"], "PETSc .*-ksp_type minres: "),
+        (["-snes_max_it", "-7"], "PETSc .*-snes_max_it -7: "),
+        (["-pc_type", "galerkin"], "PETSc .*-pc_type galerkin: "),
+        (["-snes_mf"], "-snes_mf: .*finite differences"),
+        (["-snes_mf_operator"], "-snes_mf_operator: .*finite differences"),
+        (["-snes_type"], "PETSc .*-snes_type: "),
+        (["-ksp_diagonal_scale"], r"PETSc .*-ksp_diagonal_scale: .*getDiagonal\(\)"),
+        (["-pc_python_type", "numpy.array"], r"-pc_python_type numpy\.array: array\(\) "),
+        (
+            ["-pc_python_type", "collections.Counter"],
+            r"-pc_python_type collections\.Counter.* apply\(pc, x, y\)",
+        ),
+        (["-snes_atol", "nan"], "-snes_atol nan: "),
+        (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: "),
+        (["-ehl_set", "mesh.inlet"], r"-ehl_set mesh\.inlet: .*-ehl_set mesh\.inlet=VALUE"),
+        (["-ehl_set", "mesh.inlet", "-2"], r"-ehl_set mesh\.inlet: .*-ehl_set mesh\.inlet=-2"),
+        (["-restart", "x.h5"], r"^ehlpetsc: -restart: .* -ehl_restart\?"),
+        (["--output", "x.h5"], r"^ehlpetsc: --output: .* -ehl_output\?"),
+        (["--frobnicate"], "^ehlpetsc: --frobnicate: "),
+        (["-n", "2"], "-n .*mpirun.*run_mpi.sh"),
+        (["-ehl_set", "-help"], r"-ehl_set .* -ehl_set TABLE\.KEY=VALUE"),
     ],
 )
 def test_bad_option_values_are_refused_in_one_line(case, tmp_path, words, message):
     done = run(case, *words, cwd=tmp_path)
     assert done.returncode == 2
-    assert message in done.stderr
+    assert re.search(message, done.stderr)
     assert len(done.stderr.splitlines()) == 1
 
 
 def test_options_that_break_petsc_initialisation_are_refused(case, tmp_path):
     done = run(case, "-help", "maybe", cwd=tmp_path)
-    assert done.returncode == 2 and "ehlpetsc: PETSc cannot begin with -help maybe: error code" in done.stderr
+    assert done.returncode == 2 and "PETSc" in done.stderr and " -help maybe: " in done.stderr
     assert "Traceback" not in done.stderr
 
 
@@ -196,19 +201,19 @@ def test_more_options_than_petscs_table_has_entries_are_refused(case, tmp_path):
     with_petsc_table(case, "\n".join(f"option_{n} = 1" for n in range(520)))
     done = run(case, cwd=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.startswith("ehlpetsc: 520 options for PETSc, whose table holds 512")
+    assert is_line_with(done.stderr, "ehlpetsc: 520 options ", " 512")
 
 
 def test_snes_max_it_limits_the_steady_start(case, tmp_path):
     done = run(case, "-snes_max_it", 3, cwd=tmp_path)
     assert done.returncode == 3
-    assert "steady start: SNES DIVERGED_MAX_IT after 3 iterations" in done.stderr
+    assert "steady start: SNES DIVERGED_MAX_IT after 3 " in done.stderr
 
 
 def test_looser_tolerance_is_used_with_a_note(case, tmp_path):
     exact, loose = run(case, cwd=tmp_path), run(case, "-snes_rtol", 0.5, "-ehl_output", "l.h5", cwd=tmp_path)
-    assert "is looser than" not in exact.stdout and loose.returncode == 0
-    assert "note: -snes_rtol 0.5 is looser than the program's 0: results are less certain" in loose.stdout
+    assert "note: " not in exact.stdout and loose.returncode == 0
+    assert "note: -snes_rtol 0.5 " in loose.stdout
     films = [float(summary(done.stdout)["h_min"]) for done in (exact, loose)]
     assert int(summary(loose.stdout)["newton"]) < int(summary(exact.stdout)["newton"])
     assert abs(films[1] / films[0] - 1.0) > 0.01
@@ -235,7 +240,7 @@ def test_solver_without_bounds_solves_full_films_only(case, tmp_path):
     dry = [ROOT / "cases/dry_hertz.toml", *settings(MESH[1])]
     done = run(*dry, "-snes_type", "newtonls", cwd=tmp_path)
     assert done.returncode == 3
-    assert "not converged: steady start" in done.stderr
+    assert "steady start: " in done.stderr
 
 
 @pytest.mark.slow
@@ -257,12 +262,10 @@ def test_unused_options_are_listed_before_the_first_step(case, tmp_path):
     done = run(case, *words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     notes = [line for line in done.stdout.splitlines() if line.startswith("note: unused")]
-    assert notes == ["note: unused options: -ksp_rtoll, -snes_monitr"]
+    assert [line.endswith(": -ksp_rtoll, -snes_monitr") for line in notes] == [True]
     done = run(case, "-snes_monitr", "-ehl_set", "time.travel=0.2", "-ehl_overwrite", cwd=tmp_path)
     assert 0 < done.stdout.find("-snes_monitr") < done.stdout.find("    step ")  # not after hours of steps
-    assert (
-        "note: unused options" not in run(case, "-ehl_set", "petsc={}", "-ehl_overwrite", cwd=tmp_path).stdout
-    )
+    assert "note: unused" not in run(case, "-ehl_set", "petsc={}", "-ehl_overwrite", cwd=tmp_path).stdout
 
 
 def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
@@ -319,7 +322,7 @@ def test_missing_packages_print_the_command_to_type(case, tmp_path):
     assert done.returncode == 2
     lines = MPIRUNS_COMMENT.sub("", done.stderr).splitlines()
     assert len(lines) == 2
-    assert "does not have numpy, scipy" in lines[0]
+    assert " numpy, scipy" in lines[0]
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
 
 
@@ -336,7 +339,7 @@ def test_every_subcommand_reports_missing_packages(tmp_path, command):
     )
     assert done.returncode == 2
     message, typed = done.stderr.splitlines()
-    assert message.endswith("does not have numpy, scipy, h5py")
+    assert message.endswith(" numpy, scipy, h5py")
     assert f"type: /usr/bin/python3 -S -m ehlpetsc.{command} 'a b.h5' " in typed
 
 

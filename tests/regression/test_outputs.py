@@ -45,12 +45,10 @@ def test_stopped_result_is_not_overwritten(tmp_path):
     other = [*case, *settings("fluid.viscosity=0.004")]
     refused = run(*other, cwd=tmp_path)
     assert refused.returncode == 2 and (tmp_path / "r.h5").read_bytes() == before
-    assert "r.h5: holds a run that is stopped, not done of another case" in refused.stderr
+    assert is_line_with(refused.stderr, "r.h5: ", "stopped", "another case")
     (tmp_path / "r.h5").unlink()
     refused = run(*other, cwd=tmp_path)
-    assert (
-        refused.returncode == 2 and "r.restart.h5: a restart file waits there, of another" in refused.stderr
-    )
+    assert refused.returncode == 2 and is_line_with(refused.stderr, "r.restart.h5: ", "another")
 
 
 def test_same_command_continues_a_run(tmp_path):
@@ -83,7 +81,7 @@ def test_damaged_restart_file_is_refused_and_kept(tmp_path):
     (tmp_path / "r.restart.h5").write_bytes(raw)
     refused = run(*case, cwd=tmp_path)
     assert refused.returncode == 2
-    assert "r.restart.h5: damaged restart file" in refused.stderr and "; remove it, " in refused.stderr
+    assert "r.restart.h5: damaged " in refused.stderr and "; remove it, " in refused.stderr
     assert (tmp_path / "r.restart.h5").read_bytes() == raw
 
 
@@ -94,17 +92,17 @@ def make_fifo(folder):
 @pytest.mark.parametrize(
     "make, output, fault",
     [
-        (lambda folder: (folder / "there").write_text("mine"), "there", "is not a result of ehlpetsc"),
-        (lambda folder: (folder / "there").mkdir(), "there", "a folder, not a file"),
-        (make_fifo, "there", "a device or pipe"),
-        (lambda folder: None, "/dev/null", "a device or pipe"),
+        (lambda folder: (folder / "there").write_text("mine"), "there", "not a result"),
+        (lambda folder: (folder / "there").mkdir(), "there", "a folder"),
+        (make_fifo, "there", "pipe"),
+        (lambda folder: None, "/dev/null", "device"),
         (lambda folder: None, "/", "a folder"),
     ],
 )
 def test_foreign_file_is_refused_and_kept(tmp_path, make, output, fault):
     make(tmp_path)
     refused = run(*CASE, "-ehl_output", output, cwd=tmp_path)
-    assert refused.returncode == 2 and fault in refused.stderr
+    assert refused.returncode == 2 and is_line_with(refused.stderr, f"{output}: ", fault)
     assert len(refused.stderr.splitlines()) == 1
     names = [p.name for p in tmp_path.iterdir()]
     assert names in ([], ["there"])
@@ -121,7 +119,7 @@ def test_input_is_never_an_output(tmp_path, words):
     os.link(tmp_path / "case.toml", tmp_path / "link.h5")
     for name in ("case.toml", "link.h5", "alicona_meander_profile.csv"):
         refused = run("case.toml", "-ehl_output", name, *words, cwd=tmp_path)
-        assert refused.returncode == 2 and f"{name}: is read by this run" in refused.stderr
+        assert refused.returncode == 2 and f"{name}: is read " in refused.stderr
     assert (tmp_path / "case.toml").read_text() == case
     assert (tmp_path / "alicona_meander_profile.csv").read_text() == profile
 
@@ -141,7 +139,7 @@ def test_output_lock_excludes_a_second_run_and_ends_with_its_process(tmp_path):
     try:
         second = run(*LONG, "-ehl_output", "r.h5", "-ehl_overwrite", cwd=tmp_path)
         assert second.returncode == 2
-        assert f"r.h5: is being written by process {process.pid} on " in second.stderr
+        assert is_line_with(second.stderr, "r.h5: ", f" process {process.pid} on ")
     finally:
         process.kill()
         process.communicate()
@@ -162,4 +160,4 @@ def test_result_removed_during_a_run_is_an_error(tmp_path):
         process.kill()
     assert process.returncode == 2
     assert output.splitlines()[-1].startswith("ehlpetsc: bad input steps=")
-    assert "r.h5: result file removed or replaced by others during the run" in errors
+    assert "r.h5: " in errors and "removed" in errors

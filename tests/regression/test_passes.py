@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 from mpi4py import MPI
-from support import CASES
+from support import CASES, is_line_with
 from support.running import BARE, SCRIPT, command, run, settings
 
 from ehlpetsc.case.loading import load
@@ -60,10 +60,10 @@ def test_pass_index_is_locked_by_one_run(tmp_path):
             second = run(CASE, *settings(*SHORT), *words, cwd=tmp_path)
             assert second.returncode == 2
             (message,) = second.stderr.splitlines()
-            assert message.startswith("ehlpetsc: running_in.passes.json: is being written by process ")
-            assert f"{os.getpid()} on " in message
+            assert message.startswith("ehlpetsc: running_in.passes.json: ")
+            assert f" process {os.getpid()} on " in message
         assert [path.name for path in tmp_path.iterdir()] == ["running_in.passes.json.lock"]
-        with pytest.raises(OutputError, match=f"written by process {os.getpid()} on .*; wait for it$"):
+        with pytest.raises(OutputError, match=rf"running_in\.passes\.json: .* process {os.getpid()} on "):
             note_damage(tmp_path / "running_in.passes.json")
     assert not list(tmp_path.iterdir())
 
@@ -131,17 +131,17 @@ def test_shifted_pass_offsets_one_profile():
 @pytest.mark.parametrize(
     "value, words",
     [
-        ("0.0", "1e+06"),
-        ("nan", "a number or a list of two numbers"),
-        ("[3e9, 3e9, 3e9]", "yield_pressure"),
-        ("-1e9", "1e+06"),
-        ('"hard"', "yield_pressure"),
+        ("0.0", "contact.yield_pressure = 0.0: "),
+        ("nan", "contact.yield_pressure = nan: "),
+        ("[3e9, 3e9, 3e9]", "contact.yield_pressure = [3000000000.0, "),
+        ("-1e9", "contact.yield_pressure = -1000000000.0: "),
+        ('"hard"', 'contact.yield_pressure = "hard": '),
     ],
 )
 def test_invalid_yield_pressures_are_refused(value, words):
     with pytest.raises(CaseError) as refused:
         load(CASE, [f"contact.yield_pressure={value}"])
-    assert "contact.yield_pressure" in str(refused.value) and words in str(refused.value)
+    assert is_line_with(str(refused.value), words, ">= 1e+06 ")
 
 
 def test_yield_pressure_in_direct_contact_is_refused():
@@ -151,7 +151,7 @@ def test_yield_pressure_in_direct_contact_is_refused():
 
 def test_series_of_passes_is_refused(tmp_path):
     done = run(CASES / "fig1.toml", *settings("time.passes=2"), cwd=tmp_path)
-    assert done.returncode == 2 and "one of them at a time" in done.stderr
+    assert done.returncode == 2 and is_line_with(done.stderr, "fig1.toml: [series] and time.passes: ")
 
 
 def test_body_displacement_below_the_profile_spacing(tmp_path):
@@ -232,7 +232,7 @@ def test_restart_file_without_its_result_is_kept(tmp_path, uninterrupted):
     before = (tmp_path / "running_in.pass2.restart.h5").read_bytes()
     refused = run(CASE, *BRIEF, cwd=tmp_path)
     assert refused.returncode == 2
-    assert "running_in.pass2.restart.h5: a restart file waits there, whose result is gone" in refused.stderr
+    assert is_line_with(refused.stderr, "running_in.pass2.restart.h5: ", "result")
     assert (tmp_path / "running_in.pass2.restart.h5").read_bytes() == before
 
 
@@ -263,7 +263,7 @@ def test_passes_in_a_removed_folder_end_with_status_2(tmp_path):
     (tmp_path / "out").mkdir()
     lost = run(CASE, *BRIEF, "-ehl_output", "out/r.h5", cwd=tmp_path, tampered=("lost", 0, 5))
     assert lost.returncode == 2 and "Traceback" not in lost.stderr
-    assert "out/r.pass1.h5: result file removed or replaced by others during the run" in lost.stderr
+    assert "out/r.pass1.h5: " in lost.stderr and "removed" in lost.stderr
     assert not list(tmp_path.iterdir())
 
 

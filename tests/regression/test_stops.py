@@ -129,9 +129,9 @@ def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
     never = ["-snes_atol", 1e-30, "-snes_rtol", 1e-30, "-snes_max_it", 4]
     failed = run(*going_on, stopped, *never, cwd=tmp_path)
     assert failed.returncode == 3
-    assert "ehlpetsc: not converged: step 11, time " in failed.stderr
+    assert "ehlpetsc: not converged: step 11, " in failed.stderr
     assert "DIVERGED_MAX_IT" in failed.stderr
-    assert "Last good state: f.restart.h5\n" in failed.stderr
+    assert ": f.restart.h5\n" in failed.stderr
     done = run(*going_on, "f.restart.h5", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert last_step(tmp_path / "f.h5") == (16, "done")
@@ -140,14 +140,14 @@ def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
 @pytest.mark.parametrize(
     "more, message",
     [
-        (["mesh.points_per_half_width=41"], "has 113 nodes, the case 116; [mesh] must be as it was"),
-        (["mesh.inlet=-1.6", "mesh.outlet=1.2"], "its nodes lie from"),
+        (["mesh.points_per_half_width=41"], r" 113 nodes, .* 116; \[mesh\]"),
+        (["mesh.inlet=-1.6", "mesh.outlet=1.2"], r"-1\.5 to 1\.3 .* -1\.6 to 1\.2 .* \[mesh\]"),
     ],
 )
 def test_restart_on_another_mesh_is_refused(stopped, tmp_path, more, message):
     done = run(*CASE, *settings(*more), "-ehl_restart", stopped, cwd=tmp_path)
     assert done.returncode == 2
-    assert message in done.stderr
+    assert re.search(f"{stopped.name}: .*{message}", done.stderr)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -195,10 +195,7 @@ def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path, speed, s
     ]
     refused = run(*faster, cwd=tmp_path)
     assert refused.returncode == 2
-    assert (
-        "table1_rough.h5: cannot be continued, it was computed for another speed (u1 = 5.625)"
-        in refused.stderr
-    )
+    assert is_line_with(refused.stderr, "table1_rough.h5: ", "(u1 = 5.625)")
     assert last_step(tmp_path / "table1_rough.h5") == (20, "stopped")
     done = run(*faster, "-ehl_output", "f.h5", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -231,7 +228,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
     pipes = {"capture_output": True, "text": True, "timeout": 120}
     full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
     assert full.returncode == 2
-    step, time = re.search(r"whole up to step (\d+) \((\S+) us\)", full.stderr).groups()
+    step, time = re.search(r" step (\d+) \((\S+) us\)", full.stderr).groups()
     assert is_line_with(
         full.stderr,
         "table1_rough.h5: ",

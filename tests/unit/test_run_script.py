@@ -137,7 +137,7 @@ def test_lost_signal_is_repeated(script, tmp_path):
 def test_second_signal_kills_unresponsive_ranks(script, tmp_path):
     done = signalled(script, tmp_path, 2, ["SIGTERM", "SIGTERM"], "deaf")
     assert done.returncode == 143
-    assert done.stderr.endswith("run_mpi.sh: a rank was ended by signal 15\n")
+    assert re.search(r"run_mpi\.sh: .* 15\n$", done.stderr)
 
 
 def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=True):
@@ -240,7 +240,7 @@ def test_root_installs_and_waits_for_the_apt_lock(machine):
     assert install.startswith("-o DPkg::Lock::Timeout=600 install -y --no-install-recommends")
     assert install.endswith(" python3-nonesuch")
     assert done.returncode == 2  # what was asked for is still not there
-    assert "still not there: nonesuch" in done.stderr
+    assert done.stderr.endswith(": nonesuch\n")
 
 
 @pytest.mark.parametrize("system", [ELSEWHERE, DEBIAN.replace("13", "11"), ""])
@@ -320,9 +320,7 @@ def test_command_links_replace_no_other_file(script, tmp_path):
     (tmp_path / "ehlpetsc-plot").symlink_to("nowhere/run_mpi.sh")  # of a clone that was moved
     done = script("--commands", str(tmp_path))
     assert done.returncode == 2
-    assert (
-        f"{tmp_path}/ehlpetsc is there and is none of these commands" in done.stderr
-    )  # the package's folder
+    assert f" {tmp_path}/ehlpetsc is there " in done.stderr  # the package's folder
     assert not (tmp_path / "ehlpetsc-study").exists()
     (tmp_path / "bin").mkdir()
     for name in ("ehlpetsc-post", "ehlpetsc-plot"):

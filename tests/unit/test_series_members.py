@@ -83,14 +83,17 @@ def test_several_keys_vary_together(tmp_path):
 @pytest.mark.parametrize(
     "changed, words",
     [
-        ({"series.keys": ["fluid.viscosity", "fluid.viscosity"]}, "the same one twice"),
-        ({"series.values": [[0.01]]}, "2 lists of values"),
-        ({"series.values": [0.01, 5.0]}, "2 lists of values"),
-        ({"series.values": [[0.01, 0.02], [5.0]], "series.combine": "step"}, "lists of 2, 1"),
-        ({"series.key": "fluid.viscosity"}, "either key or keys"),
-        ({"series.values": [[0.01] * 200, [5.0] * 200]}, "40000 members"),
+        ({"series.keys": ["fluid.viscosity", "fluid.viscosity"]}, "series: keys: .*twice"),
+        ({"series.values": [[0.01]]}, "series: values: .* 2 lists"),
+        ({"series.values": [0.01, 5.0]}, "series: values: .* 2 lists"),
+        (
+            {"series.values": [[0.01, 0.02], [5.0]], "series.combine": "step"},
+            'series: values: .* 2, 1; .*combine = "step"',
+        ),
+        ({"series.key": "fluid.viscosity"}, "series: .*key or keys"),
+        ({"series.values": [[0.01] * 200, [5.0] * 200]}, "series: 40000 members; .* 10000"),
         ({"series.values": [[0.01, -1.0], [5.0]]}, "fluid.viscosity = -1.0"),
-        ({"series.combine": "all"}, '"grid", "step"'),
+        ({"series.combine": "all"}, 'series.combine = "all": .*"grid", "step"'),
     ],
 )
 def test_faulty_series_of_several_keys_are_refused(changed, words):

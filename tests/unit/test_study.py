@@ -61,7 +61,7 @@ def test_study_table_never_overwrites_case_input(tmp_path, words, capsys):
     case.write_text(TABLE_1 + '\n[surface.1]\nfile = "gear.csv"\n')
     before = profile.read_bytes()
     assert study([str(case), *words, "-o", str(tmp_path / "gear")]) == 2
-    assert "gear.csv: is read by this run" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, "gear.csv: ", f"({profile})", " -o")
     assert profile.read_bytes() == before
     assert study([str(tmp_path / "none.toml"), *words]) == 2
     assert "none.toml" in capsys.readouterr().err
@@ -132,9 +132,9 @@ def test_short_travel_for_damage_is_refused_before_any_run(table_1, words, capsy
 
 
 def test_damage_study_needs_time_and_a_moving_surface(table_1):
-    with pytest.raises(PostError, match="the case is steady"):
+    with pytest.raises(PostError, match=r"^--damage: .* \[time\] "):
         check_damage(load(table_1), "2", 100)
-    with pytest.raises(PostError, match="surface 2 is at rest"):
+    with pytest.raises(PostError, match="^--damage: surface 2 .*rest"):
         check_damage(load(table_1, ["time.travel=9.0", "motion.slide_roll_ratio=2.0"]), "2", 100)
 
 
@@ -170,7 +170,7 @@ def test_uncounted_damage_is_reported(table_1, tmp_path, capsys, monkeypatch):
     command = [str(table_1), "--set", "time.travel=9.0", "--damage", "-o", str(tmp_path / "table")]
     assert study(command) == ExitStatus.BAD_INPUT
     (message,) = capsys.readouterr().err.splitlines()
-    assert message.startswith("ehlpetsc.study: no damage: ") and "run.h5" in message
+    assert is_line_with(message, "ehlpetsc.study: no damage: ", f"{result}: an HDF5 ")
 
 
 def test_diverged_reference_is_reported(table_1, tmp_path, capsys, monkeypatch):
@@ -185,9 +185,9 @@ def test_diagnosis_names_contact_properties(table_1):
     found = diagnosis(outcome, table_1, ["fluid.law=barus", "fluid.pressure_viscosity=60e-9"])
     for part in ("oil is solid", "9.0 GPa", "0.5 nm", "SNES stopped"):
         assert part in found
-    assert "mesh is too coarse" not in found
+    assert "coarse" not in found
     slow = diagnosis(outcome, table_1, ["motion.entrainment_speed=0.01"])
-    assert "mesh is too coarse" in slow and "points_per_half_width=" in slow
+    assert "coarse" in slow and "points_per_half_width=" in slow
     assert "time limit" in diagnosis(Outcome(TIMED_OUT, steps=4), table_1, [])
 
 

@@ -61,12 +61,12 @@ def test_non_text_title_is_refused(title):
 
 def test_film_bound_belongs_to_direct_contact():
     assert load("cases/ridge.toml", {"contact.minimum_film": 1e-9}).contact.minimum_film == 1e-9
-    with pytest.raises(CaseError, match="contact.minimum_film = 1e-09: needs contact.model = .direct"):
+    with pytest.raises(CaseError, match=r'contact\.minimum_film = 1e-09: .*contact\.model = "direct"'):
         load("cases/running_in.toml", {"contact.minimum_film": 1e-9})
 
 
 def test_series_has_at_most_ten_thousand_members():
-    with pytest.raises(CaseError, match="10001 members; allowed: at most 10000"):
+    with pytest.raises(CaseError, match="series: 10001 members; .* 10000$"):
         load(STRIBECK, {"series.values": [0.1 + 1e-4 * k for k in range(10_001)]})
 
 

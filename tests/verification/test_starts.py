@@ -101,7 +101,7 @@ def test_memory_at_small_load_is_bounded():
 def test_failed_start_stops_after_its_attempts(monkeypatch):
     monkeypatch.setattr(steady_start, "MAX_ATTEMPTS", 3)
     simulation = Simulation(load(CASES / "table1_smooth.toml", MESH), options={"snes_max_it": 1})
-    with pytest.raises(NotConverged, match="given up after 3 attempts and 3 Newton iterations"):
+    with pytest.raises(NotConverged, match="3 attempts and 3 Newton iterations"):
         simulation.advance()
 
 

@@ -100,8 +100,8 @@ def test_sweeps_stop_at_the_evaluation_limit(monkeypatch):
 @pytest.mark.parametrize(
     "name, value, message",
     [
-        ("table1_smooth.toml", "swept", "-ehl_scheme swept: allowed: newton, sweep"),
-        ("dry_hertz.toml", "sweep", "a dry contact has no Reynolds equation"),
+        ("table1_smooth.toml", "swept", "^-ehl_scheme swept: .*newton, sweep"),
+        ("dry_hertz.toml", "sweep", "^-ehl_scheme sweep: .*dry"),
     ],
 )
 def test_invalid_schemes_are_refused(name, value, message):
