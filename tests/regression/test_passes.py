@@ -74,7 +74,7 @@ def test_unwritable_pass_index_is_an_output_error(tmp_path, monkeypatch):
 
     monkeypatch.setattr("ehlpetsc.run.series.passes.atomic_write", full)
     case = load(CASE, [*SHORT, "time.travel=0.05"])
-    message = "r.passes.json: index not written, No space left on device; r.pass1.h5 is whole"
+    message = r"r\.passes\.json: .*, No space left on device; r\.pass1\.h5 "
     with pytest.raises(OutputError, match=message):
         Passes(MPI.COMM_SELF, case, tmp_path / "r.h5").run()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["r.pass1.h5", "r.pass1.restart.h5"]

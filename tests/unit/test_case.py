@@ -3,7 +3,7 @@
 import tomllib
 
 import pytest
-from support import CASES
+from support import CASES, is_line_with
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError
@@ -143,34 +143,34 @@ def test_all_faults_of_a_case_are_reported_together():
 @pytest.mark.parametrize(
     ("override", "words"),
     [
-        ("contact.radius=inf", ["contact.radius", "allowed: a number"]),
-        ("contact.radius=true", ["= true", "allowed: a number"]),
-        ("contact.radius='big'", ['= "big"', "allowed: a number"]),
+        ("contact.radius=inf", ["contact.radius = Infinity: ", ">= 1e-09 and <= 100 [m]"]),
+        ("contact.radius=true", ["contact.radius = true: ", ">= 1e-09 and <= 100 [m]"]),
+        ("contact.radius='big'", ['contact.radius = "big": ', ">= 1e-09 and <= 100 [m]"]),
         (
             "contact.youngs_modulus=[207e9]",
             ["contact.youngs_modulus = [207000000000.0]", ">= 1e+06 and <= 1e+18 [Pa]"],
         ),
-        ("contact.youngs_modulus=[207, 207]", ["contact.youngs_modulus", ">= 1e+06"]),
-        ("contact.poisson_ratio=[0.3, 0.6]", ["<= 0.5"]),
-        ("fluid.law='sead'", ['"seed", "barus", "roelands"']),
-        ("fluid.kappa=0.01", ["fluid.kappa = 0.01", "below viscosity"]),
-        ("fluid.lambda=3e-9", ["fluid.lambda", "below gamma"]),
-        ("fluid.lambda_=3e-9", ["fluid.lambda_", "unknown key", '"lambda"']),
-        ("motion.entrainment_speed=0", ["a number >= 1e-09", "not zero"]),
-        ("mesh.points_per_half_width=200.5", ["a whole number >= 4"]),
-        ("mesh.points_per_half_width=90000", ["at most 200000 nodes"]),
-        ("mesh.inlet=-0.5", ["< -1", "half widths"]),
+        ("contact.youngs_modulus=[207, 207]", ["contact.youngs_modulus = [207, 207]: ", ">= 1e+06"]),
+        ("contact.poisson_ratio=[0.3, 0.6]", ["contact.poisson_ratio = [0.3, 0.6]: ", "<= 0.5"]),
+        ("fluid.law='sead'", ['fluid.law = "sead": ', '"seed", "barus", "roelands"']),
+        ("fluid.kappa=0.01", ["fluid.kappa = 0.01: ", "viscosity"]),
+        ("fluid.lambda=3e-9", ["fluid.lambda = 3e-09: ", "gamma"]),
+        ("fluid.lambda_=3e-9", ["fluid.lambda_ = 3e-09: ", '"lambda"?']),
+        ("motion.entrainment_speed=0", ["motion.entrainment_speed = 0: ", ">= 1e-09 and <= 1000 [m/s]"]),
+        ("mesh.points_per_half_width=200.5", ["mesh.points_per_half_width = 200.5: ", ">= 4"]),
+        ("mesh.points_per_half_width=90000", ["mesh.points_per_half_width = 90000: ", " 200000 nodes"]),
+        ("mesh.inlet=-0.5", ["mesh.inlet = -0.5: ", "< -1 "]),
         ("mesh.points_per_half_with=100", ['did you mean "points_per_half_width"?']),
-        ("output.fields=['presure']", ['"pressure"', "a list of"]),
-        ("output.fields=[]", ["a list of"]),
+        ("output.fields=['presure']", ['output.fields = ["presure"]: ', '"pressure"']),
+        ("output.fields=[]", ["output.fields = []: ", '"pressure"']),
         ("petsc.-snes_monitor=''", ["petsc = ", '"-snes_monitor"', "dash"]),
-        ("time=5", ["time = 5", "a table"]),
+        ("time=5", ["time = 5: ", "table"]),
         (
             "surface.1.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}",
             ["surface.1: ", "file or synthetic"],
         ),
         ("surface.1.cutoff=0.05", ["surface.1.file", "cutoff = 0.05 m", "0.001712 m"]),
-        ("post.b=0.09", ["post.b", "< 0"]),
+        ("post.b=0.09", ["post.b = 0.09: ", "< 0"]),
     ],
 )
 def test_every_kind_of_fault_is_reported(override, words):
@@ -201,22 +201,21 @@ def test_synthetic_surface_accepts_keys_of_its_kind():
         "ra",
     ]
     assert '"ground" | "sine"' in fault(SMOOTH, "surface.2.synthetic={kind='waves'}")
-    assert "are for a file" in fault(
-        SMOOTH, "surface.2={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4}, level=true}"
-    )
+    mixed = "surface.2={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4}, level=true}"
+    assert is_line_with(fault(SMOOTH, mixed), "surface.2: ", " level, ", "file", "synthetic")
 
 
 def test_every_series_member_is_checked():
     found = faults(SMOOTH, "series.key='fluid.viscosity'", "series.values=[0.01, -1, 0.02, nan]")
     assert len(found) == 2
     assert "fluid.viscosity = -1" in found[0] and "fluid.viscosity = nan" in found[1]
-    assert "unknown key" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
+    assert "fluid.visc" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
 
 
 def test_invalid_toml_is_refused_with_its_line(tmp_path):
     path = tmp_path / "bad.toml"
     path.write_text("title = 'x'\n[contact\n")
-    assert "not valid TOML" in fault(path) and "line 2" in fault(path)
+    assert is_line_with(fault(path), f"{path}: ", "TOML", "line 2")
 
 
 def test_unreadable_files_are_refused(tmp_path):
@@ -231,11 +230,11 @@ def test_unreadable_files_are_refused(tmp_path):
     ("content", "words"),
     [
         (None, "file: "),
-        ("0,0\n1e-6,0\n2e-6,0\n", "3 points; allowed: at least 4"),
+        ("0,0\n1e-6,0\n2e-6,0\n", ": 3 points; "),
         ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", "line 2: '1e-6,zero'"),
         ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "falls after x = 2e-06"),
         ("0,0\n1e-6,0\n1e-6,1e-7\n3e-6,0\n", "x = 1e-06 appears twice"),
-        ("0,0\n1e-6,inf\n2e-6,0\n3e-6,0\n", "point 2 is not a number below"),
+        ("0,0\n1e-6,inf\n2e-6,0\n3e-6,0\n", "point 2 is not a number"),
         ("0,0\n1,2\n2,0\n3,1\n", 'write unit = "um"'),
         ("0,0,0\n1,2,3\n", "write columns = [1, 2]"),
     ],

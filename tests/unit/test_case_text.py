@@ -48,7 +48,7 @@ def test_deeply_nested_keys_are_refused_quickly(tmp_path, where):
 
 
 def test_key_of_megabytes_is_refused_in_one_line(tmp_path):
-    assert "unknown key" in faults(tmp_path, f"{'a' * 10_000_000} = 1\n{CASE}")
+    assert "unknown" in faults(tmp_path, f"{'a' * 10_000_000} = 1\n{CASE}")
 
 
 def test_long_arrays_and_dotted_comments_are_accepted(tmp_path):

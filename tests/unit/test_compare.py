@@ -1,5 +1,7 @@
 """Comparing results: equal, different and incomparable ones."""
 
+import re
+
 import numpy as np
 import pytest
 from support import is_line_with
@@ -95,8 +97,8 @@ def test_missing_field_and_different_status_are_differences(tmp_path, result, ca
     other = make_result(tmp_path / "two.h5", fields=("pressure",), status="not converged")
     status, text, _ = run(capsys, result, other)
     assert status == 1
-    assert f"film_thickness is stored in {result} alone" in text
-    assert "done, the other not converged" in text
+    assert f" {result} alone" in text and "film_thickness" in text
+    assert re.search(r"\bdone, .* not converged", text)
 
 
 def test_bad_input_to_compare_is_refused(tmp_path, result, capsys):
@@ -105,7 +107,7 @@ def test_bad_input_to_compare_is_refused(tmp_path, result, capsys):
     with pytest.raises(SystemExit) as stop:
         main([str(result), str(result), "--rtol", "-1"])
     assert stop.value.code == 2
-    assert "-1 is not a number >= 0" in capsys.readouterr().err
+    assert is_line_with(capsys.readouterr().err, "--rtol: -1 ", " >= 0")
 
 
 def test_interpolation_is_exact_for_linear_data_and_at_the_ends():

@@ -76,7 +76,7 @@ def test_movie_has_a_frame_per_round(tmp_path, capsys):
     assert main([str(path), "--movie", str(tmp_path / "a.gif")]) == 0
     with Image.open(tmp_path / "a.gif") as movie:
         assert movie.n_frames >= 3
-    assert "allowed for --movie" in refused(capsys, main, path, "--movie", tmp_path / "a.txt")
+    assert "--movie" in refused(capsys, main, path, "--movie", tmp_path / "a.txt")
 
 
 def test_remaining_rounds_are_extrapolated():

@@ -69,12 +69,12 @@ def test_omitted_column_is_constant(with_table):
         (TABLE.replace("300e3", "-300e3"), "line 4: load -300000 N/m"),
         (TABLE.replace("527e3", "0"), "line 3: load 0 N/m"),
         (TABLE.replace("0.018", "-1"), "line 4: radius -1 m"),
-        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "up to line 3: both speeds"),
+        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "line 3: both speeds"),
         (TABLE.replace("4.0, 4.5", "4.0"), "line 4: "),
         (TABLE.replace("527e3", "lots"), "line 3: "),
         (TABLE.replace("527e3", "nan"), "line 3: load = nan"),
         (TABLE.replace("speed 1", "velocity"), "line 1: column 'velocity'"),
-        (TABLE.replace("radius [m]", "load"), "line 1: a column twice"),
+        (TABLE.replace("radius [m]", "load"), "line 1: .*twice"),
         ("time, load\n0, 1e5\n", "two times"),
         ("time\n0\n1\n", ": load, radius, speed 1, speed 2,"),
         ("load\n1e5\n1e5\n", "no column time;"),
@@ -86,7 +86,7 @@ def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
     with pytest.raises(CaseError) as error:
         load(path)
     assert len(error.value.faults) == 1
-    assert sentence in error.value.faults[0] and "mesh.csv" in error.value.faults[0]
+    assert re.search(f'"mesh.csv": .*{sentence}', error.value.faults[0])
 
 
 def test_missing_table_is_named(with_table, tmp_path):

@@ -58,20 +58,20 @@ def test_profiles_may_be_arrays():
 @pytest.mark.parametrize(
     "surface, fault",
     [
-        ({"z": [0.0] * 5}, "heights z need either x or spacing"),
+        ({"z": [0.0] * 5}, " z .*x or spacing"),
         ({"z": [0.0] * 5, "x": [0.0, 1.0, 2.0, 3.0]}, "x has 4 values, z 5"),
-        ({"z": [0.0] * 5, "spacing": 1e-6, "columns": [1]}, "columns: for a file"),
+        ({"z": [0.0] * 5, "spacing": 1e-6, "columns": [1]}, "columns: "),
         (
             {"z": [0.0, 1e-7, np.nan, 0.0], "spacing": 1e-6},
-            "surface.1.z = [0.0, 1e-07, NaN, 0.0]: allowed",
+            r"surface\.1\.z = \[0\.0, 1e-07, NaN, 0\.0\]: ",
         ),
-        ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "x falls after"),
+        ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "falls after x = 2e-06"),
     ],
 )
 def test_invalid_profile_arrays_are_refused(surface, fault):
     with pytest.raises(ehlpetsc.CaseError) as caught:
         ehlpetsc.load(CASES / "table1_rough.toml", {"surface.1": surface})
-    assert fault in str(caught.value)
+    assert re.search(fault, str(caught.value))
 
 
 def test_all_faults_are_one_exception():
@@ -87,7 +87,7 @@ def test_result_in_memory_has_fields_scalars_and_attributes(case, result, tmp_pa
     assert result.steps.h_min[-1] == result.film_thickness[-1].min()
     assert result.attrs["status"] == "done" and result.attrs["case"] == case.text
     assert "film_thickness" in dir(result) and "p_max" in dir(result.steps)
-    with pytest.raises(AttributeError, match="no field"):
+    with pytest.raises(AttributeError, match="^presure: "):
         result.presure  # noqa: B018
     assert not list(tmp_path.iterdir())
 
@@ -172,7 +172,7 @@ def test_invalid_options_raise(case):
 
 def test_series_is_solved_member_by_member():
     case = ehlpetsc.load(CASES / "fig4.toml")
-    with pytest.raises(ehlpetsc.CaseError, match="members"):
+    with pytest.raises(ehlpetsc.CaseError, match=r"fig4\.toml: .*\[series\]: .*ehlpetsc\.members\(case\)"):
         ehlpetsc.solve(case)
     assert [value for value, _ in ehlpetsc.members(case)][0] == 0.01
 
