@@ -32,7 +32,11 @@ SUBCOMMANDS = {  # name: module, function, packages needed, description
     "docs": ("ehlpetsc.docs.__main__", "main", (), "these pages as one site, opened in a browser"),
     "contacts": ("ehlpetsc.analysis.contact_statistics", "main", NUMERICS, "counts and lengths of contact"),
 }
-OF_A_CASE = {name: f"--{name}" for name in ("explain", "keys", "template")}  # options of a run
+OF_A_CASE = {  # options of a run: arguments and description
+    "explain": ("CASE.toml", "what a run would do"),
+    "keys": ("[TABLE or TABLE.KEY]", "keys of a case: meaning, unit, range, default"),
+    "template": ("", "a case file to begin with"),
+}
 COMPLETION = """_ehlpetsc() {{
     local words="{words}"
     if [ "$COMP_CWORD" = 1 ]; then
@@ -52,7 +56,11 @@ def dispatch(run):
     """Start the subcommand in the first argument, otherwise run a case; returns the exit status."""
     first = sys.argv[1] if len(sys.argv) > 1 else ""
     if first in OF_A_CASE:
-        sys.argv[1] = OF_A_CASE[first]
+        if {"-h", "--help"} & set(sys.argv[2:]):
+            arguments, description = OF_A_CASE[first]
+            print(f"usage: ehlpetsc {' '.join(filter(None, (first, arguments)))}\n\n{description}")
+            return 0
+        sys.argv[1] = f"--{first}"
     elif first == "run":
         del sys.argv[1]
     elif first == "python":

@@ -24,6 +24,7 @@ class Solids:
 
     yield_pressure: float
     model: str = "mixed"
+    boundary_friction: float = 0.1
 
 
 @dataclass
@@ -61,6 +62,15 @@ def test_no_limit_line_without_a_step():
 def test_each_limit_line_has_its_figure(changed, parts):
     (line,) = limit_lines(**changed)
     assert line.startswith(parts[0]) and parts[-1] in line
+
+
+def test_friction_beyond_that_of_oils_has_a_limit_line():
+    heat = ["heat.bulk_temperature=363.0"]
+    (line,) = limit_lines(overrides=heat, friction_coefficient=-1.25)
+    assert line.startswith("friction: ") and " 1.25, " in line
+    assert limit_lines(overrides=heat, friction_coefficient=0.12) == []
+    rubbing = [*heat, "contact.model=mixed", "contact.boundary_film=10e-9", "contact.boundary_friction=0.2"]
+    assert limit_lines(overrides=rubbing, friction_coefficient=0.19) == []
 
 
 def test_measured_viscosity_range_has_no_limit_line():

@@ -109,3 +109,11 @@ def test_program_name_is_that_of_the_call(monkeypatch):
     assert command_parser.program("ehlpetsc.post") == "ehlpetsc post"
     monkeypatch.setattr(sys, "argv", ["/home/my ehlpetsc dir/x"])
     assert command_parser.program("ehlpetsc.post") == "python3 -m ehlpetsc.post"
+
+
+@pytest.mark.parametrize("name", commands.OF_A_CASE)
+@pytest.mark.parametrize("option", ["-h", "--help"])
+def test_options_as_commands_have_help(monkeypatch, capsys, name, option):
+    monkeypatch.setattr(sys, "argv", ["ehlpetsc", name, option])
+    assert commands.solver() == 0
+    assert capsys.readouterr().out.startswith(f"usage: ehlpetsc {name}")

@@ -14,6 +14,7 @@ from ehlpetsc.surfaces.profile import WAVE_NODES
 ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
+MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
 MAX_DECADES = 300  # log10 of the largest viscosity that is printed with digits
 
 
@@ -36,7 +37,8 @@ def limits(case, scales, rough, totals):
         return []
     messages = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
     if case.fluid:
-        messages += [_viscosity(case.fluid, totals), _balance(case, totals), _molecules(totals)]
+        messages += [_friction(case, totals), _viscosity(case.fluid, totals)]
+        messages += [_balance(case, totals), _molecules(totals)]
     return [message for message in messages if message]
 
 
@@ -59,6 +61,16 @@ def _heat(case, scales, totals):
     return (
         f"heat: the run is isothermal, but the flash temperature of its friction is about {flash:.0f} K by "
         "Blok's formula for steel; [heat] computes with temperatures"
+    )
+
+
+def _friction(case, totals):
+    coefficient = abs(totals.get("friction_coefficient", 0.0))
+    if coefficient <= max(MAX_OIL_FRICTION, case.contact.boundary_friction):
+        return None
+    return (
+        f"friction: a coefficient of {coefficient:.3g}, but oils bear a shear stress of about 0.1 of their "
+        "pressure; eyring_stress or limiting_shear in [fluid] bounds it"
     )
 
 
