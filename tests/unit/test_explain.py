@@ -257,7 +257,7 @@ def test_explain_describes_each_surface():
     assert lines_shown[1] == "Surface 2: 1.712 mm long, 3425 points 0.5 um apart"
     assert "reflection" in lines_shown[2] and " 18.28 mm " in lines_shown[2]
     assert " travel 1.93 a " in lines_shown[3] and lines_shown[3].endswith(" 4.63 a")
-    assert " -0.275 to 0.325 um; means over cells" in lines_shown[4]
+    assert " -0.275 to 0.325 um; means " in lines_shown[4]
     assert lines_shown[4].endswith(" -0.265 to 0.314 um")
     assert not [line for line in lines("fig1.toml") if "reflection" in line]
     ridge = starting(lines("ridge.toml"), "Surface")

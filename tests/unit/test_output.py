@@ -328,7 +328,7 @@ def test_resuming_twice_keeps_the_history(tmp_path):
         ({"fields": ["pressure"], "resume_step": 9}, r"fields \(film_thickness, in_contact, "),
         ({"resume_step": 12}, "at step 9, before step 12 "),
         ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, r"speed \(u1 = 5\.6\)"),
-        ({"resume_step": 5}, "contacts up to step 5 "),
+        ({"resume_step": 5}, "step 9 .*contacts .* step 5 "),
     ],
 )
 def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):

@@ -313,7 +313,7 @@ def test_constant_offset_is_removed_with_a_note(tmp_path):
     np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
     spec = SurfaceProfile(file="p.csv", scale=0.5)
     given = samples(tmp_path, spec)
-    assert len(given.notes) == 1 and "mean height of 1 um " in given.notes[0]
+    assert len(given.notes) == 1 and "height of 1 um " in given.notes[0]
     np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
     assert samples(ALICONA.parent, SurfaceProfile(file=ALICONA.name)).notes == ()
 

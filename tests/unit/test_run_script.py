@@ -318,7 +318,7 @@ def test_command_links_replace_no_other_file(script, tmp_path):
     (tmp_path / "ehlpetsc-plot").symlink_to("nowhere/run_mpi.sh")  # of a clone that was moved
     done = script("--commands", str(tmp_path))
     assert done.returncode == 2
-    assert f" {tmp_path}/ehlpetsc is there " in done.stderr  # the package's folder
+    assert f" {tmp_path}/ehlpetsc " in done.stderr  # the package's folder
     assert not (tmp_path / "ehlpetsc-study").exists()
     (tmp_path / "bin").mkdir()
     for name in ("ehlpetsc-post", "ehlpetsc-plot"):
