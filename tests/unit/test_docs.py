@@ -12,7 +12,7 @@ from ehlpetsc.docs.pages import PAGES, ROOT, SECTIONS, contents
 TEXTS = {page: (ROOT / f"{page}.md").read_text(encoding="utf-8") for page in PAGES}
 needs_generator = pytest.mark.skipif(
     bool(docs.lacking()),
-    reason=f"the site is built by optional packages, not installed here: {' '.join(docs.lacking())}",
+    reason=f"optional packages that build the site are not installed: {' '.join(docs.lacking())}",
 )
 
 

@@ -68,7 +68,7 @@ def test_random_series_against_the_standard():
 
 
 def test_random_series_against_the_rainflow_package():
-    offline = "rainflow is fetched over the network; the standard's three-point count is compared above"
+    offline = "the package rainflow is not installed; the test before compares with the standard's own count"
     package = pytest.importorskip("rainflow", reason=offline)
     rng = np.random.default_rng(1)
     for k in range(1000):

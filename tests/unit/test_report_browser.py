@@ -16,9 +16,9 @@ BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(
-        BROWSER is None, reason="no browser here; test_report holds the text and the data of the page"
+        BROWSER is None, reason="no browser is installed; test_report tests the text and the data of the page"
     ),
-    pytest.mark.skipif(not has("plotly"), reason="Plotly draws the report only, and is not installed here"),
+    pytest.mark.skipif(not has("plotly"), reason="Plotly, which only the report needs, is not installed"),
 ]
 FLAGS = """headless no-sandbox disable-gpu disable-quic no-first-run disable-background-networking
 disable-component-update disable-sync window-size=1200,2400 virtual-time-budget=9000 dump-dom""".split()

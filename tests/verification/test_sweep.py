@@ -1,8 +1,8 @@
 """The paper's sweeps against Newton's method: two iterations that share nothing but the equations agree.
 
-The three time steps, two with contacts, are of cases/table1_rough.toml as it stands; the state before each is
-stored in rough_contacts.npz. After a change of that case ``python3 tests/verification/test_sweep.py`` writes
-it anew, in five minutes.
+Both solve three time steps of cases/table1_rough.toml, two of them with contacts. rough_contacts.npz stores
+the state before each step; after a change of the case ``python3 tests/verification/test_sweep.py`` writes it
+anew, in five minutes.
 """
 
 import itertools

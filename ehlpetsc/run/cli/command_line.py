@@ -56,73 +56,90 @@ def parse_command_line(arguments):
         Two case files, or none although one is needed; a missing options file; -ehl_set without a value.
     """
     command = Command()
-    words, sets = _without_sets(arguments)
+    arguments, settings = _without_settings(arguments)
     try:
-        environment, earlier = _without_sets(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
+        environment, earlier = _without_settings(shlex.split(os.environ.get("PETSC_OPTIONS", "")))
     except ValueError as error:
         raise UsageError(f"PETSC_OPTIONS: {error}") from None
-    single = [_with_one_dash(word) for word in environment]
+    single = [_with_one_dash(argument) for argument in environment]
     if earlier or single != environment:
         os.environ["PETSC_OPTIONS"] = shlex.join(single)
-    command.overrides = earlier + sets
-    command.explain, command.ranks = "--explain" in words, "--ranks" in words
-    words = [word for word in words if word not in ("--explain", "--ranks")]
-    cases = [at for at, word in enumerate(words) if word.endswith(".toml") and not _is_value(words, at)]
-    cases = cases or [at for at, word in enumerate(words[:1]) if word[:1] != "-"]
-    if len(cases) > 1:
-        raise UsageError(f"one case file at a time, not {' and '.join(words[at] for at in cases)}: {usage()}")
-    if cases:
-        command.case = words.pop(cases[0])
-        if not command.case:
-            raise UsageError(f"which case? an empty name is none: {usage()}")
-    elif not {"-help", "--help", "-h"} & set(words):
-        raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
-    for word in [*words, *sets]:
-        if not is_plain(word):
-            raise UsageError(f"{word!r}: allowed: one line of UTF-8 text")
-    for word in words:
-        _check_name(word)
-    for word, name in itertools.pairwise(words):
-        if _with_one_dash(word) == "-options_file" and not os.path.isfile(name):
+    command.overrides = earlier + settings
+    command.explain, command.ranks = "--explain" in arguments, "--ranks" in arguments
+    arguments = [argument for argument in arguments if argument not in ("--explain", "--ranks")]
+    command.case, arguments = _without_case(arguments)
+    for argument in [*arguments, *settings]:
+        if not is_plain(argument):
+            raise UsageError(f"{argument!r}: allowed: one line of UTF-8 text")
+    for argument in arguments:
+        _check_name(argument)
+    for argument, name in itertools.pairwise(arguments):
+        if _with_one_dash(argument) == "-options_file" and not os.path.isfile(name):
             raise UsageError(f"-options_file {name}: no such file")
-    command.petsc = ["-help" if word == "-h" else _with_one_dash(word) for word in words]
+    command.petsc = ["-help" if argument == "-h" else _with_one_dash(argument) for argument in arguments]
     return command
 
 
-def _with_one_dash(word):
-    return word[1:] if word.startswith("--") and word[2:3].isalpha() else word
+def _without_case(arguments):
+    """The case file, None with -help alone, and the other arguments."""
+    cases = [
+        k
+        for k, argument in enumerate(arguments)
+        if argument.endswith(".toml") and not _is_value(arguments, k)
+    ]
+    if not cases and arguments and not arguments[0].startswith("-"):
+        cases = [0]
+    if len(cases) > 1:
+        names = " and ".join(arguments[k] for k in cases)
+        raise UsageError(f"one case file at a time, not {names}: {usage()}")
+    if not cases:
+        if {"-help", "--help", "-h"} & set(arguments):
+            return None, arguments
+        raise UsageError(f"which case? {usage()}; what there is: {program('ehlpetsc')} -help")
+    (k,) = cases
+    if not arguments[k]:
+        raise UsageError(f"which case? an empty name is none: {usage()}")
+    return arguments[k], arguments[:k] + arguments[k + 1 :]
 
 
-def _check_name(word):
+def _with_one_dash(argument):
+    return argument[1:] if argument.startswith("--") and argument[2:3].isalpha() else argument
+
+
+def _check_name(argument):
     """Refuse an option that neither this program nor PETSc has."""
-    name = word.lstrip("-")
-    if word == "-n" or word == "-np":
+    name = argument.lstrip("-")
+    if argument == "-n" or argument == "-np":
         raise UsageError(
-            f"{word} is an option of mpirun and run_mpi.sh, before the case: mpirun {word} RANKS ..."
+            f"{argument} is an option of mpirun and run_mpi.sh, before the case: mpirun {argument} RANKS ..."
         )
     meant = difflib.get_close_matches(f"ehl_{name}", OWN, n=1, cutoff=0.9)
-    if word.startswith("-") and name not in OWN and meant:
-        raise UsageError(f"{word}: unknown option; did you mean -{meant[0]}?")
-    if word.startswith("--") and name[:1].isalpha() and not (name in OWN or name.startswith(OPTION_PREFIXES)):
-        raise UsageError(f"{word}: unknown option; {program('ehlpetsc')} -help lists the options")
+    if argument.startswith("-") and name not in OWN and meant:
+        raise UsageError(f"{argument}: unknown option; did you mean -{meant[0]}?")
+    if (
+        argument.startswith("--")
+        and name[:1].isalpha()
+        and not (name in OWN or name.startswith(OPTION_PREFIXES))
+    ):
+        raise UsageError(f"{argument}: unknown option; {program('ehlpetsc')} -help lists the options")
 
 
-def _is_value(words, at):
-    """Whether an argument is the file name after an option of the program."""
-    return at > 0 and words[at - 1].lstrip("-") in ("ehl_output", "ehl_restart")
+def _is_value(arguments, k):
+    """Whether argument k is the file name after an option of the program."""
+    return k > 0 and arguments[k - 1].lstrip("-") in ("ehl_output", "ehl_restart")
 
 
-def _without_sets(words):
-    other_words, sets = [], []
-    words = iter(words)
-    for word in words:
-        if word in ("-ehl_set", "--ehl_set"):
-            value = next(words, "")
+def _without_settings(arguments):
+    others, settings = [], []
+    arguments = iter(arguments)
+    for argument in arguments:
+        if argument in ("-ehl_set", "--ehl_set"):
+            value = next(arguments, "")
             if not value or value.startswith("-"):
-                raise UsageError(f"{word} has no value; allowed: {word} {OWN['ehl_set'].value}")
+                raise UsageError(f"{argument} has no value; allowed: {argument} {OWN['ehl_set'].value}")
             if "=" not in value:
-                raise UsageError(f"{word} {value}: write {word} {value}={next(words, 'VALUE')}")
-            sets.append(value)
+                raise UsageError(f"{argument} {value}: write {argument} {value}={next(arguments, 'VALUE')}")
+            settings.append(value)
         else:
-            other_words.append(word)
-    return other_words, sets
+            others.append(argument)
+    return others, settings
