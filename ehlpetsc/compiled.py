@@ -6,7 +6,10 @@ with bitwise equal results.
 
 import contextlib
 import hashlib
+import json
 import os
+import re
+from collections.abc import Container, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -27,29 +30,54 @@ unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
 ZERO = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
-def drop_stale_code(package):
-    """Remove numba's cached code of other versions of a package.
+def drop_stale_code(package: Path) -> None:
+    """Remove numba's cached code of modules that have changed, or import a changed module of the package.
 
     numba notices a change of the file of a function, not of the files of functions that it calls, nor that a
     module has moved.
-
-    Parameters
-    ----------
-    package : Path
     """
-    stamp = package / "__pycache__" / "compiled.stamp"
-    sources = sorted((str(path.relative_to(package)), path.stat()) for path in package.rglob("*.py"))
-    text = repr([(name, status.st_size, status.st_mtime_ns) for name, status in sources])
-    digest = hashlib.sha256(text.encode()).hexdigest()
+    stamp = package / "__pycache__" / "compiled.json"
     with contextlib.suppress(OSError):  # read-only: numba then has its cache elsewhere
-        if stamp.exists() and stamp.read_text() == digest:
+        files = {str(path.relative_to(package)): path.stat() for path in package.rglob("*.py")}
+        state = repr(sorted((name, status.st_size, status.st_mtime_ns) for name, status in files.items()))
+        kept = json.loads(stamp.read_text()) if stamp.exists() else {}
+        if kept.get("state") == state:
             return
+        digests = _digests_with_imports(package, files)
         for path in package.rglob("__pycache__/*.nb[ic]"):
-            path.unlink(missing_ok=True)
+            name = str(path.parent.parent.relative_to(package) / path.name.split(".")[0]) + ".py"
+            if name not in digests or digests[name] != kept.get("digests", {}).get(name):
+                path.unlink(missing_ok=True)
         temporary = stamp.with_suffix(f".{os.getpid()}")
         temporary.parent.mkdir(exist_ok=True)
-        temporary.write_text(digest)
+        temporary.write_text(json.dumps({"state": state, "digests": digests}))
         temporary.replace(stamp)
+
+
+def _digests_with_imports(package: Path, files: Iterable[str]) -> dict[str, str]:
+    """Digest of each file with all files of the package that it imports, directly or not."""
+    texts = {name: (package / name).read_text() for name in files}
+    imported = {name: _imported_files(text, package.name, texts) for name, text in texts.items()}
+    digests = {}
+    for name in texts:
+        reached, queue = {name}, [name]
+        while queue:
+            new = imported[queue.pop()] - reached
+            reached |= new
+            queue += new
+        contents = "\0".join(text for file in sorted(reached) for text in (file, texts[file]))
+        digests[name] = hashlib.sha256(contents.encode()).hexdigest()
+    return digests
+
+
+def _imported_files(text: str, package: str, files: Container[str]) -> set[str]:
+    """Files of the package that a text imports by its absolute name."""
+    found = set()
+    for module, names in re.findall(rf"^from {package}\b([\w.]*) import (\([^)]*\)|.*)", text, re.MULTILINE):
+        folder = module.strip(".").replace(".", "/")
+        inner = [f"{folder}/{name}".strip("/") for name in re.findall(r"\w+", names)]
+        found |= {f"{folder}.py", f"{folder}/__init__.py".strip("/"), *(f"{name}.py" for name in inner)}
+    return {name for name in found if name in files}
 
 
 if COMPILED:
