@@ -25,7 +25,7 @@ SUBCOMMANDS = {  # name: module, function, packages needed, description
         PLOTTING,
         "path of contact of spur gears, and runs along it",
     ),
-    "life": ("ehlpetsc.life.__main__", "main", PLOTTING, "wear against fatigue over many passes"),
+    "life": ("ehlpetsc.life.command", "main", PLOTTING, "wear against fatigue over many passes"),
     "study": ("ehlpetsc.study.__main__", "main", PLOTTING, "accuracy, speed, robustness"),
     "ensemble": ("ehlpetsc.analysis.ensemble", "main", NUMERICS, "means over runs of several seeds"),
     "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),

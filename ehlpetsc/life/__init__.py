@@ -9,7 +9,7 @@ _HOMES = {
     "LifeHistory": "history",
     "read_life": "history",
     "run_life": "driver",
-    "run_regimes": "regimes.lives",
+    "run_regimes": "regimes",
 }
 __all__ = list(_HOMES)
 

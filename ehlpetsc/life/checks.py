@@ -6,7 +6,7 @@ import h5py
 
 from ehlpetsc.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
-from ehlpetsc.life.passes.positions import number_of_positions
+from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading
 

@@ -6,7 +6,7 @@ from hdf5_damage import Flips, Strange
 from sandbox import beside_others, process
 from support import CASES
 
-from ehlpetsc.life.__main__ import main
+from ehlpetsc.life.command import main
 
 LIMIT = 120  # s
 USUAL, COARSE = "points_per_half_width = 16", "points_per_half_width = 8"

@@ -17,8 +17,8 @@ from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError
 from ehlpetsc.gears.__main__ import main as gears
-from ehlpetsc.life.__main__ import main as life
-from ehlpetsc.life.ageing.body import LifeBody
+from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.command import main as life
 from ehlpetsc.life.driver import run_life
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.post import run as post_run

@@ -8,14 +8,12 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
-from ehlpetsc.life import read_life
-from ehlpetsc.life.ageing import laws
-from ehlpetsc.life.ageing.body import LifeBody
-from ehlpetsc.life.ageing.jumps import Jumps
-from ehlpetsc.life.ageing.rates import MAX_EXTRAPOLATION, Rates
+from ehlpetsc.life import laws, read_life
+from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case
 from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.life.passes.pass_result import OfBody
+from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps, Rates
+from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.surfaces.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from support import refused
 
-from ehlpetsc.life.__main__ import main
-from ehlpetsc.life.ageing.body import LifeBody
-from ehlpetsc.life.ageing.jumps import Jumps
-from ehlpetsc.life.ageing.rates import Rates
+from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.command import main
 from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.life.passes.pass_result import OfBody
-from ehlpetsc.life.regimes.lives import index_of
-from ehlpetsc.life.regimes.outcome import outcome, winner
+from ehlpetsc.life.jumps import Jumps, Rates
+from ehlpetsc.life.one_pass import OfBody
+from ehlpetsc.life.regimes import index_of, outcome, winner
 from ehlpetsc.surfaces.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0]) * 1e-7

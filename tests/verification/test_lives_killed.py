@@ -12,7 +12,7 @@ import pytest
 from support import CASES
 
 from ehlpetsc.life import read_life, run_life
-from ehlpetsc.life.life_file import COMMIT_DATASET
+from ehlpetsc.life.history import COMMIT_DATASET
 
 KEYS = {
     "time.travel": 3.6,

@@ -6,9 +6,8 @@ from support import CASES
 
 from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
-from ehlpetsc.life import read_life, run_life
-from ehlpetsc.life.ageing import laws
-from ehlpetsc.life.passes.positions import CELL_SIZE
+from ehlpetsc.life import laws, read_life, run_life
+from ehlpetsc.life.positions import CELL_SIZE
 from ehlpetsc.post.run import Job
 from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult

@@ -6,7 +6,7 @@ import json
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.life.regimes.outcome import FATIGUE, NEITHER, WEAR
+from ehlpetsc.life.regimes import FATIGUE, NEITHER, WEAR
 from ehlpetsc.results.atomic_write import replacing
 
 MARKS = {  # shape, colour, label

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.life.ageing import laws
+from ehlpetsc.life import laws
 from ehlpetsc.surfaces.body_field import BodyField
 
 
@@ -138,7 +138,7 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        of_pass : pass_result.OfBody
+        of_pass : one_pass.OfBody
         """
         met = self.columns_within((of_pass.s[0], of_pass.s[-1]))
         worn = np.diff([field.means(self.faces()) for field in of_pass.depth], axis=0)[0]
@@ -172,7 +172,7 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        rates : rates.Rates
+        rates : jumps.Rates
         wear, damage : float
         """
         intact = self.is_there & (self.damage < 1.0)
@@ -184,7 +184,7 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        rates : rates.Rates
+        rates : jumps.Rates
         max_passes : int
         """
 
@@ -207,7 +207,7 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        rates : rates.Rates
+        rates : jumps.Rates
         passes, done : int
             Passes of the jump, and before it.
         breaks : bool

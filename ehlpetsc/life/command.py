@@ -92,7 +92,7 @@ def _run_lives(chosen):
     from mpi4py import MPI
 
     from ehlpetsc.life.driver import run_life
-    from ehlpetsc.life.regimes.lives import index_of, run_regimes
+    from ehlpetsc.life.regimes import index_of, run_regimes
     from ehlpetsc.results.output_guard import inputs_of
     from ehlpetsc.run.on_root import on_root
     from ehlpetsc.run.stop import StopRequest

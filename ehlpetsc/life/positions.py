@@ -10,8 +10,8 @@ N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be
 
 import numpy as np
 
-from ehlpetsc.life.ageing import laws
-from ehlpetsc.life.ageing.body import LifeBody
+from ehlpetsc.life import laws
+from ehlpetsc.life.body import LifeBody
 from ehlpetsc.surfaces.roughness import directed_speeds
 
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
@@ -59,7 +59,7 @@ class Positions:
 
         Parameters
         ----------
-        first : pass_result.Pass
+        first : one_pass.Pass
             Solved in position 0.
 
         Returns

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
-from ehlpetsc.life.ageing.rates import Rates
+from ehlpetsc.life.jumps import Rates
 from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
@@ -38,7 +38,7 @@ class Ranks:
 
         Returns
         -------
-        list of pass_result.Pass
+        list of one_pass.Pass
             In the order of `positions`, on every rank.
 
         Raises
@@ -71,7 +71,7 @@ class Round(NamedTuple):
 
     Attributes
     ----------
-    passes : list of pass_result.Pass
+    passes : list of one_pass.Pass
     passes_2 : float
         As of `positions.Positions`.
     """
@@ -88,7 +88,7 @@ class Round(NamedTuple):
 
         Returns
         -------
-        pair of rates.Rates
+        pair of jumps.Rates
         """
         rates = []
         for k, (body, factor) in enumerate(zip(bodies, (1.0, self.passes_2), strict=True)):

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import ExitStatus, OutputError, PostError, Stopped
-from ehlpetsc.life.passes.pass_result import OfBody, Pass
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.prepare import prepare
@@ -18,6 +17,52 @@ from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
+
+
+class OfBody(NamedTuple):
+    """Effects of a pass on a body.
+
+    Attributes
+    ----------
+    s : ndarray, shape (points,)
+        Abscissas in the body of the points that passed the whole contact [m].
+    depths : ndarray, shape (n,)
+        Below the present surface [m].
+    damage : ndarray, shape (n, points)
+    depth : pair of surfaces.body_field.BodyField
+        Wear before and after the pass.
+    """
+
+    s: np.ndarray
+    depths: np.ndarray
+    damage: np.ndarray
+    depth: tuple
+
+    @property
+    def volume(self):
+        """Worn off [m^2]."""
+        before, after = self.depth
+        return after.volume - before.volume
+
+
+class Pass(NamedTuple):
+    """A solved pass.
+
+    Attributes
+    ----------
+    bodies : pair of OfBody
+    figures : dict of str to float
+        Means over the time in which both surfaces fill the contact.
+    plastic : effects.plastic_deformation.PlasticRecord or None
+    yielded : float
+        Largest depth by which a point yielded in this pass [m].
+    """
+
+    bodies: tuple
+    figures: dict
+    plastic: object
+    yielded: float
+
 
 SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
@@ -71,7 +116,7 @@ def run_pass(simulation, before, file, stop=None):
 
     Returns
     -------
-    pass_result.Pass
+    one_pass.Pass
 
     Raises
     ------

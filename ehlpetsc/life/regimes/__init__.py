@@ -1,1 +1,0 @@
-"""Lives of a case with [series], and the winning mechanism of each."""
