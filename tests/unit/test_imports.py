@@ -17,6 +17,7 @@ GROUND = {
     "environment",
     "command_parser",
     "materials",
+    "keys",
 }  # every room may import these; they import no room, at most errors
 MAY_IMPORT = (
     {

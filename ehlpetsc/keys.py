@@ -1,0 +1,141 @@
+"""Declaration of the keys of a case file, for every folder: laws and effects declare their own.
+
+A table is a :class:`KeyTable` of :class:`Key`; :mod:`ehlpetsc.case` reads, checks and explains case files by
+these alone and passes on :class:`Values`. For example an effect with one key::
+
+    COATING = KeyTable(
+        "coating",
+        "left out: none",
+        {"thickness": Key("of both surfaces", unit="m", gt=0, le=1e-4, required=True)},
+        needs=("[time]",),
+    )
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+class Refused(ValueError):
+    """Values of a table contradict each other; `key` names the one at fault, "" the whole table."""
+
+    def __init__(self, reason: str = "", key: str = "") -> None:
+        super().__init__(reason)
+        self.key = key
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a case file; bounds and choices are those of each item of a list.
+
+    Attributes
+    ----------
+    text
+        Meaning, for the page of keys and for messages.
+    kind
+        float, int, bool or str; dict: a table with any keys; object: anything.
+    unit
+        SI unit of the stored value; "": a pure number.
+    default
+        Value where the key is left out; None: it is stored as None.
+    required
+        Whether the key must be given, unless `replaced_by` (``"grade"``, ``"[gears]"``) provides its value.
+    many
+        "": one value; "both": one for both surfaces or a list of one for each, stored as a pair; "two": a
+        list of two; "list".
+    needs
+        What must hold where the key is given: ``"contact.asperity_height"`` (given), ``"[time]"`` (given),
+        ``'contact.model = "mixed"'``, ``"heat.roelands_s0 left out"``.
+    below
+        Key of the same table below which the value must be.
+    equation
+        In which the key appears.
+    table
+        Keys of the table that is the value.
+    """
+
+    text: str
+    kind: type = float
+    unit: str = ""
+    default: Any = None
+    required: bool = False
+    replaced_by: str = ""
+    ge: float | None = None
+    gt: float | None = None
+    le: float | None = None
+    lt: float | None = None
+    choices: tuple[str, ...] = ()
+    many: str = ""
+    min_items: int = 1
+    max_items: int | None = None
+    needs: tuple[str, ...] = ()
+    below: str = ""
+    equation: str = ""
+    table: KeyTable | None = None
+
+
+class Values:
+    """Checked values of a table as attributes (`lambda_` for the key `lambda`); a missing table is None."""
+
+    def __init__(self, values: Mapping[str, Any]) -> None:
+        self.__dict__.update(values)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name}: the values of a case do not change")
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"no key {name}")
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and other.__dict__ == self.__dict__
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.as_dict()})"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Values by key, tables in it as dicts."""
+        return {
+            k: v.as_dict() if isinstance(v, Values) else v for k, v in self.__dict__.items() if k[0] != "_"
+        }
+
+    def copy(self, update: Mapping[str, Any]) -> Any:
+        """The same table with other values of some keys."""
+        return type(self)(self.__dict__ | dict(update))
+
+
+@dataclass(frozen=True)
+class KeyTable:
+    """A table of a case file.
+
+    Attributes
+    ----------
+    name
+        Name in the file, with dots: ``"fluid.grade"``.
+    text
+        Meaning, or what holds where the table is left out.
+    keys
+        By name; tables within are keys too.
+    required
+        Whether the table must be given.
+    always
+        Whether a missing table counts as an empty one, and not as None.
+    needs
+        As of `Key`.
+    values
+        Type of the checked values: :class:`Values` with further properties.
+    complete
+        Further values by key that follow from the checked ones; raises :class:`Refused`.
+    """
+
+    name: str
+    text: str
+    keys: Mapping[str, Key]
+    required: bool = False
+    always: bool = False
+    needs: tuple[str, ...] = ()
+    values: type[Values] = Values
+    complete: Callable[[Values], Mapping[str, Any]] | None = field(default=None)
