@@ -73,7 +73,10 @@ class FlexibleGMRES:
         system = *operator.linearisation, *halo, *factors.lu.factors, factors.units
         number = iterations(*basis, *system, min(max_it, MAX_IT), *tolerances)
         for k, norm in enumerate(norms[: number + 1].tolist()):
-            reason = ksp.callConvergenceTest(k, norm)
+            if not np.isfinite(norm):
+                norm, reason = np.inf, PETSc.KSP.ConvergedReason.DIVERGED_NANORINF  # PETSc refuses nan
+            else:
+                reason = ksp.callConvergenceTest(k, norm)
             ksp.logConvergenceHistory(norm)
             ksp.monitor(k, norm)
         ksp.setIterationNumber(number)

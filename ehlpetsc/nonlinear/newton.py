@@ -182,8 +182,12 @@ class NewtonSolver:
             raised = error.__cause__  # exception of a callback, which newer releases wrap
             if raised and not isinstance(raised, PETSc.Error):
                 raise raised from None
+            snes_objects.release_frames(error)
             snes.destroy()
             snes_objects.raise_refusal(error, self._options.given)
+        except BaseException as error:
+            snes_objects.release_frames(error)
+            raise
         finally:
             self._is_solving = False
         return self._solution(snes)

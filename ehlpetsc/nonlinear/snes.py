@@ -1,6 +1,7 @@
 """Creation and destruction of PETSc's SNES objects."""
 
 import ctypes
+import traceback
 import weakref
 
 from petsc4py import PETSc
@@ -24,6 +25,14 @@ def owned(owner, *objects):
 def _destroy(petsc_objects):
     while petsc_objects:
         petsc_objects.pop().destroy()
+
+
+def release_frames(error: BaseException) -> None:
+    """Clear the frames of the callbacks that an exception left, with their references to PETSc's objects.
+
+    Kept alive by a traceback until Python ends, such an object would be destroyed by PetscFinalize, too late.
+    """
+    traceback.clear_frames(error.__traceback__)
 
 
 def create(comm, kind, f, function, pre_check, user_options):

@@ -1,6 +1,8 @@
 """Newton's method around SNES: interruptions, films that reach their bound, options, failures."""
 
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from support import CASES
 
 import ehlpetsc
 from ehlpetsc.errors import SolveFailed, UsageError
+from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
 TOUCHING = {
@@ -69,6 +72,41 @@ def test_krylov_iterations_equal_those_of_petsc(capfd):
     for one, other in zip(mine, petscs, strict=True):
         assert one.newton == other.newton
         np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-9 * one.pressure.max())
+
+
+def test_nan_in_a_linear_solve_halves_the_step(monkeypatch):
+    simulation = ehlpetsc.Simulation(ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING))
+    simulation.advance()
+    linearise, calls = JacobianOperator.linearise, []
+
+    def faulty(operator, evaluation):
+        linearise(operator, evaluation)
+        calls.append(operator)
+        if len(calls) <= 2:  # solved without the bound, then with it
+            operator.reynolds_derivatives[:] = np.nan
+
+    monkeypatch.setattr(JacobianOperator, "linearise", faulty)
+    state = simulation.advance()
+    assert state.retries == 1 and np.isfinite(state.pressure).all()
+
+
+FAULTY = """
+import ehlpetsc
+from ehlpetsc.nonlinear import gmres
+
+def faulty(*arguments):
+    raise ValueError("of a callback")
+
+gmres.iterations = faulty
+ehlpetsc.Simulation(ehlpetsc.load(CASE, {"mesh.points_per_half_width": 20})).advance()
+"""
+
+
+def test_process_ends_after_an_error_inside_petsc():
+    """The traceback keeps PETSc's objects alive, which PetscFinalize would destroy after Python's end."""
+    script = FAULTY.replace("CASE", repr(str(CASES / "table1_smooth.toml")))
+    process = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert process.returncode == 1 and "ValueError: of a callback" in process.stderr
 
 
 def test_options_belong_to_their_call():
