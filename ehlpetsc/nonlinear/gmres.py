@@ -186,8 +186,8 @@ def least_residual(numbers, new, norm):
         column[i] = rotations[i, 0] * above + rotations[i, 1] * below
         column[i + 1] = rotations[i, 0] * below - rotations[i, 1] * above
     length = np.hypot(column[k], norm)
-    rotations[k, 0], rotations[k, 1] = (column[k] / length, norm / length) if length > 0.0 else (1.0, 0.0)
-    column[k] = length if length > 0.0 else 1.0
+    rotations[k, 0], rotations[k, 1] = (column[k] / length, norm / length) if length != 0.0 else (1.0, 0.0)
+    column[k] = length if length != 0.0 else 1.0
     right[new] = -rotations[k, 1] * right[k]
     right[k] *= rotations[k, 0]
     return abs(right[new])
