@@ -9,7 +9,11 @@ from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.results.hdf5.attributes import plain
 from ehlpetsc.results.hdf5.opening import open_for_reading
+from ehlpetsc.surfaces.mesh_resolution import needed_points
+from ehlpetsc.surfaces.profile import WAVE_NODES
 
+MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
+ENDS = ("passes", "max_solved")  # keys of [life] that may change between calls
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
 
 
@@ -72,6 +76,43 @@ def _is_pass(path):
         return False
 
 
+def _tables_of_surfaces(text):
+    """Tables of a case on which its surfaces depend: without the title and the end of the life."""
+    tables = tomllib.loads(text)
+    tables.pop("title", None)
+    tables["life"] = {name: value for name, value in tables["life"].items() if name not in ENDS}
+    return tables
+
+
+def check_resolution(roughness, scales, path):
+    """Refuse a life on a mesh that does not carry the profiles: its figures would be those of the mesh.
+
+    Parameters
+    ----------
+    roughness : surfaces.roughness.Roughness or None
+    scales : physics.scales.Scales
+    path : path-like
+        Of the case, for the message.
+
+    Raises
+    ------
+    CaseError
+    """
+    faults = []
+    for side in ("1", "2"):
+        profile = roughness and roughness.side(side)
+        fraction = profile.unresolved_variance(scales.dx) if profile else 0.0
+        if fraction > MAX_UNRESOLVED:
+            faults.append(
+                f"{path}: surface.{side}: {fraction:.1%} of the height variance lies in wavelengths under "
+                f"{WAVE_NODES} nodes, and the life would depend on the mesh; allowed: {MAX_UNRESOLVED:.0%}, "
+                f"as with mesh.points_per_half_width = {needed_points(profile, scales, MAX_UNRESOLVED)} or a "
+                "longer short_cutoff; or --unresolved"
+            )
+    if faults:
+        raise CaseError(faults)
+
+
 def stored_or_new(case, path, overwrite, after):
     """Life stored at `path`, up to the row `after` if given, or a new life.
 
@@ -87,8 +128,9 @@ def stored_or_new(case, path, overwrite, after):
             raise UsageError(f"--after {after}: {path} has no row; allowed: a life to continue")
         return LifeHistory(case.text, case.title)
     history = read_life(path)
-    if history.case != case.text:
+    if _tables_of_surfaces(history.case) != _tables_of_surfaces(case.text):
         raise OutputError(f"{path}: the life of another case; give another -o, or --overwrite to lose it")
+    history.case = case.text  # it may extend the life
     if after is None:
         return history
     if not 1 <= after <= len(history.rows):

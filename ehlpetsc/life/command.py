@@ -27,6 +27,9 @@ def arguments():
         help="a key of the case; may be repeated",
     )
     parser.add_argument("--overwrite", action="store_true", help="start again")
+    parser.add_argument(
+        "--unresolved", action="store_true", help="run also on a mesh too coarse for the profiles"
+    )
     parser.add_argument("--after", type=int, metavar="ROW", help="continue after this row, from 1")
     parser.add_argument("--no-picture", action="store_true", help="do not draw")
     parser.add_argument("--movie", metavar="FILE", help="profile and damage over the life: .gif, .mp4, .webm")
@@ -110,7 +113,13 @@ def _run_lives(chosen):
         if is_root:
             print(text, flush=True)
 
-    shared = {"overwrite": chosen.overwrite, "comm": comm, "show": show, "stop": StopRequest()}
+    shared = {
+        "overwrite": chosen.overwrite,
+        "unresolved": chosen.unresolved,
+        "comm": comm,
+        "show": show,
+        "stop": StopRequest(),
+    }
     if case.series:
         run_regimes(case, path, **shared)
     else:

@@ -6,10 +6,11 @@ from pathlib import Path
 
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.errors import NotConverged
-from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
+from ehlpetsc.life.checks import check_case, check_files, check_resolution, pass_file, stored_or_new
 from ehlpetsc.life.history import LifeFile
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.positions import Positions
+from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
 
 PACE_WEIGHT = 0.5  # of the last round in the mean time of a round
 
@@ -81,7 +82,18 @@ def _time(seconds):
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
-def run_life(case, output=None, *, overwrite=False, after=None, comm=None, show=None, stop=None, most=None):
+def run_life(
+    case,
+    output=None,
+    *,
+    overwrite=False,
+    after=None,
+    unresolved=False,
+    comm=None,
+    show=None,
+    stop=None,
+    most=None,
+):
     """Run the life of a case's surfaces, or continue it.
 
     Parameters
@@ -94,6 +106,8 @@ def run_life(case, output=None, *, overwrite=False, after=None, comm=None, show=
         Whether to start again and replace an existing file.
     after : int, optional
         Row of the life, from 1, after which to continue; later rows are dropped. By default the last.
+    unresolved : bool
+        Whether to run also on a mesh that does not resolve the profiles.
     comm : mpi4py communicator, optional
         Its ranks share each round: a pass each, or all of them a single pass.
     show : callable(str), optional
@@ -127,14 +141,14 @@ def run_life(case, output=None, *, overwrite=False, after=None, comm=None, show=
     on_root(comm, lock.acquire)
     try:
         history = comm.bcast(on_root(comm, stored_or_new, case, path, overwrite, after))
-        life = _Life(case, path, comm, history, show or (lambda text: None))
+        life = _Life(case, path, comm, history, show or (lambda text: None), unresolved)
         return life.run(stop, most)
     finally:
         lock.release()
 
 
 class _Life:
-    def __init__(self, case, path, comm, history, show):
+    def __init__(self, case, path, comm, history, show, unresolved):
         from ehlpetsc.life.rounds import Ranks
         from ehlpetsc.physics.scales import Scales
         from ehlpetsc.physics.variable_operation import operation_of
@@ -148,6 +162,8 @@ class _Life:
         self.jumps = Jumps(case.life, self.positions.rq)
         self.ranks, self.file = Ranks(comm, self.positions.count), LifeFile(path)
         self._scene = scene(1)
+        if not unresolved:
+            check_resolution(self._scene.roughness, self.scales, case.path)
 
     def run(self, stop, max_rounds):
         """Solve rounds until the end of the life."""
@@ -167,6 +183,8 @@ class _Life:
     def _run(self, stop, max_rounds):
         progress, rounds = Progress(self.jumps.passes), 0
         if not self.history.rows:
+            for line in mesh_warnings(self._scene.roughness, self.scales):
+                self.show(f"warning: {line}")
             self.show(opening_line(self.case, self.scales, self._scene, self.positions.count))
         while self._is_living and (max_rounds is None or rounds < max_rounds):
             begun = clock.monotonic()

@@ -81,7 +81,7 @@ def _stem(output):
     return output.with_name(output.name.removesuffix(".h5").removesuffix(".life") + ".h5")
 
 
-def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, stop=None):
+def run_regimes(case, output=None, *, overwrite=False, unresolved=False, comm=None, show=None, stop=None):
     """Run a life for each member of a case's series.
 
     Parameters
@@ -90,7 +90,8 @@ def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, sto
         With tables [life] and [series].
     output : path-like, optional
         Its stem begins the files' names; by default ``CASE.life.h5``.
-    overwrite : bool
+    overwrite, unresolved : bool
+        As of `run_life`.
     comm : mpi4py communicator, optional
         Each of its ranks solves a life at a time.
     show : callable(str), optional
@@ -116,7 +117,9 @@ def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, sto
 
     import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they split
     comm = comm or MPI.COMM_SELF
-    lives = _Lives(case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite)
+    lives = _Lives(
+        case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite, unresolved
+    )
     on_root(comm, check_index, lives.index, "members")
     lock = Lock(lives.index, "wait for it, or give another -o")
     on_root(comm, lock.acquire)
@@ -127,7 +130,7 @@ def run_regimes(case, output=None, *, overwrite=False, comm=None, show=None, sto
 
 
 class _Lives:
-    def __init__(self, case, output, overwrite):
+    def __init__(self, case, output, overwrite, unresolved):
         from ehlpetsc.case.combinations import keys_of, settings_of
         from ehlpetsc.case.loading import members
         from ehlpetsc.life.checks import check_case
@@ -136,7 +139,8 @@ class _Lives:
         if case.life is None:
             raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
         series = tomllib.loads(case.text)["series"]
-        self.case, self.keys, self.overwrite = case, keys_of(series), overwrite
+        self.case, self.keys = case, keys_of(series)
+        self.options = {"overwrite": overwrite, "unresolved": unresolved}
         stem, self.index = _stem(output), index_of(output)
         self.members = [
             Member(name, value, member, stem)
@@ -182,14 +186,14 @@ class _Lives:
 
         path, state = self.file(member), "done"
         try:
-            life = run_life(member.case, path, overwrite=self.overwrite, comm=group, stop=stop)
+            life = run_life(member.case, path, **self.options, comm=group, stop=stop)
             return {"state": state} | outcome(life)
         except Stopped:
             return {"state": "stopped"}
         except NotConverged as error:
             state = {"state": "not converged", "reason": str(error)}
             return state | (outcome(read_life(path)) if path.exists() else {})
-        except (OutputError, PostError, UsageError) as error:
+        except (CaseError, OutputError, PostError, UsageError) as error:
             return {"state": "bad input", "reason": str(error)}
 
     def _write(self):

@@ -26,7 +26,7 @@ def mesh_warnings(rough, scales):
             notes.append(
                 f"surface.{side}: the mesh is too coarse for the profile: {100 * fraction:.1f} % of its "
                 f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
-                f"points_per_half_width = {_needed_points(profile, scales)} brings that under "
+                f"points_per_half_width = {needed_points(profile, scales, MAX_UNRESOLVED)} brings that under "
                 f"{100 * MAX_UNRESOLVED:.0f} %"
             )
         if profile and profile.given.measured:
@@ -94,8 +94,9 @@ def _running_median(z, window):
     ]
 
 
-def _needed_points(profile, scales):
+def needed_points(profile, scales, unresolved):
+    """Nodes per half-width that leave at most a share `unresolved` of the height variance unresolved."""
     points = scales.a / scales.dx
-    while profile.unresolved_variance(scales.a / points) > MAX_UNRESOLVED:
+    while profile.unresolved_variance(scales.a / points) > unresolved:
         points *= 1.1
     return int(np.ceil(points))

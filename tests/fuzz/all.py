@@ -9,7 +9,6 @@ ensembles results, damaged ones among them, given to every command that reads se
 passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
 python    calls from Python with arguments drawn from lists of good and bad ones
 gears     the command gears: keys of a pair, cases with mutations, damaged results, outputs good and bad
-life      the command life: keys, lives to continue that are damaged, outputs good and bad
 
 Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
 traceback, hang, signal, different (status 0 with another answer and no word), changed (an input is not as it
@@ -44,7 +43,6 @@ KINDS = (
     "passes",
     "python",
     "gears",
-    "life",
 )
 LATE = ("restarts", "layouts", "python")
 

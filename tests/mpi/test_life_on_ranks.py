@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import pytest
-from support import CASES
+from support import COARSE_LIFE
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import run_life
 
-CASE = CASES / "life.toml"
+CASE = COARSE_LIFE
 SHORT = {
     "mesh.points_per_half_width": 8,
     "time.travel": 3.6,
@@ -26,8 +26,9 @@ def test_life_is_independent_of_the_number_of_ranks(keys, tmp_path):
 
     world, case = MPI.COMM_WORLD, load(CASE, SHORT | keys)
     folder = Path(world.bcast(str(tmp_path)))
-    alone = run_life(case, folder / f"alone{world.rank}.life.h5", most=2)  # on each rank by itself
-    together = run_life(case, folder / "together.life.h5", most=2, comm=world)
+    # on each rank by itself
+    alone = run_life(case, folder / f"alone{world.rank}.life.h5", most=2, unresolved=True)
+    together = run_life(case, folder / "together.life.h5", most=2, comm=world, unresolved=True)
     assert together.rows[0]["solved"] == keys.get("life.partners", 1)
     assert together("passes").tolist() == alone("passes").tolist()
     for both, others in zip(together.bodies, alone.bodies, strict=True):
@@ -45,7 +46,7 @@ def test_stop_in_one_position_ends_the_life_on_every_rank(tmp_path):
     case = load(CASE, SHORT | {"time.pass_shift": 50e-6, "life.partners": 3})
     folder = Path(world.bcast(str(tmp_path)))
     with pytest.raises(Stopped):
-        run_life(case, folder / "a.life.h5", comm=world, stop=StopAtOnce())
+        run_life(case, folder / "a.life.h5", comm=world, stop=StopAtOnce(), unresolved=True)
 
 
 class StopAtOnce:

@@ -3,7 +3,7 @@
 import json
 import subprocess
 
-from support import CASES
+from support import COARSE_LIFE
 from support.running import BARE, PYTHON, SCRIPT
 
 KEYS = (
@@ -18,7 +18,19 @@ def test_series_of_lives_ends_on_two_ranks(tmp_path):
     """PETSc starts on all ranks together: one that met it alone in its first life waited for ever."""
     words = [word for key in KEYS for word in ("--set", key)]
     done = subprocess.run(
-        ["mpirun", "-n", "2", PYTHON, "-m", "ehlpetsc.life", CASES / "life.toml", "--no-picture", *words],
+        [
+            "mpirun",
+            "-n",
+            "2",
+            PYTHON,
+            "-m",
+            "ehlpetsc",
+            "life",
+            COARSE_LIFE,
+            "--unresolved",
+            "--no-picture",
+            *words,
+        ],
         cwd=tmp_path,
         env=BARE | SCRIPT,
         capture_output=True,
@@ -26,6 +38,6 @@ def test_series_of_lives_ends_on_two_ranks(tmp_path):
         timeout=300,
     )
     assert done.returncode == 0, done.stderr
-    members = json.loads((tmp_path / "life.life.series.json").read_text())["members"]
+    members = json.loads((tmp_path / "coarse_life.life.series.json").read_text())["members"]
     assert [member["state"] for member in members] == ["done", "done"]
     assert [member["solved"] for member in members] == [1, 1]

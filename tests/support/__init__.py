@@ -4,6 +4,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
+COARSE_LIFE = ROOT / "tests" / "data" / "coarse_life.toml"
 
 
 def is_line_with(text, *parts):

@@ -7,7 +7,7 @@ import shutil
 import h5py
 import numpy as np
 import pytest
-from support import CASES, refused
+from support import CASES, COARSE_LIFE, refused
 from support.made_loads import Scene, write
 from support.made_results import make_result
 from test_derived_files import PROFILE, foreign
@@ -141,7 +141,7 @@ def test_life_does_not_overwrite_another_file(tmp_path, monkeypatch, capsys, nam
     if name in ("case.toml", "profile.csv", "a.png"):
         foreign(tmp_path, name)
     before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
-    assert sentence(capsys, life, CASES / "life.toml", "-o", name, "--overwrite")
+    assert sentence(capsys, life, COARSE_LIFE, "-o", name, "--overwrite")
     assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
 
 
@@ -149,18 +149,18 @@ def test_life_keeps_a_result_named_as_its_pass(tmp_path):
     other = make_result(tmp_path / "x.life.pass.h5")
     before = other.read_bytes()
     with pytest.raises(OutputError, match=r"x\.life\.pass\.h5: exists"):
-        run_life(load(CASES / "life.toml"), tmp_path / "x.life.h5", most=1)
+        run_life(load(COARSE_LIFE), tmp_path / "x.life.h5", most=1, unresolved=True)
     assert other.read_bytes() == before
 
 
 def test_life_overwrites_its_own_passes_only(tmp_path):
-    case, path = load(CASES / "life.toml"), tmp_path / "x.life.h5"
-    first = run_life(case, path, most=1).done
-    assert run_life(case, path, most=1).done > first, "continued, over the result of the pass before"
-    assert run_life(case, path, most=1, overwrite=True).done == first
+    case, path = load(COARSE_LIFE), tmp_path / "x.life.h5"
+    first = run_life(case, path, most=1, unresolved=True).done
+    assert run_life(case, path, most=1, unresolved=True).done > first  # continued
+    assert run_life(case, path, most=1, overwrite=True, unresolved=True).done == first
     one_pass = tmp_path / "x.life.pass.h5"
     one_pass.write_bytes(one_pass.read_bytes()[:4096])  # as of a run killed while it writes
-    assert run_life(case, path, most=1, overwrite=True).done == first
+    assert run_life(case, path, most=1, overwrite=True, unresolved=True).done == first
 
 
 @pytest.fixture

@@ -4,13 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, COARSE_LIFE, ROOT
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
-from ehlpetsc.life import laws, read_life
+from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.checks import check_case
+from ehlpetsc.life.checks import check_case, stored_or_new
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps, Rates
 from ehlpetsc.life.one_pass import OfBody
@@ -212,6 +212,28 @@ def test_life_file_round_trip(tmp_path):
     path.write_bytes(path.read_bytes()[:100])
     with pytest.raises(OutputError):
         read_life(path)
+
+
+@pytest.mark.parametrize("change", [("passes = 1e6", "passes = 2000000.0 # longer"), ("1e-19", "0.1E-18")])
+def test_longer_or_annotated_life_is_continued(change, tmp_path):
+    text, path = COARSE_LIFE.read_text().replace('"../..', f'"{ROOT}'), tmp_path / "a.life.h5"
+    (tmp_path / "a.toml").write_text(text)
+    stored = LifeHistory(load(tmp_path / "a.toml").text, "title")
+    stored.add({"passes": 10, "jump": 10}, (body(), body()), {})
+    stored.save(path)
+    assert change[0] in text
+    (tmp_path / "a.toml").write_text(text.replace(*change))
+    continued = stored_or_new(load(tmp_path / "a.toml"), path, overwrite=False, after=None)
+    assert continued.done == 10 and "".join(change[1]) in continued.case
+    other = load(tmp_path / "a.toml", {"wear.coefficient": 2e-19})
+    with pytest.raises(OutputError, match="another case"):
+        stored_or_new(other, path, overwrite=False, after=None)
+
+
+def test_life_on_an_unresolved_profile_is_refused(tmp_path):
+    with pytest.raises(CaseError, match=r"surface.1: 95.8%.*points_per_half_width = 98"):
+        run_life(COARSE_LIFE, tmp_path / "a.life.h5")
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from support import CASES
+from support import COARSE_LIFE
 
 from ehlpetsc.life import read_life, run_life
 from ehlpetsc.life.history import COMMIT_DATASET
@@ -27,7 +27,18 @@ KEYS = {
 
 def command(path):
     settings = [part for key, value in KEYS.items() for part in ("--set", f"{key}={value}")]
-    return [sys.executable, "-m", "ehlpetsc.life", CASES / "life.toml", "-o", path, "--no-picture", *settings]
+    return [
+        sys.executable,
+        "-m",
+        "ehlpetsc",
+        "life",
+        COARSE_LIFE,
+        "--unresolved",
+        "-o",
+        path,
+        "--no-picture",
+        *settings,
+    ]
 
 
 def equal(life, other):
@@ -88,7 +99,7 @@ def test_a_life_restarts_at_any_of_its_rows(whole, tmp_path):
     path = tmp_path / "a.life.h5"
     path.write_bytes(whole.read_bytes())
     again = run_life(
-        load(CASES / "life.toml", [f"{key}={value}" for key, value in KEYS.items()]), path, after=2
+        load(COARSE_LIFE, [f"{key}={value}" for key, value in KEYS.items()]), path, after=2, unresolved=True
     )
     equal(again, read_life(whole))
     assert len(again.rows) == 4 and os.path.exists(path)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, COARSE_LIFE
 
 from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
@@ -55,8 +55,8 @@ GEARS = {
 
 @pytest.mark.parametrize("keys", [{}, HEAT, LAYER, YIELDING, HEAT | LAYER | YIELDING])
 def test_a_life_runs_with_oil_and_every_effect(keys, tmp_path):
-    case = load(CASES / "life.toml", SHORT | {"life.passes": 1e9} | keys)
-    life = run_life(case, tmp_path / "a.life.h5", most=3)
+    case = load(COARSE_LIFE, SHORT | {"life.passes": 1e9} | keys)
+    life = run_life(case, tmp_path / "a.life.h5", most=3, unresolved=True)
     assert len(life.rows) == 3 and life.done > 3
     last = life.rows[-1]
     assert 0.0 < last["friction"] < 0.2 and 0.0 < last["contact_share"] < 1.0
@@ -65,8 +65,8 @@ def test_a_life_runs_with_oil_and_every_effect(keys, tmp_path):
 
 
 def test_a_life_runs_under_changing_conditions(tmp_path):
-    case = load(CASES / "life.toml", SHORT | {"fluid": None, "life.passes": 1e9} | SWINGING)
-    life = run_life(case, tmp_path / "a.life.h5", most=2)
+    case = load(COARSE_LIFE, SHORT | {"fluid": None, "life.passes": 1e9} | SWINGING)
+    life = run_life(case, tmp_path / "a.life.h5", most=2, unresolved=True)
     assert life.rows[-1]["wear_volume_1"] > 0.0 and len(life.bodies[-1][0].s) > 2
 
 
@@ -76,13 +76,13 @@ def test_surfaces_that_turn_back_are_refused():
     }
     keys = {"mesh.points_per_half_width": 10, "mesh.inlet": -1.3, "mesh.outlet": 1.3} | turning
     with pytest.raises(CaseError, match=r"life\.toml: .*one way"):
-        check_case(load(CASES / "life.toml", keys))
+        check_case(load(COARSE_LIFE, keys))
 
 
 def test_teeth_wear_along_their_flanks_as_load_and_sliding_say(tmp_path):
     r"""Of a point of the pinion that passes a narrow contact :math:`dz_1=k\,w\,|u_1-u_2|/u_1`; none at C."""
     case = load(CASES / "fzg.toml", GEARS)
-    life = run_life(case, tmp_path / "a.life.h5", most=1)
+    life = run_life(case, tmp_path / "a.life.h5", most=1, unresolved=True)
     row, operation, scales = life.rows[0], Simulation(case).operation, Simulation(case).scales
     assert row["solved"] == 2
     time = np.linspace(0.0, operation.duration, 2001)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import CASES
+from support import COARSE_LIFE
 
 from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
@@ -18,7 +18,7 @@ PITTED = 1.02e6  # passes after which both surfaces have a few pits
 
 
 def case(keys):
-    return load(CASES / "life.toml", SHORT | keys)
+    return load(COARSE_LIFE, SHORT | keys)
 
 
 def scaled(scale):
@@ -30,7 +30,7 @@ def test_cells_without_wear_fail_after_one_over_damage_passes(tmp_path):
     scene = Simulation(case(keys)).scene
     edges = laws.cell_edges(CELL_SIZE * scene.rq, 6 * CELL_SIZE * scene.rq)
     depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]
-    life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", most=3)
+    life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", most=3, unresolved=True)
     post(Job(str(tmp_path / "a.life.pass.h5"), str(tmp_path / "a.post.h5")))
     found = PostResult(tmp_path / "a.post.h5")
     failed = 0
@@ -49,7 +49,7 @@ def test_cells_without_wear_fail_after_one_over_damage_passes(tmp_path):
 def test_worn_volume_is_k_times_load_times_sliding(scale, tmp_path):
     passes, k = 40_000, (1e-18, 3e-18)
     one = case(scaled(scale) | {"wear.coefficient": list(k), "life.passes": passes, "life.wear_jump": 0.02})
-    life = run_life(one, tmp_path / "a.life.h5")
+    life = run_life(one, tmp_path / "a.life.h5", unresolved=True)
     scales = Simulation(one).scales
     sliding = passes * abs(scales.u1 - scales.u2) * scales.duration
     assert len(life.rows) >= 3 and life.done == passes
@@ -64,7 +64,7 @@ def test_wear_dominates_at_a_high_rate_and_fatigue_at_a_low_rate(tmp_path):
     for k in (1e-15, 1e-20):
         keys = {"wear.coefficient": k, "life.damage_jump": 0.5, "life.wear_jump": 0.1, "time.travel": 6.0}
         keys["mesh.points_per_half_width"] = 12
-        ends[k] = run_life(case(keys), tmp_path / f"{k}.life.h5", most=6)
+        ends[k] = run_life(case(keys), tmp_path / f"{k}.life.h5", most=6, unresolved=True)
     polished, pitted = ends[1e-15], ends[1e-20]
     new = polished.bodies[0][0]
     new = new._replace(wear=np.zeros_like(new.wear))
@@ -75,8 +75,8 @@ def test_wear_dominates_at_a_high_rate_and_fatigue_at_a_low_rate(tmp_path):
 
 def first_round(keys, path):
     """Largest damage of a pass in each body, and k at which wear would just win on each."""
-    life = run_life(load(CASES / "life.toml", {"life.wear_jump": 0.2, **keys}), path, most=1)
-    coefficients = load(CASES / "life.toml", keys).wear.coefficient
+    life = run_life(load(COARSE_LIFE, {"life.wear_jump": 0.2, **keys}), path, most=1, unresolved=True)
+    coefficients = load(COARSE_LIFE, keys).wear.coefficient
     row, bodies = life.rows[0], life.bodies[0]
     borders = [k * row[f"damage_ahead_{n}"] for n, k in enumerate(coefficients, 1)]
     return [body.damage_rate.max() for body in bodies], borders
@@ -116,7 +116,7 @@ def test_pits_and_wear_are_independent_of_the_jump(tmp_path):
     ends = []
     for part in (1.0, 0.5):
         keys = {"life.wear_jump": 0.2 * part, "life.damage_jump": 0.4 * part, "wear.coefficient": 1e-19}
-        life = run_life(case(keys | {"life.passes": PITTED}), tmp_path / f"{part}.life.h5")
+        life = run_life(case(keys | {"life.passes": PITTED}), tmp_path / f"{part}.life.h5", unresolved=True)
         ends.append((life, life.rows[-1]))
     (life, full), (other, half) = ends
     assert len(other.rows) > len(life.rows) and full["pitted_share_1"] + full["pitted_share_2"] > 0.0
@@ -130,11 +130,11 @@ def test_pits_and_wear_are_independent_of_the_jump(tmp_path):
 def test_continued_life_equals_an_uninterrupted_one(tmp_path):
     keys = {"wear.coefficient": 1e-18, "life.passes": 1e9, "time.pass_shift": 50e-6, "life.partners": 2}
     one = case(keys | {"contact.yield_pressure": 2e9, "life.damage_jump": 0.5})
-    once = run_life(one, tmp_path / "once.life.h5", most=4)
+    once = run_life(one, tmp_path / "once.life.h5", most=4, unresolved=True)
     stopped = tmp_path / "stopped.life.h5"
-    run_life(one, stopped, most=1)
-    run_life(one, stopped, most=2)
-    again = run_life(one, stopped, most=1)
+    run_life(one, stopped, most=1, unresolved=True)
+    run_life(one, stopped, most=2, unresolved=True)
+    again = run_life(one, stopped, most=1, unresolved=True)
     for life in (again, read_life(stopped)):
         assert life("passes").tolist() == once("passes").tolist()
         for both, others in zip(life.bodies, once.bodies, strict=True):
