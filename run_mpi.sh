@@ -7,7 +7,7 @@ usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
-./run_mpi.sh plot|post|summary|compare|gears|study ...    the same as ehlpetsc plot ..., each with -h
+./run_mpi.sh plot|post|summary|compare|gears|life ...    the same as ehlpetsc plot ..., each with -h
 ./run_mpi.sh docs [FOLDER]                          the pages as one site, opened in a browser or built there
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
@@ -29,7 +29,7 @@ drawing="matplotlib xarray h5netcdf pint" # pictures, reading of results, values
 site="sphinx myst_parser furo" # the pages as one site
 testing="$drawing plotly pytest xdist hypothesis pip hatchling"
 
-commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare ehlpetsc-study"
+commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare"
 called=$(basename "$0")
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 check="$here/ehlpetsc/environment.py"
@@ -360,7 +360,7 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
-    plot | post | summary | compare | gears | life | study | ensemble | collisions | contacts | explain | keys | template | docs | python)
+    plot | post | summary | compare | gears | life | ensemble | collisions | contacts | explain | keys | template | docs | python)
         [ "$1" != docs ] || run_modules+=" $site"
         prepare "$run_modules" "$drawing"
         exec "$python" -m ehlpetsc "$@"

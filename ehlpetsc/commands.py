@@ -1,7 +1,7 @@
 """The program ``ehlpetsc`` and its subcommands, and the commands of earlier releases that pip installs.
 
 ``ehlpetsc CASE.toml`` runs a case, ``ehlpetsc plot RESULT.h5`` draws, and so on: `SUBCOMMANDS`. The names
-``ehlpetsc-post``, ``-plot``, ``-compare`` and ``-study`` and ``python3 -m ehlpetsc.post`` ... remain.
+``ehlpetsc-post``, ``-plot`` and ``-compare`` and ``python3 -m ehlpetsc.post`` ... remain.
 ``run_mpi.sh`` starts a command by ``python3 -m ehlpetsc.commands NAME ...``.
 """
 
@@ -26,7 +26,6 @@ SUBCOMMANDS = {  # name: module, function, packages needed, description
         "path of contact of spur gears, and runs along it",
     ),
     "life": ("ehlpetsc.life.command", "main", PLOTTING, "wear against fatigue over many passes"),
-    "study": ("ehlpetsc.study.__main__", "main", PLOTTING, "accuracy, speed, robustness"),
     "ensemble": ("ehlpetsc.analysis.ensemble", "main", NUMERICS, "means over runs of several seeds"),
     "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),
     "docs": ("ehlpetsc.docs.__main__", "main", (), "these pages as one site, opened in a browser"),
@@ -97,13 +96,12 @@ def _start(name):
     return getattr(importlib.import_module(module), function)()
 
 
-post, plot, compare, study = (partial(_start, name) for name in ("post", "plot", "compare", "study"))
+post, plot, compare = (partial(_start, name) for name in ("post", "plot", "compare"))
 BY_NAME = {
     "ehlpetsc": solver,
     "ehlpetsc-post": post,
     "ehlpetsc-plot": plot,
     "ehlpetsc-compare": compare,
-    "ehlpetsc-study": study,
 }
 
 if __name__ == "__main__":

@@ -51,7 +51,6 @@ DEAREST = (  # files of two seconds of processor time and more, longest first
     "test_notebook",
     "test_case_fuzz",
     "test_docs",
-    "test_study",
     "test_life_regimes",
     "test_python",
     "test_case_text",

@@ -20,7 +20,7 @@ SECTIONS = {
     "Theory": (
         "ehlpetsc/model",
         "ehlpetsc/nonlinear/README",
-        "ehlpetsc/study/README",
+        "tests/benchmarks/ACCURACY",
         "tests/verification/README",
     ),
     "Reproduction": ("cases/paper", "ehlpetsc/post/PAPER"),

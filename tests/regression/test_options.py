@@ -327,7 +327,7 @@ def test_missing_packages_print_the_command_to_type(case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "command", ["compare", "plot", "post", "study", "analysis.contact_statistics", "analysis.collisions"]
+    "command", ["compare", "plot", "post", "analysis.contact_statistics", "analysis.collisions"]
 )
 def test_every_subcommand_reports_missing_packages(tmp_path, command):
     done = subprocess.run(

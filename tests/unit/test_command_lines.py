@@ -1,4 +1,4 @@
-"""Bad command lines of post, plot, study, compare and analysis end in one sentence and status 2."""
+"""Bad command lines of post, plot, compare and analysis end in one sentence and status 2."""
 
 import importlib
 
@@ -10,7 +10,6 @@ from ehlpetsc.errors import ExitStatus, not_written
 COMMANDS = {
     "ehlpetsc.post": "ehlpetsc.post.command",
     "ehlpetsc.plot": "ehlpetsc.plot.__main__",
-    "ehlpetsc.study": "ehlpetsc.study.__main__",
     "ehlpetsc.compare": "ehlpetsc.analysis.compare",
     "ehlpetsc.analysis.ensemble": "ehlpetsc.analysis.ensemble",
     "ehlpetsc.analysis.collisions": "ehlpetsc.analysis.collisions",
@@ -29,8 +28,7 @@ def message_of(name, words, capsys):
 
 @pytest.mark.parametrize("name", sorted(COMMANDS))
 def test_mistyped_option_is_refused_in_one_line(name, capsys):
-    files = ["case.toml"] if name == "ehlpetsc.study" else ["a.h5", "b.h5"]
-    message = message_of(name, [*files, "--deph"], capsys)
+    message = message_of(name, ["a.h5", "b.h5", "--deph"], capsys)
     assert is_line_with(message, f"{name}: ", " --deph;", f"; python3 -m {name} -h")
 
 
@@ -42,7 +40,6 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
         ("ehlpetsc.post", [], ["required: RESULT.h5"]),
         ("ehlpetsc.plot", ["a.h5", "--step", "one"], ["--step: ", "'one'"]),
         ("ehlpetsc.plot", ["a.h5", "--map", "--movie"], ["--movie: ", " --map;"]),
-        ("ehlpetsc.study", [], ["CASE.toml, --extremes or --random N;"]),
         ("ehlpetsc.compare", ["a.h5"], ["required: B.h5"]),
         ("ehlpetsc.compare", ["a.h5", "b.h5", "--rtol", "-1"], ["--rtol: -1 ", " >= 0;"]),
     ],

@@ -16,7 +16,6 @@ from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
-from ehlpetsc.study.__main__ import main as study
 
 CASE = ROOT / "cases" / "dry_hertz.toml"
 PROFILE = "0.0,1e-7\n1e-6,2e-7\n"
@@ -82,14 +81,6 @@ def test_picture_is_replaced(tmp_path):
     words = [str(make_result(tmp_path / "one.h5"))]
     assert plot(words) == 0 and plot(words) == 0
     assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize("words", [["--extremes"], ["--random", "1"], [str(CASE)], [str(CASE), "--contact"]])
-def test_study_overwrites_its_own_tables_only(tmp_path, capsys, words):
-    other = foreign(tmp_path, "profile.csv")
-    assert study([*words, "-o", str(tmp_path / "profile")]) == 2
-    assert "profile.csv: exists" in capsys.readouterr().err
-    assert other.read_text() == PROFILE
 
 
 def test_picture_name_without_a_format_is_refused(tmp_path):

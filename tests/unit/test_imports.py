@@ -45,7 +45,6 @@ MAY_IMPORT = (
         "analysis": {"results", "quantities"},
         "plot": {"analysis", "results", "physics", "quantities", "case", "surfaces"},
         "post": {"case", "results", "physics", "quantities"},
-        "study": {"case", "analysis", "results", "physics", "quantities"},  # runs the solver by its command
         "compare": {"analysis"},
         "docs": set(),  # the pages as one site
         "life": {"run", "post", "plot", "api", "effects", "case", "surfaces", "results", "physics"},
@@ -60,7 +59,7 @@ SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run", "nonlinear", "life"},
-    "matplotlib": {"plot", "post", "study", "api", "gears", "life"},
+    "matplotlib": {"plot", "post", "api", "gears", "life"},
     "numba": {"compiled"},
 }
 

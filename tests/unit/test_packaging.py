@@ -16,7 +16,7 @@ from support import ROOT, is_line_with
 from ehlpetsc import commands
 from ehlpetsc.results.reader import read_result
 
-COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
+COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post"]
 # to compile takes longer than these few steps
 OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/", "NUMBA_DISABLE_JIT": "1"}
 

@@ -117,7 +117,7 @@ def test_drawing_keeps_matplotlib_state(tmp_path, result):
         "import matplotlib, sys\n"
         "matplotlib.use('svg'); matplotlib.rcParams['font.size'] = 7; before = dict(matplotlib.rcParams)\n"
         "from matplotlib import pyplot; pyplot.figure()\n"
-        "import ehlpetsc.post.pictures.gallery, ehlpetsc.study.accuracy.picture, ehlpetsc.plot.movies\n"
+        "import ehlpetsc.post.pictures.gallery, ehlpetsc.plot.movies\n"
         "from ehlpetsc.plot.__main__ import main\n"
         "assert main(sys.argv[1:]) == 0 and pyplot.get_fignums() == [1]\n"
         "assert dict(matplotlib.rcParams) == before, 'settings'\n"

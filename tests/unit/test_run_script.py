@@ -289,7 +289,7 @@ def test_mpi_uses_shared_memory_only_on_a_single_node(script, nodes, alone):
     assert ("'OMPI_MCA_btl'" in done.stdout, "'PMIX_MCA_psec'" in done.stdout) == (alone, alone)
 
 
-COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post", "ehlpetsc-study"]
+COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post"]
 
 
 def test_command_links_work_in_any_folder(script, tmp_path):
@@ -319,7 +319,6 @@ def test_command_links_replace_no_other_file(script, tmp_path):
     done = script("--commands", str(tmp_path))
     assert done.returncode == 2
     assert f" {tmp_path}/ehlpetsc " in done.stderr  # the package's folder
-    assert not (tmp_path / "ehlpetsc-study").exists()
     (tmp_path / "bin").mkdir()
     for name in ("ehlpetsc-post", "ehlpetsc-plot"):
         (tmp_path / name).rename(tmp_path / "bin" / name)

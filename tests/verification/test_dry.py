@@ -10,11 +10,11 @@ that, such that the ratio wanted comes out. What is left of the cylinder is thus
 import numpy as np
 import pytest
 from support import exact_solutions
+from support.convergence import observed_order
 from support.driving import Scene
 
 from ehlpetsc.physics.exact_solutions import hertz_gap, hertz_pressure
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.study.convergence import observed_order
 
 WAVES = 10  # to a half width
 DOMAIN = ("mesh.inlet=-1.3", "mesh.outlet=1.3")  # 13 waves either side: a crest at x = 0

@@ -6,9 +6,8 @@ The scene of test_order.py with a slide/roll ratio of 0.5 and heat; norm: root m
 
 import numpy as np
 import pytest
+from support.convergence import observed_order
 from support.driving import Scene
-
-from ehlpetsc.study.convergence import observed_order
 
 TRAVEL = 2.5  # half widths, of the mean speed
 STEPS = (40, 80, 160, 320)

@@ -16,10 +16,9 @@ With the inlet at -8 instead of -4 half widths the lighter load gives 0.26 % mor
 
 import numpy as np
 import pytest
+from support.convergence import observed_order
 from support.driving import Scene
 from support.published_values import MOES_POINTS
-
-from ehlpetsc.study.convergence import observed_order
 
 LIGHT, HEAVY = MOES_POINTS
 SETTINGS = {LIGHT: (), HEAVY: ("contact.load=2.09915459e6", "fluid.viscosity=0.01014206817")}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from support import CASES
+from support.convergence import observed_order
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
@@ -14,7 +15,6 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.state import State
-from ehlpetsc.study.convergence import observed_order
 
 COARSE = {"mesh.points_per_half_width": 50, "mesh.inlet": -2.5, "mesh.outlet": 1.5}
 

@@ -19,9 +19,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.convergence import observed_order
 from support.driving import Scene
-
-from ehlpetsc.study.convergence import observed_order
 
 COARSEST = 8  # points per half width
 WINDOW = (-1.0, 0.5)

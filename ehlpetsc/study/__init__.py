@@ -1,1 +1,0 @@
-"""Studies of the solver: table of extremes, error over run time, random cases."""

@@ -1,1 +1,0 @@
-"""Error over run time: plan of the runs, errors, table and picture."""

@@ -1,0 +1,232 @@
+"""Error over run time: ``python3 tests/benchmarks/accuracy.py CASE.toml [--set TABLE.KEY=VALUE ...]``.
+
+One setting of the case is varied at a time: mesh, time step, near field, tolerances of Newton's method and of
+the Krylov solver. Errors are relative to a reference with half the smallest spacing and Courant number
+and tighter tolerances. The error of the reference is estimated by Richardson extrapolation from two
+runs with 2 and 4 times its spacing and time step, e = |f1 - f2|/(2^p - 1), p the observed order of the three,
+within 0.5 to 2. Writes CASE.accuracy.csv and CASE.accuracy.png.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import ehlpetsc
+from ehlpetsc.case.loading import load
+from ehlpetsc.results.post_result import PostResult, post_path
+
+MESH, STEP, NEAR = "mesh.points_per_half_width", "time.courant", "mesh.near_field"
+NEWTON, KRYLOV = "snes_atol", "ksp_rtol"
+NAMES = {
+    MESH: "mesh",
+    STEP: "time step",
+    NEAR: "near field",
+    NEWTON: "Newton tolerance",
+    KRYLOV: "Krylov tolerance",
+}
+TOLERANCES = {NEWTON: (1e-2, 1e-3, 1e-4, 1e-5, 1e-7), KRYLOV: (1e-1, 1e-2, 1e-4, 1e-6, 1e-8)}
+REFERENCE_TOLERANCES = {NEWTON: 1e-9, KRYLOV: 1e-10}
+MEASURES = {
+    "h_min": "minimum film",
+    "h_c": "central film",
+    "p_max": "maximum pressure",
+    "film": "local film, maximum norm",
+    "contact": "length in contact",
+    "damage": "damage, decades",
+}
+COLUMNS = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
+ORDERS = (0.5, 2.0)  # limits of the observed order
+
+
+@dataclass
+class Measured:
+    """Cost of a run, films of its last frame [m], extremes, mean contact length [a]."""
+
+    cost: dict[str, float]
+    x: np.ndarray
+    h: np.ndarray
+    h_min: float
+    h_c: float
+    p_max: float
+    contact: float
+    damage: float  # log10 of the maximum on surface 2
+
+
+def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool, folder: Path) -> Measured:
+    """Run a case with these values of keys and, without a dot in the name, of PETSc options."""
+    keys = [f"{key}={value}" for key, value in values.items() if "." in key]
+    options = {name: value for name, value in values.items() if "." not in name}
+    fields = ("pressure", "film_thickness", *(("shear_stress_1", "shear_stress_2") if damage else ()))
+    time = load(case, overrides).time
+    every = max(round(time.travel * values[MESH] / values[STEP]), 1) if time and not damage else 1
+    stored = [f"output.every={every}", f"output.fields={list(fields)}".replace("'", '"')]
+    output = folder / "run.h5"
+    result = ehlpetsc.solve(
+        load(case, [*overrides, *keys, *stored]), output, options, overwrite=True, progress=False
+    )
+    steps, x = result.steps, result.x / result.attrs["a"]
+    h, dt = result.frame("film_thickness", -1), steps("dt")
+    return Measured(
+        {"wall_s": float(steps("wall").sum()), "newton": int(steps("newton").sum()), "steps": len(dt) - 1},
+        x,
+        h,
+        float(steps("h_min").min()),
+        float(h[np.argmin(np.abs(x))]),
+        float(steps("p_max").max()),
+        float((steps("contacts") * dt).sum() / dt.sum() * (x[1] - x[0])) if dt.sum() else 0.0,
+        _damage(output) if damage else np.nan,
+    )
+
+
+def _damage(path: Path) -> float:
+    """log10 of the maximum damage on surface 2."""
+    subprocess.run(
+        [sys.executable, "-m", "ehlpetsc", "post", str(path), "--surface", "2"],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        cwd=ROOT,
+    )
+    return float(np.log10(PostResult(post_path(path)).passed("2").max()))
+
+
+def errors(found: Measured, true: Measured) -> dict[str, float]:
+    """Relative errors by measure; film: local maximum over h_c, damage: difference in decades."""
+    inside = np.abs(found.x) <= 1.0
+    local = np.abs(found.h - np.interp(found.x, true.x, true.h))[inside].max() / true.h_c
+    relative = {
+        name: abs(getattr(found, name) / getattr(true, name) - 1.0) if getattr(true, name) else np.nan
+        for name in ("h_min", "h_c", "p_max", "contact")
+    }
+    return {**relative, "film": local, "damage": abs(found.damage - true.damage)}
+
+
+def uncertainty(fine: Measured, middle: Measured, coarse: Measured) -> dict[str, float]:
+    """Estimated error of the finest of three runs, by measure."""
+    first, second = errors(middle, fine), errors(coarse, fine)
+    estimates = {}
+    for name in MEASURES:
+        change, coarser = first[name], second[name] - first[name]  # |f1 - f2|, |f2 - f3|
+        order = np.log2(coarser / change) if min(change, coarser) > 0.0 else ORDERS[0]
+        estimates[name] = change / (2.0 ** np.clip(order, *ORDERS) - 1.0)
+    return estimates
+
+
+def table(
+    case: Path, overrides: list[str], meshes: list[int], courant: list[float], damage: bool
+) -> list[dict]:
+    """Rows by column: the reference with its estimated error, the case as it is, then each varied setting."""
+    settings = load(case, overrides)
+    base = {MESH: settings.mesh.points_per_half_width, NEAR: settings.mesh.near_field}
+    varied = {MESH: meshes, NEAR: (5, 10, 20, 40), **TOLERANCES}
+    finest = REFERENCE_TOLERANCES
+    if settings.time:
+        base[STEP], varied[STEP], finest = settings.time.courant, courant, finest | {STEP: 0.5 * min(courant)}
+    print(text(dict(zip(COLUMNS, COLUMNS, strict=True))))
+    with tempfile.TemporaryDirectory() as folder:
+
+        def measured(values: dict[str, float]) -> Measured:
+            return run(case, overrides, base | values, damage, Path(folder))
+
+        references = [measured({**finest, MESH: 2 * max(meshes) // coarser}) for coarser in (1, 2, 4)]
+        rows = [_row("reference", "", references[0].cost, uncertainty(*references))]
+        runs = [("", "as it is", {})]
+        runs += [
+            (NAMES[key], value, {key: value})
+            for key, values in varied.items()
+            for value in sorted({*values, base[key]} if key in base else values)
+        ]
+        for name, value, changed in runs:
+            try:
+                found = measured(changed)
+                rows.append(_row(name, value, found.cost, errors(found, references[0])))
+            except ehlpetsc.NotConverged:
+                rows.append(_row(name, value, {}, {}) | {"converged": "no"})
+    return rows
+
+
+def _row(varied: str, value: object, cost: dict[str, float], found: dict[str, float]) -> dict:
+    row = dict.fromkeys(COLUMNS, np.nan) | {
+        "varied": varied,
+        "value": value,
+        "converged": "yes",
+        **cost,
+        **found,
+    }
+    print(text(row), flush=True)
+    return row
+
+
+def text(row: dict) -> str:
+    """Row as text in columns."""
+    shown = (f"{row[name]:.2e}" if isinstance(row[name], float) else str(row[name]) for name in COLUMNS)
+    return " ".join(f"{cell:>{16 if not k else 9}}" for k, cell in enumerate(shown))
+
+
+def draw(rows: list[dict], path: Path, title: str) -> Figure:
+    """Picture of the errors over wall time and over Newton iterations, a column for each measure."""
+    reference, base, *others = rows
+    shown = [name for name in MEASURES if any(row[name] > 0.0 for row in rows[1:])]
+    figure = Figure(figsize=(3.4 * len(shown), 6.6), layout="constrained")
+    axes = figure.subplots(2, len(shown), sharey="col", squeeze=False)
+    for column, name in zip(axes.T, shown, strict=True):
+        for panel, cost, label in zip(
+            column, ("wall_s", "newton"), ("wall time [s]", "Newton iterations"), strict=True
+        ):
+            for marker, varied in zip("osD^v", dict.fromkeys(row["varied"] for row in others), strict=False):
+                chosen = sorted(
+                    (row for row in others if row["varied"] == varied), key=lambda row: row["value"]
+                )
+                values = [(row[cost], max(row[name], 1e-8)) for row in chosen if row["converged"] == "yes"]
+                panel.loglog(*np.transpose(values), marker=marker, ms=4, lw=0.8, label=varied)
+            panel.loglog(base[cost], max(base[name], 1e-8), "k*", ms=11, label="the case as it is")
+            panel.axhline(reference[name], color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
+            panel.set_xlabel(label)
+            panel.grid(True, lw=0.3)
+        column[0].set_title(MEASURES[name], fontsize="medium")
+    for panel in axes[:, 0]:
+        panel.set_ylabel("relative error")
+    figure.suptitle(title, fontsize="medium")
+    figure.get_layout_engine().set(rect=(0.0, 0.1, 1.0, 0.9))
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower center", ncols=4, frameon=False)
+    figure.savefig(path, dpi=110)
+    return figure
+
+
+def main() -> None:
+    """Run the command."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("case", type=Path)
+    parser.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="for all runs")
+    parser.add_argument(
+        "--meshes", type=int, nargs="+", default=[50, 100, 200, 400], help="points per half-width"
+    )
+    parser.add_argument("--courant", type=float, nargs="+", default=[0.5, 1.0, 2.0, 4.0])
+    parser.add_argument(
+        "--damage", action="store_true", help="damage of surface 2, which must pass the whole mesh"
+    )
+    chosen = parser.parse_args()
+    rows = table(chosen.case, chosen.set, chosen.meshes, chosen.courant, chosen.damage)
+    with open(f"{chosen.case.stem}.accuracy.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+    draw(rows, Path(f"{chosen.case.stem}.accuracy.png"), load(chosen.case).title)
+    print(f"{chosen.case.stem}.accuracy.csv, {chosen.case.stem}.accuracy.png")
+
+
+if __name__ == "__main__":
+    main()
