@@ -12,7 +12,7 @@ import numpy as np
 
 from ehlpetsc import environment
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.errors import CaseError, UsageError
+from ehlpetsc.errors import CaseError, ExitStatus, UsageError
 from ehlpetsc.results import reader
 from ehlpetsc.results.hdf5.opening import open_result
 
@@ -134,6 +134,8 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
         Its `state` is the last accepted state, which with `output` is also in the restart file.
     UsageError, OutputError
         An impossible option, a file that cannot be read or written.
+    KeyboardInterrupt
+        Ctrl-C, after the current time step; with `output` the same call continues.
 
     Examples
     --------
@@ -147,6 +149,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     from ehlpetsc.run.outputs.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import solve as hand_to
+    from ehlpetsc.run.stop import StopRequest
 
     simulation = Simulation(case, comm, options)
     refuse_passes(simulation.case)
@@ -158,12 +161,22 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
         if restart is not None:
             recorder.resume(restart)
         shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []
-        _, failure = hand_to(simulation, [recorder, *shown])
+        with StopRequest.on_interrupt() as stop:
+            status, failure = hand_to(simulation, [recorder, *shown], stop)
     if failure:
         raise failure
+    if status is ExitStatus.STOPPED:
+        raise KeyboardInterrupt(_place_of_stop(simulation, recorder))
     if output is None:
         return Result(h5py.File(io.BytesIO(recorder.result.to_bytes()), "r"), Path("memory.h5"))
     return read_result(output)
+
+
+def _place_of_stop(simulation, recorder):
+    if simulation.solution is None:
+        return "stopped during the steady start; nothing to continue from"
+    advice = f"; the same call continues from {recorder.restart}" if recorder.output else ""
+    return f"stopped at step {simulation.solution.step}{advice}"
 
 
 def need_solver():

@@ -23,12 +23,17 @@ def refusal(error, user_options):
         Options of the user.
     """
     reason = petsc_message(error)
+    is_of_output = "viewer" in reason.lower()
     possible = {
         name: value
         for name, value in user_options.items()
-        if not (name.startswith("ehl_") or any(fragment in name for fragment in OUTPUT_OPTIONS))
+        if not name.startswith("ehl_") and any(part in name for part in OUTPUT_OPTIONS) == is_of_output
     }
-    named = {n: v for n, v in possible.items() if n in reason or v and v in reason}
+    named = {  # a viewer is type:file:format, of which PETSc names one
+        name: value
+        for name, value in possible.items()
+        if name in reason or any(part and part in reason for part in (value or "").split(":"))
+    }
     causes = named if len(named) == 1 else possible
     names = [f"-{name} {value or ''}".strip() for name, value in causes.items()]
     if not names:

@@ -11,6 +11,8 @@ from pathlib import Path
 def replacing(path, keep_ending=False):
     """Context manager of a temporary file next to `path`: renamed at the end, removed after an error.
 
+    Of a symbolic link the target is replaced, and the link stays.
+
     An OSError of the temporary file names `path` as its file.
 
     Parameters
@@ -26,11 +28,12 @@ def replacing(path, keep_ending=False):
     """
     path = Path(path)
     ending = f".tmp{path.suffix}" if keep_ending else ".tmp"
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}{ending}")
+    target = Path(os.path.realpath(path))
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.{secrets.token_hex(4)}{ending}")
     try:
         os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield temporary
-        os.replace(temporary, path)
+        os.replace(temporary, target)
     except BaseException as error:
         with contextlib.suppress(OSError):
             temporary.unlink()
@@ -49,8 +52,9 @@ def atomic_write(path, content):
 
 
 def remove_stale(path):
-    """Remove temporary files of killed runs temporary `path`; the caller must have the lock on `path`."""
-    for temporary in Path(path).parent.glob(f".{glob.escape(Path(path).name)}.*.tmp*"):
+    """Remove the temporary files that killed runs left next to `path`; the caller must have its lock."""
+    target = Path(os.path.realpath(path))
+    for temporary in target.parent.glob(f".{glob.escape(target.name)}.*.tmp*"):
         with contextlib.suppress(OSError):
             temporary.unlink()
 

@@ -1,8 +1,10 @@
 """Stop on request: a signal or the time limit ends a run after the current step."""
 
+import contextlib
 import math
 import signal
 import sys
+import threading
 import time as clock
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1)
@@ -45,12 +47,27 @@ class StopRequest:
     ----------
     minutes : float
         Wall clock time from now on; 0: no limit.
+    signals : tuple of signal.Signals
+        Signals that request a stop.
     """
 
-    def __init__(self, minutes=0.0):
+    def __init__(self, minutes=0.0, signals=SIGNALS):
         self.until = clock.monotonic() + 60.0 * minutes if minutes else math.inf
-        if any(getattr(handler, "is_requested", False) for handler in _handle(self._request)):
+        self._before = _handle(self._request, signals)
+        if any(getattr(handler, "is_requested", False) for handler in self._before.values()):
             self._request()
+
+    @classmethod
+    @contextlib.contextmanager
+    def on_interrupt(cls):
+        """Stop request by Ctrl-C within a context; other threads than the main one get no signals."""
+        is_main = threading.current_thread() is threading.main_thread()
+        stop = cls(signals=(signal.SIGINT,) if is_main else ())
+        try:
+            yield stop
+        finally:
+            for name, handler in stop._before.items():
+                signal.signal(name, handler)
 
     def _request(self, *_):
         self.until = min(self.until, clock.monotonic())
@@ -64,10 +81,10 @@ class StopRequest:
         return comm.allreduce(int(clock.monotonic() >= self.until + GRACE_TIME)) > 0
 
 
-def _handle(handler):
-    """Install a handler of all signals that are not ignored; returns the previous handlers."""
-    before = [signal.getsignal(name) for name in SIGNALS]
-    for name, previous in zip(SIGNALS, before, strict=True):
-        if previous is not signal.SIG_IGN:
-            signal.signal(name, handler)
+def _handle(handler, signals=SIGNALS):
+    """Install a handler of the signals that are not ignored; returns the previous handlers."""
+    before = {name: signal.getsignal(name) for name in signals}
+    before = {name: previous for name, previous in before.items() if previous not in (signal.SIG_IGN, None)}
+    for name in before:
+        signal.signal(name, handler)
     return before

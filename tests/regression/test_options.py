@@ -118,6 +118,18 @@ def test_own_option_faults():
     assert line.startswith("-ehloutput: ") and line.endswith(" -ehl_output?")
 
 
+def test_output_that_is_a_link_stays_one(case, tmp_path):
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "link.h5").symlink_to("disk/target.h5")
+    for _ in range(2):  # the target is created, then replaced
+        done = run(case, "-ehl_output", "link.h5", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "link.h5").is_symlink() and not (tmp_path / "disk" / "target.h5").is_symlink()
+    with read_result(tmp_path / "disk" / "target.h5") as result:
+        assert result.attrs["status"] == "done"
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["case.toml", "disk", "link.h5", "target.h5"]
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [
@@ -157,6 +169,9 @@ def test_exactly_one_case_file_is_required(arguments, message):
             ["-pc_python_type", "collections.Counter"],
             r"-pc_python_type collections\.Counter.* apply\(pc, x, y\)",
         ),
+        (["-snes_monitor", "nosuch:x"], "PETSc .*-snes_monitor nosuch:x: "),
+        (["-ksp_monitor", "ascii:/no/such/f"], "PETSc .*-ksp_monitor ascii:/no/such/f: "),
+        (["-snes_view", "5"], "PETSc .*-snes_view 5: "),
         (["-snes_atol", "nan"], "-snes_atol nan: "),
         (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: "),
         (["-ehl_set", "mesh.inlet"], r"-ehl_set mesh\.inlet: .*-ehl_set mesh\.inlet=VALUE"),

@@ -18,7 +18,6 @@ TAMPERED = str(Path(__file__).with_name("tampered.py"))
 environment.prepare()
 PETSC = Path(importlib.util.find_spec("petsc4py").origin).parents[1]
 TEMPORARY_FOLDER = tempfile.TemporaryDirectory(prefix="ehlpetsc.")
-Path(TEMPORARY_FOLDER.name).chmod(0o1777)  # some tests run as another user
 # set by run_mpi.sh, but for TMPDIR and one other; tests of a minimal environment omit some
 SCRIPT = {
     "PYTHONPATH": f"{ROOT}:{PETSC}",

@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import re
+import signal
 import subprocess
 import sys
 import tomllib
@@ -10,6 +11,7 @@ import tomllib
 import numpy as np
 import pytest
 from support import CASES, ROOT
+from support.running import BARE, SCRIPT
 
 import ehlpetsc
 
@@ -200,6 +202,50 @@ def test_error_during_a_run_leaves_a_readable_file(case, tmp_path):
         raise KeyboardInterrupt
     left = ehlpetsc.read_result(tmp_path / "r.h5")
     assert left.attrs["status"] == "stopped" and len(left.time) == 1
+
+
+def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):
+    """Ctrl-C ends a call as it ends the command: the state is saved, and the same call continues."""
+    advance, before = ehlpetsc.Simulation.advance, signal.getsignal(signal.SIGINT)
+
+    def interrupted(self, **given):
+        if self.solution and self.solution.step == 2:
+            signal.raise_signal(signal.SIGINT)
+        return advance(self, **given)
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt, match="step 3; .*r.restart.h5"):
+        patch.setattr(ehlpetsc.Simulation, "advance", interrupted)
+        ehlpetsc.solve(case, output=tmp_path / "r.h5")
+    assert signal.getsignal(signal.SIGINT) is before
+    begun = ehlpetsc.read_result(tmp_path / "r.h5")
+    assert begun.attrs["status"] == "stopped" and list(begun.step) == [0, 1, 2, 3]
+    begun.close()
+    whole = ehlpetsc.solve(case, output=tmp_path / "r.h5")
+    assert list(whole.step) == list(result.step)
+    np.testing.assert_allclose(whole.pressure, result.pressure, rtol=0.0, atol=1e-9 * result.attrs["p0"])
+
+
+@pytest.mark.slow
+def test_interrupt_in_a_callback_ends_python_in_order(tmp_path):
+    """PETSc's objects in the frames of the traceback must not outlive Python."""
+    script = (
+        "import ehlpetsc\n"
+        f"case = ehlpetsc.load({str(CASES / 'table1_rough.toml')!r}, {QUICK!r})\n"
+        "simulation = ehlpetsc.Simulation(case)\n"
+        "from ehlpetsc.nonlinear import gmres\n"
+        "def interrupted(*_): raise KeyboardInterrupt\n"
+        "gmres.iterations = interrupted\n"
+        "try:\n"
+        "    simulation.advance()\n"
+        "except KeyboardInterrupt as error:\n"
+        "    kept = error\n"
+        "print('interrupted')\n"
+    )
+    environment = BARE | SCRIPT
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")
 
 
 def test_picture_shows_the_requested_frame(result):
