@@ -7,9 +7,17 @@ import numpy as np
 from ehlpetsc.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES, kinks, relief_ratio, share
+from ehlpetsc.units import UnitFault, converted
 
 PATH_INTERVALS = 400  # equal intervals of the path, in addition to its points and kinks
 PAIRS = ("teeth", "tip_diameter")
+UNITS = {  # of the keys that are no lengths
+    "teeth": "",
+    "pressure_angle": "degrees",
+    "torque": "N m",
+    "speed": "1/min",
+    "mesh_stiffness": "Pa",
+}
 OPTIONAL = ("pressure_angle", "tip_relief", "load_sharing", "mesh_stiffness")
 
 
@@ -137,6 +145,11 @@ def pair_of(gears):
                 faults.append(f"gears.{key} = {value!r}: allowed: {', '.join(RULES)}")
         else:
             count = 2 if key in PAIRS else 1
+            try:
+                value = converted(value, UNITS.get(key, "m"))
+            except UnitFault as fault:
+                faults.append(f"gears.{key} = {fault}")
+                continue
             try:
                 values[key] = np.asarray(value, float).reshape(count).tolist()
             except (TypeError, ValueError):

@@ -96,8 +96,9 @@ def test_overridden_text_loads_to_the_same_case(tmp_path):
 
 
 def test_petsc_options_are_stored_as_text():
-    c = case.load(SMOOTH, ["petsc.ksp_rtol=1e-8", "petsc.snes_vi_monitor=true", 'petsc.pc_type="lu"'])
-    assert c.petsc == {"ksp_rtol": "1e-08", "snes_vi_monitor": "true", "pc_type": "lu"}
+    options = {"ksp_rtol": 1e-8, "snes_vi_monitor": True, "ksp_view": False, "pc_type": "lu"}
+    c = case.load(SMOOTH, {"petsc": options})
+    assert c.petsc == {"ksp_rtol": "1e-08", "snes_vi_monitor": "", "pc_type": "lu"}
 
 
 def test_series_members_differ_in_the_series_key_only():

@@ -61,6 +61,22 @@ def at(path, name, values):
     return float(np.interp(path.time_at(name), path.time, values))
 
 
+def test_command_takes_units_as_a_run_does(case, capsys):
+    with_units = {
+        "module": "4.5 mm",
+        "tip_diameter": ["82.5 mm", 0.1184],
+        "torque": "302 Nm",
+        "speed": "2250 rpm",
+    }
+    printed = []
+    for path in (case(), case(**with_units, speed="2250 rpm")):
+        assert main([str(path), "--no-picture"]) == 0
+        printed.append(capsys.readouterr().out)
+    assert printed[0] == printed[1]
+    assert main([str(case(module="4.5 kg")), "--no-picture"]) == 2
+    assert 'gears.module = "4.5 kg": not a unit' in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("point", "radius", "speed", "sliding"),
     [

@@ -18,6 +18,7 @@ GROUND = {
     "command_parser",
     "materials",
     "keys",
+    "units",
 }  # every room may import these; they import no room, at most errors
 MAY_IMPORT = (
     {

@@ -37,5 +37,7 @@ def test_grade_sets_the_thermal_law():
 def test_faults():
     with pytest.raises(CaseError, match=r"fluid\.viscosity .*missing"):
         load(CASE, GRADE | LEFT_OUT)  # no temperature
+    with pytest.raises(CaseError, match=r"fluid\.temperature = 350.*: needs fluid\.grade; .*reference_temp"):
+        load(CASE, {"fluid.temperature": 350.0})  # would move the temperature of a viscosity that is given
     with pytest.raises(CaseError, match="v100"):
         load(CASE, {"fluid.grade": {"v40": 19e-6, "v100": 220e-6, "density": 880.0}})

@@ -61,6 +61,14 @@ def test_omitted_column_is_constant(with_table):
     assert (0.5 * (u1 + u2), u1 - u2) == pytest.approx((5.0, 1.25))
 
 
+def test_units_of_a_heading_are_read(with_table):
+    plain = load(with_table(TABLE)).conditions
+    text = "time [us], load (N/mm), radius [mm], speed 1 [mm/s], speed 2 [m/s]\n"
+    case = load(with_table(text + "0,400,19,5000,4\n100,527,20,5500,3\n300,300,18,4000,4.5\n"))
+    for one, other in zip(case.conditions[:5], plain[:5], strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-15)
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
@@ -75,6 +83,7 @@ def test_omitted_column_is_constant(with_table):
         (TABLE.replace("527e3", "nan"), "line 3: load = nan"),
         (TABLE.replace("speed 1", "velocity"), "line 1: column 'velocity'"),
         (TABLE.replace("radius [m]", "load"), "line 1: .*twice"),
+        (TABLE.replace("radius [m]", "radius [s]"), r"line 1: column 'radius \[s\]': .* one of m$"),
         ("time, load\n0, 1e5\n", "two times"),
         ("time\n0\n1\n", ": load, radius, speed 1, speed 2,"),
         ("load\n1e5\n1e5\n", "no column time;"),
@@ -120,12 +129,25 @@ def test_columns_from_the_case_or_from_python():
         load(CASE, overrides | {"operation.time": [0.0, 0.0]})
 
 
+@pytest.mark.parametrize("time", [1e-4, "0.1 ms"])
+def test_a_number_in_place_of_a_column_is_refused(time):
+    with pytest.raises(CaseError) as error:
+        load(CASE, {"operation": {"time": time, "load": [5e5, 6e5]}})
+    (fault,) = error.value.faults
+    assert "operation.time = 0.0001: allowed: a list of numbers" in fault
+
+
 def test_reversing_entrainment_needs_a_symmetric_domain(with_table):
     text = "time, speed 1, speed 2\n0, 1, 1\n1e-3, -1, -1\n"
     with pytest.raises(CaseError, match=r"mesh\.outlet = 1\.5: .* 4, .* mesh\.inlet$"):
         load(with_table(text))
     case = load(with_table(text), {"mesh.outlet": 4.0})
     assert operation_of(case, Scales.of(case)).is_reversing
+    odd = {"mesh.points_per_half_width": 40, "mesh.inlet": -2.53}  # 202.4 cells
+    with pytest.raises(CaseError, match=r"allowed: 2\.55 with mesh\.inlet = -2\.55: ") as error:
+        load(with_table(text), odd | {"mesh.outlet": 2.53})
+    assert len(error.value.faults) == 1
+    load(with_table(text), odd | {"mesh.inlet": -2.55, "mesh.outlet": 2.55})
 
 
 def make(repeat=1, courant=0.5, **columns):

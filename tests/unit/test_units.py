@@ -1,41 +1,83 @@
-"""Values with a unit, at the case's door only."""
+"""Values with a unit: every unit of the keys with what data sheets write for it."""
 
-import subprocess
-import sys
+import math
+import re
 import tomllib
 
 import pytest
 from support import CASES
 
-from ehlpetsc.case import units
+from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
+from ehlpetsc.units import UnitFault, converted
 
 SMOOTH = CASES / "table1_smooth.toml"
+PLAUSIBLE = {
+    "m": {"12 mm": 0.012, "5um": 5e-6, "5 \u00b5m": 5e-6, "5 \u03bcm": 5e-6, "3 nm": 3e-9, "1.2 cm": 0.012}
+    | {"1 in": 0.0254},
+    "N/m": {
+        "350 N/mm": 350e3,
+        "0.35 kN/mm": 350e3,
+        "350 kN/m": 350e3,
+        "2 lbf/in": 2 * 4.4482216152605 / 0.0254,
+    },
+    "Pa": {
+        "206 GPa": 206e9,
+        "3 N/mm^2": 3e6,
+        "3 N/mm2": 3e6,
+        "10 bar": 1e6,
+        "1 MPa": 1e6,
+        "1 psi": 6894.757293,
+    },
+    "1/Pa": {"18 1/GPa": 18e-9, "15 /GPa": 15e-9, "18 GPa^-1": 18e-9, "18 GPa-1": 18e-9, "1 mm^2/N": 1e-6},
+    "Pa s": {"15 mPa s": 0.015, "15 mPa*s": 0.015, "15 mPas": 0.015, "15 cP": 0.015, "0.15 P": 0.015},
+    "m^2/s": {"46 cSt": 46e-6, "46 mm^2/s": 46e-6, "46 mm\u00b2/s": 46e-6, "0.46 St": 46e-6},
+    "kg/m^3": {"0.88 g/cm^3": 880.0, "0.88 kg/l": 880.0, "880 kg/m3": 880.0},
+    "K": {"90 degC": 363.15, "90 C": 363.15, "90 \u00b0C": 363.15, "194 degF": 363.15, "300 K": 300.0},
+    "1/K": {"0.04/K": 0.04, "0.04 1/K": 0.04, "4 %/K": 0.04, "0.04 /degC": 0.04},
+    "m/s": {"500 mm/s": 0.5, "36 m/min": 0.6},
+    "1/min": {text: 2250.0 for text in ("2250 rpm", "37.5 rps", "37.5 Hz", "2250 1/min", "2250 /min")}
+    | {"37.5 turn/s": 2250.0, "37.5 rev/s": 2250.0, "13500 deg/s": 2250.0, "10 rad/s": 300.0 / math.pi},
+    "degrees": {"20 deg": 20.0, "20\u00b0": 20.0, "0.5 rad": 90.0 / math.pi},
+    "N m": {"302 Nm": 302.0, "302 N m": 302.0, "302e3 N mm": 302.0, "0.302 kNm": 302.0, "302e3 Nmm": 302.0},
+    "m^2/N": {"1e-9 mm^3/Nm": 1e-18, "1e-9 mm^3/(N m)": 1e-18, "1e-12 mm2/N": 1e-18, "1 1/Pa": 1.0},
+    "W/(m K)": {"46 W/(m K)": 46.0, "46 W/m/K": 46.0, "0.046 kW/(m K)": 46.0},
+    "J/(kg K)": {"470 J/(kg K)": 470.0, "0.47 J/(g K)": 470.0, "0.47 kJ/(kg degC)": 470.0},
+    "s": {"0.1 ms": 1e-4, "100 us": 1e-4, "2 min": 120.0},
+    "minutes": {"2 min": 2.0, "30 s": 0.5, "1 h": 60.0},
+    "": {"20 %": 0.2},
+}
+WITHOUT = {"half widths", "boundary films"}  # numbers only
 
 
-@pytest.mark.parametrize(
-    ("text", "unit", "value"),
-    [
-        ("350 N/mm", "N/m", 350e3),
-        ("12 mm", "m", 0.012),
-        ("5um", "m", 5e-6),
-        ("5 µm", "m", 5e-6),
-        ("15 mPa s", "Pa s", 0.015),
-        ("15 mPa*s", "Pa s", 0.015),
-        ("15 cP", "Pa s", 0.015),
-        ("18 1/GPa", "1/Pa", 18e-9),
-        ("18 GPa^-1", "1/Pa", 18e-9),
-        ("206 GPa", "Pa", 206e9),
-        ("90 degC", "K", 363.15),
-        ("1e-12 mm2/N", "m2/N", 1e-18),
-        (["206 GPa", 207e9], "Pa", [206e9, 207e9]),
-        (12.0, "m", 12.0),
-        ("direct", "m", "direct"),
-    ],
-)
-def test_values_are_converted_exactly(text, unit, value):
-    assert units.converted(text, unit) == value
+@pytest.mark.parametrize("unit", PLAUSIBLE)
+def test_every_unit_of_the_keys_is_converted(unit):
+    for text, value in PLAUSIBLE[unit].items():
+        assert converted(text, unit) == pytest.approx(value, rel=1e-9, abs=0.0), text
+    assert converted(12.0, unit) == 12.0 and converted("direct", unit) == "direct"
+
+
+def test_every_unit_of_a_key_is_in_the_table():
+    used = set(re.findall(r"(?:number|numbers|<=? \S+|>=? \S+) \[([^\]]+)\] \(", key_page.keys()))
+    assert used == set(PLAUSIBLE) - {""} | WITHOUT
+
+
+def test_numbers_of_a_unit_have_no_rounding_error():
+    assert (converted("5 um", "m"), converted("90 degC", "K")) == (5e-6, 363.15)
+    assert converted(["206 GPa", 207e9], "Pa") == [206e9, 207e9]
+
+
+@pytest.mark.parametrize("text", ["5 mmm", "3 (m", "3 m)", "3 m/0", "7,5 mm", "3 m^", "1 N-m"])
+def test_text_that_is_no_unit_is_refused(text):
+    with pytest.raises(UnitFault, match="unknown unit; allowed: a number in m,"):
+        converted(text, "m")
+
+
+def test_rotational_speed_of_gears_counts_revolutions():
+    fzg = CASES / "fzg.toml"
+    speeds = [load(fzg, {"gears.speed": text}).conditions.u1[0] for text in ("2250 rpm", "2250 1/min")]
+    assert speeds == [load(fzg, {"gears.speed": 2250}).conditions.u1[0]] * 2
 
 
 def test_case_with_units_equals_the_case_in_si(tmp_path):
@@ -83,7 +125,7 @@ def test_series_accepts_units():
         ("contact.load", "350 N", 'contact.load = "350 N": not a unit'),
         ("contact.radius", "12 mmm", 'contact.radius = "12 mmm": unknown'),
         ("contact.radius", "twelve", 'contact.radius = "twelve": allowed: '),
-        ("motion.slide_roll_ratio", "25 %", 'motion.slide_roll_ratio = "25 %": '),
+        ("motion.slide_roll_ratio", "25 mm", 'motion.slide_roll_ratio = "25 mm": not a unit'),
         ("surface.1.synthetic", {"kind": ["sine"], "amplitude": "1 um"}, '"ground" | "sine"'),
         ("series", {"keys": 5, "values": ["1 mm"]}, "series.keys = 5"),
         ("contact.load", "-1 N/mm", "contact.load = -1000.0: "),
@@ -94,17 +136,3 @@ def test_wrong_unit_is_refused_in_one_line(key, value, words):
         load(SMOOTH, {key: value})
     (line,) = refused.value.faults
     assert words in line
-
-
-def test_unit_without_pint_names_the_package(monkeypatch):
-    units._registry.cache_clear()
-    monkeypatch.setitem(sys.modules, "pint", None)
-    with pytest.raises(CaseError, match=r"contact\.radius = .*pint"):
-        load(SMOOTH, {"contact.radius": "12 mm"})
-    units._registry.cache_clear()
-
-
-def test_case_without_units_does_not_import_pint():
-    code = f"import sys, ehlpetsc; ehlpetsc.load({str(SMOOTH)!r}); assert 'pint' not in sys.modules"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

@@ -4,6 +4,8 @@ A case with either has a reference state, from which its scales come: the load a
 contact and the fastest entrainment. It is filled in under the keys of constant cases.
 """
 
+import math
+
 import numpy as np
 
 from ehlpetsc.case.derived.conditions_file import TableFault, read_table
@@ -117,6 +119,8 @@ def _checked(columns, lines, tables, repeat):
     try:
         values = {key: np.array(column, float) for key, column in columns.items()}
     except (TypeError, ValueError):
+        return None
+    if any(column.ndim == 0 for column in values.values()):  # a number: reported by the schema
         return None
     count = len(values["time"])
     if count < 2 or any(v.ndim != 1 or len(v) != count for v in values.values()):
@@ -232,7 +236,10 @@ def reversal_faults(case, table):
     last = mesh.inlet + (mesh.nodes - 1) / mesh.points_per_half_width
     if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:
         return []
-    return [
-        f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative; allowed: "
-        f"{-mesh.inlet:g}, as far out as mesh.inlet"
-    ]
+    fault = f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative"
+    points = mesh.points_per_half_width
+    cells = -2.0 * mesh.inlet * points
+    if abs(cells - round(cells)) < 1e-6:
+        return [f"{fault}; allowed: {-mesh.inlet:g}, as far out as mesh.inlet"]
+    end = math.ceil(-mesh.inlet * points) / points
+    return [f"{fault}; allowed: {end:.12g} with mesh.inlet = {-end:.12g}: a whole number of cells"]

@@ -3,7 +3,10 @@
 import re
 
 from ehlpetsc.case.tables.operation import COLUMNS
+from ehlpetsc.units import UnitFault, factor
 
+SI = {"time": "s", "load": "N/m", "radius": "m", "speed_1": "m/s", "speed_2": "m/s"}
+UNIT = re.compile(r"(?P<name>[^\[(]*)(?:[\[(](?P<unit>[^\])]*)[\])].*)?.*", re.DOTALL)
 MAX_TABLE_BYTES = 2**26
 
 
@@ -30,9 +33,10 @@ def read_table(path):
     if not rows:
         raise TableFault("no lines; allowed: a line of column names and one line a time")
     separator = next((sign for sign in ";,\t" if sign in rows[0][1]), None)
-    head, keys = rows[0], None
+    head, keys, factors = rows[0], None, {}
     if not _numbers(head[1], separator):
-        keys, rows = _keys_of(*head, separator), rows[1:]
+        factors, rows = _factors(*head, separator), rows[1:]
+        keys = list(factors)
     columns, lines = [], []
     for number, line in rows:
         values = _numbers(line, separator)
@@ -45,7 +49,7 @@ def read_table(path):
             raise TableFault(f"line {number}: {shown(line)}: allowed: {len(keys)} numbers")
         columns.append(values)
         lines.append(number)
-    return {key: [row[k] for row in columns] for k, key in enumerate(keys)}, lines
+    return {key: [row[k] * factors.get(key, 1.0) for row in columns] for k, key in enumerate(keys)}, lines
 
 
 def shown(line):
@@ -77,16 +81,20 @@ def _numbers(line, separator):
         return []
 
 
-def _keys_of(number, line, separator):
-    """Keys of the columns named in a line, without units in brackets."""
+def _factors(number, line, separator):
+    """Factor to SI units of each column named in a line, by key; units are in brackets: ``time [us]``."""
     key_by_name = {name: key for key, names in COLUMNS.items() for name in names}
-    keys = []
-    for word in re.sub(r"\[[^\]]*\]|\([^)]*\)", "", line).split(separator):
-        name = " ".join(word.strip(" \"'").lower().replace("_", " ").split())
-        if name not in key_by_name:
+    factors = {}
+    for word in line.split(separator):
+        name, unit = UNIT.fullmatch(word.strip(" \"'")).group("name", "unit")
+        key = key_by_name.get(" ".join(name.lower().replace("_", " ").split()))
+        if key is None:
             allowed = ", ".join(names[0] for names in COLUMNS.values())
-            raise TableFault(f"line {number}: column {shown(name)!r}: allowed: {allowed}")
-        keys.append(key_by_name[name])
-    if len(set(keys)) < len(keys):
-        raise TableFault(f"line {number}: a column twice")
-    return keys
+            raise TableFault(f"line {number}: column {shown(name.strip())!r}: allowed: {allowed}")
+        if key in factors:
+            raise TableFault(f"line {number}: a column twice")
+        try:
+            factors[key] = factor(unit or SI[key], SI[key])
+        except UnitFault as fault:
+            raise TableFault(f"line {number}: column {shown(word.strip())!r}: {fault}") from None
+    return factors

@@ -44,7 +44,10 @@ class Case(Table):
     output: Output = Field(Output(), description="what the result file holds")
     post: Post = Field(Post(), description="read by ehlpetsc.post alone")
     life: Life | None = Field(None, description="read by ehlpetsc.life alone")
-    petsc: dict = Field({}, description="PETSc options without the dash, each text, a number, true or false")
+    petsc: dict = Field(
+        {},
+        description="PETSc options without the dash, each text, a number, true (no value) or false (not set)",
+    )
     series: Series | None = Field(None, description="one key swept over values")
     _text: str | partial = PrivateAttr("")
     _path: Path = PrivateAttr(Path())
@@ -87,7 +90,9 @@ class Case(Table):
             text = isinstance(value, str) and is_plain(value)
             if not name or name.startswith("-") or not is_plain(name) or not (number or text):
                 raise ValueError(name)
-        return {name: show(v) if not isinstance(v, str) else v for name, v in options.items()}
+        given = {name: value for name, value in options.items() if value is not False}
+        bare = {name: "" if value is True else value for name, value in given.items()}
+        return {name: value if isinstance(value, str) else show(value) for name, value in bare.items()}
 
     @property
     def text(self):

@@ -3,7 +3,7 @@
 import math
 from typing import Literal
 
-from ehlpetsc.case.schema.table import Table
+from ehlpetsc.case.schema.table import Needs, Table
 from ehlpetsc.case.schema.validation import Field, root_validator, validator
 
 # the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
@@ -19,7 +19,13 @@ class Grade(Table):
 
     v40: float = Field(..., gt=2e-6, le=0.1, unit="m^2/s", description="kinematic viscosity at 40 C")
     v100: float = Field(..., gt=2e-6, le=0.1, unit="m^2/s", description="at 100 C, below v40")
-    density: float = Field(..., ge=500, le=3000, unit="kg/m^3", description="at ambient pressure")
+    density: float = Field(
+        ...,
+        ge=500,
+        le=3000,
+        unit="kg/m^3",
+        description="at ambient pressure, at the temperature of the contact",
+    )
 
     @validator("v100")
     def _thinner_when_hot(cls, value, values):
@@ -73,6 +79,12 @@ class Fluid(Table):
     inlet_film: float | None = Field(
         None, ge=1e-10, le=1e-2, unit="m", description="oil film at the inlet; left out: fully flooded"
     )
+
+    @validator("temperature")
+    def _of_a_grade(cls, value, values):
+        if value is not None and values.get("grade") is None:
+            raise Needs("fluid.grade; the temperature at which viscosity holds is heat.reference_temperature")
+        return value
 
     @validator("kappa", "chi", always=True)
     def _law_is_complete(cls, value, values):

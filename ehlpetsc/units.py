@@ -1,0 +1,148 @@
+"""Values with a unit, as in ``load = "350 N/mm"``, and units in headings of tables: conversion to SI."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from math import pi
+
+PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "n": 1e-9}
+BASE = ("m", "kg", "s", "K", "rad")
+PREFIXED = {  # units that take a prefix, by others
+    "m": "m",
+    "g": "0.001 kg",
+    "s": "s",
+    "K": "K",
+    "rad": "rad",
+    "N": "kg m/s^2",
+    "Pa": "N/m^2",
+    "J": "N m",
+    "W": "J/s",
+    "Hz": "1/s",
+    "bar": "1e5 Pa",
+    "P": "0.1 Pa s",
+    "St": "1e-4 m^2/s",
+    "Nm": "N m",
+    "Nmm": "0.001 N m",
+    "Pas": "Pa s",
+}
+OTHERS = {
+    "min": "60 s",
+    "minutes": "60 s",
+    "h": "3600 s",
+    "l": "0.001 m^3",
+    "deg": f"{pi / 180!r} rad",
+    "degrees": "deg",
+    "°": "deg",
+    "rev": f"{2 * pi!r} rad",
+    "turn": "rev",
+    "rpm": "rev/min",
+    "rps": "rev/s",
+    "in": "0.0254 m",
+    "ft": "0.3048 m",
+    "lbf": "4.4482216152605 N",
+    "psi": "lbf/in^2",
+    "degC": "K",
+    "°C": "K",
+    "C": "K",
+    "degF": f"{5 / 9!r} K",
+    "%": "0.01",
+}
+ZEROS = {"degC": 273.15, "°C": 273.15, "C": 273.15, "degF": 459.67 * 5 / 9}  # K
+SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*"} | {"²": "^2", "³": "^3"})
+VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
+TOKEN = re.compile(
+    r"\s*(?:(?P<number>\d+\.?\d*(?:e[-+]?\d+)?)|(?P<name>[A-Za-z%°]+)(?:(?:\^|\*\*)?(?P<power>[-+]?\d))?"
+    r"|(?P<sign>[*/()]))"
+)
+ANY = "a number, or %"  # where there is no unit
+MAX_DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
+
+
+class UnitFault(ValueError):
+    """A value with a unit cannot be converted; the message states the reason."""
+
+
+def converted(value: object, unit: str, depth: int = 2) -> object:
+    """Number in `unit` of a text with a unit, also in lists; other values do not change."""
+    if isinstance(value, list) and depth:
+        return [converted(item, unit, depth - 1) for item in value]
+    match = VALUE.fullmatch(value) if isinstance(value, str) else None
+    if not match:
+        return value
+    number, text = float(match[1]), match[2].strip()
+    try:
+        zero = ZEROS.get(text, 0.0) if unit == "K" else 0.0
+        return float(f"{number * factor(text, unit) + zero:.{MAX_DIGITS}g}")
+    except UnitFault as fault:
+        raise UnitFault(f'"{value}": {fault}') from None
+
+
+def factor(text: str, unit: str) -> float:
+    """Number of `unit` in one unit of `text`: 1000 of "kN" in "N".
+
+    A rate [1/min] counts revolutions: an angle over time is divided by that of a revolution.
+    """
+    try:
+        size, dimensions = _unit(text)
+    except (KeyError, IndexError, OverflowError, ZeroDivisionError):
+        raise UnitFault(
+            f"unknown unit; allowed: {f'a number in {unit}, or with a unit' if unit else ANY}"
+        ) from None
+    wanted_size, wanted = _unit(unit)
+    if unit == "1/min" and dimensions == (*wanted[:-1], 1):
+        size, dimensions = size / (2 * pi), wanted
+    if dimensions != wanted:
+        raise UnitFault(f"not a unit of this key; allowed: {f'one of {unit}' if unit else ANY}")
+    return size / wanted_size
+
+
+@cache
+def _unit(text: str) -> tuple[float, tuple[int, ...]]:
+    """SI size and exponents of `BASE` of a product of units, read from left to right."""
+    tokens, end, text = [], 0, text.translate(SIGNS).strip()
+    if text.count("(") != text.count(")"):
+        raise KeyError(text)
+    while end < len(text):
+        match = TOKEN.match(text, end)
+        if not match:
+            raise KeyError(text)
+        tokens.append(match)
+        end = match.end()
+    unit = _product(tokens)
+    if tokens:  # a bracket that was not opened
+        raise KeyError(text)
+    return unit
+
+
+def _product(tokens: list[re.Match[str]]) -> tuple[float, tuple[int, ...]]:
+    """Unit of the tokens up to a closing bracket, which are removed."""
+    size, exponents, power = 1.0, [0] * len(BASE), 1
+    while tokens:
+        token = tokens.pop(0)
+        if token["sign"] == ")":
+            break
+        if token["sign"] in ("*", "/"):
+            power = 1 if token["sign"] == "*" else -1
+            continue
+        if token["sign"]:
+            one, dimensions = _product(tokens)
+        elif token["number"]:
+            one, dimensions = float(token["number"]), (0,) * len(BASE)
+        else:
+            one, dimensions = _named(token["name"])
+            power *= int(token["power"] or 1)
+        size *= one**power
+        exponents = [e + power * d for e, d in zip(exponents, dimensions, strict=True)]
+        power = 1
+    return size, tuple(exponents)
+
+
+def _named(name: str) -> tuple[float, tuple[int, ...]]:
+    """Unit of a symbol, also with a prefix."""
+    if name in BASE:
+        return 1.0, tuple(int(name == base) for base in BASE)
+    if name in OTHERS or name in PREFIXED:
+        return _unit((OTHERS | PREFIXED)[name])
+    size, dimensions = _unit(PREFIXED[name[1:]]) if name[1:] in PREFIXED else _unit(f"[{name}")
+    return PREFIXES[name[0]] * size, dimensions
