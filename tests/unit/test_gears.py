@@ -69,7 +69,7 @@ def test_command_takes_units_as_a_run_does(case, capsys):
         "speed": "2250 rpm",
     }
     printed = []
-    for path in (case(), case(**with_units, speed="2250 rpm")):
+    for path in (case(), case(**with_units)):
         assert main([str(path), "--no-picture"]) == 0
         printed.append(capsys.readouterr().out)
     assert printed[0] == printed[1]
