@@ -20,7 +20,7 @@ SUBCOMMANDS = {  # name: module, function, packages needed, description
     "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.compare", "main", NUMERICS, "two results field by field"),
     "gears": (
-        "ehlpetsc.gears.__main__",
+        "ehlpetsc.analysis.gears",
         "main",
         PLOTTING,
         "path of contact of spur gears, and runs along it",

@@ -10,7 +10,7 @@ from support import CASES
 from support.made_results import make_result, with_solids
 from test_case_fuzz import corrupted
 
-from ehlpetsc.gears.__main__ import main
+from ehlpetsc.analysis.gears import main
 
 LIMIT = 120  # s
 FOREIGN = {"foreign.csv": b"0,1\n", "foreign.png": b"mine", "foreign.toml": b"title = 'a'"}

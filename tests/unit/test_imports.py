@@ -26,9 +26,9 @@ MAY_IMPORT = (
         "surfaces": set(),
         "effects": {"surfaces", "physics"},
         "quantities": {"effects"},
-        "gears": {"physics", "results"},
+        "gears": {"physics"},
         "case": {"gears", "surfaces", "physics", "quantities"},
-        "results": {"quantities", "physics"},
+        "results": {"quantities", "case", "surfaces", "physics"},
         "discretisation": {"physics"},
         "nonlinear": {"discretisation", "physics"},
         "stepping": {"nonlinear", "discretisation", "physics", "effects"},
@@ -43,7 +43,7 @@ MAY_IMPORT = (
             "results",
             "quantities",
         },
-        "analysis": {"results", "quantities"},
+        "analysis": {"gears", "results", "quantities", "physics"},
         "plot": {"analysis", "results", "physics", "quantities", "case", "surfaces"},
         "post": {"case", "results", "physics", "quantities"},
         "compare": {"analysis"},
@@ -60,7 +60,7 @@ SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run", "nonlinear", "life"},
-    "matplotlib": {"plot", "post", "api", "gears", "life"},
+    "matplotlib": {"plot", "post", "api", "analysis", "gears", "life"},
     "numba": {"compiled"},
 }
 

@@ -7,10 +7,10 @@ from support import CASES
 from support.convergence import observed_order
 
 import ehlpetsc
+from ehlpetsc.analysis.gear_run import GearRun
+from ehlpetsc.analysis.gears import main as gears
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears import path_of_contact
-from ehlpetsc.gears.__main__ import main as gears
-from ehlpetsc.gears.along_path import GearRun
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation

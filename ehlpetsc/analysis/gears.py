@@ -66,8 +66,8 @@ def run(chosen):
 
 def _run_of(chosen):
     """Print and draw a result along its path of contact."""
-    from ehlpetsc.gears.along_path import GearRun
-    from ehlpetsc.gears.flanks import FlankDamage
+    from ehlpetsc.analysis.flank_damage import FlankDamage
+    from ehlpetsc.analysis.gear_run import GearRun
 
     if chosen.csv is not None:
         raise OutputError(f"{chosen.case}: a result; allowed for --csv: a case with a [gears] table")
