@@ -101,7 +101,7 @@ STEP_SCALARS = {
     "friction": StepScalar("N/m", "friction force on surface 2", compared=True),
     "friction_1": StepScalar("N/m", "friction force on surface 1, in +x", compared=True),
     "friction_coefficient": StepScalar(
-        "1", "mean friction force of both walls over load", over_run="last", summary=".4g"
+        "1", "magnitude of the mean friction force of both walls over load", over_run="last", summary=".4g"
     ),
     "film_central": StepScalar(
         "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"

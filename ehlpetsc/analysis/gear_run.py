@@ -1,7 +1,5 @@
 """Gear run along the path of contact: pressure, film, friction and losses, as text and as a picture."""
 
-import tomllib
-
 import numpy as np
 
 from ehlpetsc.errors import CaseError
@@ -50,13 +48,13 @@ class GearRun:
 
     def __init__(self, file):
         with read_result(file) as result:
-            tables = tomllib.loads(str(result.attrs["case"]))
-            if "gears" not in tables:
+            gears = result.case.gears
+            if gears is None:
                 raise CaseError([f"{file}: its case has no [gears] table; allowed: a gear run"])
-            self.path, self.title = path_of_contact(tables["gears"]), str(result.attrs["title"])
+            self.path, self.title = path_of_contact(gears.pair), str(result.attrs["title"])
             rolling = result.steps("speed_1")[:]
             self.scalars = {name: result.steps(name)[:] for name, _, _ in PANELS if name in result.scalars}
-            self.friction = np.abs(result.steps("friction_coefficient")[:])
+            self.friction = result.steps("friction_coefficient")
         self.rho = rolling / self.path.pair.angular_speeds[0]
         self.position = self.rho - self.path.pair.points["C"]
 

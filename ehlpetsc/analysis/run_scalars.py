@@ -3,7 +3,7 @@
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.filling import filled_weights
+from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.results.post_result import damage_beside
 
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
@@ -32,7 +32,7 @@ def run_scalars(result):
     """
     if not len(result.steps("time")):
         raise OutputError(f"{result.path}: no time step in it")
-    weights = filled_weights(result)
+    weights = filled_weights(result, or_whole_run=True)
     selected = weights > 0.0
     scalars = {}
     for name in result.scalars:
@@ -40,7 +40,7 @@ def run_scalars(result):
         if name in EXCLUDED_SCALARS or not np.isfinite(values).all():
             continue
         reduce = EXTREMES.get(name)
-        scalars[name] = float(reduce(values) if reduce else np.average(values, weights=weights[selected]))
+        scalars[name] = float(reduce(values)) if reduce else mean(result, name, weights)
     post = damage_beside(result)
     return scalars | _damage(post) | _flash_temperatures(post)
 

@@ -17,26 +17,13 @@ import numpy as np
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
-from ehlpetsc.results.filling import filled_weights
+from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import check_derived
 from ehlpetsc.results.series_index import distinguishing_names, in_order, open_all, series_values
 
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)
 COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
-
-
-def weighted_percentiles(values, weights, percentiles):
-    """Weighted percentiles of values.
-
-    Parameters
-    ----------
-    values, weights : ndarray, shape (n,)
-    percentiles : sequence of float
-    """
-    order = np.argsort(values)
-    reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
-    return np.interp(percentiles, reached, values[order])
 
 
 def statistics(result):
@@ -52,7 +39,7 @@ def statistics(result):
         Values of `COLUMNS` from "scalar" on.
     """
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
-    weights = filled_weights(result)
+    weights = filled_weights(result, or_whole_run=True)
     rows = []
     for name in [name for name in STEP_SCALARS if name in result.scalars and name not in EXCLUDED_SCALARS]:
         values = result.steps(name).astype(float)
@@ -60,7 +47,7 @@ def statistics(result):
         if usable.any():
             v, w = values[usable], weights[usable]
             percentiles = weighted_percentiles(v, w, PERCENTILES)
-            reduced = (np.average(v, weights=w), *percentiles, v.min(), v.max(), v[-1])
+            reduced = (mean(result, name, weights), *percentiles, v.min(), v.max(), v[-1])
             unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
             begin = (time - dt)[usable][0]
             rows.append((name, unit, *(f"{x:.6g}" for x in reduced), f"{begin:.6g}", int(usable.sum())))

@@ -11,8 +11,8 @@ from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, Task, solve
+from ehlpetsc.results.means import means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import means
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run

@@ -1,7 +1,5 @@
 """Colours, labels and legends of one or several results."""
 
-import tomllib
-
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -85,21 +83,17 @@ def title(results):
 
 
 def _conditions(result):
-    case, attrs = tomllib.loads(str(result.attrs["case"])), result.attrs
-    motion, fluid = case.get("motion", {}), case.get("fluid", {})
+    case, attrs = result.case, result.attrs
     texts = []
-    if "operation" in case or "gears" in case:
+    if case.operation or case.gears:
         texts.append("conditions over time")
-    elif "entrainment_speed" in motion:
+    elif case.motion:
         texts += [
-            f"u = {motion['entrainment_speed']:g} m/s",
-            f"slide/roll ratio {motion.get('slide_roll_ratio', 0.0):g}",
+            f"u = {case.motion.entrainment_speed:g} m/s",
+            f"slide/roll ratio {case.motion.slide_roll_ratio:g}",
         ]
     texts += [f"a = {1e3 * attrs['a']:.3g} mm", f"p0 = {1e-9 * attrs['p0']:.3g} GPa"]
-    if "viscosity" in fluid:
-        texts.append(f"oil {1e3 * fluid['viscosity']:g} mPa s")
-    elif not fluid:
-        texts.append("dry")
+    texts.append(f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry")
     return texts
 
 

@@ -1,11 +1,8 @@
 """Contact nodes of a result file, as stored or from the films."""
 
-import tomllib
-
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.scales import reduced_modulus
 
@@ -23,18 +20,18 @@ def film_at_contact(result):
     ----------
     result : ehlpetsc.results.reader.Result
     """
-    contact = tomllib.loads(result.attrs["case"]).get("contact", {})
-    if "asperity_height" in contact:
+    contact = result.case.contact
+    if contact.asperity_height is not None:
         return layer_film(contact)
     touching = result.steps("contacts") > 0
     return float(result.steps("h_min")[touching].min()) if touching.any() else -np.inf
 
 
 def layer_film(contact):
-    """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; `contact`: table of a stored case."""
-    modulus = 0.5 * reduced_modulus(*elastic_constants(contact))
-    prefactor = contact.get("asperity_stiffness", 1.0) * modulus
-    return asperity_separation(CONTACT_PRESSURE, GAMMA * contact["asperity_height"], prefactor)
+    """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; `contact`: table of a case."""
+    modulus = 0.5 * reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
+    prefactor = (contact.asperity_stiffness or 1.0) * modulus
+    return asperity_separation(CONTACT_PRESSURE, GAMMA * contact.asperity_height, prefactor)
 
 
 def in_contact(result, frames, nodes=slice(None)):

@@ -1,11 +1,13 @@
 """Reading of result files, complete or left by a killed run: fields and scalars by name."""
 
+from functools import cached_property
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.case.loading import Case, stored_case
+from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.names import current_name, stored_name
 from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.lazy_dataset import LazyDataset, reading
@@ -173,6 +175,14 @@ class Result:
             },
             dict(self.attrs),
         )
+
+    @cached_property
+    def case(self) -> Case:
+        """Case as run, without its profile files."""
+        try:
+            return stored_case(self.attrs["case"])
+        except CaseError as error:
+            raise OutputError(f"{self.path}: {error.faults[0]}") from None
 
     def check(self):
         """Read all data once; OutputError if any is damaged."""

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ehlpetsc.quantities import OTHERS, STEP_SCALARS
+from ehlpetsc.results.means import filled_weights, mean
 
 DEPTHS = [name.removeprefix("surface/") for name in OTHERS if name.startswith("surface/")][2:]
 SHIFTED_IN_A_ROW = 10  # consecutive run-in passes required with shifted surfaces
@@ -10,14 +11,12 @@ RUN_IN = 0.01  # of the volume added by the first pass: surfaces are run in if a
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
 
-def pass_summary(result, begin):
+def pass_summary(result):
     """Roughness and depths at the end of a pass, and means over the time that both surfaces fill the contact.
 
     Parameters
     ----------
     result : results.reader.Result
-    begin : float
-        Time from which both surfaces fill the contact [s].
 
     Returns
     -------
@@ -25,9 +24,9 @@ def pass_summary(result, begin):
         SI units; a surface that is not stored is None.
     """
     steps = result.steps
-    dt = np.where(steps("time") >= begin, steps("dt"), 0.0)
-    names = [name for name in MEANS if name in result.scalars]
-    summary = {name: float((steps(name) * dt).sum() / dt.sum()) if dt.any() else None for name in names}
+    weights = filled_weights(result)
+    values = {name: mean(result, name, weights) for name in MEANS if name in result.scalars}
+    summary = {name: value if np.isfinite(value) else None for name, value in values.items()}
     summary |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
     summary["halved"] = int(np.count_nonzero(steps("retries")))
     summary |= {name: float(steps(name)[-1]) for name in result.scalars if STEP_SCALARS[name].units == "m^2"}

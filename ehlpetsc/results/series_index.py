@@ -3,6 +3,7 @@
 import contextlib
 import json
 import tomllib
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -12,16 +13,6 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import read_result
 
 MAX_NAME_LENGTH = 80  # characters
-DEFAULTS = {  # of keys that are missing in a case
-    "contact.model": "direct",
-    "contact.boundary_friction": 0.0,
-    "contact.minimum_film": 0.0,
-    "motion.slide_roll_ratio": 0.0,
-    "time.courant": 0.5,
-    "time.passes": 1,
-    "time.pass_shift": 0.0,
-    "output.every": 1,
-}
 OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that match the same shell pattern
 WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which the film increases
 
@@ -165,20 +156,23 @@ def distinguishing_names(results):
         For example ``viscosity = 0.002, entrainment_speed = 5``.
     """
     differing = differences(results)
+    if not differing:
+        return None
     last = [key.rpartition(".")[2] for key in differing]
     labels = [key if last.count(name) > 1 else name for key, name in zip(differing, last, strict=True)]
     names = [
-        ", ".join(_setting(*entry) for entry in zip(differing, labels, values, strict=True))
-        for values in zip(*differing.values(), strict=True)
+        ", ".join(_setting(result.case, *entry) for entry in zip(differing, labels, values, strict=True))
+        for result, *values in zip(results, *differing.values(), strict=True)
     ]
     if len(set(names)) < len(results) or max(map(len, names)) > MAX_NAME_LENGTH:
         return None
     return names
 
 
-def _setting(key, label, value):
-    value = DEFAULTS.get(key) if value is None else value
-    if value is None:  # a key without a default that is missing in this case
+def _setting(case, key, label, value):
+    if value is None:  # left out: its default
+        value = reduce(lambda table, name: getattr(table, name, None), key.split("."), case)
+    if value is None:
         return f"no {label}"
     return f"{label} = {value:g}" if isinstance(value, int | float) else f"{label} = {value}"
 

@@ -1,9 +1,7 @@
 """Totals of the scalars of all steps of a run, and of several runs."""
 
-import numpy as np
-
 from ehlpetsc.quantities import MEANS, REDUCTIONS, STEP_SCALARS
-from ehlpetsc.results.filling import both_fill
+from ehlpetsc.results.means import means
 
 SERIES_REDUCTIONS = ("sum", "min", "max")  # reductions that are meaningful over several runs
 REDUCED = {name: scalar for name, scalar in STEP_SCALARS.items() if scalar.over_run}
@@ -74,36 +72,3 @@ class Totals:
         ]
         entries += [(name, value, ".4g") for name, value in self.means.items()]
         return " ".join(f"{label}={value:{form}}" for label, value, form in entries)
-
-
-def _sliding_reverses(result):
-    """Whether the sliding speed changes its sign; the mean of friction is then that of its magnitude."""
-    if "speed_1" not in result.scalars:
-        return False
-    sliding = result.steps("speed_1") - result.steps("speed_2")
-    return bool((sliding > 0.0).any() and (sliding < 0.0).any())
-
-
-def means(result):
-    """Means over the time in which both surfaces fill the contact, by name; for a steady run its values.
-
-    Parameters
-    ----------
-    result : ehlpetsc.results.reader.Result
-
-    Returns
-    -------
-    dict of str to float
-        Empty if the run ends before.
-    """
-    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
-    weights = np.ones(1) if len(time) == 1 else np.where(both_fill(result, time), dt, 0.0)
-    by_name = {}
-    for name in MEANS if weights.any() else ():
-        values = result.steps(name).astype(float) if name in result.scalars else np.full(len(time), np.nan)
-        if name == "friction_coefficient" and _sliding_reverses(result):
-            values = np.abs(values)
-        finite = np.isfinite(values)
-        if weights[finite].any():
-            by_name[name] = float(np.average(values[finite], weights=weights[finite]))
-    return by_name

@@ -6,8 +6,9 @@ import time as clock
 from dataclasses import dataclass
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.results.means import means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import Totals, means
+from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.outputs.slow_steps import SlowSteps

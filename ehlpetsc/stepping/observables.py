@@ -54,7 +54,7 @@ def diagnostics(scene, problem, effects, state, started):
         "approach": state.h00 * s.h,
         "friction": friction_2,
         "friction_1": friction_1,
-        "friction_coefficient": 0.5 * (friction_2 - friction_1) / load,
+        "friction_coefficient": 0.5 * abs(friction_2 - friction_1) / load,
         "film_central": film,
         "lambda_ratio": smooth_film / rq if rq else np.nan,
         "mean_gap_ratio": film / rq if rq else np.nan,

@@ -5,6 +5,7 @@ import numpy as np
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
 FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
+SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 
 
 def sampled(spec):
@@ -24,7 +25,7 @@ def sampled(spec):
     """
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
-    if spec.kind in ("ridge", "dent"):
+    if spec.kind in SINGLE_FEATURES:
         return *bump(spec), False
     x = np.linspace(0.0, spec.wavelength / 2, POINTS_PER_WAVE // 2 + 1)
     wave = np.cos(2 * np.pi * x / spec.wavelength)
@@ -36,11 +37,15 @@ def sampled(spec):
 
 def bump(spec):
     r"""Ridge or dent, :math:`z=\pm A\exp[-(2(X-X_c)/w)^2]`, w the full width at 1/e."""
-    width = spec.wavelength
-    centre = 2 * width if spec.position is None else spec.position
+    width, centre = spec.wavelength, bump_centre(spec)
     x = centre + np.linspace(-3 * width, 3 * width, 6 * POINTS_PER_WAVE + 1)
     sign = 1.0 if spec.kind == "ridge" else -1.0
     return x, sign * spec.amplitude * np.exp(-((2 * (x - centre) / width) ** 2))
+
+
+def bump_centre(spec):
+    """Abscissa of the middle of a ridge or dent [m]."""
+    return 2 * spec.wavelength if spec.position is None else spec.position
 
 
 def ground(ra, correlation, skewness, seed):

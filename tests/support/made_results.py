@@ -2,12 +2,14 @@
 
 import shutil
 import tempfile
+import tomllib
 from functools import cache
 from pathlib import Path
 
 import h5py
 import numpy as np
 
+from ehlpetsc.case.loading import load
 from ehlpetsc.quantities import FIELDS, of_every_case
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
@@ -15,13 +17,27 @@ from ehlpetsc.results.writer import ResultWriter
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
 TABLE_1 = """title = "made up"
 [contact]
+radius = 0.0191
+load = 527e3
+youngs_modulus = [207e9, 207e9]
+poisson_ratio = [0.3, 0.3]
 boundary_friction = 0.12
 [fluid]
 viscosity = {viscosity}
+law = "roelands"
+pressure_viscosity = 11.1e-9
+density = "dowson-higginson"
 [motion]
 entrainment_speed = {speed}
+[mesh]
+inlet = -2.5
+outlet = 1.5
+points_per_half_width = 40
+[time]
+travel = 4.0
 """
 BOUNDARY_FILM = 10e-9
+
 FOLDER = tempfile.TemporaryDirectory()
 DIRECT = (*of_every_case(FIELDS), "void_fraction")  # what a direct contact stores
 
@@ -107,6 +123,27 @@ def made(
         )
         writer.append(step, time, values, scalars, contact)
     writer.close(status)
+    return path
+
+
+def changed_case(text, changes):
+    """Text of a case with other values by dotted key; None removes a key or table."""
+    tables = tomllib.loads(text)
+    for key in [key for key, value in changes.items() if value is None]:
+        tables.pop(key, None)
+    return load(tables, {key: value for key, value in changes.items() if value is not None}).text
+
+
+def change_case(path, changes):
+    """Change the case in a result file.
+
+    Returns
+    -------
+    path
+    """
+    with h5py.File(path, "r+", libver="latest") as file:
+        text = file.attrs["case"]
+        file.attrs["case"] = changed_case(text.decode() if isinstance(text, bytes) else text, changes)
     return path
 
 

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from support.made_results import A
+from support.made_results import TABLE_1, A
 
 from ehlpetsc.analysis import collisions, entrapment, film_breakdown
 from ehlpetsc.errors import OutputError
@@ -19,7 +19,6 @@ from ehlpetsc.results.writer import ResultWriter
 
 X = np.linspace(-1.5, 1.5, 301)
 SPEED = 5.0
-CASE = "[fluid]\nviscosity = {}\n"
 FIELDS = ("pressure", "film_thickness", "in_contact")
 
 
@@ -30,7 +29,6 @@ def make(
     *,
     step=0.5e-6,
     steps=80,
-    case=CASE,
     bumps=(),
     bound=0.0,
     fields=FIELDS,
@@ -39,7 +37,7 @@ def make(
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
     attributes = {
         "title": "dips",
-        "case": case.format(viscosity),
+        "case": TABLE_1.format(viscosity=viscosity, speed=SPEED),
         "a": A,
         "p0": 1e9,
         "u1": SPEED,

@@ -2,23 +2,22 @@
 
 import csv
 import json
-from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from support.made_results import make_result, with_solids
+from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.run_scalars import run_scalars
 from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.plot.series.ensemble import draw_ensemble
-from ehlpetsc.results.filling import both_fill
+from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import distinguishing_names
 
-SEEDED = "\n[surface.2]\nsynthetic = {{ kind = 'ground', ra = 1e-7, correlation = 1e-5, seed = {} }}\n"
+GROUND = {"kind": "ground", "ra": 1e-7, "correlation": 1e-5}
 SHARES = (0.20, 0.26, 0.31, 0.22, 0.29, 0.24)
 
 
@@ -29,10 +28,7 @@ def made(folder, speeds=(5.0,), seeds=range(1, 7)):
         for seed, share in zip(seeds, SHARES, strict=False):
             path = make_result(folder / f"u{speed:g}_s{seed}.h5", speed=speed, rough=True)
             with_solids(path, share / speed)
-            with h5py.File(path, "r+", libver="latest") as file:
-                text = file.attrs["case"]
-                text = text.decode() if isinstance(text, bytes) else text
-                file.attrs["case"] = text + SEEDED.format(seed)
+            change_case(path, {"surface.2.synthetic": GROUND | {"seed": seed}})
             paths.append(str(path))
     return paths
 
@@ -130,9 +126,10 @@ def test_labels_of_results_name_the_keys_that_differ(tmp_path):
     results = opened(made(tmp_path, (5.0, 1.0), [1, 2]))
     assert distinguishing_names(results)[2] == "entrainment_speed = 1, seed = 1"
     assert distinguishing_names(results[:1] * 2) is None
-    texts = ("", '[contact]\nmodel = "mixed"')
-    cases = [SimpleNamespace(attrs={"case": text}) for text in texts]
-    assert distinguishing_names(cases) == ["model = direct", "model = mixed"]
+    for path, model in (("direct.h5", {}), ("mixed.h5", {"contact.model": "mixed"})):
+        change_case(make_result(tmp_path / path), model)
+    both = opened(tmp_path / name for name in ("direct.h5", "mixed.h5"))
+    assert distinguishing_names(both) == ["model = direct", "model = mixed"]
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])

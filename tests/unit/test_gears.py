@@ -6,7 +6,6 @@ import h5py
 import numpy as np
 import pytest
 from support import is_line_with
-from support.made_results import make_result
 
 from ehlpetsc.analysis.flank_damage import FlankDamage
 from ehlpetsc.analysis.gears import main
@@ -17,8 +16,6 @@ from ehlpetsc.gears.load_sharing import relief_ratio
 from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.post.stresses.body_points import body_points, passage
-from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import means
 
 FZG = {  # type C
     "module": 4.5e-3,
@@ -302,20 +299,6 @@ def test_package_exports_the_gear_pair():
 
     assert ehlpetsc.gears.path_of_contact(FZG).contact_ratio == pytest.approx(1.443, abs=5e-4)
     assert "gears" in dir(ehlpetsc)
-
-
-@pytest.mark.parametrize(("after", "mean"), [(1.0, 0.0), (-1.0, 0.03)])
-def test_friction_under_reversed_sliding_is_averaged_by_magnitude(tmp_path, after, mean):
-    path = make_result(tmp_path / "run.h5")
-    with h5py.File(path, "a") as file:
-        steps, n = file["steps"], len(file["steps/time"])
-        first = np.arange(n) < n // 2
-        steps["dt"][...] = 1e-6
-        steps["friction_coefficient"][...] = np.where(first, -0.03, 0.03 * (n // 2) / (n - n // 2))
-        steps["speed_1"] = np.where(first, 1.0, after)
-        steps["speed_2"] = np.zeros(n)
-    with read_result(path) as result:
-        assert means(result)["friction_coefficient"] == pytest.approx(mean, abs=2e-3)
 
 
 def test_gear_table_uses_the_moduli_of_a_steel(case, tmp_path, capsys):

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import h5py
@@ -10,9 +11,8 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image as image
 from support import is_line_with
-from support.made_results import P0, A, make_result, with_solids
+from support.made_results import P0, TABLE_1, A, change_case, make_result, with_solids
 
-from ehlpetsc.case.loading import Case
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import __main__ as plot
 from ehlpetsc.plot import figures, labels, movies
@@ -21,8 +21,8 @@ from ehlpetsc.plot.panels import over_time
 from ehlpetsc.plot.series import stribeck
 from ehlpetsc.plot.series.operating_points import time_statistics
 from ehlpetsc.results import series_index as swept
-from ehlpetsc.results.filling import both_fill
 from ehlpetsc.results.hdf5.datasets import Layout
+from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import ResultWriter
 
@@ -188,7 +188,8 @@ def test_default_instant_excludes_the_entering_profile_edge(tmp_path):
 def test_default_instant_is_stored(tmp_path):
     x = np.linspace(-1, 1, 11)
     layout = Layout(x * A, ["pressure", "film_thickness"])
-    attributes = {"title": "", "case": "", "a": A, "p0": 1e9, "u1": 5.0, "u2": 5.0}
+    case = TABLE_1.format(viscosity=0.005, speed=5.0)
+    attributes = {"title": "", "case": case, "a": A, "p0": 1e9, "u1": 5.0, "u2": 5.0}
     writer = ResultWriter(tmp_path / "r.h5", layout, attributes, every=2)
     for step, highest in enumerate([1.0, 9.0, 3.0, 8.0, 2.0]):  # the odd steps are not stored
         values = {"pressure": np.full(11, highest), "film_thickness": np.ones(11)}
@@ -212,9 +213,7 @@ def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
 def test_two_results_are_distinguished_in_a_picture_of_their_own(tmp_path, drawn, capsys):
     """The second curve is dashed, and a key that one of the cases leaves out has its default."""
     paths = [make_result(tmp_path / name) for name in ("mine.h5", "mine_mixed.h5")]
-    with h5py.File(with_solids(paths[1]), "r+", libver="latest") as file:
-        text = file.attrs["case"].decode()
-        file.attrs["case"] = text.replace("[contact]", '[contact]\nmodel = "mixed"')
+    change_case(with_solids(paths[1]), {"contact.model": "mixed"})
     assert draw(*paths) == 0
     assert capsys.readouterr().out == f"{tmp_path / 'mine_and_mine_mixed.png'}\n"
     upper = drawn[0].axes[0]
@@ -222,13 +221,6 @@ def test_two_results_are_distinguished_in_a_picture_of_their_own(tmp_path, drawn
     assert [line.get_linestyle() for line in upper.lines] == [":", "-", "--"]
     assert plot._stem(["a.h5", "b/b.h5", "c.h5"]) == "a_and_2_more"
     assert plot._stem(["a.series.json"]) == "a"
-
-
-def test_labels_use_case_defaults():
-    for key, value in swept.DEFAULTS.items():
-        table, name = key.split(".")
-        fields = Case.__fields__[table].type_.__fields__
-        assert fields[name].default == value
 
 
 def test_derived_files_are_skipped_or_named(tmp_path, result, drawn, capsys):
@@ -301,8 +293,7 @@ def test_view_without_contacts_has_equal_panels(tmp_path, drawn):
 
 def test_dry_contact_shows_gap_and_no_flow(tmp_path, drawn):
     path = make_result(tmp_path / "dry.h5")
-    with h5py.File(path, "r+", libver="latest") as file:
-        file.attrs["case"] = file.attrs["case"].replace(b"[fluid]", b"[post]")
+    change_case(path, {"fluid": None})
     assert draw(path, "--step", 30) == 0
     upper, lower = drawn[0].axes
     assert lower.get_ylabel() == "gap [µm]" and not list(upper.texts)
@@ -497,8 +488,7 @@ def test_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series):
 def test_stribeck_axes_are_hersey_number_and_logarithmic_fraction(tmp_path, share):
     paths = [make_result(tmp_path / f"u{u:g}.h5", speed=u, nodes=41, steps=81) for u in (1.0, 10.0)]
     for path in paths:
-        with h5py.File(with_solids(path, share, 0.05), "r+", libver="latest") as file:
-            file.attrs["case"] = file.attrs["case"].replace(b"[contact]", b"[contact]\nload = 5e5")
+        change_case(with_solids(path, share, 0.05), {"contact.load": 5e5})
     figure = stribeck.draw_stribeck([read_result(path) for path in paths], None)
     (above,) = figure.axes[0].child_axes
     figure.draw_without_rendering()
@@ -524,6 +514,8 @@ def test_stribeck_means_start_when_the_contact_is_filled(tmp_path, capsys):
 
 
 def test_time_means_are_weighted_by_step_length():
-    found = time_statistics(np.array([1.0, 2.0, np.nan, 9.0]), np.array([1.0, 3.0, 1.0, 0.0]))
+    values = np.array([1.0, 2.0, np.nan, 9.0])
+    result = SimpleNamespace(scalars=["load"], steps=lambda name: values)
+    found = time_statistics(result, "load", np.array([1.0, 3.0, 1.0, 0.0]))
     assert found.mean == pytest.approx(1.75)
     assert 1.0 <= found.low < found.high <= 2.0

@@ -6,14 +6,14 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from support.made_results import make_result
+from support.made_results import change_case, make_result
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.figures import FIGURES
 from ehlpetsc.plot.series.stribeck import curves_by_contact
 from ehlpetsc.results.series_index import open_all
 
-HEAT = "[heat]\nbulk_temperature = 350.0\n"
+HEAT = {"heat.bulk_temperature": 350.0}
 RATIOS = (0.1, 0.5, 1.0, 2.0)
 OPTIONS = SimpleNamespace(step=None, time=None, around=None, width=None)
 RISES = {"film_temperature": 40.0, "temperature_1": 10.0, "temperature_2": 20.0}
@@ -24,14 +24,10 @@ def drawn(kind, paths):
         return FIGURES[kind](open_all(paths, stack), OPTIONS)
 
 
-def add_to_case(file, text):
-    file.attrs["case"] = file.attrs["case"].decode() + text
-
-
-def member(path, ratio, friction, heat="", speed=5.0):
+def member(path, ratio, friction, heat=(), speed=5.0):
     make_result(path, steps=1, speed=speed)
+    change_case(path, {"motion.slide_roll_ratio": ratio, **dict(heat)})
     with h5py.File(path, "r+", libver="latest") as file:
-        add_to_case(file, f"slide_roll_ratio = {ratio}\n{heat}")
         file["steps/friction_coefficient"][:] = friction
     return path
 
@@ -71,9 +67,8 @@ def test_traction_curve_needs_a_series_over_the_ratio(tmp_path):
 
 
 def heated(path, steps):
-    make_result(path, steps=steps)
+    change_case(make_result(path, steps=steps), HEAT)
     with h5py.File(path, "r+", libver="latest") as file:
-        add_to_case(file, HEAT)
         shape, dome = file["pressure"].shape, np.maximum(1.0 - (file["x"][:] / file.attrs["a"]) ** 2, 0.0)
         for name, rise in RISES.items():
             values = np.broadcast_to(350.0 + rise * dome, shape)

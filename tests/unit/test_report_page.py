@@ -70,7 +70,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
         facts, means = dict(data["facts"]), Totals.of_result(r).means
         assert facts["mean friction coefficient"] == f"{means['friction_coefficient']:.4g}"
         assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.3g} %"
-        assert facts["oil"] == "5 mPa s" and "node-steps in contact" not in facts
+        assert facts["oil"] == "5 mPa s, roelands" and "node-steps in contact" not in facts
     names = [figure["name"] for figure in data["steps"]["figures"]]
     assert names[:3] == ["friction coefficient", "contact share", "greatest pressure [GPa]"]
     assert data["damage"] is None

@@ -13,7 +13,7 @@ from support.made_results import make_result, with_solids
 
 from ehlpetsc import command_parser, commands
 from ehlpetsc.analysis import summary
-from ehlpetsc.results.filling import filled_from
+from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import read_result
 
 

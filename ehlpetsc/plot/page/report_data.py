@@ -1,15 +1,14 @@
 """Data of the page of one result, thinned to the resolution of a screen."""
 
 import base64
-import tomllib
 
 import numpy as np
 
 from ehlpetsc.plot.panels.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.means import means
 from ehlpetsc.results.post_result import damage_beside
-from ehlpetsc.results.totals import means
 
 MAX_FRAMES, MAX_NODES, MAX_ROWS, MAX_POINTS = 200, 1200, 2000, 2000  # on a page
 MIN_CHANGE = 1e-9  # relative change over a run below which a scalar counts as constant
@@ -72,11 +71,11 @@ def report_data(result):
 
 
 def _oil(fluid):
-    grade = fluid.get("grade")
+    grade = fluid.grade
     words = [
-        f"{1e3 * fluid['viscosity']:g} mPa s" if "viscosity" in fluid else None,
-        f"{1e6 * grade['v40']:g} and {1e6 * grade['v100']:g} mm²/s at 40 and 100 °C" if grade else None,
-        str(fluid.get("law", "")),
+        f"{1e3 * fluid.viscosity:.4g} mPa s",
+        f"{1e6 * grade.v40:g} and {1e6 * grade.v100:g} mm²/s at 40 and 100 °C" if grade else None,
+        fluid.law,
     ]
     return "oil", ", ".join(filter(None, words))
 
@@ -93,19 +92,17 @@ def _temperatures(result):
 def facts(result):
     """Names and values of the table at the top."""
     attrs = result.attrs
-    case = tomllib.loads(str(attrs["case"]))
-    motion, fluid, solids = (case.get(name, {}) for name in ("motion", "fluid", "contact"))
-    contact_details = [
-        f"radius {1e3 * solids['radius']:g} mm" if "radius" in solids else None,
-        f"load {1e-3 * solids['load']:g} N/mm" if "load" in solids else None,
-        f"{solids.get('model', 'direct')} contact",
-    ]
+    case = result.case
+    contact_details = [f"{case.contact.model} contact"]
+    if case.conditions is None:
+        sizes = f"radius {1e3 * case.contact.radius:g} mm", f"load {1e-3 * case.contact.load:g} N/mm"
+        contact_details = [*sizes, *contact_details]
     rows = [
         ("ended as", str(attrs.get("status", "unknown"))),
-        ("contact", ", ".join(filter(None, contact_details))),
-        _oil(fluid) if fluid else None,
+        ("contact", ", ".join(contact_details)),
+        _oil(case.fluid) if case.fluid else None,
         ("half width a, pressure p0", f"{1e3 * attrs['a']:.4g} mm, {1e-9 * attrs['p0']:.4g} GPa"),
-        ("speeds of surface 1 and 2", f"{attrs['u1']:.4g} and {attrs['u2']:.4g} m/s") if motion else None,
+        case.motion and ("speeds of surface 1 and 2", f"{attrs['u1']:.4g} and {attrs['u2']:.4g} m/s"),
         ("nodes, steps", f"{len(result.x)}, {len(result.steps('time')) - 1}"),
         ("minimum film", f"{1e6 * np.nanmin(result.steps('h_min')):.4g} µm"),
         ("maximum pressure", f"{1e-9 * np.nanmax(result.steps('p_max')):.4g} GPa"),

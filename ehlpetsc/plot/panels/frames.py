@@ -1,7 +1,5 @@
 """Pressure and film at an instant, drawn into axes; x in half widths, film in um, pressure in GPa."""
 
-import tomllib
-
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -18,7 +16,7 @@ from ehlpetsc.plot.labels import (
     share_hertz_contact,
 )
 from ehlpetsc.results.contacts import in_contact
-from ehlpetsc.results.filling import both_fill, travelled
+from ehlpetsc.results.means import both_fill, travelled
 
 ACROSS = "x/a"
 SIDES = ("surface 1", "surface 2")
@@ -110,7 +108,7 @@ def frame_to_show(result, reached=np.inf):
 
 def is_lubricated(result):
     """Whether there is oil in the contact."""
-    return "fluid" in tomllib.loads(str(result.attrs["case"]))
+    return result.case.fluid is not None
 
 
 def default_window(results):

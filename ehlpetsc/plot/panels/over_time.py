@@ -7,7 +7,7 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.plot.labels import CONTACT_COLOUR
 from ehlpetsc.plot.panels.frames import ACROSS
 from ehlpetsc.results.contacts import in_contact
-from ehlpetsc.results.filling import travelled
+from ehlpetsc.results.means import travelled
 
 MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
 MAX_MARKED_CONTACTS = 3000  # nodes in contact marked by dots, because single pixels would not be visible

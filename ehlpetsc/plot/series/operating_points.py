@@ -1,12 +1,10 @@
 """Means over time of the members of a series, for curves of friction."""
 
-import tomllib
 from dataclasses import dataclass
 
 import numpy as np
 
-from ehlpetsc.analysis.summary import weighted_percentiles
-from ehlpetsc.results.filling import both_fill
+from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 
 BAND = (5.0, 95.0)  # percentiles over time
 QUANTITIES = {
@@ -47,31 +45,15 @@ class OperatingPoint:
     boundary: float
 
 
-def scalar_over_time(result, name):
-    """Scalar of every step; the friction coefficient also from files with the friction force alone.
-
-    Returns
-    -------
-    ndarray, shape (nsteps,)
-        nan if the file does not have the scalar.
-    """
-    if name in result.scalars:
-        values = result.steps(name).astype(float)
-    elif name == "friction_coefficient":
-        values = result.steps("friction") / result.steps("load")
-    else:
-        values = np.full(len(result.steps("time")), np.nan)
-    return np.abs(values) if name == "friction_coefficient" else values
-
-
-def time_statistics(values, weights):
-    """Weighted mean and percentiles of the finite values."""
-    usable = np.isfinite(values) & (weights > 0.0)
-    if not usable.any():
+def time_statistics(result, name, weights):
+    """Weighted mean and percentiles of the finite values of a scalar; nan without any."""
+    average = mean(result, name, weights)
+    if not np.isfinite(average):
         return TimeStatistics(np.nan, np.nan, np.nan)
-    values, weights = values[usable], weights[usable]
-    low, high = weighted_percentiles(values, weights, BAND)
-    return TimeStatistics(float(np.average(values, weights=weights)), float(low), float(high))
+    values = result.steps(name).astype(float)
+    used = np.isfinite(values) & (weights > 0.0)
+    low, high = weighted_percentiles(values[used], weights[used], BAND)
+    return TimeStatistics(average, float(low), float(high))
 
 
 def operating_point(result, speed):
@@ -83,13 +65,9 @@ def operating_point(result, speed):
     speed : float
         Value of the abscissa.
     """
-    time = result.steps("time")
-    steady = len(time) == 1
-    filled = np.ones(1, bool) if steady else both_fill(result, time)
-    if not filled.any():
+    weights = filled_weights(result)
+    if not weights.any():
         return None
-    weights = np.ones(1) if steady else np.nan_to_num(result.steps("dt"))[filled]
-    scalars = {name: time_statistics(scalar_over_time(result, name)[filled], weights) for name in QUANTITIES}
-    contact = tomllib.loads(result.attrs["case"]).get("contact", {})
-    smooth = float(scalar_over_time(result, "friction_coefficient")[0])
-    return OperatingPoint(speed, scalars, smooth, float(contact.get("boundary_friction", 0.0)))
+    scalars = {name: time_statistics(result, name, weights) for name in QUANTITIES}
+    smooth = float(result.steps("friction_coefficient")[0])
+    return OperatingPoint(speed, scalars, smooth, result.case.contact.boundary_friction)

@@ -1,13 +1,10 @@
 """Running-in: heights and pressure before and after, and the changes in each pass."""
 
-import tomllib
-
 import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
 from ehlpetsc.plot.panels.frames import frame_to_show
-from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.running_in import heights, pass_summary
 
@@ -37,15 +34,15 @@ def draw_running_in(results, _options):
         raise OutputError("one pass alone; allowed: --running-in of two passes or more")
     if any("set_volume" not in result.scalars for result in results):
         raise OutputError("solids that do not yield: no plastic deformation; needs contact.yield_pressure")
-    rows = [pass_summary(result, filled_from(result)) for result in results]
+    rows = [pass_summary(result) for result in results]
     post_results = [damage_beside(result) for result in results]
     has_damage = all(post_results)
     damages = [post_result.summary() for post_result in post_results] if has_damage else []
     figure, axes = labels.new_figure(2, 3 if has_damage else 2, SIZE_WITH_DAMAGE if has_damage else SIZE)
     draw_surface(axes[0, 0], results)
     draw_pressure(axes[1, 0], results)
-    time = tomllib.loads(results[0].attrs["case"]).get("time", {})
-    draw_plastic_area(axes[0, 1], rows, bool(time.get("pass_shift")))
+    time = results[0].case.time
+    draw_plastic_area(axes[0, 1], rows, time is not None and time.pass_shift != 0.0)
     draw_contact(axes[1, 1], rows)
     if has_damage:
         for row, side in zip(axes, ("1", "2"), strict=True):

@@ -3,8 +3,6 @@
 Means over the time in which both surfaces fill the contact, with the scatter over that time as a band.
 """
 
-import tomllib
-
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -53,13 +51,9 @@ def curves_by_contact(results):
     """Results by contact law, mesh and [heat], with their label; the longest curve first."""
     groups = {}
     for result in results:
-        case = tomllib.loads(result.attrs["case"])
-        contact, mesh = case.get("contact", {}), case.get("mesh", {})
-        law, points = (
-            (contact.get("asperity_height"), contact.get("boundary_film")),
-            mesh.get("points_per_half_width"),
-        )
-        key = *law, points, "heat" in case
+        case = result.case
+        law = case.contact.asperity_height, case.contact.boundary_film
+        key = *law, case.mesh.points_per_half_width, case.heat is not None
         groups.setdefault(key, []).append(result)
     several, heated = (len({key[position] for key in groups}) > 1 for position in (2, 3))
     curves = sorted(groups.items(), key=lambda item: -len(item[1]))
@@ -131,8 +125,8 @@ def _share_axis(axes, points):
 
 def _hersey_axis(axes, results):
     """Add an axis of the Hersey number eta0 u/w if all results have the same viscosity and load."""
-    cases = [tomllib.loads(result.attrs["case"]) for result in results]
-    pairs = {(c.get("fluid", {}).get("viscosity"), c.get("contact", {}).get("load")) for c in cases}
+    cases = [result.case for result in results]
+    pairs = {(case.fluid and case.fluid.viscosity, case.contact.load) for case in cases}
     if len(pairs) == 1 and None not in (pair := pairs.pop()):
         ratio = pair[0] / pair[1]
         above = axes.secondary_xaxis("top", functions=(lambda u: u * ratio, lambda hersey: hersey / ratio))
@@ -146,7 +140,7 @@ def _minor_label(value, _):
 
 
 def _draw_means(axes, results, label, colour):
-    case_speeds = [tomllib.loads(result.attrs["case"])["motion"]["entrainment_speed"] for result in results]
+    case_speeds = [result.case.motion.entrainment_speed for result in results]
     operating_points = [operating_point(*pair) for pair in zip(results, case_speeds, strict=True)]
     points = sorted(filter(None, operating_points), key=lambda point: point.speed)
     speeds = [abs(point.speed) for point in points]

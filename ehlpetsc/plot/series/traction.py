@@ -1,7 +1,5 @@
 """Traction curves: friction over the slide/roll ratio, with the maximum marked."""
 
-import tomllib
-
 import numpy as np
 
 from ehlpetsc.errors import OutputError
@@ -49,11 +47,11 @@ def draw_traction(results, _options):
 
 
 def _is_heated(result):
-    return "heat" in tomllib.loads(result.attrs["case"])
+    return result.case.heat is not None
 
 
 def _ratio(result):
-    return float(tomllib.loads(result.attrs["case"]).get("motion", {}).get("slide_roll_ratio", 0.0))
+    return result.case.motion.slide_roll_ratio if result.case.motion else 0.0
 
 
 def _curves(results):

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.atomic_write import atomic_write, remove_stale
-from ehlpetsc.results.filling import filled_from
 from ehlpetsc.results.output_guard import Lock, check_index, check_output_path, inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
@@ -129,7 +128,7 @@ class Passes:
 
     def _note(self, number, simulation):
         with read_result(self.file(number)) as result:
-            summary = pass_summary(result, filled_from(result))
+            summary = pass_summary(result)
         row = {"pass": number, "file": self.file(number).name} | summary
         before = self.rows[-1]["set_volume"] if self.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before

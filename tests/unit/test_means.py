@@ -1,18 +1,24 @@
-"""Time from which both surfaces fill the contact: one definition for means, pictures and passes."""
+"""Means over the time in which both surfaces fill the contact: one definition for all doors."""
+
+import csv
 
 import h5py
 import numpy as np
 import pytest
 from support.made_results import A, make_result
 
+import ehlpetsc
+from ehlpetsc.analysis.run_scalars import run_scalars
+from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.plot.series.operating_points import operating_point
 from ehlpetsc.plot.series.running_in import draw_running_in
-from ehlpetsc.results.filling import RAMP_LENGTH, both_fill, filled_from, travelled
+from ehlpetsc.results.means import both_fill, filled_from, means, travelled
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.surfaces import roughness
+from ehlpetsc.results.running_in import pass_summary
 from ehlpetsc.surfaces.entry_times import entry_times
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 
 CONTACT = {"radius": 0.0191, "load": 527e3, "youngs_modulus": [207e9] * 2, "poisson_ratio": [0.3] * 2}
 CASE = {
@@ -34,7 +40,7 @@ class Stored:
         self.rough = Roughness.of(case, self.scales)
         s = self.scales
         self.x = s.x * s.a
-        self.attrs = {"case": case.text, "a": s.a, "u1": s.u1, "u2": s.u2}
+        self.case, self.attrs = case, {"a": s.a, "u1": s.u1, "u2": s.u2}
 
     def steps(self, name):
         return np.linspace(0.0, self.scales.duration, 11)
@@ -47,6 +53,51 @@ class Stored:
         return False
 
 
+REVERSAL = {"time": [0.0, 2e-4], "speed_1": [3.6, 2.4], "speed_2": [2.4, 3.6]}
+OIL = {"viscosity": 0.01, "law": "roelands", "pressure_viscosity": 1.1e-8, "density": "incompressible"}
+OIL["eyring_stress"] = 1e7
+
+
+@pytest.fixture(scope="module")
+def reversal(tmp_path_factory):
+    """Result of a smooth contact whose sliding reverses in mid-run."""
+    path = tmp_path_factory.mktemp("means") / "reversal.h5"
+    motion = {"entrainment_speed": 3.0}
+    tables = {"fluid": OIL, "operation": REVERSAL, "motion": motion, "time": {"travel": 2.0}}
+    mesh = {"inlet": -2.0, "outlet": 1.4, "points_per_half_width": 20}
+    ehlpetsc.solve(CASE | tables | {"mesh": mesh}, output=path, options={}).close()
+    return path
+
+
+def test_mean_friction_under_reversed_sliding_is_one_figure(reversal, capsys, tmp_path):
+    """Last line, summary, ensembles, index of passes and pictures agree on the magnitude of friction."""
+    with read_result(reversal) as result:
+        steps = result.steps
+        assert steps.friction[0] * steps.friction[-1] < 0.0
+        magnitude = 0.5 * np.abs(steps.friction - steps.friction_1) / steps.load
+        expected = np.average(magnitude, weights=steps.dt)
+        assert expected > 5.0 * abs(np.average(steps.friction / steps.load, weights=steps.dt))
+        found = {
+            "last line": means(result)["friction_coefficient"],
+            "ensemble": run_scalars(result)["friction_coefficient"],
+            "index": pass_summary(result)["friction_coefficient"],
+            "pictures": operating_point(result, 3.0).scalars["friction_coefficient"].mean,
+        }
+    assert summary([str(reversal)]) == 0
+    rows = csv.DictReader(capsys.readouterr().out.splitlines())
+    found["summary"] = float(next(row["mean"] for row in rows if row["scalar"] == "friction_coefficient"))
+    assert found == {name: pytest.approx(expected, rel=1e-5) for name in found}
+
+
+def test_friction_coefficient_of_backward_speeds_is_positive():
+    speeds = {"time": [0.0, 2e-4], "speed_1": [-2.4, -2.4], "speed_2": [-3.6, -3.6]}
+    tables = {"fluid": OIL, "operation": speeds, "time": {"travel": 0.1}}
+    mesh = {"inlet": -2.0, "outlet": 2.0, "points_per_half_width": 20}
+    with ehlpetsc.solve(CASE | tables | {"mesh": mesh}, options={}) as result:
+        assert result.steps.speed_1[-1] < 0.0 < result.steps.friction_coefficient[-1]
+        assert means(result)["friction_coefficient"] > 0.0
+
+
 @pytest.mark.parametrize("xi", [0.4, 0.0, 2.5])
 @pytest.mark.parametrize("surface", [{"1": WAVE}, {"2": WAVE}, {"1": WAVE, "2": WAVE}, {"1": RIDGE}])
 def test_filling_time_equals_the_explained_travel(surface, xi):
@@ -55,7 +106,6 @@ def test_filling_time_equals_the_explained_travel(surface, xi):
     s = result.scales
     fills = max(entry_times(p, s)[1] for p in (result.rough.surface_1, result.rough.surface_2) if p)
     assert filled_from(result) == pytest.approx(fills * s.a / s.u_max, rel=1e-12)
-    assert RAMP_LENGTH == roughness.RAMP_LENGTH
 
 
 def test_smooth_surfaces_fill_the_contact_from_the_start(tmp_path):

@@ -1,0 +1,99 @@
+"""Means over a run: over the time in which the roughness of both surfaces fills the contact.
+
+One convention for all: the steps are weighted by their length, those before both surfaces fill the contact
+by 0; a steady run is its own mean.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ehlpetsc.quantities import MEANS
+from ehlpetsc.surfaces.roughness import RAMP_LENGTH
+from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
+
+if TYPE_CHECKING:
+    from ehlpetsc.results.reader import Result
+
+
+def filled_from(result: Result) -> float:
+    """Time [s] from which the roughness of both surfaces fills the Hertz contact.
+
+    A profile fills the contact when its heights after the ramp reach the far edge, a single ridge or dent
+    when its centre is at x = 0. Smooth surfaces, including smooth surfaces that have yielded, and surfaces at
+    rest fill the contact from the start. inf if a run with varying speeds ends before.
+    """
+    if len(result.steps("time")) < 2:
+        return 0.0
+    return max(_filled_by(result, side) for side in ("1", "2"))
+
+
+def travelled(result: Result) -> np.ndarray:
+    """Distance that the faster surface has travelled by the end of each step [m], shape (nsteps,)."""
+    if "steps/displacement_1" in result:
+        return np.abs([result.steps("displacement_1"), result.steps("displacement_2")]).max(axis=0)
+    return max(abs(result.attrs["u1"]), abs(result.attrs["u2"])) * result.steps("time")
+
+
+def both_fill(result: Result, times: np.ndarray) -> np.ndarray:
+    """Whether the roughness of both surfaces fills the contact at `times` [s], array of bool."""
+    return np.asarray(times) >= filled_from(result) * (1.0 - 1e-12)
+
+
+def filled_weights(result: Result, or_whole_run: bool = False) -> np.ndarray:
+    """Weights of the steps in every mean [s], shape (nsteps,); 1 for a steady run.
+
+    A run that ends before both surfaces fill the contact has weights of 0 or, with `or_whole_run`, those of
+    all its steps.
+    """
+    time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
+    if len(time) == 1:
+        return np.ones(1)
+    filled = both_fill(result, time)
+    return np.where(filled | (or_whole_run and not filled.any()), dt, 0.0)
+
+
+def mean(result: Result, name: str, weights: np.ndarray) -> float:
+    """Mean of the finite values of a scalar of the steps; nan without any."""
+    if name not in result.scalars:
+        return np.nan
+    values = result.steps(name).astype(float)
+    used = np.isfinite(values) & (weights > 0.0)
+    return float(np.average(values[used], weights=weights[used])) if used.any() else np.nan
+
+
+def means(result: Result) -> dict[str, float]:
+    """Means of the scalars `ehlpetsc.quantities.MEANS`, by name, in the last line of a run.
+
+    Empty if the run ends before both surfaces fill the contact.
+    """
+    weights = filled_weights(result)
+    found = {name: mean(result, name, weights) for name in MEANS}
+    return {name: value for name, value in found.items() if np.isfinite(value)}
+
+
+def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: list[float]) -> np.ndarray:
+    """Weighted percentiles of values, both of shape (n,)."""
+    order = np.argsort(values)
+    reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
+    return np.interp(percentiles, reached, values[order])
+
+
+def _filled_by(result: Result, side: str) -> float:
+    """Time [s] from which the roughness of one surface fills the contact."""
+    profile, body, speed = result.profile(side), result.case.surface.side(side), result.attrs[f"u{side}"]
+    feature = body and body.synthetic
+    is_single = feature is not None and feature.kind in SINGLE_FEATURES
+    if profile is None or speed == 0.0 or not (is_single or profile[1].any()):
+        return 0.0
+    a, leading = result.attrs["a"], profile[0].max() if speed > 0.0 else profile[0].min()
+    reached = bump_centre(feature) if is_single else a + RAMP_LENGTH * a
+    distance = reached - np.sign(speed) * leading
+    if distance <= 0.0:
+        return 0.0
+    if f"steps/displacement_{side}" not in result:
+        return distance / abs(speed)
+    furthest = np.maximum.accumulate(np.abs(result.steps(f"displacement_{side}")))
+    return float(np.interp(distance, furthest, result.steps("time"), right=np.inf))
