@@ -102,12 +102,12 @@ def compiled(function=None, **options):
         return numba.njit(**(options | {"cache": False}))(function)
 
 
-def inlined(function):
+def inlined(function, **options):
     """Compile a small function of a law into its callers.
 
     A call from compiled code hands over the law's constants one by one, which takes as long as the law.
     """
-    return compiled(function, forceinline=True)
+    return compiled(function, forceinline=True, **options)
 
 
 if COMPILED:

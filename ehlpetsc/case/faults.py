@@ -88,7 +88,8 @@ def describe(error, model, data, where=""):
     """
     faults = []
     for wrapper in _flat(error.raw_errors):
-        name, cause = wrapper.loc_tuple()[0], wrapper.exc
+        cause = wrapper.exc
+        name = getattr(cause, "key", "") or wrapper.loc_tuple()[0]
         field = next((f for f in model.__fields__.values() if name in (f.alias, f.name)), None)
         key = where + shortened(str(name))
         value = data.get(name)

@@ -18,7 +18,8 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
-from ehlpetsc.physics.rheology import compression, mobilities
+from ehlpetsc.physics.laws import relative_density
+from ehlpetsc.physics.rheology import mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
 ONE = unsigned(1)
@@ -35,8 +36,6 @@ PROPERTIES = 10
 # its logarithm.
 THERMAL, LN_THERMAL_P, LN_THERMAL_H = 10, 11, 12
 HEATED_PROPERTIES = 13
-
-_compression = compiled(compression)
 
 
 @compiled
@@ -70,7 +69,7 @@ def extrapolated(m, behind, k):
 def fill_mass(i, q, h, density, p0, film, unit, at):
     """Fill in the properties of node i except its viscosity, as :func:`.reynolds.nodal`; return p [Pa]."""
     p, oil_fraction, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
-    rho, rho_p = _compression(p0 * p, *density)
+    rho, rho_p = relative_density(density, p0 * p)
     at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * h
     at[M, i], at[M_H, i] = rho * oil_fraction * h, rho * oil_fraction
     at[M_Q, i] = (rho_p * p0 if full else 1.0) * h

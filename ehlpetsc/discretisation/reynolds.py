@@ -28,7 +28,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     fill_mass,
 )
 from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
-from ehlpetsc.physics import rheology
+from ehlpetsc.physics.laws import density, density_law, ln_viscosity, viscosity_law
 
 
 def mirrored(values):
@@ -104,7 +104,7 @@ class Reynolds:
 
     def mass_per_area(self, q, h, fluid):
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
-        rho = rheology.density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
+        rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
     def properties(self, q, h, inputs, again=False):
@@ -113,16 +113,16 @@ class Reynolds:
         `again` as of :func:`.heat.film.heated_nodal`.
         """
         q, h, fluid = q[self.input_nodes], h[self.input_nodes], inputs.fluid
-        s, density = self.scales, rheology.density_constants(fluid)
+        s, of_density = self.scales, tuple(density_law(fluid))
         rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
         at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
             from ehlpetsc.discretisation.heat.film import heated_nodal
 
             law, *arrays = inputs.heat.at_nodes(self.nodes)
-            heated_nodal(q, h, density, *units, tuple(law), *arrays, again, at)
+            heated_nodal(q, h, of_density, *units, tuple(law), *arrays, again, at)
             return at
-        nodal(q, h, rheology.viscosity_constants(fluid), density, *units, 1.0 / fluid.viscosity, at)
+        nodal(q, h, tuple(viscosity_law(fluid)), of_density, *units, 1.0 / fluid.viscosity, at)
         return at
 
     def face_law(self, inputs):
@@ -172,9 +172,6 @@ def _inlet(q, h, oil_film):
     return q + 1.0 - oil_film / h, (1.0, oil_film / h**2)
 
 
-_power_law = compiled(rheology.power_law)
-
-
 @compiled
 def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     """Fill in the nodal properties, see :mod:`.finite_volumes`.
@@ -182,8 +179,8 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     Parameters
     ----------
     q, h : ndarray, shape (nodes,)
-    viscosity, density : tuple of float
-        Constants of both laws, see :mod:`ehlpetsc.physics.rheology`.
+    viscosity, density : tuple
+        :class:`ehlpetsc.physics.laws.OilLaw` of both, as tuples, which numba looks up faster.
     p0, film : float
         Scales of pressure [Pa] and film [m].
     unit : float
@@ -197,5 +194,5 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
     for i in range(at.shape[1]):
         here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
         p = fill_mass(i, here, gap, density, p0, film, unit, at)
-        ln_eta, ln_eta_p = _power_law(p, *viscosity)
+        ln_eta, ln_eta_p, _ = ln_viscosity(viscosity, p, viscosity[2])
         at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p

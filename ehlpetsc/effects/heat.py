@@ -158,14 +158,12 @@ class Heat(Effect):
 
     def log_viscosity(self, record, pressure):
         """ln(eta/eta0) at the temperatures of a record; None without oil."""
-        from ehlpetsc.physics.heat.laws import film_law
-        from ehlpetsc.physics.heat.thermal_viscosity import log_viscosity
+        from ehlpetsc.physics.laws import viscosity
 
         case = self.scene.case
         if case.fluid is None:
             return None
-        law = film_law(case.fluid, case.heat, 0.0)
-        return log_viscosity(pressure, record.film, law.pressure_law, law.thermal_law)[0]
+        return viscosity(pressure, case.fluid, case.heat, record.film)[0]
 
     def observe(self, record, solution, step):
         """Temperatures and heat fluxes; their largest and mean values."""

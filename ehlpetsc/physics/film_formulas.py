@@ -46,7 +46,7 @@ def smooth_films(fluid, modulus, conditions):
         E' [Pa].
     conditions : physics.operation.Conditions
     """
-    from ehlpetsc.physics.rheology import density
+    from ehlpetsc.physics.laws import density
     from ehlpetsc.physics.scales import hertz_line, moes_groups
 
     load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)

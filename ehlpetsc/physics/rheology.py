@@ -1,78 +1,10 @@
-r"""Lubricant laws: viscosity, density and the Eyring flow factor, each with its derivative.
-
-Every law is a pure function in SI units, of arrays or, where it is called in compiled loops over nodes, of
-numbers; complex arguments are allowed, so that the derivatives can be checked by complex step.
-"""
+r"""Flow of a film: Eyring's factors, the mobility of the pressure flow and the shear stress at the walls."""
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
-
-
-def viscosity(p, fluid):
-    r"""Logarithm of the viscosity over its ambient value.
-
-    ``seed``: :math:`\ln(\eta/\eta_0) = \ln(\eta_0/\kappa)[(1+\chi p)^Z-1]`,
-    :math:`Z=\alpha/(\chi\ln(\eta_0/\kappa))`, Holmes et al. 2005, eq. (3);
-    ``barus``: :math:`\alpha p`; ``roelands``: :math:`(\alpha p_r/z)[(1+p/p_r)^z-1]`.
-
-    Parameters
-    ----------
-    p : ndarray
-        Pressure [Pa].
-    fluid : case.tables.fluid.Fluid
-
-    Returns
-    -------
-    ln_eta, dln_eta_dp : ndarray
-        :math:`\ln(\eta/\eta_0)` [1] and its derivative [1/Pa], shape of `p`.
-    """
-    return power_law(p, *viscosity_constants(fluid))
-
-
-def viscosity_constants(fluid):
-    """Factor, reference pressure [Pa] and exponent z of the law, for :func:`power_law`."""
-    alpha = fluid.pressure_viscosity
-    if fluid.law == "barus":
-        return alpha, 1.0, 1.0
-    if fluid.law == "roelands":
-        reference, z = fluid.roelands_pressure, fluid.roelands_z
-        return alpha * reference / z, reference, z
-    factor = np.log(fluid.viscosity / fluid.kappa)
-    return factor, 1.0 / fluid.chi, alpha / (fluid.chi * factor)
-
-
-def power_law(p, factor, reference, z):
-    r""":math:`c[(1+p/p_r)^z-1]` and its derivative; of arrays or numbers."""
-    if z == 1.0:  # Barus: the difference would lose digits
-        return factor / reference * p, factor / reference + 0.0 * p
-    base = 1.0 + p / reference
-    power = base**z
-    return factor * (power - 1.0), factor * z * power / (base * reference)
-
-
-def density(p, fluid):
-    r"""Density over its ambient value, :math:`(1+\gamma p)/(1+\lambda p)`, Holmes et al. 2005, eq. (4).
-
-    Returns
-    -------
-    rho, drho_dp : ndarray
-        Ratio [1] and derivative [1/Pa], shape of `p`; exactly 1 and 0 if incompressible.
-    """
-    return compression(p, *density_constants(fluid))
-
-
-def density_constants(fluid):
-    """gamma and lambda [1/Pa] for :func:`compression`."""
-    return (0.0, 0.0) if fluid.density == "incompressible" else (fluid.gamma, fluid.lambda_)
-
-
-def compression(p, gamma, lambda_):
-    r""":math:`(1+\gamma p)/(1+\lambda p)` and its derivative; of arrays or numbers."""
-    below = 1.0 + lambda_ * p
-    return (1.0 + gamma * p) / below, (gamma - lambda_) / (below * below)
 
 
 @compiled
@@ -163,7 +95,7 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
 
     :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
     (Conry, Wang & Cusano 1987); Newtonian: :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress
-    :math:`\tau_m` is limited to :math:`\Lambda p`, see :func:`.thermal_viscosity.limited_shear`.
+    :math:`\tau_m` is limited to :math:`\Lambda p`, see :func:`limited_shear`.
 
     Returns
     -------
@@ -199,3 +131,29 @@ def _limited_mean(mean, fluid, p):
     smaller, ratio = np.minimum(size, limit), np.ones_like(mean)
     np.divide(smaller, np.maximum(size, limit), out=ratio, where=np.maximum(size, limit) > 0.0)
     return np.sign(mean) * smaller * (1.0 + ratio**4) ** -0.25
+
+
+def limited_shear(stress, limit):
+    r"""Shear stress of a film that bears `limit` at most, :math:`(\tau^{-4}+\tau_L^{-4})^{-1/4}`.
+
+    Smooth, within 1.5 % of the smaller one where they differ by a factor of two. (Bair & Winer 1979
+    introduced :math:`\tau_L=\Lambda p`; the power 4 is a choice.)
+
+    Parameters
+    ----------
+    stress, limit : float
+        [Pa], not negative.
+
+    Returns
+    -------
+    value, by_stress, by_limit : float
+    """
+    if stress == 0.0 or limit == 0.0:
+        return 0.0, 0.0, 0.0
+    ratio = stress / limit
+    if ratio.real > 1.0:
+        down = 1.0 / ratio**4
+        value = limit * (1.0 + down) ** -0.25
+    else:
+        value = stress * (1.0 + ratio**4) ** -0.25
+    return value, (value / stress) ** 5, (value / limit) ** 5

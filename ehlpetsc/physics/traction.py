@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ehlpetsc.physics import rheology
+from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.rheology import wall_shear
 
 
 def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
@@ -39,7 +40,7 @@ def shear_stresses(case, dx, sliding, oil, solids, h, sheared, ln_eta=None):
     if case.fluid is None:
         return shear_1, shear_2
     if ln_eta is None:
-        ln_eta, _ = rheology.viscosity(oil, case.fluid)
+        ln_eta, _ = viscosity(oil, case.fluid)
     film = np.where(sheared > 0.0, h, 1.0)
-    lower, upper = rheology.wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding, oil)
+    lower, upper = wall_shear(film, np.gradient(oil, dx), ln_eta, case.fluid, sliding, oil)
     return shear_1 - upper * sheared, shear_2 + lower * sheared

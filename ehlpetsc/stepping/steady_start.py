@@ -183,7 +183,7 @@ def easier(inputs, fraction, roughness):
     """Inputs with fractions of the pressure-viscosity coefficient and of the roughness."""
     fluid = inputs.fluid
     if fluid and fraction < 1.0:
-        change = {"pressure_viscosity": fraction * fluid.pressure_viscosity}
+        change = {"exponent_factor": fraction}
         if fluid.eyring_stress is not None:
             change["eyring_stress"] = fluid.eyring_stress / fraction**4
         fluid = fluid.copy(update=change)

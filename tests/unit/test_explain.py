@@ -201,7 +201,7 @@ def test_explained_passing_length_follows_from_travel():
             r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12",
         ),
         (["fluid.viscosity=15"], r"film, 49\.5 um, .* 336 um: viscosity = 15 Pa s"),
-        (["fluid.law='barus'"], r'^fluid\.kappa, fluid\.chi: .* law = "barus"'),
+        (["fluid.law='barus'"], r'^fluid\.reference_viscosity, fluid\.roelands_pressure: .* law = "barus"'),
     ],
 )
 def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, words):

@@ -10,10 +10,10 @@ from support import CASES
 from ehlpetsc.case.hints import nearest
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.errors import CaseError
-from ehlpetsc.physics.rheology import viscosity
+from ehlpetsc.physics.laws import viscosity
 
 SMOOTH = CASES / "table1_smooth.toml"
-OIL = {"fluid.law": "roelands", "fluid.kappa": None, "fluid.chi": None}
+OIL = {"fluid.law": "roelands", "fluid.reference_viscosity": None, "fluid.roelands_pressure": None}
 
 
 def fault(overrides):
@@ -77,13 +77,6 @@ def test_omitted_roelands_constants_follow_from_the_pressure_coefficient():
     (exponent,) = viscosity(np.array([small]), fluid)[0]
     assert exponent == pytest.approx(18e-9 * small, rel=1e-5)
     assert "by viscosity and pressure_viscosity it is" in fault(OIL | {"fluid.viscosity": 65e-6})
-
-
-def test_kappa_and_chi_define_the_roelands_law():
-    pair = {"fluid.kappa": 63.2e-6, "fluid.chi": 5.1e-9}
-    seed, roelands = (load(SMOOTH, pair | {"fluid.law": law}).fluid for law in ("seed", "roelands"))
-    p = np.array([1e8, 1e9, 3e9])
-    assert viscosity(p, seed)[0] == pytest.approx(viscosity(p, roelands)[0], rel=1e-13)
 
 
 def test_default_density_is_dowson_higginson():

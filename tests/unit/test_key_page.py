@@ -12,7 +12,7 @@ from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.schema.equations import EQUATIONS
 from ehlpetsc.errors import CaseError, UsageError
-from ehlpetsc.physics.rheology import density
+from ehlpetsc.physics.laws import density
 
 
 def test_key_page_equals_the_schema():

@@ -5,13 +5,12 @@ from pathlib import Path
 import pytest
 
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.physics.heat.laws import thermal_law
-from ehlpetsc.physics.heat.thermal_viscosity import WALTHER
+from ehlpetsc.physics.laws import WALTHER, temperature_constants
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 GRADE = {"fluid.grade": {"v40": 220e-6, "v100": 19e-6, "density": 880.0}}
 LEFT_OUT = {"fluid.viscosity": None, "fluid.pressure_viscosity": None}
-ROELANDS = {"fluid.law": "roelands", "fluid.kappa": None, "fluid.chi": None}
+ROELANDS = {"fluid.law": "roelands", "fluid.reference_viscosity": None}
 
 
 @pytest.mark.parametrize("celsius, nu", [(40.0, 220e-6), (100.0, 19e-6)])
@@ -30,7 +29,7 @@ def test_grade_sets_the_thermal_law():
     case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"heat.bulk_temperature": 373.15})
     assert case.fluid.viscosity == pytest.approx(880.0 * 19e-6, rel=1e-10)
     assert case.heat.oil_density == 880.0
-    kind, _, _, reference = thermal_law(case.fluid, case.heat)
+    kind, _, _, reference = temperature_constants(case.fluid, case.heat)
     assert kind == WALTHER and reference == 373.15
 
 

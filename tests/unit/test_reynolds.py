@@ -43,7 +43,7 @@ def with_history(inputs, reynolds, q, h):
 
 @pytest.mark.parametrize("transient", [False, True], ids=["steady", "transient"])
 @pytest.mark.parametrize(
-    "extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]], ids=["seed", "barus", "starved"]
+    "extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]], ids=["roelands", "barus", "starved"]
 )
 def test_derivatives(extra, transient):
     reynolds, inputs, n = rows_of(extra)

@@ -1,4 +1,4 @@
-"""Lubricant laws: check values and derivatives against the complex step."""
+"""Flow of an Eyring film: check values, and derivatives against the complex step."""
 
 from types import SimpleNamespace
 
@@ -8,43 +8,7 @@ import pytest
 from ehlpetsc.physics import rheology
 
 STEP = 1e-30
-
-
-def oil(**changes):
-    keys = dict(
-        viscosity=0.005,
-        law="seed",
-        pressure_viscosity=11.1e-9,
-        kappa=63.2e-6,
-        chi=5.1e-9,
-        roelands_z=0.68,
-        roelands_pressure=0.196e9,
-        density="dowson-higginson",
-        gamma=2.27e-9,
-        lambda_=1.68e-9,
-        eyring_stress=10e6,
-    )
-    return SimpleNamespace(**{**keys, **changes})
-
-
-GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
-
-
-@pytest.mark.parametrize(
-    "eta0, values",
-    [
-        (0.005, [0.005, 0.2333503, 2.962664, 132.4506, 33651.48]),
-        (0.001, [0.001, 0.113767, 6.14164, 7115.26, 1.63311e9]),
-    ],
-)
-def test_roelands_viscosity_by_reference_constants(eta0, values):
-    ln_eta, _ = rheology.viscosity(GPA, oil(viscosity=eta0))
-    np.testing.assert_allclose(eta0 * np.exp(ln_eta), values, rtol=5e-6)
-
-
-def test_dowson_higginson_density():
-    rho, _ = rheology.density(GPA, oil())
-    np.testing.assert_allclose(rho, [1.0, 1.160326, 1.220149, 1.270642, 1.305699], rtol=5e-7)
+OIL = SimpleNamespace(viscosity=0.005, eyring_stress=10e6)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +23,7 @@ def test_dowson_higginson_density():
     ],
 )
 def test_eyring_factor(sigma, zeta, factor):
-    fluid, h, eta = oil(), 1e-7, 0.5
+    fluid, h, eta = OIL, 1e-7, 0.5
     gradient = 2.0 * fluid.eyring_stress * sigma / h
     sliding = zeta * fluid.eyring_stress * h / eta
     law = fluid.eyring_stress, sliding / fluid.eyring_stress
@@ -68,18 +32,23 @@ def test_eyring_factor(sigma, zeta, factor):
 
 
 def test_wall_shear():
-    fluid = oil()
+    fluid = OIL
     ln_eta = np.array(np.log(0.5 / fluid.viscosity))
     walls = rheology.wall_shear(np.array(0.2e-6), np.array(2e14), ln_eta, fluid, 1.25)
     np.testing.assert_allclose(walls, [-18.285163e6, 21.714837e6], rtol=1e-7)
 
 
-@pytest.mark.parametrize("law", ["seed", "barus", "roelands"])
-def test_derivatives_of_viscosity_and_density(law):
-    p = np.linspace(0.0, 3e9, 40)
-    for function in (rheology.viscosity, rheology.density):
-        exact = function(p, oil(law=law))[1]
-        np.testing.assert_allclose(exact, function(p + 1j * STEP, oil(law=law))[0].imag / STEP, rtol=1e-12)
+@pytest.mark.parametrize("stress, limit", [(1e6, 5e7), (5e7, 5e7), (9e8, 5e7), (1e6, 2e6)])
+def test_limited_shear(stress, limit):
+    value, by_stress, by_limit = rheology.limited_shear(stress, limit)
+    assert value <= min(stress, limit)
+    if max(stress, limit) >= 2.0 * min(stress, limit):
+        assert value == pytest.approx(min(stress, limit), rel=0.016)
+    for arguments, slope in (
+        ((stress + STEP * 1j, limit), by_stress),
+        ((stress, limit + STEP * 1j), by_limit),
+    ):
+        assert rheology.limited_shear(*arguments)[0].imag / STEP == pytest.approx(slope, rel=1e-12)
 
 
 @pytest.mark.parametrize("stress", [10e6, np.inf])

@@ -234,7 +234,12 @@ def test_squeeze_film_of_an_approaching_cylinder():
         "fluid.pressure_viscosity": 1e-12,
         "fluid.density": "incompressible",
     }
-    oil |= dict.fromkeys([f"fluid.{key}" for key in ("kappa", "chi", "gamma", "lambda", "eyring_stress")])
+    oil |= dict.fromkeys(
+        [
+            f"fluid.{key}"
+            for key in ("reference_viscosity", "roelands_pressure", "gamma", "lambda", "eyring_stress")
+        ]
+    )
     mesh = {"mesh.points_per_half_width": 4, "mesh.inlet": -100.0, "mesh.outlet": 100.0, "time": None}
     s = Scales.of(load(CASES / "table1_smooth.toml", oil | mesh))
     load_, radius, first = s.load, s.R, 200.0 * s.h

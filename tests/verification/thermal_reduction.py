@@ -26,7 +26,7 @@ from scipy.optimize import brentq
 
 from ehlpetsc import environment
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.rheology import viscosity_constants
+from ehlpetsc.physics import laws
 
 CASES = Path(__file__).parents[2] / "cases"
 BULK, BETA, OIL, EFFUSIVITY = 363.0, 0.04, 0.14, np.sqrt(46.0 * 7850.0 * 470.0)
@@ -127,15 +127,14 @@ def isothermal_stress(viscosity, film, sliding):
 def friction_by_theory(contact, heated, nodes=160):
     """Friction coefficient of Hertz's pressure and a film of one thickness."""
     scales, fluid = contact.simulation.scales, contact.simulation.case.fluid
-    factor, reference, z = viscosity_constants(fluid)
     dx, sliding = 2.0 * scales.a / nodes, abs(scales.u1 - scales.u2)
     pressure = scales.p0 * np.sqrt(1.0 - (dx * (np.arange(nodes) + 0.5) / scales.a - 1.0) ** 2)
-    viscosity = fluid.viscosity * np.exp(factor * ((1.0 + pressure / reference) ** z - 1.0))
+    at_pressure = fluid.viscosity * np.exp(laws.viscosity(pressure, fluid)[0])
     law = film_stress if heated else isothermal_stress
     mean_wall = 0.5 * (abs(scales.u1) ** -0.5 + abs(scales.u2) ** -0.5) * _response(nodes, dx)
     rise = np.zeros(nodes)
     for _ in range(30 if heated else 1):
-        at_wall = viscosity * np.exp(-BETA * rise)
+        at_wall = at_pressure * np.exp(-BETA * rise)
         stress = np.array([law(value, contact.film, sliding) for value in at_wall])
         rise = 0.5 * (rise + np.convolve(0.5 * stress * sliding, mean_wall)[:nodes])
     return stress.sum() * dx / scales.load

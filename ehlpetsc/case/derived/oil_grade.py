@@ -22,7 +22,7 @@ def with_grade(tables):
         return tables
     if not (2e-6 < v100 < v40 < 1.0 and 200.0 < temperature < 700.0):
         return tables
-    from ehlpetsc.physics.heat.thermal_viscosity import gold_pressure_viscosity, walther, walther_constants
+    from ehlpetsc.physics.laws import gold_pressure_viscosity, walther, walther_constants
 
     nu = float(walther(temperature, *walther_constants(v40, v100))[0])
     properties = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}

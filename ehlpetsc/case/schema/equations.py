@@ -1,5 +1,7 @@
 """Equations in which keys of a case file appear, for the list of keys; by model and key."""
 
+from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS
+
 SYMBOLS = """
 Of the equations: a is the half width and p0 the largest pressure by Hertz's formulas, E' the reduced modulus,
 h the film, p the pressure, p_c that of the solids, q the shear stress, theta the void fraction, eta and rho
@@ -17,11 +19,10 @@ EQUATIONS = {
     "Contact.asperity_height": "p_c = beta E* exp(-h/(0.5 sigma)), E* = E'/2, sigma = asperity_height",
     "Contact.asperity_slope": "A/A0 = erf(sqrt(pi) p_c/(E* asperity_slope))",
     "Contact.yield_pressure": "p <= p_y, d >= 0, (p_y - p) d = 0, d what a step adds to the permanent set",
-    "Fluid.law": "seed: ln(eta/eta0) = ln(eta0/kappa) ((1 + chi p)^Z - 1), Z = alpha/(chi ln(eta0/kappa)); "
-    "barus: ln(eta/eta0) = alpha p; roelands: ln(eta/eta0) = (alpha pr/z) ((1 + p/pr)^z - 1)",
+    "Fluid.law": "; ".join(f"{name}: {law.equation}" for name, law in LAWS.items()),
     "Grade.v40": "lg lg(nu + 0.7) = A - B lg T, nu in mm^2/s (ASTM D341); viscosity = nu density; "
     "alpha = 9.904 nu^0.139 /GPa (Gold et al. 2001)",
-    "Fluid.density": "rho/rho0 = (1 + gamma p)/(1 + lambda p)",
+    "Fluid.density": "; ".join(f"{name}: {law.equation}" for name, law in DENSITY_LAWS.items()),
     "Fluid.eyring_stress": "du/dz = (tau0/eta) sinh(tau/tau0), tau0 = eyring_stress",
     "Fluid.inlet_film": "h (1 - theta) = inlet_film at the first node",
     "Motion.entrainment_speed": "u = (u1 + u2)/2",

@@ -20,7 +20,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
     positive_extrapolation,
 )
-from ehlpetsc.physics.heat.film import A, B, FilmLaw, _log_viscosity, film_temperature, fixed_at
+from ehlpetsc.physics.heat.film import A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.physics.laws import ln_viscosity
 from ehlpetsc.physics.rheology import mobilities
 
 
@@ -53,7 +54,7 @@ def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, last_evalu
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
         t = guess[nodes - 1]
-        viscosity = _log_viscosity(p, t, law.pressure_law, law.thermal_law)
+        viscosity = ln_viscosity(law.viscosity, p, t)
         _fill_fluidity(nodes, p, t, viscosity, 0.0, 0.0, law, p0, film, at)
 
 
@@ -61,10 +62,10 @@ def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, last_evalu
 def _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at):
     """Fill in the fluidity of node i at the reference temperature, and the factor on it by the film's."""
     ln_eta, by_p, by_t = viscosity
-    if law.thermal_law[0] < 2:  # linear in T: no second power of the pressure
-        ln_eta_0, by_p_0 = ln_eta - by_t * (t - law.thermal_law[3]), by_p
+    if law.is_linear:  # linear in T: no second power of the pressure
+        ln_eta_0, by_p_0 = ln_eta - by_t * (t - law.viscosity[2]), by_p
     else:
-        ln_eta_0, by_p_0, _ = _log_viscosity(p, law.thermal_law[3], law.pressure_law, law.thermal_law)
+        ln_eta_0, by_p_0, _ = ln_viscosity(law.viscosity, p, law.viscosity[2])
     at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta_0) / law.eta0, p0 * by_p_0
     at[THERMAL, i] = np.exp(0.5 * (ln_eta_0 - ln_eta))
     at[LN_THERMAL_P, i] = 0.5 * p0 * (by_p_0 - by_p - by_t * t_p)

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import inlined
-from ehlpetsc.physics.heat import thermal_viscosity
 from ehlpetsc.physics.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
 from ehlpetsc.physics.heat.shear import shear_stress
+from ehlpetsc.physics.laws import ln_viscosity
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 200
@@ -26,16 +26,16 @@ SMALL = 0.3  # change of ln(eta) up to which that estimate holds
 
 A, B, G, SPREAD, W1, W2, R1, R2 = range(8)  # rows of FilmHeat.of_nodes
 
-_log_viscosity = inlined(thermal_viscosity.log_viscosity)
-
 
 class FilmLaw(NamedTuple):
     """Constants of the oil in a step.
 
     Attributes
     ----------
-    pressure_law, thermal_law : tuple
-        Of :func:`.thermal_viscosity.log_viscosity`.
+    viscosity : tuple
+        :class:`ehlpetsc.physics.laws.OilLaw` as a tuple.
+    is_linear : bool
+        Whether the logarithm of the viscosity is linear in temperature.
     eta0 : float
         Viscosity at ambient pressure and reference temperature [Pa s].
     eyring : float
@@ -52,8 +52,8 @@ class FilmLaw(NamedTuple):
         Film [m] below which the shear stress is that of this film; 0: films of no thickness are not sheared.
     """
 
-    pressure_law: tuple
-    thermal_law: tuple
+    viscosity: tuple
+    is_linear: bool
     eta0: float
     eyring: float
     limit: float
@@ -81,18 +81,18 @@ def _balanced(guess, slope, intercept, heat, ln_rate, p, law):
     shear : tuple of 3 floats
         Stress [Pa] and its derivatives with respect to ln(eta) and p.
     viscosity : tuple of 3 floats
-        Of :func:`.thermal_viscosity.log_viscosity`.
+        Of :func:`.laws.ln_viscosity`.
     """
-    pressure_law, thermal_law, eyring, limit = law.pressure_law, law.thermal_law, law.eyring, law.limit
+    eyring, limit = law.eyring, law.limit
     low, high = intercept / slope, np.inf
     t = low if heat == 0.0 else max(guess, low)
-    linear = thermal_law[0] < 2  # in T: the power of the pressure is taken once
+    linear = law.is_linear  # in T: the power of the pressure is taken once
     ln_eta, eta_p, eta_t = 0.0, 0.0, 0.0
     tau, by_ln_eta, twice, by_p = 0.0, 0.0, 0.0, 0.0
     change, last = 0.0, heat == 0.0
     for k in range(ITERATIONS):
         if k == 0 or not linear:
-            ln_eta, eta_p, eta_t = _log_viscosity(p, t, pressure_law, thermal_law)
+            ln_eta, eta_p, eta_t = ln_viscosity(law.viscosity, p, t)
         else:
             ln_eta += eta_t * change
         if heat > 0.0:
@@ -159,7 +159,7 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
     shear_heat : float
         Phi [W/m^2].
     viscosity : tuple of 3 floats
-        Of :func:`.thermal_viscosity.log_viscosity` at that temperature.
+        Of :func:`.laws.ln_viscosity` at that temperature.
     """
     pressure_factor = 1.0 + law.conductivity_pressure * p
     over_conductivity = 1.0 / (law.conductivity * pressure_factor * max(left, MIN_CONDUCTING_FRACTION))

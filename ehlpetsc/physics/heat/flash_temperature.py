@@ -3,7 +3,8 @@
 import numpy as np
 
 from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.rheology import viscosity, wall_shear
+from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.rheology import wall_shear
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 MAX_ISOTHERMAL_FLASH = 20.0  # K: above it a case should not be isothermal

@@ -3,11 +3,11 @@
 import numpy as np
 
 from ehlpetsc.compiled import inlined
-from ehlpetsc.physics.heat import thermal_viscosity
+from ehlpetsc.physics.rheology import limited_shear
 
 MAX_LN_SINH = 20.0  # above it the stress is linear in ln(eta) to 1e-17
 
-_limited = inlined(thermal_viscosity.limited_shear)
+_limited = inlined(limited_shear)
 
 
 @inlined
@@ -15,7 +15,7 @@ def shear_stress(ln_rate, ln_eta, p, eyring, limit):
     r"""Mean shear stress of the film :math:`\tau_m` [Pa].
 
     :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
-    Wang & Cusano 1987), limited by :func:`.thermal_viscosity.limited_shear`.
+    Wang & Cusano 1987), limited by :func:`.rheology.limited_shear`.
 
     Parameters
     ----------

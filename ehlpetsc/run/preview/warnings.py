@@ -4,6 +4,7 @@ import numpy as np
 
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.heat.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
+from ehlpetsc.physics.laws import LAWS
 from ehlpetsc.run.preview.domain import domain_warnings
 from ehlpetsc.surfaces.entry_times import entry_warnings
 from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
@@ -90,13 +91,10 @@ def magnitude_warnings(case, scales):
 
 def oil_warnings(fluid):
     """Warning of oil constants that the viscosity law does not use."""
-    unused = {"seed": ("roelands_z", "roelands_pressure"), "roelands": ("kappa", "chi")}
     if fluid is None:
         return []
-    names = unused.get(fluid.law, (*unused["seed"], *unused["roelands"]))
-    if fluid.law == "roelands" and fluid.chi and abs(fluid.roelands_pressure * fluid.chi - 1.0) < 1e-6:
-        return []  # derived from kappa and chi
-    keys = [f"fluid.{name}" for name in names if getattr(fluid, name) is not None]
+    others = {name for law in LAWS.values() for name in law.keys} - set(LAWS[fluid.law].keys)
+    keys = sorted(f"fluid.{name}" for name in others if getattr(fluid, name) is not None)
     return [f'{", ".join(keys)}: not used by law = "{fluid.law}"'] if keys else []
 
 

@@ -1,0 +1,340 @@
+r"""Laws of the oil: viscosity of pressure and temperature, density and conductivity of pressure.
+
+A law is one function of numbers or arrays in SI units, which carries complex arguments through, with its
+constants and the keys of `[fluid]` that it reads. A law is added by an entry in one of the tables, whose
+functions the compiled loops call by their position.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ehlpetsc.compiled import compiled, inlined
+from ehlpetsc.keys import Key, Refused
+
+SLOTS = 10  # constants that compiled loops get of any law
+KELVIN = 273.15  # K at 0 degrees Celsius
+STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
+BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05
+ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER = 0.0, 1.0, 2.0, 3.0  # temperature dependence of a power law
+ROELANDS_ZERO = 138.0  # K
+ROELANDS_PRESSURE = 1.96e8  # Pa
+ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
+WALTHER_SHIFT = 0.7  # mm^2/s
+
+Derivatives = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law of the oil.
+
+    Attributes
+    ----------
+    function
+        Value and derivatives of the state (p, T) or (p,) and of the constants.
+    constants
+        Of the function, from the tables `[fluid]` and `[heat]` of a case (None: isothermal); the first one
+        of a viscosity law is a factor of the logarithm.
+    keys
+        Of `[fluid]` that belong to this law.
+    complete
+        Values of keys that are left out; raises `Refused` where one is missing or impossible.
+    """
+
+    function: Callable[..., Derivatives]
+    constants: Callable[[Any, Any], tuple[float, ...]]
+    equation: str
+    keys: Mapping[str, Key] = field(default_factory=dict)
+    complete: Callable[[Any], Mapping[str, Any]] = lambda fluid: {}
+
+    def __call__(self, *arguments: Any) -> Derivatives:
+        """Value and derivatives of the state, by its constants, which may be padded."""
+        *state, constants = arguments
+        return self.function(*state, *constants[: n_constants(self.function, len(state))])
+
+
+class OilLaw(NamedTuple):
+    """A viscosity or density law with its constants, for compiled loops."""
+
+    kind: int
+    constants: tuple[float, ...]
+    temperature: float = STANDARD_TEMPERATURE  # at which `fluid.viscosity` holds [K]
+
+
+def n_constants(function: Callable[..., Derivatives], state: int) -> int:
+    """Number of constants of a law of `state` variables."""
+    return len(inspect.signature(function).parameters) - state
+
+
+def switched(laws: Mapping[str, Law], state: int) -> Callable[..., Derivatives]:
+    """Compiled function of (kind, p, constants) or (kind, p, T, constants) over all laws of a table."""
+    functions = [law.function for law in laws.values()]
+    call: Callable[..., Derivatives] | None = None
+    for kind in reversed(range(len(functions))):
+        call = _or_else(functions[kind], kind, call, state)
+    return call
+
+
+def _or_else(
+    function: Callable[..., Derivatives], kind: int, other: Callable[..., Derivatives] | None, state: int
+) -> Callable[..., Derivatives]:
+    count, law = n_constants(function, state), inlined(function, cache=False)
+    if other is None:
+
+        def call(k, at, c):
+            return law(*(at + c[:count]))
+
+    else:
+
+        def call(k, at, c):
+            if k == kind:
+                return law(*(at + c[:count]))
+            return other(k, at, c)
+
+    return inlined(call, cache=False)
+
+
+def padded(constants: tuple[float, ...]) -> tuple[float, ...]:
+    return (*map(float, constants), *[0.0] * (SLOTS - len(constants)))
+
+
+def reference_temperature(fluid: Any, heat: Any = None) -> float:
+    """Temperature at which `fluid.viscosity` holds [K]."""
+    given = getattr(fluid, "temperature", None)
+    if heat is None:
+        return given or STANDARD_TEMPERATURE
+    return heat.reference_temperature or given or heat.oil_inlet_temperature
+
+
+# ---- viscosity ----
+
+
+def power_law(
+    p: Any,
+    T: Any,
+    factor: float,
+    reference: float,
+    z: float,
+    thermal: float = ISOTHERMAL,
+    first: float = 0.0,
+    second: float = 0.0,
+    t0: float = STANDARD_TEMPERATURE,
+) -> Derivatives:
+    r""":math:`\ln(\eta/\eta_0)` of Barus, z = 1, and Roelands, :math:`c\,[P-1]`, :math:`P=(1+p/p_r)^z`.
+
+    With temperature, by `thermal`,
+
+    * exponential: :math:`c[P-1]-\beta(T-T_0)`;
+    * Roelands (1966): :math:`c\,[P\,\vartheta-1]`, :math:`\vartheta=((T-138)/(T_0-138))^{-S_0}`, T in K;
+    * Walther: :math:`c[P-1]+\ln\nu(T)-\ln\nu(T_0)`, see :func:`walther`.
+    """
+    if z == 1.0:  # the difference would lose digits
+        power, by_p, rise = 1.0 + p / reference, 1.0 / reference + 0.0 * p, p / reference
+    else:
+        base = 1.0 + p / reference
+        power = base**z
+        by_p, rise = z * power / (base * reference), power - 1.0
+    if thermal == ROELANDS:
+        theta = ((T - ROELANDS_ZERO) / (t0 - ROELANDS_ZERO)) ** (-first)
+        ln_eta = factor * (rise * theta + (theta - 1.0))
+        return ln_eta, factor * by_p * theta, -factor * power * theta * first / (T - ROELANDS_ZERO)
+    ln_eta, by_p, by_t = factor * rise, factor * by_p, 0.0 * T
+    if thermal == EXPONENTIAL:
+        return ln_eta - first * (T - t0), by_p, by_t - first
+    if thermal == WALTHER:
+        nu, slope = walther(T, first, second)
+        return ln_eta + np.log(nu) - np.log(walther(t0, first, second)[0]), by_p, slope
+    return ln_eta, by_p, by_t
+
+
+def temperature_constants(fluid: Any, heat: Any) -> tuple[float, float, float, float]:
+    """Last four constants of :func:`power_law`."""
+    reference = reference_temperature(fluid, heat)
+    if heat is None:
+        return ISOTHERMAL, 0.0, 0.0, reference
+    if heat.roelands_s0 is not None:
+        return ROELANDS, heat.roelands_s0, 0.0, reference
+    if heat.viscosity_temperature is None and getattr(fluid, "grade", None) is not None:
+        return WALTHER, *walther_constants(fluid.grade.v40, fluid.grade.v100), reference
+    beta = BETA if heat.viscosity_temperature is None else heat.viscosity_temperature
+    return EXPONENTIAL, beta, 0.0, reference
+
+
+def _barus(fluid: Any, heat: Any) -> tuple[float, ...]:
+    return fluid.pressure_viscosity, 1.0, 1.0, *temperature_constants(fluid, heat)
+
+
+def _roelands(fluid: Any, heat: Any) -> tuple[float, ...]:
+    pressure, z = fluid.roelands_pressure, fluid.roelands_z
+    factor = fluid.pressure_viscosity * pressure / z
+    return factor, pressure, z, *temperature_constants(fluid, heat)
+
+
+def _complete_roelands(fluid: Any) -> dict[str, float]:
+    """Exponent from the viscosity that the oil tends to under tension, by default Roelands' 6.315e-5 Pa s."""
+    pressure = fluid.roelands_pressure or ROELANDS_PRESSURE
+    if fluid.roelands_z is not None:
+        return {"roelands_pressure": pressure}
+    reference = fluid.reference_viscosity or ROELANDS_VISCOSITY
+    if fluid.reference_viscosity is not None and reference >= fluid.viscosity:
+        raise Refused("too large", "reference_viscosity")
+    decades = math.log(fluid.viscosity / reference)
+    z = fluid.pressure_viscosity * pressure / decades if decades > 0.0 else math.inf
+    if fluid.reference_viscosity is None and not 1e-3 <= z <= 2.0:
+        raise Refused(
+            f"roelands_z is missing, and by viscosity and pressure_viscosity it is {z:.3g}; allowed: "
+            "0.001 to 2 (viscosity in Pa s, pressure_viscosity in 1/Pa?)"
+        )
+    return {"roelands_z": z, "roelands_pressure": pressure}
+
+
+@compiled
+def walther(temperature: Any, a: float, b: float) -> Derivatives:
+    r"""Kinematic viscosity [mm^2/s], :math:`\lg\lg(\nu+0.7)=A-B\lg T` (ASTM D341), T in K; d ln(nu)/dT."""
+    exponent = 10.0 ** (a - b * np.log(temperature) / 2.302585092994046)
+    shifted = 10.0**exponent
+    nu = shifted - WALTHER_SHIFT
+    return nu, -shifted / nu * 2.302585092994046 * exponent * b / temperature
+
+
+def walther_constants(v40: float, v100: float) -> tuple[float, float]:
+    """A and B of :func:`walther` from the kinematic viscosities at 40 and 100 degrees Celsius [m^2/s]."""
+    low, high = (np.log10(np.log10(1e6 * v + WALTHER_SHIFT)) for v in (v40, v100))
+    cold, hot = np.log10(40.0 + KELVIN), np.log10(100.0 + KELVIN)
+    b = (low - high) / (hot - cold)
+    return low + b * cold, b
+
+
+def gold_pressure_viscosity(nu: float) -> float:
+    r"""Pressure-viscosity coefficient [1/Pa], :math:`\alpha=9.904\,\nu^{0.139}` /GPa, nu in mm^2/s.
+
+    Gold, Schmidt, Dicke, Loos & Assmann, J. Synth. Lubr. 18 (2001) 51, their constants for mineral oils.
+    """
+    return 9.904e-9 * nu**0.139
+
+
+LAWS = {
+    "barus": Law(power_law, _barus, "ln(eta/eta0) = alpha p"),
+    "roelands": Law(
+        power_law,
+        _roelands,
+        "ln(eta/eta0) = (alpha pr/z) ((1 + p/pr)^z - 1), z = alpha pr/ln(eta0/reference_viscosity)",
+        {
+            "roelands_pressure": Key("pr; left out: 1.96e8", unit="Pa", ge=1e6, le=1e10, default=None),
+            "roelands_z": Key("exponent z; left out: alpha pr/ln(eta0/reference_viscosity)", ge=1e-3, le=2),
+            "reference_viscosity": Key(
+                "below viscosity, sets the exponent; left out: 6.315e-5, Roelands' constant",
+                unit="Pa s",
+                ge=1e-9,
+                le=1,
+            ),
+        },
+        _complete_roelands,
+    ),
+}
+_ln_viscosity = switched(LAWS, 2)
+
+
+@inlined
+def ln_viscosity(law: tuple, p: float, T: float) -> Derivatives:
+    """ln(eta/eta0) at one state with its derivatives by p [1/Pa] and T [1/K]; law as of `viscosity_law`."""
+    return _ln_viscosity(law[0], (p, T), law[1])
+
+
+def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
+    """Viscosity law of a case; `fluid.exponent_factor` below 1 is that of a continuation."""
+    first, *others = LAWS[fluid.law].constants(fluid, heat)
+    first *= getattr(fluid, "exponent_factor", 1.0)
+    kind = list(LAWS).index(fluid.law)
+    return OilLaw(kind, padded((first, *others)), float(reference_temperature(fluid, heat)))
+
+
+def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tuple[np.ndarray, np.ndarray]:
+    """ln(eta/eta0), by default at the reference temperature, and its derivative by p [1/Pa]."""
+    law = viscosity_law(fluid, heat)
+    return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
+
+
+def is_linear_in_temperature(law: OilLaw) -> bool:
+    """Whether the logarithm of the viscosity is linear in temperature."""
+    function, rise = list(LAWS.values())[law.kind], 0.1 * law.temperature
+    (cold, _, slope), (hot, _, _) = (function(1e9, law.temperature + T, law.constants) for T in (0.0, rise))
+    return abs(hot - cold - rise * slope) <= 1e-9 * abs(hot - cold)
+
+
+# ---- density ----
+
+
+def compression(p: Any, gamma: float, lambda_: float) -> Derivatives:
+    r"""Density over its ambient value, :math:`(1+\gamma p)/(1+\lambda p)`, and its derivative."""
+    below = 1.0 + lambda_ * p
+    return (1.0 + gamma * p) / below, (gamma - lambda_) / (below * below)
+
+
+def incompressible(p: Any) -> Derivatives:
+    """Density 1 and derivative 0."""
+    return 1.0 + 0.0 * p, 0.0 * p
+
+
+# the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
+TEXTBOOKS = "the density 1 + 0.6e-9 p/(1 + 1.7e-9 p) of textbooks is gamma = 2.3e-9 and lambda = 1.7e-9"
+DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
+
+
+def _complete_density(fluid: Any) -> dict[str, float]:
+    values = {
+        name: default if getattr(fluid, name) is None else getattr(fluid, name)
+        for name, default in DENSITY.items()
+    }
+    if values["lambda_"] > values["gamma"]:  # the density would fall with pressure
+        raise Refused("too large", "lambda")
+    return values
+
+
+DENSITY_LAWS = {
+    "dowson-higginson": Law(
+        compression,
+        lambda fluid, heat: (fluid.gamma, fluid.lambda_),
+        "rho/rho0 = (1 + gamma p)/(1 + lambda p)",
+        {
+            "gamma": Key(f"{TEXTBOOKS}, the default", unit="1/Pa", ge=0, le=1e-6),
+            "lambda": Key(f"at most gamma; {TEXTBOOKS}, the defaults", unit="1/Pa", ge=0, le=1e-6),
+        },
+        _complete_density,
+    ),
+    "incompressible": Law(incompressible, lambda fluid, heat: (), "rho = rho0"),
+}
+_relative_density = switched(DENSITY_LAWS, 1)
+
+
+@inlined
+def relative_density(law: tuple, p: float) -> Derivatives:
+    """Density over its ambient value at one pressure, and its derivative [1/Pa]; law as of `density_law`."""
+    return _relative_density(law[0], (p,), law[1])
+
+
+def density_law(fluid: Any) -> OilLaw:
+    """Density law of a case."""
+    constants = DENSITY_LAWS[fluid.density].constants(fluid, None)
+    return OilLaw(list(DENSITY_LAWS).index(fluid.density), padded(constants))
+
+
+def density(p: np.ndarray, fluid: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Density over its ambient value under pressures [Pa], and its derivative [1/Pa]."""
+    return DENSITY_LAWS[fluid.density](p, density_law(fluid).constants)
+
+
+def completed(fluid: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of `[fluid]` with those that its laws complete."""
+    values = dict(fluid)
+    for laws, name in ((LAWS, "law"), (DENSITY_LAWS, "density")):
+        values |= laws[values[name]].complete(SimpleNamespace(**values))
+    return values
