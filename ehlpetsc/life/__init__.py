@@ -3,6 +3,9 @@
 >>> from ehlpetsc.life import run_life, read_life, run_regimes
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from importlib import import_module
 
 _HOMES = {
@@ -14,7 +17,7 @@ _HOMES = {
 __all__ = list(_HOMES)
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> Callable | None:
     """Import at first use: reading a life needs no solver."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

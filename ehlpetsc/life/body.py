@@ -1,12 +1,18 @@
 """A body over its life: wear, pits and damage in columns of cells below its surface."""
 
+from __future__ import annotations
+
 from bisect import bisect_left
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.life import laws
 from ehlpetsc.surfaces.body_field import BodyField
+
+if TYPE_CHECKING:
+    from ehlpetsc.life.jumps import Rates
+    from ehlpetsc.life.one_pass import OfBody
 
 
 class LifeBody(NamedTuple):
@@ -14,21 +20,21 @@ class LifeBody(NamedTuple):
 
     Attributes
     ----------
-    s : ndarray, shape (n,)
+    s : shape (n,)
         Middles of the columns over the body's abscissa, equally spaced [m].
-    edges : ndarray, shape (cells + 1,)
+    edges : shape (cells + 1,)
         Depths of the edges of the cells below the surface as made [m].
-    height : ndarray, shape (n,)
+    height : shape (n,)
         Of the surface as made [m].
-    wear, pit : ndarray, shape (n,)
+    wear, pit : shape (n,)
         Depths worn off and broken out [m].
-    damage : ndarray, shape (cells, n)
+    damage : shape (cells, n)
         Miner's sum; of cells that are gone that at their end.
-    failed : ndarray, shape (cells, n)
+    failed : shape (cells, n)
         Passes after which D reached 1; inf: it did not.
-    is_pitted : ndarray of bool, shape (n,)
+    is_pitted : shape (n,)
         Columns in which failed cells have reached the surface.
-    volume : float
+    volume
         Worn off since the first pass, beyond the columns too [m^2].
     wear_rate, damage_rate, volume_rate
         Of a pass at the begin of the last jump: [m] and 1, shapes (n,) and (cells, n), and [m^2].
@@ -48,57 +54,59 @@ class LifeBody(NamedTuple):
     volume_rate: float
 
     @classmethod
-    def new(cls, s, height, edges):
+    def new(cls, s: np.ndarray, height: np.ndarray, edges: np.ndarray) -> LifeBody:
         """Without wear and damage."""
         zero, cells = np.zeros(len(s)), np.zeros((len(edges) - 1, len(s)))
         never = np.full_like(cells, np.inf)
         return cls(s, edges, height, zero, zero, cells, never, zero > 0.0, 0.0, zero, cells, 0.0)
 
     @property
-    def recession(self):
+    def recession(self) -> np.ndarray:
         """Depth of the present surface below that as made [m], shape (n,)."""
         return self.wear + self.pit
 
     @property
-    def profile(self):
+    def profile(self) -> np.ndarray:
         """Present heights [m], shape (n,)."""
         return self.height - self.recession
 
     @property
-    def ra(self):
+    def ra(self) -> float:
         """Mean deviation of the present heights [m]."""
         return float(np.abs(self.profile - self.profile.mean()).mean())
 
     @property
-    def pitted_share(self):
+    def pitted_share(self) -> float:
         """Share of the columns that are pitted."""
         return float(self.is_pitted.mean())
 
     @property
-    def pits(self):
+    def pits(self) -> int:
         """Number of pits."""
         return laws.number_of_pits(self.is_pitted)
 
-    def broken_out_since(self, other):
+    def broken_out_since(self, other: LifeBody) -> int:
         """Number of columns that have broken out since another state of the body."""
         return int(np.count_nonzero(self.pit > other.pit))
 
     @property
-    def is_there(self):
+    def is_there(self) -> np.ndarray:
         """Cells that are not gone, shape (cells, n)."""
         return self.edges[1:, None] > self.recession
 
     @property
-    def largest_damage(self):
+    def largest_damage(self) -> float:
         """Of the cells that are not gone."""
         return float(np.max(self.damage, initial=0.0, where=self.is_there))
 
-    def columns_within(self, stretch):
+    def columns_within(self, stretch: tuple[float, float]) -> np.ndarray:
         """Columns within a stretch of the abscissa [m], with half a column either side."""
         slack = 0.25 * (self.s[1] - self.s[0])
         return (self.s >= stretch[0] - slack) & (self.s <= stretch[1] + slack)
 
-    def gap_field(self, stretch, reach, averaged=np.inf):
+    def gap_field(
+        self, stretch: tuple[float, float], reach: tuple[float, float], averaged: float = np.inf
+    ) -> BodyField:
         """Depth of the present surface for the solver; beyond the stretch its mean.
 
         The contact begins and ends on parts of the bodies that are not followed: they wear as the mean of
@@ -106,16 +114,12 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        stretch : (float, float)
+        stretch
             Abscissas that pass the whole contact [m].
-        reach : (float, float)
+        reach
             Abscissas that the mesh meets [m].
-        averaged : float
+        averaged
             Length at either end of the stretch of which the mean is taken [m]; by default all of it.
-
-        Returns
-        -------
-        surfaces.body_field.BodyField
         """
         width, met = self.s[1] - self.s[0], self.columns_within(stretch)
         depth = self.recession[met]
@@ -128,18 +132,13 @@ class LifeBody(NamedTuple):
         faces = first + width * (np.arange(len(depth) + 1) - before - 0.5)
         return BodyField.zero(width).add(faces, depth)
 
-    def faces(self):
+    def faces(self) -> np.ndarray:
         """Faces of the columns [m], shape (n + 1,)."""
         width = self.s[1] - self.s[0]
         return np.append(self.s - 0.5 * width, self.s[-1] + 0.5 * width)
 
-    def rates(self, of_pass):
-        """Wear [m] and damage, shapes (n,) and (cells, n), that a pass adds to every column.
-
-        Parameters
-        ----------
-        of_pass : one_pass.OfBody
-        """
+    def rates(self, of_pass: OfBody) -> tuple[np.ndarray, np.ndarray]:
+        """Wear [m] and damage, shapes (n,) and (cells, n), that a pass adds to every column."""
         met = self.columns_within((of_pass.s[0], of_pass.s[-1]))
         worn = np.diff([field.means(self.faces()) for field in of_pass.depth], axis=0)[0]
         wear = np.where(met, np.maximum(worn, 0.0), 0.0)
@@ -150,7 +149,7 @@ class LifeBody(NamedTuple):
         depths = laws.cell_depths(self.edges, self.recession)
         return wear, laws.damage_at(of_pass.depths, columns, depths)
 
-    def damage_ahead(self, wear, added):
+    def damage_ahead(self, wear: np.ndarray, added: np.ndarray) -> float:
         """Largest damage that a cell will have when wear has brought the surface down to it.
 
         Of a cell at the depth z its damage so far and the integral of D over the depths to come, over the
@@ -158,7 +157,7 @@ class LifeBody(NamedTuple):
 
         Parameters
         ----------
-        wear, added : ndarray
+        wear, added
             As of `rates`.
         """
         tops = np.maximum(self.edges[:-1, None], self.recession)
@@ -167,31 +166,25 @@ class LifeBody(NamedTuple):
             to_come = np.nan_to_num(np.cumsum(added * thickness, axis=0) / wear.mean(), posinf=np.inf)
         return float(np.max(self.damage + to_come, initial=0.0, where=self.is_there))
 
-    def passes_to(self, rates, wear, damage):
-        """Passes after which a column has worn by a depth [m], or an intact cell has got so much damage.
-
-        Parameters
-        ----------
-        rates : jumps.Rates
-        wear, damage : float
-        """
+    def passes_to(self, rates: Rates, wear: float, damage: float) -> float:
+        """Passes after which a column has worn by a depth [m], or an intact cell has got so much damage."""
         intact = self.is_there & (self.damage < 1.0)
         reached = rates.passes_to_damage(damage)
         return min(rates.passes_to_wear(wear).min(), np.min(reached, initial=np.inf, where=intact))
 
-    def passes_to_break_out(self, rates, max_passes):
+    def passes_to_break_out(self, rates: Rates, max_passes: int, rule: str) -> int:
         """Passes after which the first cells break out, `max_passes` where none do before.
 
         Parameters
         ----------
-        rates : jumps.Rates
-        max_passes : int
+        rule
+            As of :func:`.laws.broken_out`.
         """
 
-        def breaks(passes):
+        def breaks(passes: float) -> bool:
             wear, added, _ = rates.after(passes)
-            recession = self.recession + wear
-            return bool((laws.broken_out(self.damage + added, self.edges, recession) > recession).any())
+            recession, damage = self.recession + wear, self.damage + added
+            return bool((laws.broken_out(damage, self.edges, recession, rule) > recession).any())
 
         if not breaks(max_passes):
             return max_passes
@@ -202,16 +195,15 @@ class LifeBody(NamedTuple):
         times = np.unique(np.append(times[times < max_passes], max_passes))
         return int(times[bisect_left(times, True, hi=len(times) - 1, key=breaks)])
 
-    def after(self, rates, passes, done, breaks):
+    def after(self, rates: Rates, passes: int, done: int, rule: str) -> LifeBody:
         """The body after a jump.
 
         Parameters
         ----------
-        rates : jumps.Rates
-        passes, done : int
+        passes, done
             Passes of the jump, and before it.
-        breaks : bool
-            Whether failed cells break out; else they are counted.
+        rule
+            As of :func:`.laws.broken_out`; "none": failed cells at the surface are counted and remain.
         """
         wear, added, volume = rates.after(passes)
         fails = (self.damage < 1.0) & (self.damage + added >= 1.0)
@@ -225,7 +217,8 @@ class LifeBody(NamedTuple):
             damage_rate=rates.damage,
             volume_rate=rates.volume,
         )
-        bottom = laws.broken_out(body.damage, body.edges, body.recession)
+        breaks = rule != "none"
+        bottom = laws.broken_out(body.damage, body.edges, body.recession, rule if breaks else "connected")
         is_new = bottom > body.recession
         pit = bottom - body.wear if breaks else body.pit
         return body._replace(is_pitted=body.is_pitted | is_new, pit=np.where(is_new, pit, body.pit))

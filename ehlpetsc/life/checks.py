@@ -1,6 +1,10 @@
 """Checks of a life's case and files, before anything is computed."""
 
+from __future__ import annotations
+
 import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import h5py
 
@@ -12,12 +16,18 @@ from ehlpetsc.results.hdf5.opening import open_for_reading
 from ehlpetsc.surfaces.mesh_resolution import needed_points
 from ehlpetsc.surfaces.profile import WAVE_NODES
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.roughness import Roughness
+
+
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
 ENDS = ("passes", "max_solved")  # keys of [life] that may change between calls
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
 
 
-def check_case(case):
+def check_case(case: Case) -> None:
     """Check that a case has a life; CaseError."""
     faults = []
     if case.life is None:
@@ -36,19 +46,18 @@ def check_case(case):
         raise CaseError([f"{case.path}: {fault}" for fault in faults])
 
 
-def pass_file(path, position, positions):
+def pass_file(path: Path, position: int, positions: int) -> Path:
     """Result of the last solved pass in a position of surface 2, in the folder of the life `path`."""
     return path.with_suffix(".pass.h5" if positions == 1 else f".pass{position + 1}.h5")
 
 
-def check_files(path, case):
+def check_files(path: Path, case: Case) -> None:
     """Refuse to overwrite an input, a file that is not a life, or a result that is not a pass of a life.
 
     Parameters
     ----------
-    path : Path
+    path
         The life.
-    case : case.loading.Case
 
     Raises
     ------
@@ -65,7 +74,7 @@ def check_files(path, case):
             raise OutputError(f"{one_pass}: exists and is not a pass of a life; remove it or give another -o")
 
 
-def _is_pass(path):
+def _is_pass(path: Path) -> bool:
     """Whether a file is the result of a pass of a life, or an HDF5 file damaged by a killed run."""
     try:
         with open_for_reading(path) as file:
@@ -76,7 +85,7 @@ def _is_pass(path):
         return False
 
 
-def _tables_of_surfaces(text):
+def _tables_of_surfaces(text: str) -> dict:
     """Tables of a case on which its surfaces depend: without the title and the end of the life."""
     tables = tomllib.loads(text)
     tables.pop("title", None)
@@ -84,14 +93,12 @@ def _tables_of_surfaces(text):
     return tables
 
 
-def check_resolution(roughness, scales, path):
+def check_resolution(roughness: Roughness | None, scales: Scales, path: str | Path) -> None:
     """Refuse a life on a mesh that does not carry the profiles: its figures would be those of the mesh.
 
     Parameters
     ----------
-    roughness : surfaces.roughness.Roughness or None
-    scales : physics.scales.Scales
-    path : path-like
+    path
         Of the case, for the message.
 
     Raises
@@ -113,7 +120,7 @@ def check_resolution(roughness, scales, path):
         raise CaseError(faults)
 
 
-def stored_or_new(case, path, overwrite, after):
+def stored_or_new(case: Case, path: Path, overwrite: bool, after: int | None) -> LifeHistory:
     """Life stored at `path`, up to the row `after` if given, or a new life.
 
     Raises

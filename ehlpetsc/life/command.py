@@ -7,14 +7,21 @@ continues a life. A case with [series] runs a life for each member and writes th
 position of surface 2, or a life.
 """
 
+from __future__ import annotations
+
 import sys
+from argparse import Namespace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import UsageError
 
+if TYPE_CHECKING:
+    from ehlpetsc.errors import ExitStatus
 
-def arguments():
+
+def arguments() -> CommandParser:
     """The command line."""
     parser = CommandParser("ehlpetsc.life", __doc__)
     parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 or its index to draw")
@@ -36,13 +43,13 @@ def arguments():
     return parser
 
 
-def main(argv=None):
+def main(argv: list[str] | None = None) -> ExitStatus:
     """Run the command; returns its exit status."""
     chosen = arguments().parse_args(argv)
     return exit_status("ehlpetsc.life", lambda: _run(chosen), (ImportError,))
 
 
-def _run(chosen):
+def _run(chosen: Namespace) -> None:
     """Run a life or a series of them, where a case is given; draw it on the first rank."""
     path, is_root = Path(chosen.case), True
     if path.suffix not in (".h5", ".json"):
@@ -53,7 +60,7 @@ def _run(chosen):
         (_draw_regimes if path.suffix == ".json" else _draw)(chosen, path)
 
 
-def _draw(chosen, path):
+def _draw(chosen: Namespace, path: Path) -> None:
     from ehlpetsc.life.history import read_life
     from ehlpetsc.life.pictures.life_picture import draw
 
@@ -67,7 +74,7 @@ def _draw(chosen, path):
         print(chosen.movie)
 
 
-def _draw_regimes(chosen, path):
+def _draw_regimes(chosen: Namespace, path: Path) -> None:
     from ehlpetsc.life.pictures.regimes_picture import draw_regimes, read_index
 
     target = path.with_suffix(".png")
@@ -75,7 +82,7 @@ def _draw_regimes(chosen, path):
     print(target)
 
 
-def _pictures(chosen, path, inputs):
+def _pictures(chosen: Namespace, path: Path, inputs: list[Path]) -> None:
     """Check the paths of the pictures of a life or an index."""
     from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PICTURE_SIGNATURES, check_derived
 
@@ -86,7 +93,7 @@ def _pictures(chosen, path, inputs):
             raise UsageError(f"--movie {chosen.movie}: of a life; allowed with a series: left out")
 
 
-def _run_lives(chosen):
+def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
     """Run a life or a series of lives; returns its file or index, and whether this is the first rank."""
     from ehlpetsc.api import need_solver
     from ehlpetsc.case.loading import load
@@ -109,7 +116,7 @@ def _run_lives(chosen):
     if case.series and chosen.after:
         raise UsageError(f"--after {chosen.after}: of a life; allowed with a series: left out")
 
-    def show(text):
+    def show(text: str) -> None:
         if is_root:
             print(text, flush=True)
 

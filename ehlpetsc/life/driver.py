@@ -1,8 +1,12 @@
 """Life of two surfaces: solve a round, jump the passes like it, update the surfaces, repeat."""
 
+from __future__ import annotations
+
 import time as clock
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.errors import NotConverged
@@ -12,18 +16,28 @@ from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.positions import Positions
 from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from ehlpetsc.effects.effect import Scene
+    from ehlpetsc.effects.plastic_deformation import PlasticRecord
+    from ehlpetsc.life.body import LifeBody
+    from ehlpetsc.life.history import LifeHistory
+    from ehlpetsc.life.one_pass import Pass
+    from ehlpetsc.life.rounds import Round
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.run.stop import StopRequest
+
+
 PACE_WEIGHT = 0.5  # of the last round in the mean time of a round
 
 
-def opening_line(case, scales, scene, positions):
+def opening_line(case: Case, scales: Scales, scene: Scene, positions: int) -> str:
     """Line before the first round: passes of a round, steps and expected run time of a pass.
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    scene : effects.effect.Scene
-    positions : int
+    positions
         Of surface 2.
     """
     from ehlpetsc.run.preview import forecast
@@ -39,22 +53,21 @@ class Progress:
 
     Parameters
     ----------
-    passes : int
+    passes
         Of the life.
     """
 
-    def __init__(self, passes):
+    def __init__(self, passes: int) -> None:
         self.passes, self._pace, self._rounds = passes, 0.0, 0
 
-    def line(self, history, seconds, remaining):
+    def line(self, history: LifeHistory, seconds: float, remaining: tuple[int, int]) -> str:
         """Line of the last row.
 
         Parameters
         ----------
-        history : history.LifeHistory
-        seconds : float
+        seconds
             Wall clock time of its round.
-        remaining : (int, int)
+        remaining
             Least and largest number of rounds expected, as of `jumps.Jumps.expected_rounds`.
         """
         # the first round also loads compiled code
@@ -76,49 +89,44 @@ class Progress:
         return "; ".join(shown)
 
 
-def _time(seconds):
+def _time(seconds: float) -> str:
     if seconds < 90.0:
         return f"{seconds:.0f} s" if seconds >= 10.0 else f"{seconds:.1f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def run_life(
-    case,
-    output=None,
+    case: Case | Path,
+    output: str | Path | None = None,
     *,
-    overwrite=False,
-    after=None,
-    unresolved=False,
-    comm=None,
-    show=None,
-    stop=None,
-    most=None,
-):
+    overwrite: bool = False,
+    after: int | None = None,
+    unresolved: bool = False,
+    comm: MPI.Comm | None = None,
+    show: Callable | None = None,
+    stop: StopRequest | None = None,
+    most: int | None = None,
+) -> LifeHistory:
     """Run the life of a case's surfaces, or continue it.
 
     Parameters
     ----------
-    case : case.loading.Case, or an argument of `ehlpetsc.load`
+    case
         With a table [life].
-    output : path-like, optional
+    output
         By default ``CASE.life.h5`` in the current folder. An existing life of the same case is continued.
-    overwrite : bool
+    overwrite
         Whether to start again and replace an existing file.
-    after : int, optional
+    after
         Row of the life, from 1, after which to continue; later rows are dropped. By default the last.
-    unresolved : bool
+    unresolved
         Whether to run also on a mesh that does not resolve the profiles.
-    comm : mpi4py communicator, optional
+    comm
         Its ranks share each round: a pass each, or all of them a single pass.
-    show : callable(str), optional
+    show
         Receives a line before the first round and after each.
-    stop : run.stop.StopRequest, optional
-    most : int, optional
+    most
         Number of rounds to solve in this call.
-
-    Returns
-    -------
-    history.LifeHistory
 
     Raises
     ------
@@ -148,7 +156,9 @@ def run_life(
 
 
 class _Life:
-    def __init__(self, case, path, comm, history, show, unresolved):
+    def __init__(
+        self, case: Case, path: Path, comm: MPI.Comm, history: LifeHistory, show: Callable, unresolved: bool
+    ) -> None:
         from ehlpetsc.life.rounds import Ranks
         from ehlpetsc.physics.scales import Scales
         from ehlpetsc.physics.variable_operation import operation_of
@@ -165,7 +175,7 @@ class _Life:
         if not unresolved:
             check_resolution(self._scene.roughness, self.scales, case.path)
 
-    def run(self, stop, max_rounds):
+    def run(self, stop: StopRequest | None, max_rounds: int | None) -> LifeHistory:
         """Solve rounds until the end of the life."""
         status = "stopped"
         try:
@@ -180,7 +190,7 @@ class _Life:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
         return self.history
 
-    def _run(self, stop, max_rounds):
+    def _run(self, stop: StopRequest | None, max_rounds: int | None) -> None:
         progress, rounds = Progress(self.jumps.passes), 0
         if not self.history.rows:
             for line in mesh_warnings(self._scene.roughness, self.scales):
@@ -196,17 +206,17 @@ class _Life:
             rounds += 1
 
     @property
-    def _is_living(self):
+    def _is_living(self) -> bool:
         return self.history.done < self.jumps.passes and self.history.solved < self.case.life.max_solved
 
-    def _solve(self, stop):
+    def _solve(self, stop: StopRequest | None) -> Round:
         """The next round."""
         from ehlpetsc.life.rounds import Round
 
         solve = partial(self._solve_pass, self._plastic())
         return Round(self.ranks.solve(self._next_positions(), solve, stop), self.positions.passes_2)
 
-    def _next_positions(self):
+    def _next_positions(self) -> list[int]:
         """Positions of the next round: a single one while passes yield, as each changes the next."""
         count, rows = self.positions.count, self.history.rows
         yields = self.case.contact.yield_pressure is not None
@@ -214,16 +224,18 @@ class _Life:
             return [self.history.solved % count]
         return list(range(count))
 
-    def _solve_pass(self, plastic, position, comm, stop):
+    def _solve_pass(
+        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: StopRequest | None
+    ) -> Pass:
         from ehlpetsc.life.one_pass import run_pass, start
 
         records = {}
         if self.history.rows:
             records = self.positions.records(self.history.bodies[-1], position, plastic)
-        simulation = start(self.case, comm, self.scales, position, records)
+        simulation = start(self.case, comm, position, records)
         return run_pass(simulation, records, pass_file(self.path, position, self.positions.count), stop)
 
-    def _plastic(self):
+    def _plastic(self) -> PlasticRecord | None:
         """Record of the plastic deformation after the last row; None without."""
         from ehlpetsc.effects.effect import unflat
         from ehlpetsc.effects.plastic_deformation import PlasticRecord
@@ -231,7 +243,7 @@ class _Life:
         fields = self.history.plastic[-1] if self.history.rows else None
         return unflat(PlasticRecord, fields, "plastic_deformation") if fields else None
 
-    def _jump(self, solved_round, bodies):
+    def _jump(self, solved_round: Round, bodies: tuple[LifeBody, LifeBody]) -> None:
         """Jump with the rates of a solved round, and store the row."""
         from ehlpetsc.effects.effect import flat
         from ehlpetsc.run.on_root import on_root
@@ -255,7 +267,7 @@ class _Life:
         self.history.add(row, after, plastic)
         on_root(self.comm, self.file.store, self.history)
 
-    def _smooth_since(self, solved_round):
+    def _smooth_since(self, solved_round: Round) -> int:
         """Passes of the last jump; 0 if the rates were discontinuous in it."""
         if not self.history.rows:
             return 0

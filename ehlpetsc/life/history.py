@@ -5,8 +5,12 @@ thus commits the row: a killed run loses only the round in progress. A continued
 its last complete row.
 """
 
+from __future__ import annotations
+
 import contextlib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +20,10 @@ from ehlpetsc.results.atomic_write import os_reason, replacing
 from ehlpetsc.results.hdf5.attributes import plain, put
 from ehlpetsc.results.hdf5.datasets import close, create, extend, room
 from ehlpetsc.results.hdf5.opening import open_for_reading
+
+if TYPE_CHECKING:
+    import h5py
+
 
 BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
@@ -27,28 +35,19 @@ ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
 
 
 class LifeFile:
-    """File of a life that grows; created with its first row.
+    """File of a life that grows; created with its first row."""
 
-    Parameters
-    ----------
-    path : Path
-    """
-
-    def __init__(self, path):
+    def __init__(self, path: Path) -> None:
         self.path, self._file = path, None
 
-    def __enter__(self):
+    def __enter__(self) -> LifeFile:
         return self
 
-    def __exit__(self, kind, *_):
+    def __exit__(self, kind: type | None, *_: Any) -> None:
         self.close("stopped" if kind else "done")
 
-    def store(self, history):
+    def store(self, history: LifeHistory) -> None:
         """Append the last row of a life, or write all rows if the file is not open yet.
-
-        Parameters
-        ----------
-        history : history.LifeHistory
 
         Raises
         ------
@@ -62,12 +61,12 @@ class LifeFile:
         except (OSError, RuntimeError) as error:
             raise OutputError(f"{self.path}: not written, {os_reason(error)}") from error
 
-    def close(self, status):
+    def close(self, status: str) -> None:
         """Store the final status and close the file.
 
         Parameters
         ----------
-        status : str
+        status
             "done", "stopped", "not converged".
         """
         if self._file:
@@ -75,7 +74,7 @@ class LifeFile:
                 close(self._file, status)
         self._file = None
 
-    def _create(self, history):
+    def _create(self, history: LifeHistory) -> None:
         with replacing(self.path) as temporary:
             file = self._file = create(temporary)
             with room(file, 0):
@@ -86,7 +85,7 @@ class LifeFile:
             file.swmr_mode = True
             file.flush()
 
-    def _append(self, history, numbers):
+    def _append(self, history: LifeHistory, numbers: list[int] | range) -> None:
         for number in numbers:
             values = dict(_values_of(history, number))
             commit = values.pop(f"figures/{COMMIT_DATASET}")
@@ -97,7 +96,7 @@ class LifeFile:
                 extend(self._file[f"figures/{COMMIT_DATASET}"], commit)
 
 
-def _values_of(history, number):
+def _values_of(history: LifeHistory, number: int) -> Iterator:
     """Names of the datasets and the values that a row appends to each."""
     for name, value in history.rows[number].items():
         yield f"figures/{name}", np.array([value])
@@ -109,7 +108,7 @@ def _values_of(history, number):
         yield f"lengths/{name}", np.array([np.size(value)])
 
 
-def _lay_out(file, history):
+def _lay_out(file: h5py.File, history: LifeHistory) -> None:
     for name, value in _values_of(history, 0):
         shape = value.shape[1:]
         rows = CHUNK if name.startswith("records/") else ROWS  # of which a row adds many
@@ -132,70 +131,61 @@ class LifeHistory:
 
     Attributes
     ----------
-    case : str
+    case
         Its text.
-    title : str
-    rows : list of dict
+    rows
         Figures of each round: "passes" done after its jump, "jump", "solved" passes of it, "pits_1", "ra_1",
         "friction" ...
-    bodies : list of pair of LifeBody
+    bodies
         After each jump.
-    plastic : list of dict
+    plastic
         Record of the plastic deformation after each jump, flat; empty without.
     """
 
-    def __init__(self, case, title):
+    def __init__(self, case: str, title: str) -> None:
         self.case, self.title = case, title
         self.rows, self.bodies, self.plastic = [], [], []
 
     @property
-    def done(self):
+    def done(self) -> int:
         """Passes done."""
         return int(self.rows[-1]["passes"]) if self.rows else 0
 
     @property
-    def solved(self):
+    def solved(self) -> int:
         """Passes solved."""
         return sum(row["solved"] for row in self.rows)
 
     @property
-    def first_failure(self):
+    def first_failure(self) -> float:
         """Passes after which the first cell failed; inf: none did."""
         return min(float(body.failed.min()) for body in self.bodies[-1])
 
-    def __call__(self, name):
+    def __call__(self, name: str) -> np.ndarray:
         """Values of a figure in all rows, shape (rows,)."""
         return np.array([row[name] for row in self.rows])
 
-    def add(self, row, bodies, plastic):
+    def add(self, row: dict, bodies: tuple[LifeBody, LifeBody], plastic: dict[str, np.ndarray]) -> None:
         """Append a solved round."""
         self.rows.append(row)
         self.bodies.append(bodies)
         self.plastic.append(plastic)
 
-    def up_to(self, count):
+    def up_to(self, count: int) -> LifeHistory:
         """Copy of the life up to a row."""
         life = LifeHistory(self.case, self.title)
         for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
             life.add(*values)
         return life
 
-    def save(self, path):
+    def save(self, path: Path) -> None:
         """Write all rows to `path`, replacing it; OutputError."""
         with LifeFile(Path(path)) as file:
             file.store(self)
 
 
-def read_life(path):
+def read_life(path: str | Path) -> LifeHistory:
     """Read a stored life, also while it is being written.
-
-    Parameters
-    ----------
-    path : path-like
-
-    Returns
-    -------
-    LifeHistory
 
     Raises
     ------
@@ -215,7 +205,7 @@ def read_life(path):
             raise OutputError(f"{path}: damaged ({error})") from error
 
 
-def _read(file):
+def _read(file: h5py.File) -> LifeHistory:
     life = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]))
     count = len(file[f"figures/{COMMIT_DATASET}"])
     figures = {name: dataset[:count] for name, dataset in file["figures"].items()}
@@ -236,7 +226,7 @@ def _read(file):
     return life
 
 
-def _records(file, name, count):
+def _records(file: h5py.File, name: str, count: int) -> list:
     """Values of a record's field in each row, of different lengths."""
     dataset, lengths = file[f"records/{name}"], file[f"lengths/{name}"][:count]
     ends = np.cumsum(lengths)

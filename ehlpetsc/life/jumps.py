@@ -9,11 +9,19 @@ they are extrapolated linearly from the last two rounds,
 break-out, and in the first jump of all, rates are constant.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.life import laws
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.post import Life
+    from ehlpetsc.life.body import LifeBody
+    from ehlpetsc.life.rounds import Round
+
 
 MAX_EXTRAPOLATION = 2.0  # length of a jump over the previous one, up to which rates are extrapolated
 
@@ -23,12 +31,12 @@ class Rates(NamedTuple):
 
     Attributes
     ----------
-    wear : ndarray, shape (n,)
+    wear : shape (n,)
         [m].
-    damage : ndarray, shape (cells, n)
-    volume : float
+    damage : shape (cells, n)
+    volume
         Worn off [m^2].
-    slopes : tuple of (ndarray, ndarray, float)
+    slopes
         Changes of the three per pass; by default none.
     """
 
@@ -37,16 +45,16 @@ class Rates(NamedTuple):
     volume: float
     slopes: tuple = (0.0, 0.0, 0.0)
 
-    def continued(self, before, passes):
+    def continued(self, before: tuple[np.ndarray, np.ndarray, float], passes: int) -> Rates:
         """Rates with the slopes since a previous round.
 
         No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes.
 
         Parameters
         ----------
-        before : (ndarray, ndarray, float)
+        before
             Rates of that round.
-        passes : int
+        passes
             Since it.
         """
         slopes = []
@@ -55,26 +63,26 @@ class Rates(NamedTuple):
             slopes.append(np.clip((new - old) / passes, -bound, bound))
         return self._replace(slopes=tuple(slopes))
 
-    def without(self, columns):
+    def without(self, columns: np.ndarray) -> Rates:
         """Rates without damage in some columns.
 
         Parameters
         ----------
-        columns : ndarray of bool, shape (n,)
+        columns : shape (n,)
         """
         return self._replace(damage=np.where(columns, 0.0, self.damage))
 
-    def after(self, passes):
+    def after(self, passes: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Wear [m], damage and worn volume [m^2] of a number of passes."""
         return tuple(
             laws.sum_over(passes, rate, slope) for rate, slope in zip(self[:3], self.slopes, strict=True)
         )
 
-    def passes_to_wear(self, depth):
+    def passes_to_wear(self, depth: float | np.ndarray) -> np.ndarray:
         """Passes after which a depth of wear is reached [m], shape (n,)."""
         return laws.passes_to(depth, self.wear, self.slopes[0])
 
-    def passes_to_damage(self, damage):
+    def passes_to_damage(self, damage: float | np.ndarray) -> np.ndarray:
         """Passes after which an amount of damage is added, shape (cells, n)."""
         return laws.passes_to(damage, self.damage, self.slopes[1])
 
@@ -88,37 +96,34 @@ class Jumps:
 
     Parameters
     ----------
-    life : case.tables.post.Life
-    rq : float
+    rq
         Combined root mean square roughness [m].
     """
 
-    def __init__(self, life, rq):
+    def __init__(self, life: Life, rq: float) -> None:
         self.life, self.passes = life, int(life.passes)
         self.wear_allowed = life.wear_jump * rq
 
-    def is_yielding(self, yielded):
+    def is_yielding(self, yielded: float) -> bool:
         """Whether a pass yields more [m] than a jump may wear: plastic deformation is not multiplied."""
         return yielded > self.wear_allowed
 
-    def jump(self, bodies, solved_round, done, before=0):
+    def jump(
+        self, bodies: tuple[LifeBody, LifeBody], solved_round: Round, done: int, before: int = 0
+    ) -> tuple[tuple[LifeBody, LifeBody], int, tuple[Rates, Rates]]:
         """Jump with the rates of a solved round, up to the allowed wear or damage or the next break-out.
 
         Parameters
         ----------
-        bodies : pair of body.LifeBody
-        solved_round : rounds.Round
-        done : int
+        done
             Passes before it.
-        before : int
+        before
             Passes of the previous jump if the rates are continuous since; else 0.
 
         Returns
         -------
-        bodies : pair of body.LifeBody
-        jump : int
+        jump
             Passes of the jump, including the solved ones.
-        rates : pair of jumps.Rates
         """
         rates, max_passes = solved_round.rates(bodies), self.passes - done
         if before:
@@ -130,45 +135,47 @@ class Jumps:
         jump = self._allowed(bodies, rates, solved_round, max_passes)
         return self._bodies_after(bodies, rates, jump, done), jump, rates
 
-    def _bodies_after(self, bodies, rates, jump, done):
+    def _bodies_after(
+        self, bodies: tuple[LifeBody, LifeBody], rates: tuple[Rates, Rates], jump: int, done: int
+    ) -> tuple[LifeBody, LifeBody]:
         return tuple(
-            body.after(rate, jump, done, self.life.pits) for body, rate in zip(bodies, rates, strict=True)
+            body.after(rate, jump, done, self.life.break_out)
+            for body, rate in zip(bodies, rates, strict=True)
         )
 
-    def _allowed(self, bodies, rates, solved_round, left):
+    def _allowed(
+        self, bodies: tuple[LifeBody, LifeBody], rates: tuple[Rates, Rates], solved_round: Round, left: int
+    ) -> int:
         """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
         passes = 1 if self.is_yielding(solved_round.yielded) else left
         for body, rate in zip(bodies, rates, strict=True):
             passes = min(passes, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
         passes = max(int(passes), 1)
-        if self.life.pits:
+        if self.life.break_out != "none":
             late = min(left, int(BREAK_OUT_DELAY * passes))
-            ends = min(body.passes_to_break_out(rate, late) for body, rate in zip(bodies, rates, strict=True))
+            ends = min(
+                body.passes_to_break_out(rate, late, self.life.break_out)
+                for body, rate in zip(bodies, rates, strict=True)
+            )
             passes = ends if ends < late else passes
         return min(left, max(passes, len(solved_round.passes)))
 
-    def expected_rounds(self, bodies, solved_round, done):
+    def expected_rounds(
+        self, bodies: tuple[LifeBody, LifeBody], solved_round: Round, done: int
+    ) -> tuple[int, int]:
         """Least and largest expected number of rounds until the end of the life, at the rates of this one.
 
         In one count columns that break out carry no load, in the other they carry as before: a pit unloads
         its own column and loads the neighbours.
-
-        Parameters
-        ----------
-        bodies : pair of body.LifeBody
-        solved_round : rounds.Round
-        done : int
-
-        Returns
-        -------
-        (int, int)
         """
         counts = [
             self._rounds_to_come(bodies, solved_round, done, are_relieved) for are_relieved in (True, False)
         ]
         return min(counts), max(counts)
 
-    def _rounds_to_come(self, bodies, solved_round, done, are_relieved):
+    def _rounds_to_come(
+        self, bodies: tuple[LifeBody, LifeBody], solved_round: Round, done: int, are_relieved: bool
+    ) -> int:
         rounds, jump, begin = 0, 1, bodies
         while done < self.passes and rounds < MAX_LOOKAHEAD:
             rates = solved_round.rates(bodies)

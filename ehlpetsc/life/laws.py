@@ -6,6 +6,8 @@ pits lower the surface of a column to the depth r; a cell at Z is then at the de
 the cells in which damage accumulates (Morales-Espejel and Brizmer, Tribology Transactions 54 (2011) 625).
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 FINE_CELLS = 12  # cells of equal thickness below the surface as made
@@ -14,19 +16,19 @@ CELL_GROWTH = 1.25  # of the thickness of the cells below them
 WEAKENED_DAMAGE = 0.95  # damage from which cells break out with a failed one
 
 
-def sum_over(passes, rate, slope):
+def sum_over(passes: float, rate: float | np.ndarray, slope: float) -> float | np.ndarray:
     """Sum over passes of a rate that changes by `slope` from pass to pass."""
     return passes * rate + 0.5 * passes**2 * slope
 
 
-def passes_to(amount, rate, slope):
+def passes_to(amount: float | np.ndarray, rate: float | np.ndarray, slope: float | np.ndarray) -> np.ndarray:
     r"""Number of passes after which the sum of a changing rate has an amount; inf: never.
 
     .. math:: t=\frac{2c}{f\,(1+\sqrt{1+2sc/f^2})}\quad\text{of}\quad c = ft+\tfrac12st^2
 
     Parameters
     ----------
-    amount, rate, slope : float or ndarray
+    amount, rate, slope
         c > 0, f >= 0 and s.
     """
     positive = np.where(np.asarray(rate) > 0.0, rate, 1.0)
@@ -36,14 +38,14 @@ def passes_to(amount, rate, slope):
     return np.where((np.asarray(rate) > 0.0) & (root >= 0.0), passes, np.inf)
 
 
-def cell_edges(thickness, deepest):
+def cell_edges(thickness: float, deepest: float) -> np.ndarray:
     """Depths of the edges of the cells of a column [m]: equal ones at the surface, growing below.
 
     Parameters
     ----------
-    thickness : float
+    thickness
         Of the first cells [m].
-    deepest : float
+    deepest
         Depth that they reach at least [m].
     """
     edges = [0.0]
@@ -53,36 +55,35 @@ def cell_edges(thickness, deepest):
     return np.array(edges)
 
 
-def cell_depths(edges, recession):
+def cell_depths(edges: np.ndarray, recession: np.ndarray) -> np.ndarray:
     """Depths of the centres of cells below the present surface [m]; nan where a cell is gone.
 
     Parameters
     ----------
-    edges : ndarray, shape (cells + 1,)
-    recession : ndarray, shape (columns,)
+    edges : shape (cells + 1,)
+    recession : shape (columns,)
         Depth of the present surface below that as made [m].
 
     Returns
     -------
-    ndarray, shape (cells, columns)
-        Of a cell that is worn in part the centre of the rest counts.
+    Of a cell that is worn in part the centre of the rest counts.
     """
     top = np.maximum(edges[:-1, None], recession)
     bottom = edges[1:, None]
     return np.where(bottom > recession, 0.5 * (top + bottom) - recession, np.nan)
 
 
-def damage_at(depths, damage, at):
+def damage_at(depths: np.ndarray, damage: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Damage of a pass at given depths, interpolated between the computed ones in each column.
 
     Straight lines of ln D over depth, of D where one end is 0; 0 below the deepest.
 
     Parameters
     ----------
-    depths : ndarray, shape (n,)
+    depths : shape (n,)
         Increasing from 0 [m].
-    damage : ndarray, shape (n, columns)
-    at : ndarray, shape (cells, columns)
+    damage : shape (n, columns)
+    at : shape (cells, columns)
         Depths [m]; nan: 0.
     """
     if len(depths) == 1:
@@ -100,24 +101,26 @@ def damage_at(depths, damage, at):
     return np.where(exists & (z <= depths[-1]), interpolated, 0.0)
 
 
-def broken_out(damage, edges, recession):
-    """Depths to which columns break out: failed cells connected with the surface, and all cells above.
+def broken_out(
+    damage: np.ndarray, edges: np.ndarray, recession: np.ndarray, rule: str = "above"
+) -> np.ndarray:
+    """Depths to which columns break out below the surface as made [m], `recession` where nothing does.
 
-    Weakened cells connected with a failed one break out with it: left alone, they would fail within few
-    passes. The depth of a pit is therefore independent of the length of the jump.
+    A failed cell breaks out with the weakened cells connected with it: left alone, they would fail within few
+    passes, so that the depth of a pit is independent of the length of the jump. By the rule
+
+    * ``above`` all cells above it break out too: a crack that starts below the surface reaches it at once,
+      compared with the passes to its start (Brandao, Seabra and Castro, WIT Trans. Eng. Sci. 66 (2010) 3);
+    * ``connected`` only cells that are connected with the surface by failed or weakened ones break out, with
+      the cells above them: a crack does not grow.
 
     Parameters
     ----------
-    damage : ndarray, shape (cells, columns)
-    edges : ndarray, shape (cells + 1,)
+    damage : shape (cells, columns)
+    edges : shape (cells + 1,)
         [m].
-    recession : ndarray, shape (columns,)
+    recession : shape (columns,)
         Depth of the present surface [m].
-
-    Returns
-    -------
-    ndarray, shape (columns,)
-        Below the surface as made [m]; `recession` where nothing breaks out.
     """
     from scipy.ndimage import label
 
@@ -126,19 +129,20 @@ def broken_out(damage, edges, recession):
     if not failed.any():
         return np.array(recession, float)
     numbers, _ = label(remains & (damage >= WEAKENED_DAMAGE))
-    top = remains.argmax(axis=0)
-    columns = np.arange(damage.shape[1])
-    at_surface = numbers[top, columns][remains.any(axis=0)]
-    breaks = np.isin(numbers, np.intersect1d(at_surface, numbers[failed]))
-    bottom = np.where(breaks, edges[1:, None], 0.0).max(axis=0)
+    breaking = numbers[failed]
+    if rule == "connected":
+        top = remains.argmax(axis=0)
+        at_surface = numbers[top, np.arange(damage.shape[1])][remains.any(axis=0)]
+        breaking = np.intersect1d(at_surface, breaking)
+    bottom = np.where(np.isin(numbers, breaking), edges[1:, None], 0.0).max(axis=0)
     return np.maximum(bottom, recession)
 
 
-def number_of_pits(is_pitted):
+def number_of_pits(is_pitted: np.ndarray) -> int:
     """Number of runs of neighbouring pitted columns.
 
     Parameters
     ----------
-    is_pitted : ndarray of bool, shape (columns,)
+    is_pitted : shape (columns,)
     """
     return int(np.count_nonzero(np.diff(np.append(False, is_pitted).astype(int)) > 0))

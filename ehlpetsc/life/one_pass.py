@@ -1,8 +1,9 @@
 """Solve one pass: wear, fatigue damage of the points that passed the contact, friction."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,18 +19,25 @@ from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.effects.wear import WearRecord
+    from ehlpetsc.run.stop import StopRequest
+
 
 class OfBody(NamedTuple):
     """Effects of a pass on a body.
 
     Attributes
     ----------
-    s : ndarray, shape (points,)
+    s : shape (points,)
         Abscissas in the body of the points that passed the whole contact [m].
-    depths : ndarray, shape (n,)
+    depths : shape (n,)
         Below the present surface [m].
-    damage : ndarray, shape (n, points)
-    depth : pair of surfaces.body_field.BodyField
+    damage : shape (n, points)
+    depth
         Wear before and after the pass.
     """
 
@@ -39,7 +47,7 @@ class OfBody(NamedTuple):
     depth: tuple
 
     @property
-    def volume(self):
+    def volume(self) -> float:
         """Worn off [m^2]."""
         before, after = self.depth
         return after.volume - before.volume
@@ -50,11 +58,9 @@ class Pass(NamedTuple):
 
     Attributes
     ----------
-    bodies : pair of OfBody
-    figures : dict of str to float
+    figures
         Means over the time in which both surfaces fill the contact.
-    plastic : effects.plastic_deformation.PlasticRecord or None
-    yielded : float
+    yielded
         Largest depth by which a point yielded in this pass [m].
     """
 
@@ -68,55 +74,30 @@ SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
-@dataclass(frozen=True)
-class Before:
-    """State before a pass, used instead of the `Simulation` of the previous pass."""
-
-    case: object
-    scales: object
-    solution: object
-    pass_number: int = 0
-    finished: bool = True
-
-
-class Records(NamedTuple):
-    """Records of effects by name."""
-
-    records: dict
-
-
-def start(case, comm, scales, position, records):
+def start(case: Case, comm: MPI.Comm, position: int, records: dict[str, tuple]) -> Simulation:
     """The simulation of a pass.
 
     Parameters
     ----------
-    case : case.loading.Case
-    comm : mpi4py communicator
-    scales : physics.scales.Scales
-    position : int
+    position
         Of surface 2, from 0, in units of `time.pass_shift`.
-    records : dict of str to NamedTuple
+    records
         Of the bodies, after the previous pass.
     """
-    before = Before(case, scales, Records(records)) if records else None
-    return Simulation(case, comm, after=before, pass_number=position + 1)
+    return Simulation(case, comm, pass_number=position + 1, records=records)
 
 
-def run_pass(simulation, before, file, stop=None):
+def run_pass(
+    simulation: Simulation, before: dict[str, tuple], file: Path, stop: StopRequest | None = None
+) -> Pass:
     """Solve a pass to its end and evaluate it.
 
     Parameters
     ----------
-    simulation : run.simulation.Simulation
-    before : dict of str to NamedTuple
+    before
         Records as of :func:`start`.
-    file : Path
+    file
         Result file, replaced.
-    stop : run.stop.StopRequest, optional
-
-    Returns
-    -------
-    one_pass.Pass
 
     Raises
     ------
@@ -152,27 +133,27 @@ def run_pass(simulation, before, file, stop=None):
     return Pass(bodies, figures, records.get("plastic_deformation"), max(map(_largest_increase, set_)))
 
 
-def _depths(before, after, name, k):
+def _depths(before: dict[str, WearRecord], after: dict, name: str, k: int) -> tuple[BodyField, BodyField]:
     """Depths of body k before and after; zero where there is no record."""
     depths = (records[name].depth[k] if name in records else NO_DEPTH for records in (before, after))
     return tuple(depths)
 
 
-def _largest_increase(depths):
+def _largest_increase(depths: tuple[BodyField, BodyField]) -> float:
     before, after = depths
     if not len(after.depth):
         return 0.0
     return float(np.max(after.depth - before.means(after.edges)))
 
 
-def _means(file):
+def _means(file: Path) -> dict[str, float]:
     with read_result(file) as result:
         figures = means(result)
         figures["p_max"] = float(result.steps("p_max").max())
     return figures
 
 
-def _damage(file):
+def _damage(file: Path) -> list[tuple[np.ndarray, ...]]:
     """Points s, depths [m] and damage of both surfaces, of the points that passed the whole contact."""
     with Loads(file) as loads:
         job = Job(str(file), "", counting=Counting(strain=loads.case.post.strain))

@@ -8,17 +8,29 @@ is a tooth of the wheel. Columns then count along the flanks. In the time in whi
 N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be alike.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.surfaces.roughness import directed_speeds
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.effects.plastic_deformation import PlasticRecord
+    from ehlpetsc.life.one_pass import OfBody, Pass
+    from ehlpetsc.physics.scales import Scales
+
+
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
 FLANK_END_LENGTH = 1.0  # half widths at either end of a flank whose mean wear is that of the points beyond
 
 
-def number_of_positions(case):
+def number_of_positions(case: Case) -> int:
     """Positions of surface 2 in the life of a case."""
     if not case.time.pass_shift:
         return 1
@@ -30,21 +42,18 @@ class Positions:
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    scene : callable(int)
+    scene
         `effects.effect.Scene` of a position, from 0.
 
     Attributes
     ----------
-    count : int
-    rq : float
+    rq
         Combined root mean square roughness [m].
-    passes_2 : float
+    passes_2
         Passes of body 2 for each one of body 1, over the positions together.
     """
 
-    def __init__(self, case, scales, scene):
+    def __init__(self, case: Case, scales: Scales, scene: Callable) -> None:
         self.case, self.scales, self.count = case, scales, number_of_positions(case)
         self._scenes = [scene(position) for position in range(self.count)]
         self.rq = self._scenes[0].rq
@@ -54,33 +63,20 @@ class Positions:
             pinion, wheel = case.gears.pair.teeth
             self.passes_2 = self.count * pinion / wheel
 
-    def new_bodies(self, first):
+    def new_bodies(self, first: Pass) -> tuple[LifeBody, LifeBody]:
         """Columns of both bodies, of body 2 in all of its positions.
 
         Parameters
         ----------
-        first : one_pass.Pass
+        first
             Solved in position 0.
-
-        Returns
-        -------
-        pair of body.LifeBody
         """
         return tuple(self._new(first.bodies[k], k) for k in range(2))
 
-    def records(self, bodies, position, plastic):
-        """Records of the effects with which a pass begins.
-
-        Parameters
-        ----------
-        bodies : pair of body.LifeBody
-        position : int
-        plastic : effects.plastic_deformation.PlasticRecord or None
-
-        Returns
-        -------
-        dict of str to NamedTuple
-        """
+    def records(
+        self, bodies: tuple[LifeBody, LifeBody], position: int, plastic: PlasticRecord | None
+    ) -> dict[str, tuple]:
+        """Records of the effects with which a pass begins."""
         from ehlpetsc.effects.wear import WearRecord
         from ehlpetsc.surfaces.body_field import BodyFields
 
@@ -96,13 +92,13 @@ class Positions:
         return records | ({"plastic_deformation": plastic} if plastic else {})
 
     @property
-    def _are_flanks(self):
+    def _are_flanks(self) -> bool:
         return self.case.conditions is not None and self.case.conditions.profile_offsets is not None
 
-    def _offset(self, position, k):
+    def _offset(self, position: int, k: int) -> float:
         return self._scenes[position].mesh_on_bodies.offsets[k]
 
-    def _stretch(self, body, k, position):
+    def _stretch(self, body: LifeBody, k: int, position: int) -> tuple[float, float]:
         """Abscissas of the first and last column of body k in a position."""
         if self.count == 1 or k == 0:
             return body.s[0], body.s[-1]
@@ -112,16 +108,16 @@ class Positions:
         return first, first + length
 
     @property
-    def _columns_more(self):
+    def _columns_more(self) -> int:
         """Number of columns of body 2 in excess of position 0."""
         return int(np.ceil(abs((self.count - 1) * self._shift) / self.scales.dx))
 
     @property
-    def _sign(self):
+    def _sign(self) -> float:
         """Direction in which the positions of body 2 follow each other on it."""
         return -1.0 if (directed_speeds(self.case, self.scales)[1] > 0.0) == (self._shift > 0.0) else 1.0
 
-    def _new(self, of_pass, k):
+    def _new(self, of_pass: OfBody, k: int) -> LifeBody:
         s, dx, offset = of_pass.s, self.scales.dx, self._offset(0, k)
         roughness = self._scenes[0].roughness
         profile = roughness and roughness.side("12"[k])

@@ -4,29 +4,38 @@ The index ``OUT.life.series.json`` lists for each life its settings, file and fi
 same case are continued.
 """
 
+from __future__ import annotations
+
 import contextlib
 import json
 import tomllib
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehlpetsc.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.life.history import LifeHistory
+    from ehlpetsc.run.series.member import Member
+    from ehlpetsc.run.stop import StopRequest
+
+
 WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
 
 
-def winner(life):
+def winner(life: LifeHistory) -> str:
     """Mechanism that wins a life: "fatigue", "wear" or "neither".
 
-    Fatigue: cells at the surface have broken out, or failed if `pits` is false. Wear: none has, and at the
-    rates of the last solved round every cell reaches the surface with a damage below 1. Neither: damage would
-    reach 1 after the end of the life.
-
-    Parameters
-    ----------
-    life : history.LifeHistory
+    Fatigue: cells have broken out, or, with `break_out = "none"`, failed at the surface. Wear: none has, and
+    at the rates of the last solved round every cell reaches the surface with a damage below 1. Neither:
+    damage would reach 1 after the end of the life.
     """
     if any(life(f"pits_{k}")[-1] for k in (1, 2)):
         return FATIGUE
@@ -34,19 +43,14 @@ def winner(life):
     return WEAR if ahead < 1.0 else NEITHER
 
 
-def outcome(life):
+def outcome(life: LifeHistory) -> dict:
     """Figures of a life for the index.
-
-    Parameters
-    ----------
-    life : history.LifeHistory
 
     Returns
     -------
-    dict
-        "winner", "passes" and "solved"; of both surfaces the largest pitted share and damage; "worn_depth",
-        the mean of the columns that are worn most [m]; "ra_change" of surface 1; "first_failure" in passes,
-        None where no cell fails; "damage_ahead" as of `body.LifeBody.damage_ahead`, None without wear.
+    "winner", "passes" and "solved"; of both surfaces the largest pitted share and damage; "worn_depth",
+    the mean of the columns that are worn most [m]; "ra_change" of surface 1; "first_failure" in passes,
+    None where no cell fails; "damage_ahead" as of `body.LifeBody.damage_ahead`, None without wear.
     """
     last, bodies = life.rows[-1], life.bodies[-1]
     new = float(np.abs(bodies[0].height - bodies[0].height.mean()).mean())
@@ -64,7 +68,7 @@ def outcome(life):
     }
 
 
-def _number(value):
+def _number(value: float) -> float | None:
     """A number for JSON; None: infinite."""
     return float(value) if np.isfinite(value) else None
 
@@ -72,36 +76,43 @@ def _number(value):
 INDEX = ".series.json"
 
 
-def index_of(output):
+def index_of(output: Path) -> Path:
     """Path of the index of a series of lives, from the stem of `output`."""
     return _stem(output).with_suffix(f".life{INDEX}")
 
 
-def _stem(output):
+def _stem(output: Path) -> Path:
     return output.with_name(output.name.removesuffix(".h5").removesuffix(".life") + ".h5")
 
 
-def run_regimes(case, output=None, *, overwrite=False, unresolved=False, comm=None, show=None, stop=None):
+def run_regimes(
+    case: Case,
+    output: str | Path | None = None,
+    *,
+    overwrite: bool = False,
+    unresolved: bool = False,
+    comm: MPI.Comm | None = None,
+    show: Callable | None = None,
+    stop: StopRequest | None = None,
+) -> Path:
     """Run a life for each member of a case's series.
 
     Parameters
     ----------
-    case : case.loading.Case
+    case
         With tables [life] and [series].
-    output : path-like, optional
+    output
         Its stem begins the files' names; by default ``CASE.life.h5``.
-    overwrite, unresolved : bool
+    overwrite, unresolved
         As of `run_life`.
-    comm : mpi4py communicator, optional
+    comm
         Each of its ranks solves a life at a time.
-    show : callable(str), optional
+    show
         Receives a line for each completed life, on the first rank.
-    stop : run.stop.StopRequest, optional
 
     Returns
     -------
-    Path
-        The index.
+    The index.
 
     Raises
     ------
@@ -130,7 +141,7 @@ def run_regimes(case, output=None, *, overwrite=False, unresolved=False, comm=No
 
 
 class _Lives:
-    def __init__(self, case, output, overwrite, unresolved):
+    def __init__(self, case: Case, output: str | Path | None, overwrite: bool, unresolved: bool) -> None:
         from ehlpetsc.case.combinations import keys_of, settings_of
         from ehlpetsc.case.loading import members
         from ehlpetsc.life.checks import check_case
@@ -154,14 +165,14 @@ class _Lives:
         ]
 
     @staticmethod
-    def file(member):
+    def file(member: Member) -> Path:
         return member.output.with_name(f"{member.output.stem}.life.h5")
 
-    def run(self, comm, show, stop):
+    def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: StopRequest | None) -> Path:
         from ehlpetsc.run.on_root import on_root
         from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 
-        def record(report):
+        def record(report: Callable) -> None:
             number, row = report
             self.rows[number] |= row
             with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
@@ -180,7 +191,12 @@ class _Lives:
             raise Stopped
         return self.index
 
-    def _run_life(self, member, group, stop):
+    def _run_life(
+        self,
+        member: Member,
+        group: MPI.Comm,
+        stop: StopRequest | None,
+    ) -> Any:
         from ehlpetsc.life.driver import run_life
         from ehlpetsc.life.history import read_life
 
@@ -196,7 +212,7 @@ class _Lives:
         except (CaseError, OutputError, PostError, UsageError) as error:
             return {"state": "bad input", "reason": str(error)}
 
-    def _write(self):
+    def _write(self) -> None:
         from ehlpetsc.results.atomic_write import atomic_write
 
         content = {"title": self.case.title, "keys": self.keys, "members": self.rows, "case": self.case.text}
@@ -206,7 +222,7 @@ class _Lives:
             raise OutputError(f"{self.index}: index not written, {error.strerror}") from error
 
 
-def _words(row):
+def _words(row: dict) -> str:
     if "winner" not in row:
         return f"{row['state']}: {row.get('reason', '')}".rstrip(": ")
     won = "neither wins" if row["winner"] == NEITHER else f"{row['winner']} wins"

@@ -1,6 +1,9 @@
 """Round: passes that start from the same surfaces, one for each position of surface 2, on all ranks."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -9,37 +12,37 @@ from ehlpetsc.life.jumps import Rates
 from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+    from ehlpetsc.effects.plastic_deformation import PlasticRecord
+    from ehlpetsc.life.body import LifeBody
+    from ehlpetsc.life.one_pass import Pass
+    from ehlpetsc.run.stop import StopRequest
+
+
 FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
 
 
 class Ranks:
-    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks.
+    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks."""
 
-    Parameters
-    ----------
-    comm : mpi4py communicator
-    positions : int
-    """
-
-    def __init__(self, comm, positions):
+    def __init__(self, comm: MPI.Comm, positions: int) -> None:
         self.comm, self.each = comm, max(1, comm.size // positions)
         is_shared = positions > 1 and comm.size > 1
         self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
 
-    def solve(self, positions, solve, stop=None):
+    def solve(self, positions: list[int], solve: Callable, stop: StopRequest | None = None) -> list[Pass]:
         """Solve the passes of a round; collective.
 
         Parameters
         ----------
-        positions : list of int
-        solve : callable(position, comm, stop)
+        solve
             Solves the pass of a position on a group of ranks; returns it.
-        stop : run.stop.StopRequest, optional
 
         Returns
         -------
-        list of one_pass.Pass
-            In the order of `positions`, on every rank.
+        In the order of `positions`, on every rank.
 
         Raises
         ------
@@ -62,7 +65,7 @@ class Ranks:
         return [outcomes[position] for position in positions]
 
 
-def _is_fault(outcome):
+def _is_fault(outcome: tuple) -> bool:
     return isinstance(outcome[0], type)
 
 
@@ -71,25 +74,15 @@ class Round(NamedTuple):
 
     Attributes
     ----------
-    passes : list of one_pass.Pass
-    passes_2 : float
+    passes_2
         As of `positions.Positions`.
     """
 
     passes: list
     passes_2: float
 
-    def rates(self, bodies):
-        """Wear, damage and worn volume that a pass adds to each body: means over the round.
-
-        Parameters
-        ----------
-        bodies : pair of body.LifeBody
-
-        Returns
-        -------
-        pair of jumps.Rates
-        """
+    def rates(self, bodies: tuple[LifeBody, LifeBody]) -> tuple[Rates, Rates]:
+        """Wear, damage and worn volume that a pass adds to each body: means over the round."""
         rates = []
         for k, (body, factor) in enumerate(zip(bodies, (1.0, self.passes_2), strict=True)):
             pass_rates = [(*body.rates(pass_.bodies[k]), pass_.bodies[k].volume) for pass_ in self.passes]
@@ -98,12 +91,12 @@ class Round(NamedTuple):
         return tuple(rates)
 
     @property
-    def yielded(self):
+    def yielded(self) -> float:
         """Largest depth by which a point yielded [m]."""
         return max(pass_.yielded for pass_ in self.passes)
 
     @property
-    def plastic(self):
+    def plastic(self) -> PlasticRecord | None:
         """Record of the plastic deformation after the round; None without.
 
         A point that yielded in several passes of the round has the largest of their depths: once yielded
@@ -115,7 +108,7 @@ class Round(NamedTuple):
         depth = BodyFields(*(_deepest([record.depth[k] for record in records]) for k in range(2)))
         return records[-1]._replace(depth=depth)
 
-    def figures(self):
+    def figures(self) -> dict[str, float]:
         """Friction and share of the solids, means over the round; largest pressure [Pa]."""
         figures = {"p_max": max(pass_.figures["p_max"] for pass_ in self.passes)}
         for name, source in (("friction", "friction_coefficient"), ("contact_share", "contact_share")):
@@ -123,7 +116,7 @@ class Round(NamedTuple):
         return figures
 
 
-def _deepest(fields):
+def _deepest(fields: list[BodyField]) -> BodyField:
     """Largest depth of several fields of a body at each point."""
     first = min(field.first for field in fields)
     last = max(field.first + len(field.depth) for field in fields)

@@ -52,6 +52,8 @@ class Simulation:
         wear.
     pass_number : int, optional
         Number of a pass that is continued from a restart file; by default it follows from `after`.
+    records : dict of str to NamedTuple, optional
+        Records of effects by name with which the pass begins, instead of those of `after`.
 
     Attributes
     ----------
@@ -89,7 +91,7 @@ class Simulation:
     (81,) True
     """
 
-    def __init__(self, case, comm=None, options=None, after=None, pass_number=None):
+    def __init__(self, case, comm=None, options=None, after=None, pass_number=None, records=None):
         self.case = case = case if isinstance(case, Case) else load(case)
         if case.series:
             raise CaseError(
@@ -110,7 +112,7 @@ class Simulation:
         with self.options:
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
             self._is_monitored = not self.options.user_set.isdisjoint(MONITOR_OPTIONS)
-        before = after.solution.records if after else {}
+        before = after.solution.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
 

@@ -79,11 +79,18 @@ def room(module):
     return ".".join(module.split(".")[1:2]) or module
 
 
+class WithoutTypes(ast.NodeTransformer):
+    """Imports for type hints alone are not loaded."""
+
+    def visit_If(self, node):
+        return None if ast.unparse(node.test) == "TYPE_CHECKING" else self.generic_visit(node)
+
+
 def imports(module, source):
     """Modules that a source text imports anywhere; ``__version__`` of the package counts as none."""
     inside = module.split(".") if FILES[module].name == "__init__.py" else module.split(".")[:-1]
     found = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(WithoutTypes().visit(ast.parse(source))):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -19,8 +19,8 @@ from ehlpetsc.surfaces.body_field import BodyField
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])
 
 
-def jumps(wear_jump=0.05, damage_jump=0.1, passes=1000, pits=True):
-    table = SimpleNamespace(passes=passes, wear_jump=wear_jump, damage_jump=damage_jump, pits=pits)
+def jumps(wear_jump=0.05, damage_jump=0.1, passes=1000, break_out="connected"):
+    table = SimpleNamespace(passes=passes, wear_jump=wear_jump, damage_jump=damage_jump, break_out=break_out)
     return Jumps(table, 1.0)
 
 
@@ -33,7 +33,7 @@ def jump(wear=0.0, added=0.0, damage=0.0, left=1000):
     """Length of a jump at these rates."""
     one = body()._replace(damage=np.full((3, 8), damage))
     rates = Rates(np.append(np.zeros(7), wear), np.full((3, 8), added), 0.0)
-    return jumps(passes=left, pits=False).jump((one, one), round_of(lambda body: rates), 0)[1]
+    return jumps(passes=left, break_out="none").jump((one, one), round_of(lambda body: rates), 0)[1]
 
 
 def test_jump_ends_at_the_allowed_wear_or_damage():
@@ -80,7 +80,7 @@ def test_wear_and_damage_converge_at_second_order():
     for part in (1.0, 0.5, 0.25):
         bodies, done, before = (body(), body()), 0, 0
         while done < 5000:
-            all_jumps = jumps(0.2 * part, 0.1 * part, passes=5000, pits=False)
+            all_jumps = jumps(0.2 * part, 0.1 * part, passes=5000, break_out="none")
             bodies, before, _ = all_jumps.jump(bodies, round_of(rates), done, before)
             done += before
         exact = np.log(6.0)
@@ -132,14 +132,24 @@ def test_failed_cells_break_out_if_connected_to_the_surface():
     damage = np.zeros((3, 5))
     damage[0, 1] = damage[1, 1] = damage[1, 2] = 1.0  # at the surface, and beside it below
     damage[2, 4] = 1.0  # inside the body
-    assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 0.0, 0.0]
+    assert laws.broken_out(damage, EDGES, np.zeros(5), "connected").tolist() == [0.0, 2.0, 2.0, 0.0, 0.0]
     lowered = np.array([0.0, 2.5, 0.0, 0.0, 2.5])
-    assert laws.broken_out(damage, EDGES, lowered).tolist() == [0.0, 2.5, 0.0, 0.0, 4.0]
+    assert laws.broken_out(damage, EDGES, lowered, "connected").tolist() == [0.0, 2.5, 0.0, 0.0, 4.0]
     damage[:2, 3] = 0.97, 0.94
-    assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 0.0, 0.0], "none failed"
+    assert laws.broken_out(damage, EDGES, np.zeros(5), "connected").tolist() == [0.0, 2.0, 2.0, 0.0, 0.0], (
+        "none failed"
+    )
     damage[0, 2] = 0.96
-    assert laws.broken_out(damage, EDGES, np.zeros(5)).tolist() == [0.0, 2.0, 2.0, 1.0, 0.0]
+    assert laws.broken_out(damage, EDGES, np.zeros(5), "connected").tolist() == [0.0, 2.0, 2.0, 1.0, 0.0]
     assert laws.number_of_pits(np.array([True, True, False, True])) == 2
+
+
+def test_failed_cell_breaks_out_with_all_cells_above_it():
+    damage = np.zeros((3, 4))
+    damage[1, 1] = damage[2, 2] = 1.0  # inside the body
+    damage[2, 1], damage[1, 3] = 0.96, 0.97  # weakened: below a failed cell, and alone
+    assert laws.broken_out(damage, EDGES, np.zeros(4), "above").tolist() == [0.0, 4.0, 4.0, 0.0]
+    assert laws.broken_out(damage, EDGES, np.zeros(4), "connected").tolist() == [0.0, 0.0, 0.0, 0.0]
 
 
 def body(columns=8):
@@ -167,7 +177,7 @@ def test_cells_worn_before_failure_do_not_fail():
     assert ends[0.2].largest_damage < ends[0.01].largest_damage
     slow = ends[0.01]
     rates = Rates(*slow.rates(of_pass(0.02, 0.01)), 0.08)
-    pitted, counted = (slow.after(rates, 100, 12, breaks) for breaks in (True, False))
+    pitted, counted = (slow.after(rates, 100, 12, breaks) for breaks in ("above", "none"))
     assert pitted.is_pitted.all() and pitted.pits == 1 and pitted.pit.min() > 0.0
     assert counted.is_pitted.all() and not counted.pit.any(), "failed cells are counted alone"
 

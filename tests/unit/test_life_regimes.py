@@ -87,7 +87,7 @@ def test_remaining_rounds_are_extrapolated():
         return tuple(Rates(*one.rates(of), of.volume) for one in bodies)
 
     one = SimpleNamespace(rates=rates, yielded=0.0, passes=[None])
-    jumps = Jumps(SimpleNamespace(passes=1e5, wear_jump=0.05, damage_jump=0.1, pits=True), 2e-7)
+    jumps = Jumps(SimpleNamespace(passes=1e5, wear_jump=0.05, damage_jump=0.1, break_out="above"), 2e-7)
     bodies, jump, _ = jumps.jump((body, body), one, 0)
     assert jump == 1000 and bodies[0].wear == pytest.approx(0.9999e-8)
     assert jumps.expected_rounds((body, body), one, 0) == (100, 100)

@@ -26,7 +26,7 @@ def scaled(scale):
 
 
 def test_cells_without_wear_fail_after_one_over_damage_passes(tmp_path):
-    keys = {"wear": None, "life.pits": False, "life.damage_jump": 0.5, "life.passes": 1e12}
+    keys = {"wear": None, "life.break_out": "none", "life.damage_jump": 0.5, "life.passes": 1e12}
     scene = Simulation(case(keys)).scene
     edges = laws.cell_edges(CELL_SIZE * scene.rq, 6 * CELL_SIZE * scene.rq)
     depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]

@@ -54,7 +54,11 @@ class Life(Table):
         0.05, gt=0, le=1, description="wear depth between two solved passes over the combined Rq"
     )
     damage_jump: float = Field(0.1, gt=0, le=1, description="damage of any point between two solved passes")
-    pits: bool = Field(True, description="failed cells at the surface break out; false: they are counted")
+    break_out: Literal["above", "connected", "none"] = Field(
+        "above",
+        description="a failed cell breaks out with all cells above it; only where failed cells reach the "
+        "surface; or not at all: counted",
+    )
     partners: int = Field(
         4,
         ge=1,
