@@ -360,7 +360,7 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
-    plot | post | summary | compare | gears | life | ensemble | collisions | contacts | explain | keys | template | docs | python)
+    plot | post | summary | compare | gears | life | ensemble | explain | keys | template | docs | python)
         [ "$1" != docs ] || run_modules+=" $site"
         prepare "$run_modules" "$drawing"
         exec "$python" -m ehlpetsc "$@"

@@ -27,9 +27,7 @@ SUBCOMMANDS = {  # name: module, function, packages needed, description
     ),
     "life": ("ehlpetsc.life.command", "main", PLOTTING, "wear against fatigue over many passes"),
     "ensemble": ("ehlpetsc.analysis.ensemble", "main", NUMERICS, "means over runs of several seeds"),
-    "collisions": ("ehlpetsc.analysis.collisions", "main", NUMERICS, "collisions of asperities in a series"),
     "docs": ("ehlpetsc.docs.__main__", "main", (), "these pages as one site, opened in a browser"),
-    "contacts": ("ehlpetsc.analysis.contact_statistics", "main", NUMERICS, "counts and lengths of contact"),
 }
 OF_A_CASE = {  # options of a run: arguments and description
     "explain": ("CASE.toml", "what a run would do"),

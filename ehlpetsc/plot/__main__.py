@@ -3,9 +3,8 @@ OUTPUT.series.json, OUTPUT.passes.json.
 
 Pressure and film of one frame, by default that with the largest fraction of the load on the solids or,
 without load on the solids, of the highest pressure; several results at the same travel in one picture. Or a
-map of pressure over x and time, contacts per millisecond, a movie; of a series its collisions, film and
-pressure at contact points over the varied value, its Stribeck curve, traction curves; of one result its
-temperatures, oil trapped between two contacts, or an HTML page. The file name after -o determines the
+map of pressure over x and time, a movie; of a series its Stribeck curve, traction curves; of one result its
+temperatures or an HTML page. The file name after -o determines the
 format (png, svg, pdf; of a movie gif, mp4, webm; of a page html). Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
@@ -20,7 +19,7 @@ import numpy as np
 
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.figures import AROUND_WIDTH, COLLISION_WIDTH, FIGURES, draw_frame, window
+from ehlpetsc.plot.figures import AROUND_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
@@ -28,12 +27,7 @@ from ehlpetsc.results.series_index import in_order, open_all
 DPI = 160  # of pictures
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of outputs that are not pictures
 SIGNATURES = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
-WITHOUT_FRAMES = (
-    "contacts",
-    "stribeck",
-    "traction",
-    "ensemble",
-)  # kinds that need the scalars of the steps alone
+WITHOUT_FRAMES = ("stribeck", "traction", "ensemble")  # kinds that need the scalars of the steps alone
 
 
 def _check(results, kind, options):
@@ -62,16 +56,10 @@ def _parser():
     instant.add_argument("--step", type=int, help="number of the time step [largest share on solids]")
     instant.add_argument("--time", type=float, help="time [s]")
     parser.add_argument("--around", type=float, metavar="X", help="centre of the view, x/a [half widths]")
-    view = f"width of the view [{AROUND_WIDTH}; of a collision {COLLISION_WIDTH}]"
+    view = f"width of the view [{AROUND_WIDTH}]"
     parser.add_argument("--width", type=float, help=view)
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--map", action="store_true", help="pressure over x and time, contacts marked")
-    kind.add_argument("--contacts", action="store_true", help="contacts per millisecond along the contact")
-    parser.add_argument("--polynomial", action="store_true", help="of --contacts, order 8")
-    numbers = "by their number in the list of ehlpetsc collisions [two best]"
-    kind.add_argument("--collision", type=int, nargs="*", metavar="NUMBER", help=numbers)
-    kind.add_argument("--points", action="store_true", help="at contact points, against the swept value")
-    kind.add_argument("--entrapment", action="store_true", help="oil trapped between contacts, four instants")
     kind.add_argument("--stribeck", action="store_true", help="friction against speed, of a series over it")
     kind.add_argument("--traction", action="store_true", help="friction against slide/roll, of a series")
     kind.add_argument("--temperatures", action="store_true", help="of film and surfaces, of one with [heat]")

@@ -1,25 +1,18 @@
 """Figures of one or several results, one function for each kind: `FIGURES`."""
 
-import numpy as np
 from matplotlib.lines import Line2D
 
-from ehlpetsc.analysis import collisions, entrapment, film_breakdown
-from ehlpetsc.errors import OutputError
 from ehlpetsc.plot import labels
-from ehlpetsc.plot.panels import collisions as panels
 from ehlpetsc.plot.panels import frames, over_time
 from ehlpetsc.plot.series.ensemble import draw_ensemble
 from ehlpetsc.plot.series.running_in import draw_running_in
 from ehlpetsc.plot.series.stribeck import draw_stribeck
 from ehlpetsc.plot.series.traction import draw_traction
 from ehlpetsc.plot.temperatures import temperatures
-from ehlpetsc.results.series_index import from_thick_to_thin
 
 SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
 AROUND_WIDTH = 0.5  # half widths, of a view around a point
-COLLISION_WIDTH = 0.12  # half widths, of a view around a collision
-MAX_POINTS = 8  # contact points in one picture
 
 
 def two_panels():
@@ -95,64 +88,6 @@ def draw_map(results, options):
     return figure
 
 
-def draw_contacts(results, options):
-    """Figure of contacts per millisecond along the contact, raw and smoothed."""
-    colours, names, key = labels.series_colours(results)
-    figure, axes = two_panels()
-    means = over_time.contact_rates(axes, results, colours, options.polynomial)
-    quantity = "mean in |x| < a [1/ms]"
-    names = [f"{n}: {mean:.3g}" for n, mean in zip(names, means, strict=True)]
-    if len(results) > 1:
-        quantity += "\n(ratio to the first)"
-        ratios = [mean / means[0] if means[0] else np.nan for mean in means]
-        names = [f"{name} ({ratio:.2f})" for name, ratio in zip(names, ratios, strict=True)]
-    labels.series_legend(axes[1], colours, names, f"{labels.UNITS.get(key, key) or 'result'}:\n{quantity}")
-    title = "\n".join(filter(None, [panel_title(results), labels.conditions(results)]))
-    axes[0].set_title(title, fontsize="medium")
-    return figure
-
-
-def draw_collision(results, options):
-    """Figure of collisions in all members of a series, one column each; by default the two first ranked."""
-    all_collisions = collisions.find(from_thick_to_thin(results)[0])
-    numbers = options.collision or film_breakdown.ranked(all_collisions)[:2]
-    if not numbers or not 0 <= min(numbers) <= max(numbers) < len(all_collisions):
-        raise OutputError(
-            f"{len(all_collisions)} collisions; allowed: --collision 0 to {len(all_collisions) - 1}"
-        )
-    chosen = [all_collisions[number] for number in numbers]
-    colours, names, key = labels.series_colours(results)
-    size = (SIZE[0] * max(1.0, 0.6 * len(chosen)), SIZE[1])
-    figure, axes = labels.new_figure(2, len(chosen), size, squeeze=False, sharex="col")
-    width = options.width or COLLISION_WIDTH
-    panels.draw_collisions(axes, results, chosen, colours, width)
-    labels.series_legend(axes[0, -1], colours, names, labels.UNITS.get(key, key))
-    figure.suptitle(labels.title(results), fontsize="medium")
-    return figure
-
-
-def draw_points(results, _options):
-    """Figure of film and pressure at the points of contact over the varied value."""
-    results, values, key = from_thick_to_thin(results)
-    points = film_breakdown.selected(film_breakdown.contact_points(collisions.find(results)), MAX_POINTS)
-    if not points:
-        raise OutputError("no contact point with two full films before it and two members in contact")
-    figure, axes = two_panels()
-    panels.draw_contact_points(axes, points, values, key, results[0].attrs["a"])
-    axes[0].set_title(labels.title(results), fontsize="medium")
-    return figure
-
-
-def draw_entrapment(results, options):
-    """Figure of the strongest entrapment of a result at four instants."""
-    size = (1.6 * SIZE[0], SIZE[1])
-    figure, axes = labels.new_figure(2, 4, size, sharex="col", sharey="row")
-    strongest = entrapment.find(results[0])[0]
-    panels.draw_entrapment(axes, results[0], strongest, options.width or COLLISION_WIDTH)
-    figure.suptitle(labels.title(results), fontsize="medium")
-    return figure
-
-
 def draw_temperatures(results, options):
     """Figure of the temperatures of one result."""
     return temperatures(results, window(results, options), options)
@@ -160,10 +95,6 @@ def draw_temperatures(results, options):
 
 FIGURES = {
     "map": draw_map,
-    "contacts": draw_contacts,
-    "collision": draw_collision,
-    "points": draw_points,
-    "entrapment": draw_entrapment,
     "stribeck": draw_stribeck,
     "traction": draw_traction,
     "temperatures": draw_temperatures,

@@ -1,6 +1,5 @@
 """Results of a series, opened and sorted by the varied value."""
 
-import contextlib
 import json
 import tomllib
 from functools import reduce
@@ -8,13 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.reader import read_result
 
 MAX_NAME_LENGTH = 80  # characters
 OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that match the same shell pattern
-WITH_FILM = ("fluid.viscosity", "motion.entrainment_speed")  # keys with which the film increases
 
 
 def open_all(paths, stack):
@@ -47,35 +44,6 @@ def _result_of(path):
     for ending in OTHER_ENDINGS:
         path = str(path).removesuffix(ending)
     return f"{path}.h5"
-
-
-def command(name, description, report, arguments):
-    """Run a command that prints the lines of a report on results.
-
-    Parameters
-    ----------
-    name : str
-        Module of the command.
-    description : str
-        Description for ``--help``.
-    report : callable
-        Returns the lines of the report on a list of results.
-    arguments : list of str or None
-
-    Returns
-    -------
-    int
-        Exit status: 0 done, 2 bad input.
-    """
-    parser = CommandParser(name, description)
-    parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
-    chosen = parser.parse_args(arguments)
-
-    def run():
-        with contextlib.ExitStack() as stack:
-            print("\n".join(report(open_all(chosen.results, stack))))
-
-    return exit_status(name, run)
 
 
 def files_of(path):
@@ -189,24 +157,3 @@ def in_order(results):
     """Results of a series sorted by the varied value; other results in their order."""
     key, values = series_values(results)
     return [results[i] for i in np.argsort(values, kind="stable")] if key else results
-
-
-def from_thick_to_thin(results):
-    """Series sorted by falling film: viscosity and speed from high to low, other values from low to high.
-
-    Returns
-    -------
-    results : list of Result
-    values : list of float
-    key : str
-
-    Raises
-    ------
-    OutputError
-        The results are not a series over numbers.
-    """
-    key, _ = series_values(results)
-    if key is None:
-        raise OutputError("not a series: the case files differ in no single number")
-    ordered = in_order(results)[:: -1 if key in WITH_FILM else 1]
-    return ordered, series_values(ordered)[1], key

@@ -7,7 +7,7 @@ from hdf5_damage import Flips, Structures
 from sandbox import process, word_of
 from support.made_results import make_result, with_solids
 
-from ehlpetsc.analysis import collisions, compare, contact_statistics, ensemble
+from ehlpetsc.analysis import compare, ensemble
 from ehlpetsc.plot import __main__ as plot
 
 LIMIT = 120  # s
@@ -42,17 +42,11 @@ WORDS = {
         ["--seed", "3"],
         ["--resamples", "x"],
     ),
-    contact_statistics: (["-h"], ["--x"]),
-    collisions: (["--x"],),
     compare: (["--rtol", "0"], ["--rtol", "-1"], ["--atol", "nan"], ["--rtol", "1e300"]),
     plot: (
         *(
             ["--stribeck"],
             ["--ensemble"],
-            ["--contacts"],
-            ["--points"],
-            ["--collision"],
-            ["--collision", "-1"],
         ),
         *(
             ["--map"],
@@ -62,7 +56,7 @@ WORDS = {
             ["--around", "0.2"],
             ["--around", "nan"],
         ),
-        *(["--width", "0"], ["--running-in"], ["--entrapment"]),
+        *(["--width", "0"], ["--running-in"]),
     ),
 }
 

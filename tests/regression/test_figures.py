@@ -5,6 +5,7 @@ in cases/README.md.
 """
 
 import json
+import sys
 from contextlib import ExitStack
 
 import numpy as np
@@ -12,10 +13,13 @@ import pytest
 from support import ROOT
 from support.running import run, settings
 
-from ehlpetsc.analysis import collisions, entrapment, film_breakdown
-from ehlpetsc.analysis import contact_statistics as counts
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.series_index import from_thick_to_thin, in_order, open_all
+from ehlpetsc.results.series_index import in_order, open_all
+
+sys.path.append(str(ROOT / "cases" / "paper"))
+import collisions
+import contacts
+import entrapment
 
 pytestmark = pytest.mark.slow
 SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
@@ -31,7 +35,7 @@ def series(folder, name, points, travel, values, *more):
 
 
 def thin_ones_and_collisions(stack, index):
-    results, values, _ = from_thick_to_thin(open_all([index], stack))
+    results, values, _ = collisions.open_series([index], stack)
     return results, values, collisions.find(results)
 
 
@@ -45,13 +49,13 @@ def test_film_reaches_zero_at_the_extrapolated_viscosity(figure_4):
     """Figure 4 (i): six contact points or more, film falling to zero without steepening."""
     with ExitStack() as stack:
         results, values, found = thin_ones_and_collisions(stack, figure_4)
-        points = film_breakdown.contact_points(found)
+        points = collisions.breakdowns(found)
         assert len(points) >= 6
-        last = [film_breakdown.slope_jumps(values, c.film)[-1] for c in points]
+        last = [collisions.slope_jumps(values, c.film, c.first)[-1] for c in points]
         assert np.mean(np.array(last) <= 0.0) >= 0.8
         # but for what smooth films do against viscosity, the slopes before hardly grow either
-        smooth = film_breakdown.smooth_films(results)
-        before = np.concatenate([film_breakdown.slope_jumps(smooth, c.film)[:-1] for c in points])
+        smooth = [float(result.steps("h_min")[0]) for result in results]
+        before = np.concatenate([collisions.slope_jumps(smooth, c.film, c.first)[:-1] for c in points])
         assert np.median(before) < 0.03 and before.max() < 0.2
 
 
@@ -59,9 +63,8 @@ def test_pressure_grows_after_contact(figure_4):
     """Figure 4 (ii)."""
     with ExitStack() as stack:
         _, _, found = thin_ones_and_collisions(stack, figure_4)
-        changes = [
-            film_breakdown.pressure_steps(c.film, c.pressure) for c in film_breakdown.contact_points(found)
-        ]
+        after = [c.pressure[c.first :] for c in collisions.breakdowns(found)]
+        changes = [np.diff(pressure) / pressure[:-1] for pressure in after]
         assert np.mean([np.prod(1 + change) > 1 for change in changes]) >= 0.9
         assert np.mean(np.concatenate(changes) > 0) >= 0.75
 
@@ -73,7 +76,7 @@ def test_contacts_persist_at_lower_viscosity(figure_4):
         for c in found:
             first = c.touching.index(True)
             assert all(c.touching[first:]), c
-        lengths = [counts.contact_length(result) for result in results]
+        lengths = [contacts.contact_length(result) for result in results]
         assert lengths == sorted(lengths)
 
 
@@ -86,7 +89,7 @@ def test_little_contact_at_high_speed(figure_4, tmp_path):
         assert found and all(c.touching[-1] for c in found)
         for value, result in zip(values, fast, strict=True):
             other = slow[slow_values.index(value)]
-            assert counts.contact_length(result) < counts.contact_length(other)
+            assert contacts.contact_length(result) < contacts.contact_length(other)
 
 
 def test_meshes_agree_on_collisions(tmp_path):
@@ -101,7 +104,7 @@ def test_meshes_agree_on_collisions(tmp_path):
         found = collisions.find([coarse, fine])
         shared = [c for c in found if all(c.touching)]
         assert len(shared) >= 2 and len(shared) >= 0.4 * len(found)
-        assert 0.4 < counts.mean_rate(fine) / counts.mean_rate(coarse) < 1.8
+        assert 0.4 < contacts.mean_rate(fine) / contacts.mean_rate(coarse) < 1.8
 
 
 def test_entrapment_between_two_contacts(tmp_path):

@@ -9,7 +9,7 @@ import pytest
 from support import ROOT, is_line_with
 from support.running import SHORT, run, settings, summary
 
-from ehlpetsc.analysis import contact_statistics, ensemble
+from ehlpetsc.analysis import ensemble
 from ehlpetsc.plot.__main__ import main as plot
 from ehlpetsc.post.arguments import arguments
 from ehlpetsc.results.reader import read_result
@@ -228,6 +228,6 @@ def test_grid_of_keys_is_accepted_by_all_commands(tmp_path):
     assert {entry["state"] for entry in index["members"]} == {"done"}
     series_index = str(tmp_path / "out.series.json")
     assert plot([series_index]) == plot([series_index, "--ensemble"]) == 0
-    assert contact_statistics.main([series_index]) == ensemble.main([series_index]) == 0
+    assert ensemble.main([series_index]) == 0
     assert len((tmp_path / "out.ensemble.csv").read_text().splitlines()) > 20
     assert arguments([series_index]).results == [str(tmp_path / one["file"]) for one in index["members"]]

@@ -12,7 +12,6 @@ COMMANDS = {
     "ehlpetsc.plot": "ehlpetsc.plot.__main__",
     "ehlpetsc.compare": "ehlpetsc.analysis.compare",
     "ehlpetsc.analysis.ensemble": "ehlpetsc.analysis.ensemble",
-    "ehlpetsc.analysis.collisions": "ehlpetsc.analysis.collisions",
 }
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ehlpetsc.analysis import compare, contact_statistics, ensemble
+from ehlpetsc.analysis import compare, ensemble
 from ehlpetsc.errors import OutputError
 from ehlpetsc.names import former_name
 from ehlpetsc.plot.__main__ import main as plot
@@ -91,7 +91,6 @@ def test_older_post_results_are_read(folder):
         (plot, ["passes.passes.json", "--running-in"]),
         (plot, ["series.series.json"]),
         (compare.main, ["first.h5", "first.h5"]),
-        (contact_statistics.main, ["first.h5"]),
         (ensemble.main, ["series.series.json"]),
     ],
 )

@@ -73,13 +73,6 @@ MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
         ),
         (["--map"], "one.map.png", "made up", (-1.6, 1.375), MAP),
         (["--map", "--around", 0, "--width", 1], "one.map.png", "made up", (-0.5, 0.5), MAP),
-        (
-            ["--contacts"],
-            "one.contacts.png",
-            "made up",
-            (-1.5, 1.5),
-            ["contacts per ms", "contacts per ms,\nmean over 0.1 a"],
-        ),
     ],
 )
 def test_picture_of_one_result(tmp_path, result, drawn, capsys, options, name, title, window, panels):
@@ -127,12 +120,11 @@ def test_drawing_keeps_matplotlib_state(tmp_path, result):
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("kind, panels, curves", [([], FRAME, [4, 3]), (["--contacts"], None, [3, 3])])
-def test_series_is_overlaid(series, drawn, kind, panels, curves):
-    assert draw(*series, *kind) == 0
+def test_series_is_overlaid(series, drawn):
+    assert draw(*series) == 0
     (figure,) = drawn
-    assert panels in (None, [axes.get_ylabel() for axes in figure.axes])
-    assert [len(axes.lines) for axes in figure.axes] == curves  # one a member, and Hertz' pressure
+    assert [axes.get_ylabel() for axes in figure.axes] == FRAME
+    assert [len(axes.lines) for axes in figure.axes] == [4, 3]  # one a member, and Hertz' pressure
     legend = next(axes.get_legend() for axes in figure.axes if axes.get_legend())
     assert [text.get_text().split(":")[0] for text in legend.texts][:3] == ["0.002", "0.005", "0.01"]
     film = figure.axes[1]
@@ -251,24 +243,6 @@ def test_series_is_sorted_and_labelled_by_its_key(series):
     assert labels.series_colours(same)[1:] == (["0.01", "0.01"], None)
 
 
-def test_polynomial_and_mean_follow_the_counts(tmp_path, result):
-    _, axes = figures.two_panels()
-    with read_result(result) as r:
-        (mean,) = over_time.contact_rates(axes, [r], ["k"], polynomial=True)
-        inside = np.abs(r.x) <= A
-        assert mean == pytest.approx(r.contact_rate()[inside].mean())
-        fit = axes[1].lines[0].get_ydata()
-        assert np.mean(fit) == pytest.approx(mean, rel=0.02)
-
-
-def test_running_mean_conserves_the_count(result):
-    _, axes = figures.two_panels()
-    with read_result(result) as r:
-        over_time.contact_rates(axes, [r], ["k"])
-        raw, smooth = (panel.lines[0].get_ydata() for panel in axes)
-        assert smooth.sum() == pytest.approx(raw.sum(), rel=1e-9) and smooth.max() < raw.max()
-
-
 def test_rough_result_shows_both_deformed_surfaces(tmp_path, drawn):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     assert draw(path, "--step", 30) == 0
@@ -367,8 +341,6 @@ def test_undrawable_result_is_reported(tmp_path, capsys):
     steady = make_result(tmp_path / "one.h5", steps=1)
     assert draw(steady, "--map") == 2
     assert is_line_with(capsys.readouterr().err, "one.h5: ", "map", "frame")
-    assert draw(steady, "--contacts") == 2
-    assert is_line_with(capsys.readouterr().err, "one.h5: ", "steady", "contacts")
     assert draw(make_result(tmp_path / "two.h5", fields=("pressure",))) == 2
     assert is_line_with(capsys.readouterr().err, "two.h5: ", " film_thickness")
 

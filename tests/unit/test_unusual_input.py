@@ -5,7 +5,7 @@ import tomlkit
 from support.made_results import make_result
 
 from ehlpetsc.__main__ import main
-from ehlpetsc.analysis import contact_statistics, ensemble
+from ehlpetsc.analysis import ensemble
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
 from ehlpetsc.run.preview.explain import explain
@@ -45,12 +45,6 @@ def test_bootstrap_numbers_have_ranges(tmp_path, capsys, words):
     with pytest.raises(SystemExit) as ended:
         ensemble.main([str(make_result(tmp_path / "one.h5")), *words])
     assert ended.value.code == 2 and words[0] in capsys.readouterr().err
-
-
-def test_result_without_frames_has_no_contact_statistics(tmp_path, capsys):
-    path = make_result(tmp_path / "one.h5", steps=0)
-    assert contact_statistics.main([str(path)]) == 2
-    assert f"{path}: " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("title", ["\ud800", NO_TEXT])

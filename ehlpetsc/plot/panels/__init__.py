@@ -1,1 +1,1 @@
-"""Curves and maps drawn into axes: one instant, over time, at collisions."""
+"""Curves and maps drawn into axes: one instant, over time."""

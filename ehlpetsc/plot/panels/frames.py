@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ehlpetsc.analysis import entrapment
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
 from ehlpetsc.plot.labels import (
@@ -17,6 +16,7 @@ from ehlpetsc.plot.labels import (
 )
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import both_fill, travelled
+from ehlpetsc.results.reader import Result
 
 ACROSS = "x/a"
 SIDES = ("surface 1", "surface 2")
@@ -200,11 +200,26 @@ def x_in_mm(axes, results):
     axes.text(0.14, 0.9, "flow", transform=axes.transAxes, va="center", fontsize="small", color="0.35")
 
 
+def deformed_heights(result: Result, frame: int) -> tuple[np.ndarray, np.ndarray]:
+    """Heights [m] of surface 2, below, and of surface 1 about their mean plane, shape (nx,).
+
+    Both solids are assumed to deform equally: the middle of the gap is that of the undeformed rough surfaces.
+    """
+    time, middle = result.time[frame], np.zeros(len(result.x))
+    for side, sign in (("2", 1.0), ("1", -1.0)):
+        profile = result.profile(side)
+        if profile is not None:
+            s, z, speed = profile
+            middle += 0.5 * sign * np.interp(result.x - speed * time, s, z, left=0.0, right=0.0)
+    film = result.frame("film_thickness", frame)
+    return middle - 0.5 * film, middle + 0.5 * film
+
+
 def deformed_surfaces(axes, result, index, window):
     """Draw both deformed surfaces at an instant, solids in grey."""
     x = result.x / result.attrs["a"]
     in_view = (x >= window[0]) & (x <= window[1])
-    lower, upper = (1e6 * height for height in entrapment.surfaces(result, index))
+    lower, upper = (1e6 * height for height in deformed_heights(result, index))
     inside = in_view & (np.abs(x) <= 1.0)
     shown = inside if inside.any() else in_view
     bottom, top = lower[shown].min(), upper[shown].max()

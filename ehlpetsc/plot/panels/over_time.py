@@ -1,4 +1,4 @@
-"""Pressure over x and time, and contacts per millisecond, drawn into axes."""
+"""Pressure over x and time, drawn into axes."""
 
 import numpy as np
 from matplotlib.colors import ListedColormap
@@ -12,8 +12,6 @@ from ehlpetsc.results.means import travelled
 MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
 MAX_MARKED_CONTACTS = 3000  # nodes in contact marked by dots, because single pixels would not be visible
 COLOUR_PERCENTILE = 99.9  # of pressure: upper end of the colours, without a few sharp peaks
-MEAN_WIDTH = 0.1  # half widths of a moving mean along the contact
-POLYNOMIAL_ORDER = 8  # Holmes et al. 2005, figure 7 (ii)
 
 
 def space_time_map(axes, result, window, highest):
@@ -78,43 +76,3 @@ def _contacts(result, columns, stride):
     last = len(result.time)
     blocks = (slice(begin, min(begin + stride, last)) for begin in range(0, last, stride))
     return np.array([in_contact(result, block, columns).any(axis=0) for block in blocks], dtype=int)
-
-
-def contact_rates(axes, results, colours, polynomial=False):
-    """Draw contacts per millisecond along the contact, raw and smoothed.
-
-    Smoothed by a mean over `MEAN_WIDTH` or, with `polynomial`, by a polynomial of 8th order as in Holmes et
-    al. 2005, figure 7 (ii), which oscillates if there are few contacts.
-
-    Returns
-    -------
-    list of float
-        Mean rate inside the Hertz contact.
-
-    Raises
-    ------
-    OutputError
-        A result is steady.
-    """
-    upper, lower = axes
-    means = []
-    for result, colour in zip(results, colours, strict=True):
-        x, rate = result.x / result.attrs["a"], result.contact_rate()
-        inside = np.abs(x) <= 1.0
-        upper.plot(x, rate, color=colour, lw=0.6)
-        if polynomial:
-            fit = np.polynomial.Polynomial.fit(x[inside], rate[inside], POLYNOMIAL_ORDER)
-            smooth = np.linspace(-1.0, 1.0, 401)
-            lower.plot(smooth, fit(smooth), color=colour, lw=1.4)
-        else:
-            count = min(max(1, round(MEAN_WIDTH / np.diff(x).mean())), len(x))
-            lower.plot(x, np.convolve(rate, np.full(count, 1.0 / count), mode="same"), color=colour, lw=1.4)
-        means.append(float(rate[inside].mean()))
-    upper.set_ylabel("contacts per ms")
-    smoothed = f"polynomial of order {POLYNOMIAL_ORDER}" if polynomial else f"mean over {MEAN_WIDTH:g} a"
-    lower.set_ylabel(f"contacts per ms,\n{smoothed}")
-    lower.set_xlabel(ACROSS)
-    lower.set_xlim(-1.5, 1.5)
-    for panel in axes:
-        panel.set_ylim(bottom=0.0)
-    return means

@@ -72,8 +72,8 @@ def help_text():
         "  --ranks: print the default number of ranks of the case, one or two; nothing is run",
         "  --keys [TABLE or TABLE.KEY]: print the keys of a case file with units, bounds, defaults",
         "  --template: print a commented case to begin from",
-        "Other commands, each with -h: ehlpetsc plot, post, summary, compare, ensemble, collisions,",
-        "  contacts; ehlpetsc explain CASE.toml, keys, template, python SCRIPT.py, completion (for bash)",
+        "Other commands, each with -h: ehlpetsc plot, post, summary, compare, ensemble;",
+        "  ehlpetsc explain CASE.toml, keys, template, python SCRIPT.py, completion (for bash)",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
         "With a case, -help then lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",
     ]
