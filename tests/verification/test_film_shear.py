@@ -1,0 +1,262 @@
+"""Shear stress with the temperature resolved: against a boundary value problem across the film."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from ehlpetsc.physics import film_shear
+from ehlpetsc.physics.film_shear import CARREAU, EYRING, NEWTON, FlowLaw, film_stress
+
+N = 80
+BETA, CONDUCTIVITY, FILM = 0.04, 0.14, 0.3e-6
+LAWS = {
+    "newton": FlowLaw(NEWTON),
+    "eyring": FlowLaw(EYRING, 5e6),
+    "carreau": FlowLaw(CARREAU, 6e6, 0.45, 2.0),
+}
+
+
+def chebyshev() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points from 1 to -1, matrix of differentiation and weights of the mean (Trefethen 2000)."""
+    angle = np.pi * np.arange(N + 1) / N
+    x = np.cos(angle)
+    c = (-1.0) ** np.arange(N + 1)
+    c[[0, -1]] *= 2.0
+    D = np.outer(c, 1.0 / c) / (x[:, None] - x[None, :] + np.eye(N + 1))
+    D -= np.diag(D.sum(axis=1))
+    modes = np.cos(np.outer(np.arange(N + 1), angle))
+    moments = np.array([0.0 if k % 2 else 1.0 / (1.0 - k * k) for k in range(N + 1)])
+    return x, D, np.linalg.solve(modes, moments)
+
+
+X, D, MEAN = chebyshev()
+
+
+class Across(NamedTuple):
+    stress: float
+    q1: float
+    q2: float
+    mean: float
+    middle: float
+
+
+def solved_across(
+    stress_of: Callable,
+    ln_eta: Callable,
+    sliding: float,
+    walls: tuple[float, float],
+    start: tuple[float, np.ndarray],
+    gradient: float = 0.0,
+    heat: float = 0.0,
+    film: float = FILM,
+) -> Across:
+    """Newton's method for T(z) and the mean stress of k T'' = -tau (shear rate) - heat, sliding given.
+
+    `stress_of` is the logarithm of the shear rate times viscosity by stress, with its derivative.
+    """
+    scale = 4.0 * CONDUCTIVITY / film**2
+    ln_tau, T = np.log(start[0]), start[1].copy()
+    for _ in range(200):
+        tau = np.exp(ln_tau) + 0.5 * film * X * gradient
+        viscous, by_tau = stress_of(tau)
+        value, slope = ln_eta(T)
+        rate = viscous * np.exp(-value)
+        moved = (MEAN @ rate) * film / sliding
+        residual = np.append(scale * (D @ (D @ T)) + tau * rate + heat, np.log(moved))
+        J = np.zeros((N + 2, N + 2))
+        J[:-1, :-1] = scale * (D @ D) - np.diag(tau * rate * slope)
+        J[:-1, -1] = np.exp(ln_tau) * (rate + tau * by_tau * np.exp(-value))
+        J[-1, :-1] = -MEAN * rate * slope * film / (sliding * moved)
+        J[-1, -1] = (MEAN @ (by_tau * np.exp(-value))) * np.exp(ln_tau) * film / (sliding * moved)
+        for row, node, wall in ((0, 0, walls[0]), (N, N, walls[1])):
+            J[row], residual[row] = 0.0, T[node] - wall
+            J[row, node] = 1.0
+        step = np.linalg.solve(J, -residual)
+        damping = min(1.0, 10.0 / np.abs(step[:-1]).max(), 0.5 / abs(step[-1]))
+        T += damping * step[:-1]
+        ln_tau += damping * step[-1]
+        if damping == 1.0 and abs(step[-1]) < 1e-10:
+            slope = -2.0 * CONDUCTIVITY / film * (D @ T)
+            return Across(np.exp(ln_tau), slope[0], -slope[-1], MEAN @ T, T[N // 2])
+    raise AssertionError("no convergence across the film")
+
+
+def viscous_stress(flow: FlowLaw, limit: float = np.inf) -> Callable:
+    """eta times shear rate by stress, the law inverted by bisection, with its derivative."""
+
+    def inverse(tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        low, high = np.full(tau.shape, -60.0), np.full(tau.shape, 60.0)
+        stresses = np.vectorize(lambda x: film_shear.flow_stress(x, flow, limit)[:2])
+        for _ in range(80):
+            x = 0.5 * (low + high)
+            above = stresses(x)[0] > np.abs(tau)
+            low, high = np.where(above, low, x), np.where(above, x, high)
+        viscous = flow.stress * np.exp(x)
+        return np.sign(tau) * viscous, viscous / stresses(x)[1]
+
+    return inverse
+
+
+def exponential(T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return -BETA * T, np.full(T.shape, -BETA)
+
+
+def start_of(
+    closed: film_shear.FilmStress, walls: tuple[float, float] = (0.0, 0.0), beta: float = BETA
+) -> tuple[float, np.ndarray]:
+    y, tilt = float(closed.y), 0.25 * beta * (walls[0] - walls[1])
+    shape = np.exp(-tilt) * np.sinh(0.5 * y * (1.0 + X)) + np.exp(tilt) * np.sinh(0.5 * y * (1.0 - X))
+    return 0.9999 * float(closed.stress), -2.0 / beta * np.log(shape / np.sinh(y))
+
+
+@pytest.mark.parametrize("difference", [0.0, -50.0])
+@pytest.mark.parametrize("limited", [False, True])
+@pytest.mark.parametrize("name", LAWS)
+def test_closed_form_is_the_solution_across_the_film(name, limited, difference):
+    flow, walls = LAWS[name], (0.5 * difference, -0.5 * difference)
+    for eta, sliding in ((0.5, 1.0), (0.5, 25.0), (50.0, 5.0)):
+        given = FILM, eta, BETA, *walls, CONDUCTIVITY, sliding, flow
+        limit = 1.3 * float(film_stress(*given).stress) if limited else np.inf
+        closed = film_stress(*given, limit)
+
+        def ln_eta(T, eta=eta):
+            value, slope = exponential(T)
+            return value + np.log(eta), slope
+
+        exact = solved_across(viscous_stress(flow, limit), ln_eta, sliding, walls, start_of(closed, walls))
+        assert float(closed.stress) == pytest.approx(exact.stress, rel=1e-8)
+        assert float(closed.q1) == pytest.approx(exact.q1, rel=1e-7)
+        assert float(closed.q2) == pytest.approx(exact.q2, rel=1e-7)
+        assert float(closed.middle) == pytest.approx(exact.middle, rel=1e-7)
+        assert float(closed.mean) == pytest.approx(exact.mean, rel=3e-3 if difference else 1e-7)
+
+
+@pytest.mark.parametrize("nahme, ratio", [(10.0, 1.05), (30.0, 1.14), (100.0, 1.29), (300.0, 1.43)])
+def test_lumped_temperature_overstates_newtonian_stress(nahme, ratio):
+    eta = 0.5
+    sliding = np.sqrt(nahme * CONDUCTIVITY / (BETA * eta))
+    exact = float(film_stress(FILM, eta, BETA, 0.0, 0.0, CONDUCTIVITY, sliding, LAWS["newton"]).stress)
+    lumped = 1.0  # stress over the isothermal one: t = exp(-Na t/12)
+    for _ in range(200):
+        lumped = 0.5 * (lumped + np.exp(-nahme * lumped / 12.0))
+    assert lumped * eta * sliding / FILM / exact == pytest.approx(ratio, abs=0.006)
+
+
+def test_sum_of_fluxes_is_the_heat_of_shear():
+    sliding = np.geomspace(1e-3, 100.0, 30)
+    closed = film_stress(FILM, 5.0, BETA, 340.0, 300.0, CONDUCTIVITY, sliding, LAWS["eyring"], 20e6)
+    rounding = 1e-14 * CONDUCTIVITY * 40.0 / FILM
+    np.testing.assert_allclose(closed.q1 + closed.q2, closed.stress * sliding, rtol=1e-13, atol=rounding)
+
+
+@pytest.mark.parametrize("limit", [np.inf, 9e6])
+@pytest.mark.parametrize("name", LAWS)
+def test_derivatives_by_complex_step(name, limit):
+    step = 1e-30
+    for eta, sliding, t1 in ((0.5, 1.0, 0.0), (5.0, 10.0, 15.0), (500.0, 5.0, -40.0)):
+        given = {"h": FILM, "eta": eta, "beta": BETA, "t1": t1, "t2": 0.0}
+
+        def stress(changes, given=given, sliding=sliding):
+            arguments = {**given, **changes}
+            return film_stress(
+                **arguments, conductivity=CONDUCTIVITY, sliding=sliding, flow=LAWS[name], limit=limit
+            )
+
+        closed = stress({})
+        size = 1j * step
+        expected = {
+            "by_ln_eta": {"eta": eta * (1.0 + size)},
+            "by_ln_h": {"h": FILM * (1.0 + size)},
+            "by_beta": {"beta": BETA + size},
+            "by_t1": {"t1": t1 + size, "eta": eta * (1.0 - 0.5 * BETA * size)},
+            "by_t2": {"t2": size, "eta": eta * (1.0 - 0.5 * BETA * size)},
+        }
+        for key, changes in expected.items():
+            moved = stress(changes)
+            assert float(getattr(closed, key)) == pytest.approx(float(moved.stress.imag) / step, rel=1e-9), (
+                key
+            )
+            assert float(moved.stress.real) == pytest.approx(float(closed.stress), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_solution_over_24_orders_of_magnitude(name):
+    """The equation holds, and the stress grows with the viscosity, whatever the heating."""
+    flow = LAWS[name]._replace(stress=1.0)
+    exponents = np.linspace(-12.0, 12.0, 49)
+    for heating in 10.0 ** exponents[::4]:
+        for d in (0.0, 2.0):
+            stresses = []
+            for x in exponents * np.log(10.0):
+                y, tau, by_x, *_ = film_shear.resolved_stress(0.0, x, heating, d, flow, np.inf)
+                assert 0.0 < by_x <= tau * (1.0 + 1e-12)
+                value, by_y = film_shear.across(y, d)[2:4]
+                assert abs(value - heating * tau) <= 1e-10 * (value + y * by_y)
+                stresses.append(tau)
+            assert np.all(np.diff(stresses) > 0.0)
+
+
+@pytest.mark.parametrize("share, error", [(0.1, 5e-4), (-0.1, 5e-4), (-0.3, 5e-3)])
+def test_other_heat_acts_like_a_rise_of_the_reference_temperature(share, error):
+    flow = LAWS["eyring"]
+    for eta, sliding in ((1.0, 20.0), (100.0, 5.0), (1e4, 20.0)):
+        unheated = film_stress(FILM, eta, BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
+        heat = share * float(unheated.stress) * sliding
+        rise = film_shear.other_heat(float(unheated.y)) * heat * FILM / CONDUCTIVITY
+        closed = film_stress(FILM, eta * np.exp(-BETA * rise), BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
+
+        def ln_eta(T, eta=eta):
+            value, slope = exponential(T)
+            return value + np.log(eta), slope
+
+        stress, profile = start_of(closed)
+        start = stress, profile + heat * FILM / (8.0 * CONDUCTIVITY) * (1.0 - X**2)
+        exact = solved_across(viscous_stress(flow), ln_eta, sliding, (0.0, 0.0), start, heat=heat / FILM)
+        assert float(closed.stress) == pytest.approx(exact.stress, rel=error)
+        assert abs(float(unheated.stress) / exact.stress - 1.0) > 0.015
+
+
+def test_pressure_flow_by_its_factor_and_its_heat():
+    flow, sigma = LAWS["eyring"], 1.0
+    gradient = 2.0 * sigma * flow.stress / FILM
+    for eta, sliding in ((1.0, 20.0), (100.0, 1.0), (100.0, 20.0)):
+        slower = eta * sigma / np.sinh(sigma)
+        closed = film_stress(FILM, slower, BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
+
+        def ln_eta(T, eta=eta):
+            value, slope = exponential(T)
+            return value + np.log(eta), slope
+
+        start = start_of(closed)
+        exact = solved_across(viscous_stress(flow), ln_eta, sliding, (0.0, 0.0), start, gradient=gradient)
+        heat = exact.q1 + exact.q2 - exact.stress * sliding
+        rise = heat * FILM / (12.0 * CONDUCTIVITY)
+        warmed = film_stress(FILM, slower * np.exp(-BETA * rise), BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
+        assert float(warmed.stress) == pytest.approx(exact.stress, rel=0.012)
+
+
+@pytest.mark.parametrize("flow, error", [(LAWS["eyring"], 0.01), (LAWS["newton"], 0.03)])
+def test_secant_of_roelands_law_to_the_middle_of_the_film(flow, error):
+    wall, reference = 333.0, 333.0
+    for pressure in (0.5e9, 1e9):
+        power = (np.log(0.03) + 9.67) * (1.0 + pressure / 1.96e8) ** (20e-9 * 1.96e8 / (np.log(0.03) + 9.67))
+
+        def ln_eta(T, power=power):
+            theta = ((T + wall - 138.0) / (reference - 138.0)) ** -1.1
+            return power * theta - 9.67, -1.1 * power * theta / (T + wall - 138.0)
+
+        for sliding in (0.5, 2.0, 10.0):
+            at_wall, slope = (float(value) for value in ln_eta(np.float64(0.0)))
+            secant = -slope
+            for _ in range(100):
+                closed = film_stress(FILM, np.exp(at_wall), secant, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
+                middle = float(closed.middle)
+                secant = 0.5 * (secant + (at_wall - float(ln_eta(middle)[0])) / middle)
+            start = start_of(closed, beta=secant)
+            exact = solved_across(viscous_stress(flow), ln_eta, sliding, (0.0, 0.0), start)
+            assert float(closed.stress) == pytest.approx(exact.stress, rel=error)
+            tangent = film_stress(FILM, np.exp(at_wall), -slope, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
+            if middle > 60.0:
+                assert float(tangent.stress) < 0.88 * exact.stress
