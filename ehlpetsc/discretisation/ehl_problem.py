@@ -19,12 +19,12 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact import contact_model, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
-from ehlpetsc.discretisation.deflection import Deflection, deflection_rows
+from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads, directional_derivative
+from ehlpetsc.discretisation.deflection import Deflection, PressureSums, deflection_rows
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
-from ehlpetsc.discretisation.interleaving import n_dofs, q_of, w_of
 from ehlpetsc.discretisation.no_oil import NoOil
-from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds, mirrored
+from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
+from ehlpetsc.discretisation.unknowns import Unknowns, mirrored, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 
 
@@ -98,6 +98,31 @@ class Evaluation:
     reynolds_derivatives: np.ndarray
 
 
+@dataclass(frozen=True)
+class Solution:
+    """An accepted solution on the whole mesh, dimensionless; arrays of shape (nx,).
+
+    Attributes
+    ----------
+    unknowns
+        As solved, with the plastic deformation of the step.
+    nodes
+        Pressure, film and plastic deformation of the step.
+    loads
+        Pressures, film and friction on the surfaces.
+    residual
+        Rows F of the Reynolds equation.
+    mass
+        Mass per area of the film, :math:`\rho h(1-\theta)`; None without oil.
+    """
+
+    unknowns: Unknowns
+    nodes: NodeState
+    loads: SurfaceLoads
+    residual: np.ndarray
+    mass: np.ndarray | None
+
+
 class EHLProblem:
     """Residual and derivatives of the nodes first .. last-1.
 
@@ -152,28 +177,28 @@ class EHLProblem:
         """Separation by the integral form, in a^2/R."""
         return h00 + 0.5 * self.x**2 + phi + self.deflection.integral(pressure)
 
-    def mass_per_area(self, q, w):
+    def mass_per_area(self, q: np.ndarray, w: np.ndarray) -> np.ndarray | None:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
-        state = self.model.state(q, w)
-        return self.reynolds.mass_per_area(state.reynolds_unknown, state.film, self.fluid)
+        return self._mass(self.model.state(q, w))
 
-    def evaluate(self, q, w, h00, inputs, sums=None):
-        """Local rows and their derivatives at one state.
+    def _mass(self, nodes: NodeState) -> np.ndarray | None:
+        return self.reynolds.mass_per_area(nodes.reynolds_unknown, nodes.film, self.fluid)
 
-        Parameters
-        ----------
-        q, w : ndarray
-            Unknowns at the nodes of the window.
-        h00 : float
-        inputs : StepInputs
-        sums : deflection.PressureSums, optional
-            Sums of the pressures at that state; required unless the window is the whole mesh.
+    def solution(self, unknowns: Unknowns, residual: np.ndarray) -> Solution:
+        """Solution at unknowns of the whole mesh with their rows of the Reynolds equation."""
+        q, w, _ = unknowns
+        nodes = self.model.state(q, w)
+        loads = self.model.surface_loads(q, w, nodes.film, residual)
+        return Solution(unknowns, nodes, loads, residual, self._mass(nodes))
 
-        Returns
-        -------
-        Evaluation
+    def evaluate(
+        self, unknowns: Unknowns, inputs: StepInputs, sums: PressureSums | None = None
+    ) -> Evaluation:
+        """Local rows and their derivatives at the unknowns of the window's nodes.
+
+        `sums` of the pressures at these unknowns are required unless the window is the whole mesh.
         """
-        model = inputs.contact or self.model
+        (q, w, h00), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
         residual = np.empty(n_dofs(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly

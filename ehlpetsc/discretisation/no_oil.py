@@ -7,7 +7,7 @@ solids have a pressure of their own, q = 0.
 import numpy as np
 
 from ehlpetsc.discretisation.finite_volumes import OWN, STENCIL
-from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
+from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 
 
 class NoOil:

@@ -27,13 +27,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     extrapolated,
     fill_mass,
 )
-from ehlpetsc.discretisation.interleaving import dofs_of, n_dofs
+from ehlpetsc.discretisation.unknowns import dofs_of, mirrored, n_dofs
 from ehlpetsc.physics.laws import density, density_law, ln_viscosity, viscosity_law
-
-
-def mirrored(values):
-    """Values at the nodes in reverse order."""
-    return np.ascontiguousarray(values[::-1])
 
 
 class FilmHistory:

@@ -74,24 +74,6 @@ class Step(NamedTuple):
     conditions: object
 
 
-class Solution(NamedTuple):
-    """A solution at the nodes, dimensionless; arrays of shape (nx,).
-
-    Attributes
-    ----------
-    nodes : discretisation.contact.node_state.NodeState
-        Pressure, film and plastic deformation of the step.
-    contact_pressure : ndarray
-        Pressure of the solids in p0; zero in direct contact.
-    loads : discretisation.contact.node_state.SurfaceLoads
-        Pressures, film and friction on the surfaces.
-    """
-
-    nodes: object
-    contact_pressure: np.ndarray
-    loads: object = None
-
-
 class NoRecord(NamedTuple):
     """Empty record of an effect without a state."""
 
@@ -164,7 +146,7 @@ class Effect:
         ----------
         record : NamedTuple
             Record at the beginning of the step.
-        solution : Solution
+        solution : discretisation.ehl_problem.Solution
         step : Step
         """
         return record

@@ -67,7 +67,7 @@ class Wear(BodyDepth):
         """Wear both surfaces where the solids carry."""
         if step.dt is None or self.scene.case.wear is None:
             return record
-        pressure, sliding = self.scene.scales.p0 * solution.contact_pressure, step.conditions.sliding
+        pressure, sliding = self.scene.scales.p0 * solution.loads.contact_pressure, step.conditions.sliding
         depths = [wear_depth(k, pressure, sliding, step.dt) for k in self.scene.case.wear.coefficient]
         return record._replace(depth=self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
 

@@ -28,11 +28,13 @@ The nodes are visited in the direction of flow, as in the paper, in compiled loo
 distributed: every rank computes all nodes.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ehlpetsc.discretisation import elasticity
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.interleaving import q_of, w_of
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
+from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear.sweeps import DeflectionForm, Linearised, sweep
 
@@ -77,35 +79,19 @@ class GaussSeidelSolver:
         """Limit of the evaluations of a steady start."""
         return needed or MAX_EVALUATIONS
 
-    def residual(self):
-        """Residual of the last solution: deflection and Reynolds rows, shape (nx,), and the load row."""
+    def residual(self) -> Rows:
+        """Residual of the last solution."""
         return self.rows
 
-    def solve(self, q, h, h00, inputs, max_it=None, watch=None):
-        """Solve from an initial guess.
-
-        Parameters
-        ----------
-        q, h : ndarray, shape (nx,)
-        h00 : float
-        inputs : ehl_problem.StepInputs
-        max_it : int, optional
-            Limit of evaluations in place of `MAX_EVALUATIONS`.
-        watch : callable, optional
-            Called before every evaluation; an exception that it raises ends the solve.
-
-        Returns
-        -------
-        q, h : ndarray, shape (nx,)
-        h00 : float
-        iterations : int
-            Evaluations of the coefficients.
-
-        Raises
-        ------
-        SolveFailed
-        """
-        q, h = q.copy(), np.maximum(h, self.bound)
+    def solve(
+        self,
+        guess: Unknowns,
+        inputs: StepInputs,
+        max_it: int | None = None,
+        watch: Callable[[], object] | None = None,
+    ) -> tuple[Unknowns, int]:
+        """As :meth:`.newton.NewtonSolver.solve`; iterations are evaluations of the coefficients."""
+        q, h, h00 = guess.q.copy(), np.maximum(guess.w, self.bound), guess.h00
         max_sweeps = max_it or MAX_EVALUATIONS
         for iteration in range(max_sweeps):
             if watch:
@@ -114,7 +100,7 @@ class GaussSeidelSolver:
             h00, gap_is_open = self._correct(p, h, h00, inputs.phi)
             norm = self._evaluate(q, h, h00, inputs)
             if norm < self.tolerance:
-                return q, h, h00, iteration
+                return Unknowns(q, h, h00), iteration
             if not np.isfinite(norm):
                 raise SolveFailed("sweeps", "NOT_FINITE", iteration)
             self._sweep(q, h, p, gap_is_open, inputs)
@@ -131,10 +117,10 @@ class GaussSeidelSolver:
     def _evaluate(self, q, h, h00, inputs):
         """Store residual and coefficients at a state; return the norm of the rows off the bound."""
         with np.errstate(over="ignore", invalid="ignore"):
-            evaluation = self.problem.evaluate(q, h, h00, inputs)
+            evaluation = self.problem.evaluate(Unknowns(q, h, h00), inputs)
             rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
             reynolds = w_of(rows, self.problem.n)
-            self.rows = q_of(rows, self.problem.n).copy(), reynolds.copy(), rows[-1]
+            self.rows = Rows(q_of(rows, self.problem.n).copy(), reynolds.copy(), rows[-1])
             reynolds[(h <= self.bound) & (reynolds > 0.0)] = 0.0
             return np.linalg.norm(rows)
 
@@ -147,9 +133,9 @@ class GaussSeidelSolver:
         far_field[1:-1] += curvature_coefficient * (shape[:-2] - 2.0 * shape[1:-1] + shape[2:])
         relaxation = np.where(gap_is_open, OPEN_GAP_RELAXATION, 1.0 if steady else FILM_RELAXATION)
         relaxation[q <= 0.0] = 1.0
-        linearised = Linearised(q.copy(), h.copy(), self.rows[1], self.derivatives)
+        linearised = Linearised(q.copy(), h.copy(), self.rows.reynolds, self.derivatives)
         deflection = DeflectionForm(-far_field, self.kernel, curvature_coefficient)
-        q[0] -= self.rows[1][0] / self.derivatives[0, 4]
+        q[0] -= self.rows.reynolds[0] / self.derivatives[0, 4]
         p[0] = max(q[0], 0.0)
         for _ in range(sweeps):
             sweep(q, h, p, linearised, deflection, self.bound, relaxation)

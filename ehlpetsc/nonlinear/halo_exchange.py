@@ -11,7 +11,7 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import HALO
-from ehlpetsc.discretisation.interleaving import n_dofs
+from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.nonlinear.collectives import collective, exchange
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4

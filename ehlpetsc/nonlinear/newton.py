@@ -7,9 +7,13 @@ is repeated with it. Mixed contact: ``newtonls`` on the semismooth system, whose
 complementarity in their sign and have no bounds; ``vinewtonrsls`` then takes the same iterations.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear import snes as snes_objects
 from ehlpetsc.nonlinear.defaults import RunOptions
@@ -123,54 +127,50 @@ class NewtonSolver:
             return self._max_it
         return needed or START_FACTOR * self._max_it
 
-    def residual(self):
-        """Residual of the last solution: deflection and Reynolds rows, shape (nx,), and the load row."""
+    def residual(self) -> Rows:
+        """Residual of the last solution."""
         return self.system.residual()
 
-    def solve(self, q, w, h00, inputs, max_it=None, watch=None):
-        """Solve from an initial guess.
+    def solve(
+        self,
+        guess: Unknowns,
+        inputs: StepInputs,
+        max_it: int | None = None,
+        watch: Callable[[], object] | None = None,
+    ) -> tuple[Unknowns, int]:
+        """Solution from an initial guess, and the number of iterations; raise `SolveFailed` without one.
 
         Parameters
         ----------
-        q, w : ndarray, shape (nx,)
-        h00 : float
-        inputs : ehl_problem.StepInputs
-        max_it : int, optional
+        guess, inputs
+        max_it
             Iteration limit in place of ``-snes_max_it``.
-        watch : callable, optional
+        watch
             Called in every iteration on every rank; an exception that it raises ends the solve.
-
-        Returns
-        -------
-        q, w : ndarray, shape (nx,)
-        h00 : float
-        iterations : int
-
-        Raises
-        ------
-        SolveFailed
         """
-        guess, spent, self._watch = (q, w, h00, inputs), 0, watch
-        if self._is_clear_of_bound(w, inputs):
+        spent, self._watch = 0, watch
+        if self._is_clear_of_bound(guess.w, inputs):
             try:
-                return self._solve(self._unconstrained_snes, guess, max_it)
+                return self._solve(self._unconstrained_snes, guess, inputs, max_it)
             except SolveFailed as error:  # at the bound, or with any other cause: repeated with the bound
                 spent = error.iterations
         try:
-            *solution, iterations = self._solve(self.snes, guess, max_it)
+            solution, iterations = self._solve(self.snes, guess, inputs, max_it)
         except SolveFailed as error:
             raise error.after(spent) from error
-        return *solution, iterations + spent
+        return solution, iterations + spent
 
-    def _is_clear_of_bound(self, w, inputs):
+    def _is_clear_of_bound(self, w: np.ndarray, inputs: StepInputs) -> bool:
         """Whether a step can begin without the bound, which saves a tenth of the time."""
         possible = self._unconstrained_snes is not None and inputs.history is not None
         return possible and w.min() > self.bound + CLEAR_OF_BOUND * self.problem.film_scale
 
-    def _solve(self, snes, guess, max_it):
+    def _solve(
+        self, snes: PETSc.SNES, guess: Unknowns, inputs: StepInputs, max_it: int | None
+    ) -> tuple[Unknowns, int]:
         if self._needs_renewal:
             snes = self._renew(snes)
-        self.system.set_initial_guess(*guess)
+        self.system.set_initial_guess(guess, inputs)
         self._unconstrained, self._reaches_bound = snes is self._unconstrained_snes, False
         self._is_first = self._needs_renewal = self._is_solving = True
         try:
@@ -205,21 +205,22 @@ class NewtonSolver:
             system.f.array[:] = system.evaluation(system.x).residual
             self.tolerance = max(self.tolerance, factor * system.f.norm())
 
-    def _solution(self, snes):
+    def _solution(self, snes: PETSc.SNES) -> tuple[Unknowns, int]:
         reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
         # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
         self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:
             raise SolveFailed("SNES", snes_objects.REASONS.get(reason, str(reason)), iterations)
-        q, w, h00 = self.system.solution()
+        solution = self.system.solution()
+        q, w, h00 = solution
         if not np.isfinite([q.sum(), w.sum(), h00]).all():
             raise SolveFailed("SNES", "NOT_FINITE", iterations)
         bound = self.system.model.lower_bound
         if bound is not None and not self.bounded and w.min() < bound:
             raise SolveFailed("SNES", "FILM_BELOW_ITS_BOUND", iterations)
-        return q, w, h00, iterations
+        return solution, iterations
 
-    def _renew(self, snes):
+    def _renew(self, snes: PETSc.SNES) -> PETSc.SNES:
         """Create PETSc's objects anew after a failed solve; return the successor of `snes`."""
         unconstrained = snes is self._unconstrained_snes
         while self._petsc_objects:

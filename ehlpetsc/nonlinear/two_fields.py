@@ -12,9 +12,9 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.deflection import PressureSums
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
-from ehlpetsc.discretisation.interleaving import n_dofs, pairs, q_of, w_of
+from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.collectives import all_ranks, gathered, global_max, global_sum
@@ -104,35 +104,28 @@ class TwoFields:
             self.assembled = NearFieldMatrix(self.problem, self.near_field, self.preconditioned)
             self._petsc_objects.append(self.preconditioned)
 
-    def set_initial_guess(self, q, w, h00, inputs):
-        """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve.
-
-        Parameters
-        ----------
-        q, w : ndarray, shape (nx,)
-        h00 : float
-        inputs : ehl_problem.StepInputs
-        """
+    def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
+        """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve."""
         self.inputs, self.x_evaluated, self.rows = inputs, None, None
         local = slice(self.problem.first, self.problem.last)
-        q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = q[local], w[local]
+        q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
         if self.problem.load_is_local:
-            self.x.array[-1] = h00
+            self.x.array[-1] = guess.h00
 
-    def solution(self):
-        """The whole solution on every rank: q, w (shape (nx,)) and h00."""
-        return self._pairs_of(self.x)
+    def solution(self) -> Unknowns:
+        """The whole solution on every rank."""
+        return Unknowns(*self._parts_of(self.x))
 
-    def _pairs_of(self, v):
+    def _parts_of(self, v: PETSc.Vec) -> tuple[np.ndarray, np.ndarray, float]:
         self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
         values = self.all.array_r
         return q_of(values, self.n).copy(), w_of(values, self.n).copy(), values[-1]
 
-    def residual(self):
-        """Residual of the solution: deflection and Reynolds rows, shape (nx,), and the load row."""
+    def residual(self) -> Rows:
+        """Residual of the solution, on every rank."""
         if self.rows is None:
             self.f.array[:] = self.evaluation(self.x).residual
-            self.rows = self._pairs_of(self.f)
+            self.rows = Rows(*self._parts_of(self.f))
         return self.rows
 
     def evaluation(self, x):
@@ -152,7 +145,7 @@ class TwoFields:
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
             nodes, h00, curvature, load = exchange_unknowns(*self.halo, *local_data)
             (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
-            self._evaluation = self.problem.evaluate(q, w, h00, self.inputs, sums)
+            self._evaluation = self.problem.evaluate(Unknowns(q, w, h00), self.inputs, sums)
             self.bound_reached = load[3] > 0.0
         return self._evaluation
 

@@ -21,7 +21,7 @@ from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_comm, check_pass, check_time_step, option_texts
 from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.scene import scene_of
-from ehlpetsc.stepping.domain_ends import check_ends
+from ehlpetsc.stepping.convergence_check import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
 
 MONITOR_OPTIONS = (
@@ -205,16 +205,12 @@ class Simulation:
         with self.options:
             try:
                 solution = self._start(watch) if self.solution is None else self._step(dt, watch)
-                self._check_ends(solution)
+                check_ends(self.scales.x, solution.p, solution.solution.loads.contact_mask)
                 self.solution = solution
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error
         self.state = AcceptedState.of(self, started)
         return self.state
-
-    def _check_ends(self, solution):
-        touching = self.stepper.problem.model.contact_mask(solution.w, solution.reynolds_residual)
-        check_ends(self.scales.x, solution.p, touching)
 
     def _start(self, watch):
         self._print_heading("steady start")

@@ -10,69 +10,76 @@ Conditions on the rows of :mod:`ehlpetsc.discretisation.ehl_problem` at the solu
   definition of the unknowns;
 * load: :math:`|\sum p\,\Delta x-\pi/2|` to the same tolerance;
 * all values finite, void fractions at most 1, :math:`q\ge-1`.
+
+A solution whose pressure or contact is cut off by an end of the domain is refused too.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
-from ehlpetsc.errors import SolveFailed
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
+from ehlpetsc.discretisation.unknowns import Rows, Unknowns
+from ehlpetsc.errors import NotConverged, SolveFailed
 
 SUM_ROUNDING = 1.0 + 1e-6  # factor on tolerances: sums in another order differ by rounding
 VOID_TOLERANCE = 1e-9  # excess of a void fraction over 1 that is rounding
+MAX_END_PRESSURE = 0.01  # p0
+
+Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
 
 
-def solve_checked(solver, q, w, h00, inputs, max_it=None, watch=None):
-    """Solve, and check the solution.
+class Solver(Protocol):
+    """A nonlinear solver of one scene; `tolerance` is that of the residual in the last solve."""
 
-    Parameters and returned values are those of `nonlinear.newton.NewtonSolver.solve`.
+    problem: EHLProblem
+    tolerance: float
 
-    Raises
-    ------
-    SolveFailed
-        The solver does not converge, or its solution does not pass the check.
-    """
-    *solution, iterations = solver.solve(q, w, h00, inputs, max_it=max_it, watch=watch)
-    fault = find_fault(solver.problem, *solution, solver.residual(), solver.tolerance)
+    def solve(
+        self, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
+    ) -> tuple[Unknowns, int]: ...
+
+    def residual(self) -> Rows: ...
+
+    def start_iterations(self, needed: int | None = None) -> int: ...
+
+
+def solve_checked(
+    solver: Solver, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
+) -> tuple[Unknowns, int]:
+    """Solution that passes the check, and the number of iterations; raise `SolveFailed` without one."""
+    solution, iterations = solver.solve(guess, inputs, max_it=max_it, watch=watch)
+    fault = find_fault(solver.problem, solution, solver.residual(), solver.tolerance)
     if fault:
         raise SolveFailed("solution check:", fault, iterations)
-    return *solution, iterations
+    return solution, iterations
 
 
-def solve_step(solver, q, w, h00, inputs, watch=None):
-    """Checked solution of a time step; with yielding solids, on failure, from the solution of elastic ones.
-
-    Parameters, returned values and errors are those of :func:`solve_checked`.
-    """
+def solve_step(
+    solver: Solver, guess: Unknowns, inputs: StepInputs, watch: Watch = None
+) -> tuple[Unknowns, int]:
+    """As :func:`solve_checked`; of yielding solids, on failure, from the solution of elastic ones."""
     elastic = solver.problem.model.elastic()
     try:
-        return solve_checked(solver, q, w, h00, inputs, watch=watch)
+        return solve_checked(solver, guess, inputs, watch=watch)
     except SolveFailed as error:
         if elastic is None:
             raise
         spent = error.iterations
     try:
-        *begin, iterations = solve_checked(solver, q, w, h00, replace(inputs, contact=elastic), watch=watch)
+        begin, iterations = solve_checked(solver, guess, replace(inputs, contact=elastic), watch=watch)
         spent += iterations
-        *state, iterations = solve_checked(solver, *begin, inputs, watch=watch)
+        solution, iterations = solve_checked(solver, begin, inputs, watch=watch)
     except SolveFailed as error:
         raise error.after(spent) from error
-    return *state, spent + iterations
+    return solution, spent + iterations
 
 
-def find_fault(problem, q, w, h00, rows, tolerance):
-    """Reason for which a solution is rejected; None where it is accepted.
-
-    Parameters
-    ----------
-    problem : discretisation.ehl_problem.EHLProblem
-    q, w : ndarray, shape (nx,)
-    h00 : float
-    rows : (ndarray, ndarray, float)
-        Residual: deflection and Reynolds rows, load row.
-    tolerance : float
-    """
-    deflection, reynolds, load = rows
+def find_fault(problem: EHLProblem, unknowns: Unknowns, rows: Rows, tolerance: float) -> str | None:
+    """Reason for which a solution with these rows is rejected; None where it is accepted."""
+    (q, w, h00), (deflection, reynolds, load) = unknowns, rows
     if not np.isfinite([q.sum(), w.sum(), h00, deflection.sum(), reynolds.sum(), load]).all():
         return "it is not finite"
     if problem.fluid is not None and q.min() < -1.0 - VOID_TOLERANCE:
@@ -89,3 +96,14 @@ def find_fault(problem, q, w, h00, rows, tolerance):
         if not norm <= bound:
             return f"the residual of the {equation} is {norm:.2e}, allowed: {tolerance:.1e}"
     return None
+
+
+def check_ends(x: np.ndarray, pressure: np.ndarray, touching: np.ndarray) -> None:
+    """Raise `NotConverged` where a pressure in p0, or contact, reaches an end of the domain."""
+    for end, key in ((0, "inlet"), (-1, "outlet")):
+        at = f"at the {key}, x = {x[end]:g} a"
+        cure = f"put mesh.{key} further out"
+        if touching[end]:
+            raise NotConverged(f"solids touch {at}: the contact is wider than the domain; {cure}")
+        if pressure[end] > MAX_END_PRESSURE:
+            raise NotConverged(f"{pressure[end]:.2g} p0 {at}: the domain cuts the pressure off; {cure}")

@@ -1,44 +1,46 @@
-"""Initial guesses of steady solutions: Hertz pressure with an even film, flooded or starved."""
+r"""Initial guesses of steady solutions: Hertz pressure with an even film, and yielding solids.
+
+Where solids yield under Hertz' pressure, the guess is their dry contact as a convex problem,
+
+.. math:: \min_p\ \tfrac12\,p\cdot Ap+p\cdot g,\qquad 0\le p\le p_y,\quad \sum p\,\Delta x=W,
+
+A the deflection, g the gap of the undeformed shapes: the gradient is the deformed gap without the approach.
+Projected gradients with Nesterov's momentum, restarted where a step turns back, converge from any guess;
+where nearly all nodes in contact yield, Newton's method alone does not find the set of elastic nodes.
+"""
 
 import numpy as np
 
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
 from ehlpetsc.discretisation.elasticity import fast_length
+from ehlpetsc.discretisation.unknowns import Unknowns
 
 SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep
 MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum
 AMBIENT = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
+MAX_EIGENVALUE = 0.26  # of A over the length of the mesh, for pressures with zero mean
+MAX_ITERATIONS = 1000  # of the projected gradient method
+STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
+BISECTIONS = 60  # of an interval, down to rounding
 
 
-def undeformed_gap(problem, inputs):
+def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
     """Undeformed gap of a step without the parabola of the reference radius, in a^2/R."""
     change = problem.scales.R / inputs.conditions.radius - 1.0
     return inputs.phi + 0.5 * change * problem.x**2
 
 
-def load_of(problem, inputs):
+def load_of(problem: EHLProblem, inputs: StepInputs) -> float:
     """Load of a step over the load of the scales."""
     return inputs.load_share * (inputs.conditions.load / problem.scales.load)
 
 
-def hertz_start(problem, film, inputs, thick=1.3):
+def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: float = 1.3) -> Unknowns:
     """Hertz pressure with a film above the expected one at every node; downstream of the contact a cavity.
 
     The pressure is smoothed over `SMOOTHING` times the length of the inlet sweep, film^(2/3): the infinite
-    slope at the edge of the Hertz pressure would dominate the flow through a thick film.
-
-    Parameters
-    ----------
-    problem : ehl_problem.EHLProblem
-    film : float
-        Expected film in a^2/R.
-    inputs : ehl_problem.StepInputs
-    thick : float
-        Film over the expected film.
-
-    Returns
-    -------
-    q, w : ndarray, shape (nx,)
-    h00 : float
+    slope at the edge of the Hertz pressure would dominate the flow through a thick film. `film` is the
+    expected one in a^2/R, `thick` the factor on it.
     """
     x, load = problem.x, load_of(problem, inputs)
     width_2 = load * (inputs.conditions.radius / problem.scales.R)
@@ -49,16 +51,16 @@ def hertz_start(problem, film, inputs, thick=1.3):
     h = problem.film(p, 0.0, undeformed_gap(problem, inputs))
     if problem.fluid is None:
         gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
-        return *problem.model.dry_start(p, gap), -h[np.argmax(p)]
+        return Unknowns(*problem.model.dry_start(p, gap), -h[np.argmax(p)])
     h00 = problem.model.start_film(thick * film) - h.min()
     h += h00
     oil, w = problem.model.oil_start(p, h)
     behind = (x > np.sqrt(width_2)) & (p < AMBIENT)
     q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
-    return q, w, h00
+    return Unknowns(q, w, h00)
 
 
-def smoothed(p, width):
+def smoothed(p: np.ndarray, width: float) -> np.ndarray:
     """Convolution of p, zero outside the mesh, with a Gaussian of a width in nodes.
 
     `scipy.ndimage.gaussian_filter1d` would load 14 MB that a smooth contact does not need otherwise.
@@ -73,10 +75,62 @@ def smoothed(p, width):
     return np.maximum(product[reach : reach + len(p)], 0.0)
 
 
-def starved_start(problem, film, inputs):
+def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknowns:
     """Hertz pressure and the oil film of the inlet, with void where the gap of the inlet is wider."""
     oil = inputs.inlet_film
     q, w, h00 = hertz_start(problem, min(film, oil), inputs)
     h = problem.model.state(q, w).film
     void = (problem.x < -1.0) & (h > oil)
-    return np.where(void, oil / h - 1.0, q), w, h00
+    return Unknowns(np.where(void, oil / h - 1.0, q), w, h00)
+
+
+def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
+    limit, load = problem.model.yield_pressure, load_of(problem, inputs)
+    total, phi = 0.5 * np.pi * load / problem.dx, undeformed_gap(problem, inputs)
+    rate = 1.0 / (MAX_EIGENVALUE * (problem.x[-1] - problem.x[0]))
+    p = ahead = project(np.sqrt(np.maximum(load - problem.x**2, 0.0)), limit, total)
+    momentum = 1.0
+    for _ in range(MAX_ITERATIONS):
+        new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
+        if np.abs(new - p).max() < STEP_TOLERANCE * limit:
+            break
+        if (ahead - new) @ (new - p) > 0.0:
+            momentum = 1.0
+        following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
+        ahead, p, momentum = new + (momentum - 1.0) / following * (new - p), new, following
+    return new, problem.film(new, 0.0, phi)
+
+
+def project(p: np.ndarray, limit: float, total: float) -> np.ndarray:
+    """Projection of p onto pressures between 0 and `limit` with the sum `total`: shifted and clipped."""
+    low, high = -p.max(), limit - p.min()
+    for _ in range(BISECTIONS):
+        shift = 0.5 * (low + high)
+        low, high = (shift, high) if np.clip(p + shift, 0.0, limit).sum() < total else (low, shift)
+    return np.clip(p + high, 0.0, limit)
+
+
+def bounded_start(problem: EHLProblem, film: float, inputs: StepInputs, smoothing: float) -> Unknowns:
+    """Unknowns of the dry contact; with oil, the oil carries the load on an even film in a^2/R.
+
+    `smoothing` is the width of the smoothing of the oil pressure in lengths of the inlet sweep, film^(2/3).
+    """
+    model, limit = problem.model, problem.model.yield_pressure
+    p, gap = bounded_pressure(problem, inputs)
+    lowest = model.minimum_film if problem.fluid is None else max(film, model.minimum_film)
+    elastic = (p > 0.0) & (p < limit)
+    h00 = lowest - gap[elastic if elastic.any() else p > 0.0].max()
+    depth = np.where(p < limit, 0.0, np.maximum(lowest - gap - h00, 0.0))
+    if problem.fluid is None:
+        carried = p + depth / model.compliance
+        return Unknowns(*model.dry_start(carried, gap + h00 + depth), h00)
+    edge = problem.x[p > 0.0].max()
+    if smoothing:
+        p = smoothed(p, smoothing * film ** (2.0 / 3.0) / problem.dx)
+    depth[p < limit * (1.0 - 1e-9)] = 0.0
+    h = np.maximum(problem.film(p, h00, undeformed_gap(problem, inputs)) + depth, lowest)
+    behind = (problem.x > edge) & (p < AMBIENT)
+    oil, w = model.oil_start(p + depth / model.compliance, h)
+    q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
+    return Unknowns(q, w, h00)

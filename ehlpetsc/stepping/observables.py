@@ -4,41 +4,35 @@ import time as clock
 
 import numpy as np
 
-from ehlpetsc.effects.effect import Solution, Step
+from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
+from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.physics.film_formulas import smooth_films
+from ehlpetsc.physics.operation import Conditions
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
+from ehlpetsc.stepping.state import State
 
 MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
 MIN_BALANCE_FILM = 1e-10  # m, size of an atom: smallest reference film of the mass error
 
 
-def diagnostics(scene, problem, effects, state, started):
-    """Scalars of the step and fields, in SI units.
+def diagnostics(
+    scene: Scene, problem: EHLProblem, effects: list[Effect], state: State, started: float
+) -> tuple[dict, dict, np.ndarray]:
+    """Scalars of the step, fields and mask of the nodes in contact, in SI units.
 
-    Parameters
-    ----------
-    scene : effects.effect.Scene
-    problem : discretisation.ehl_problem.EHLProblem
-    effects : list of effects.effect.Effect
-    state : stepping.state.State
-    started : float
-        Monotonic clock at the beginning of the step [s].
-
-    Returns
-    -------
-    scalars : dict of str to number
-    fields : dict of str to ndarray, shape (nx,)
-    in_contact : ndarray of bool, shape (nx,)
+    `started` is the monotonic clock at the beginning of the step [s].
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
-    loads = problem.model.surface_loads(state.q, state.w, state.h, state.reynolds_residual)
+    solution, loads = state.solution, state.solution.loads
     of_effects = (
         e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case)
     )
     ln_eta = next((values for values in of_effects if values is not None), None)
-    fields, contact_mask = _fields(case, s, conditions, problem, state, loads, ln_eta), loads.contact_mask
+    fields, contact_mask = _fields(scene, conditions, solution, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
-    load, film = s.dx * pressure.sum(), mean_film(s, state.h)
+    load, film = s.dx * pressure.sum(), mean_film(s, solution.nodes.film)
     friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
     smooth_film = smooth_films(case.fluid, s.E, conditions)[1] if case.fluid else np.nan
     scalars = {
@@ -50,8 +44,8 @@ def diagnostics(scene, problem, effects, state, started):
         "contacts": int(contact_mask.sum()),
         "load": load,
         "load_error": abs(load / conditions.load - 1.0),
-        "mass_error": mass_error(problem, state),
-        "approach": state.h00 * s.h,
+        "mass_error": mass_error(problem, solution),
+        "approach": solution.unknowns.h00 * s.h,
         "friction": friction_2,
         "friction_1": friction_1,
         "friction_coefficient": 0.5 * abs(friction_2 - friction_1) / load,
@@ -68,7 +62,6 @@ def diagnostics(scene, problem, effects, state, started):
         scalars |= _of_oil(loads, s)
     scalars |= problem.model.diagnostics(loads, s, case.output.thin_film)
     step = Step(state.time, state.dt, state.travelled, conditions)
-    solution = Solution(problem.model.state(state.q, state.w), loads.contact_pressure, loads)
     for effect in effects:
         if effect.is_in(case):
             effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)
@@ -76,9 +69,10 @@ def diagnostics(scene, problem, effects, state, started):
     return scalars, fields, contact_mask
 
 
-def _fields(case, s, conditions, problem, state, loads, ln_eta):
+def _fields(scene: Scene, conditions: Conditions, solution: Solution, ln_eta: np.ndarray | None) -> dict:
     """Fields in SI units that every case has."""
-    void = np.zeros_like(loads.film) if problem.fluid is None else np.maximum(-state.q, 0.0)
+    case, s, loads = scene.case, scene.scales, solution.loads
+    void = np.zeros(s.nx) if case.fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
     shear_1, shear_2 = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared, ln_eta)
@@ -93,20 +87,20 @@ def _fields(case, s, conditions, problem, state, loads, ln_eta):
     }
 
 
-def _of_oil(loads, s):
+def _of_oil(loads: SurfaceLoads, s: Scales) -> dict:
     """Maximum pressure of the oil, and number of nodes with less than 1 nm of oil."""
     oil = np.where(loads.oil_mask, loads.oil_pressure, 0.0) * s.p0
     thin = ~loads.contact_mask & (loads.film * s.h < MIN_CONTINUUM_FILM)
     return {"oil_pressure": oil.max(), "nodes_below_1nm": int(thin.sum())}
 
 
-def mean_film(scales, h):
+def mean_film(scales: Scales, h: np.ndarray) -> float:
     """Mean film [m] of the middle half of the Hertz contact; h in a^2/R."""
     middle = np.abs(scales.x) <= 0.5
     return float(h[middle].mean() * scales.h)
 
 
-def mass_error(problem, state):
+def mass_error(problem: EHLProblem, solution: Solution) -> float:
     r"""Mass defect of a step over the mass that the contact carries.
 
     :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
@@ -117,6 +111,6 @@ def mass_error(problem, state):
     """
     if problem.fluid is None:
         return 0.0
-    defect = problem.film_scale * np.abs(state.reynolds_residual[1:]).sum()
-    carried = state.m[np.abs(problem.x) <= 1.0].mean()
+    defect = problem.film_scale * np.abs(solution.residual[1:]).sum()
+    carried = solution.mass[np.abs(problem.x) <= 1.0].mean()
     return float(defect / max(carried, MIN_BALANCE_FILM / problem.scales.h))

@@ -7,27 +7,21 @@ predictor: on the measured surfaces the last level alone costs 6.0 Newton iterat
 4.6 (over a travel of 5 a). Extrapolation in time does not reduce this number.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.stepping.state import TimeLevel
 
 MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth solution may be in contact too
 LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that counts as much as one step of age
 
 
-class TimeLevel(NamedTuple):
-    """Unknowns of an earlier time level, and the distance travelled by the film [m]."""
-
-    travelled: float
-    q: np.ndarray
-    w: np.ndarray
-
-
 @compiled
-def advected(values, nodes):
+def advected(values: np.ndarray, nodes: float) -> np.ndarray:
     """Values advected by `nodes` nodes.
 
     Cubic interpolation, limited to the range of the two neighbouring values: next to the pressure spikes of
@@ -50,28 +44,30 @@ def advected(values, nodes):
     return moved
 
 
-def neighbours(v, nodes):
+def neighbours(v: np.ndarray, nodes: float) -> tuple[np.ndarray, np.ndarray]:
     """Values of the two nodes upstream of each point moved by `nodes` nodes."""
     source = np.arange(len(v)) - int(np.floor(nodes))
     return v.take(source, mode="clip"), v.take(source - 1, mode="clip")
 
 
-def whole_nodes(v, nodes):
+def whole_nodes(v: np.ndarray, nodes: float) -> np.ndarray:
     """Values moved by the nearest whole number of nodes."""
     return v.take(np.arange(len(v)) - int(np.rint(nodes)), mode="clip")
 
 
-def predict(problem, smooth, levels, nodes):
+def predict(
+    problem: EHLProblem, smooth: TimeLevel, levels: Sequence[TimeLevel], nodes: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Guess of q and w.
 
     Parameters
     ----------
-    problem : ehl_problem.EHLProblem
-    smooth : TimeLevel
+    problem
+    smooth
         Steady solution of the start.
-    levels : sequence of TimeLevel
+    levels
         Earlier time levels, latest first.
-    nodes : sequence of float
+    nodes
         Distance of each level to the new time, with the entrainment speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)

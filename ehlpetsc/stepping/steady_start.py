@@ -17,15 +17,18 @@ A starved inlet needs another guess, because the meniscus moves one node per ite
 wider than the oil film. The flooded solution decides whether the contact starves: if it carries more oil than
 the inlet supplies, the contact is starved; otherwise the flooded solution holds except at the first node.
 
-If the Hertz pressure exceeds the yield pressure, the guess is the dry contact of :mod:`.bounded_contact`.
+If the Hertz pressure exceeds the yield pressure, the guess is the dry contact of
+:func:`.first_guess.bounded_start`.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
+from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
-from ehlpetsc.stepping.bounded_contact import bounded_start
-from ehlpetsc.stepping.convergence_check import solve_checked
-from ehlpetsc.stepping.first_guess import SMOOTHING, hertz_start, starved_start
+from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
+from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
 
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
@@ -34,28 +37,10 @@ MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
 
 
-def steady(solver, film, inputs, watch=None):
-    """Steady solution of the solver's problem.
+def steady(solver: Solver, film: float, inputs: StepInputs, watch: Watch = None) -> tuple[Unknowns, int]:
+    """Steady solution, and the number of iterations with failed attempts; raise `NoSteadyStart` without one.
 
-    Parameters
-    ----------
-    solver : newton.NewtonSolver
-    film : float
-        Expected film in a^2/R.
-    inputs : ehl_problem.StepInputs
-    watch : callable, optional
-        See `nonlinear.newton.NewtonSolver.solve`.
-
-    Returns
-    -------
-    q, w : ndarray, shape (nx,)
-    h00 : float
-    iterations : int
-        Newton iterations, failed attempts included.
-
-    Raises
-    ------
-    NoSteadyStart
+    `film` is the expected one in a^2/R.
     """
     problem, oil = solver.problem, inputs.inlet_film
     if problem.model.yield_pressure < 1.0:
@@ -65,43 +50,43 @@ def steady(solver, film, inputs, watch=None):
         max_it = problem.n if problem.fluid is None and solver.bounded else None
         return Continuation(solver, inputs, max_it, watch).solve(hertz_start(problem, film, inputs))
     flooded = replace(inputs, inlet_film=None)
-    q, w, h00, iterations = Continuation(solver, flooded, watch=watch).solve(
-        hertz_start(problem, film, inputs)
-    )
+    begin, iterations = Continuation(solver, flooded, watch=watch).solve(hertz_start(problem, film, inputs))
+    q, w, _ = begin
     if problem.mass_per_area(q, w)[-1] <= oil:
         q[0] = min(oil / problem.model.state(q, w).film[0] - 1.0, 0.0)
-        begin = q, w, h00
     else:
         begin = starved_start(problem, film, inputs)
     # the meniscus may move over all nodes of the inlet, one an iteration
-    *state, starved_iterations = Continuation(solver, inputs, problem.n, watch).solve(begin)
-    return *state, iterations + starved_iterations
+    solution, starved_iterations = Continuation(solver, inputs, problem.n, watch).solve(begin)
+    return solution, iterations + starved_iterations
 
 
-def yielding_start(solver, film, inputs, watch=None):
-    """Steady solution of solids that yield at the Hertz pressure, from the dry contact.
+def yielding_start(
+    solver: Solver, film: float, inputs: StepInputs, watch: Watch = None
+) -> tuple[Unknowns, int]:
+    """As :func:`steady`, of solids that yield at the Hertz pressure, from the dry contact.
 
-    Parameters, returned values and errors are those of :func:`steady`. From the Hertz pressure all nodes in
+    From the Hertz pressure all nodes in
     contact would yield at once, and a pressure at its bound everywhere does not depend on the load. Most
     films need smoothed edges of the flat pressure; thin films far above the yield pressure do not. For thick
     films the load is increased from the onset of yielding.
     """
     problem, attempt = solver.problem, SolveAttempts(solver, watch=watch)
     for width in (SMOOTHING, 0.0):
-        state = attempt(bounded_start(problem, film, inputs, width), inputs)
-        if state is not None:
-            return *state, attempt.spent
+        solution = attempt(bounded_start(problem, film, inputs, width), inputs)
+        if solution is not None:
+            return solution, attempt.spent
     load, reached = FIRST_LOAD_RATIO * problem.model.yield_pressure**2, 0.0
-    state = hertz_start(problem, film, replace(inputs, load_share=load))
+    solution = hertz_start(problem, film, replace(inputs, load_share=load))
     while reached < 1.0:
-        nearer = attempt(state, replace(inputs, load_share=load))
+        nearer = attempt(solution, replace(inputs, load_share=load))
         if nearer is not None:
-            state, reached, load = nearer, load, min(load * LOAD_GROWTH, 1.0)
+            solution, reached, load = nearer, load, min(load * LOAD_GROWTH, 1.0)
             continue
         load = 0.5 * (reached + load)
         if load < reached * (1.0 + MIN_RAMP_INCREMENT) or not reached:
             raise NoSteadyStart(attempt.failure)
-    return *state, attempt.spent
+    return solution, attempt.spent
 
 
 class SolveAttempts:
@@ -109,44 +94,44 @@ class SolveAttempts:
 
     Attributes
     ----------
-    spent : int
+    spent
         Newton iterations, failed attempts included.
     failure : SolveFailed or None
         Last failure.
     """
 
-    def __init__(self, solver, max_it=None, watch=None):
+    def __init__(self, solver: Solver, max_it: int | None = None, watch: Watch = None):
         self.solver, self.watch, self.max_it = solver, watch, solver.start_iterations(max_it)
         self.made, self.spent, self.failure = 0, 0, None
 
-    def __call__(self, begin, inputs):
-        """Return q, w and h00; None if Newton's method does not converge."""
+    def __call__(self, begin: Unknowns, inputs: StepInputs) -> Unknowns | None:
+        """Solution; None if Newton's method does not converge."""
         if self.made == MAX_ATTEMPTS:
             tried = f"{self.made} attempts and {self.spent} Newton iterations"
             message = f"given up after {tried}; the last failure: {self.failure}"
             raise NoSteadyStart(message)
         self.made += 1
         try:
-            *state, iterations = solve_checked(self.solver, *begin, inputs, self.max_it, self.watch)
+            solution, iterations = solve_checked(self.solver, begin, inputs, self.max_it, self.watch)
         except SolveFailed as error:
             self.spent, self.failure = self.spent + error.iterations, error
             return None
         self.spent += iterations
-        return state
+        return solution
 
 
 class Continuation:
     """Solve directly or by continuation in the pressure-viscosity coefficient and the roughness."""
 
-    def __init__(self, solver, inputs, max_it=None, watch=None):
+    def __init__(self, solver: Solver, inputs: StepInputs, max_it: int | None = None, watch: Watch = None):
         self.inputs, self.attempt = inputs, SolveAttempts(solver, max_it, watch)
 
-    def solve(self, begin):
-        """Return q, w, h00 and the number of Newton iterations."""
-        state = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
-        return *state, self.attempt.spent
+    def solve(self, begin: Unknowns) -> tuple[Unknowns, int]:
+        """Solution, and the number of Newton iterations."""
+        solution = self._try(begin, 1.0, 1.0) or self._by_steps(begin)
+        return solution, self.attempt.spent
 
-    def _by_steps(self, begin):
+    def _by_steps(self, begin: Unknowns) -> Unknowns:
         """Increase the pressure-viscosity coefficient of the smooth contact, then the roughness."""
         rough = self.inputs.phi.any()
         state = self._try(begin, 1.0, 0.0) if rough else None
@@ -154,7 +139,7 @@ class Continuation:
             state = self._ramp(*self._softened(begin), lambda fraction: (fraction, 0.0))
         return self._ramp(state, 0.0, lambda fraction: (1.0, fraction)) if rough else state
 
-    def _softened(self, begin):
+    def _softened(self, begin: Unknowns) -> tuple[Unknowns, float]:
         fraction = 0.5 if self.inputs.fluid else 0.0  # without oil there is no viscosity to reduce
         while fraction >= MIN_VISCOSITY_FRACTION:
             state = self._try(begin, fraction, 0.0)
@@ -163,7 +148,7 @@ class Continuation:
             fraction *= 0.5
         raise NoSteadyStart(self.attempt.failure)
 
-    def _ramp(self, state, fraction, of):
+    def _ramp(self, state: Unknowns, fraction: float, of: Callable[[float], tuple[float, float]]) -> Unknowns:
         growth = fraction or 0.5
         while fraction < 1.0:
             nearer = self._try(state, *of(min(fraction + growth, 1.0)))
@@ -175,11 +160,11 @@ class Continuation:
                 raise NoSteadyStart(self.attempt.failure)
         return state
 
-    def _try(self, begin, fraction, roughness):
+    def _try(self, begin: Unknowns, fraction: float, roughness: float) -> Unknowns | None:
         return self.attempt(begin, easier(self.inputs, fraction, roughness))
 
 
-def easier(inputs, fraction, roughness):
+def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
     """Inputs with fractions of the pressure-viscosity coefficient and of the roughness."""
     fluid = inputs.fluid
     if fluid and fraction < 1.0:

@@ -1,26 +1,59 @@
 """Time stepping of a run: steady solution, time steps, retries.
 
 The initial guess of a step is that of :mod:`.predictor`. A step that does not converge is halved and counted;
-:mod:`.step_control` returns to the nominal step.
+:func:`next_step` returns to the nominal step.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from ehlpetsc.discretisation.reynolds import FilmHistory, mirrored
-from ehlpetsc.effects.effect import Solution, Step
+from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.unknowns import Unknowns, mirrored
+from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
-from ehlpetsc.stepping.convergence_check import solve_step
-from ehlpetsc.stepping.predictor import TimeLevel, predict
-from ehlpetsc.stepping.state import State
+from ehlpetsc.physics.operation import LEVEL_TOLERANCE
+from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
+from ehlpetsc.stepping.predictor import predict
+from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.stepping.steady_start import steady
-from ehlpetsc.stepping.step_control import LEVEL_TOLERANCE, next_step
 
 RAMP_LENGTH = 1.0  # half widths of entrained distance over which roughness at rest is ramped up
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
 MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
+MAX_STEP_RATIO = 2.0  # of successive steps; BDF2 is stable up to 2.4
+NEARLY_NOMINAL = 1.5  # a step within this factor of the nominal step is followed by the nominal step
+
+
+def on_level(steps: float, every: int = 1) -> bool:
+    """Whether a number of nominal steps is a multiple of `every`, except for rounding."""
+    return abs(steps - every * round(steps / every)) < LEVEL_TOLERANCE
+
+
+def next_step(dt: float | None, retries: int, nominal: float, left: float) -> float:
+    """Size of the next time step [s], of which a whole number ends on the next time level.
+
+    After halved steps the run thus returns to the time levels that the members of a series have in common.
+    The size does not increase directly after a halved step, because a longer step would mostly fail too.
+
+    Parameters
+    ----------
+    dt
+        Last step [s]; None at the start.
+    retries
+        Number of times that the last step was halved.
+    nominal
+        Nominal step, courant dx / u_max [s].
+    left
+        Time to the next time level [s].
+    """
+    longest = nominal
+    if dt is not None and NEARLY_NOMINAL * dt < nominal:
+        longest = dt if retries else MAX_STEP_RATIO * dt
+    return left / np.ceil(left / longest - LEVEL_TOLERANCE)
 
 
 class TimeStepping:
@@ -28,36 +61,36 @@ class TimeStepping:
 
     Parameters
     ----------
-    solver : newton.NewtonSolver or gauss_seidel.GaussSeidelSolver
-    scene : effects.effect.Scene
-    effects : list of effects.effect.Effect
-    film : float
+    solver, scene, effects
+    film
         Expected film in a^2/R.
-    baseline : pair of ndarray, optional
+    baseline
         Steady q and w for the predictor of a resumed run; otherwise computed by :meth:`start`.
 
     Attributes
     ----------
-    ramp_time : float
+    ramp_time
         Time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
     """
 
-    def __init__(self, solver, scene, effects, film, baseline=None):
+    def __init__(
+        self,
+        solver: Solver,
+        scene: Scene,
+        effects: list[Effect],
+        film: float,
+        baseline: tuple[np.ndarray, np.ndarray] | None = None,
+    ):
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time = baseline, 0.0
         # the baseline is the steady solution of the start, which holds for constant conditions only
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
-    def start(self, records, watch=None):
-        """Steady solution at time 0; by time steps if roughness at rest prevents convergence.
+    def start(self, records: dict, watch: Watch = None) -> State:
+        """Steady state at time 0 from the records of the effects.
 
-        Parameters
-        ----------
-        records : dict
-            Records of the effects at time 0.
-        watch : callable, optional
-            See `nonlinear.newton.NewtonSolver.solve`.
+        By time steps if roughness at rest prevents convergence.
         """
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
@@ -69,14 +102,14 @@ class TimeStepping:
         self.baseline = (state.q, state.w)
         return state
 
-    def _steady(self, inputs, records, watch):
-        solution, newton, residual = self._inlet_first(
-            inputs, lambda i: steady(self.solver, self.film, i, watch)
+    def _steady(self, inputs: StepInputs, records: dict, watch: Watch) -> State:
+        *solution, newton = self._inlet_first(
+            inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
         )
-        state = self._state(solution, residual, self._step_end(), records, newton=newton)
+        state = self._state(*solution, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
 
-    def _settled(self, state, inputs, before, watch):
+    def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
         """Steady solution consistent with the records of the effects, by repeated solves."""
         end, newton = self._step_end(), state.newton
         for _ in range(MAX_STEADY_SOLUTIONS):
@@ -85,42 +118,35 @@ class TimeStepping:
             before = state.records
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
-                solution, iterations, residual = self._inlet_first(
-                    again,
-                    lambda i, q, w, h00=state.h00: solve_step(self.solver, q, w, h00, i, watch),
-                    state.q,
-                    state.w,
-                )
+                *solution, iterations = self._solve_step(again, state.unknowns, watch)
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
             newton += iterations
-            state = self._state(solution, residual, end, before, newton=newton)
+            state = self._state(*solution, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
-    def _inlet_first(self, inputs, solve, *nodal):
+    def _solve_step(
+        self, inputs: StepInputs, guess: Unknowns, watch: Watch
+    ) -> tuple[Unknowns, np.ndarray, int]:
+        return self._inlet_first(inputs, guess, lambda i, begin: solve_step(self.solver, begin, i, watch))
+
+    def _inlet_first(
+        self,
+        inputs: StepInputs,
+        guess: Unknowns | None,
+        solve: Callable[[StepInputs, Unknowns | None], tuple[Unknowns, int]],
+    ) -> tuple[Unknowns, np.ndarray, int]:
         """Solve with the inlet at the first node: mirrored where the entrainment speed is negative.
 
-        Parameters
-        ----------
-        inputs : ehl_problem.StepInputs
-        solve : callable
-            Function of inputs and the arrays `nodal`; returns q, w, h00 and the number of iterations.
-        *nodal : ndarray, shape (nx,)
-
-        Returns
-        -------
-        solution : (q, w, h00)
-        iterations : int
-        residual : ndarray, shape (nx,)
-            Residual of the Reynolds equation at the solution.
+        Returns the solution, the rows of its Reynolds equation and the number of iterations.
         """
         if inputs.conditions.entrainment >= 0.0:
-            *solution, iterations = solve(inputs, *nodal)
-            return solution, iterations, self.solver.residual()[1]
-        q, w, h00, iterations = solve(inputs.mirrored(), *map(mirrored, nodal))
-        return (mirrored(q), mirrored(w), h00), iterations, mirrored(self.solver.residual()[1])
+            solution, iterations = solve(inputs, guess)
+            return solution, self.solver.residual().reynolds, iterations
+        solution, iterations = solve(inputs.mirrored(), guess and guess.mirrored())
+        return solution.mirrored(), mirrored(self.solver.residual().reynolds), iterations
 
-    def _start_by_time_stepping(self, records, watch):
+    def _start_by_time_stepping(self, records: dict, watch: Watch) -> State:
         """State at time 0 after time steps during which roughness at rest is ramped up.
 
         Roughness at rest is under the film from the start, where Newton's method may not converge; the
@@ -144,28 +170,28 @@ class TimeStepping:
         begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
 
-    def _roughness_ramp(self, time):
+    def _roughness_ramp(self, time: float) -> float:
         """Factor of the roughness: from 0 to 1 before time 0 [s], then 1."""
         r = 1.0 + time / self.ramp_time if time < 0.0 else 1.0
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
-    def _step_end(self, state=None, dt=None):
+    def _step_end(self, state: State | None = None, dt: float | None = None) -> Step:
         if state is None:
             return Step(0.0, None, (0.0, 0.0), self.operation.at(0.0))
         moved = self.operation.displacement(state.time, dt)
         travelled = tuple(map(sum, zip(state.travelled, moved, strict=True)))
         return Step(state.time + dt, dt, travelled, self.operation.at(state.time + dt))
 
-    def _inputs_of(self, step, history=None):
+    def _inputs_of(self, step: Step, history: FilmHistory | None = None) -> StepInputs:
         return self.problem.inputs(history=history, conditions=step.conditions, dt=step.dt)
 
-    def _with_effects(self, inputs, records, step):
+    def _with_effects(self, inputs: StepInputs, records: dict, step: Step) -> StepInputs:
         with events.ROUGHNESS:
             for effect in self.effects:
                 inputs = effect.inputs(records[effect.name], inputs, step)
         return inputs
 
-    def inputs(self, state, dt):
+    def inputs(self, state: State, dt: float) -> tuple[Step, StepInputs]:
         """Step of `dt` [s] from a state, and the inputs of its solve."""
         history = None
         if self.problem.fluid is not None:
@@ -178,21 +204,16 @@ class TimeStepping:
             inputs = replace(inputs, phi=self._roughness_ramp(step.time) * inputs.phi)
         return step, inputs
 
-    def _state(self, solution, residual, end, records, **entries):
-        (q, w, h00), model = solution, self.problem.model
-        nodes, m = model.state(q, w), self.problem.mass_per_area(q, w)
-        loads = model.surface_loads(q, w, nodes.film, residual)
-        nodal = Solution(nodes, model.contact_pressure(w), loads)
-        accepted = {e.name: e.accept(records[e.name], nodal, end) for e in self.effects}
-        q, w = model.reset_yielding(q, w)
+    def _state(
+        self, unknowns: Unknowns, residual: np.ndarray, end: Step, records: dict, **entries: object
+    ) -> State:
+        solution = self.problem.solution(unknowns, residual)
+        accepted = {e.name: e.accept(records[e.name], solution, end) for e in self.effects}
+        q, w = self.problem.model.reset_yielding(unknowns.q, unknowns.w)
         return State(
-            q,
-            w,
-            h00,
-            p=nodes.pressure,
-            h=nodes.film,
-            m=m,
-            reynolds_residual=residual,
+            Unknowns(q, w, unknowns.h00),
+            solution,
+            m=solution.mass,
             time=end.time,
             dt=end.dt,
             travelled=end.travelled,
@@ -200,7 +221,7 @@ class TimeStepping:
             **entries,
         )
 
-    def guess(self, state, dt):
+    def guess(self, state: State, dt: float) -> tuple[np.ndarray, np.ndarray]:
         """Initial guess of q and w for a step of `dt` [s]."""
         if not self._advected or self.problem.fluid is None:
             return state.q, state.w
@@ -209,7 +230,7 @@ class TimeStepping:
         nodes = [(entrained - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
-    def advance(self, state, dt=None, watch=None):
+    def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:
         """State after one time step of `dt` [s], by default of the step control; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
@@ -219,9 +240,7 @@ class TimeStepping:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
                 step, inputs = self.inputs(state, dt)
-                solution, iterations, residual = self._inlet_first(
-                    inputs, lambda i, q, w: solve_step(self.solver, q, w, state.h00, i, watch), *guess
-                )
+                *solution, iterations = self._solve_step(inputs, Unknowns(*guess, state.h00), watch)
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1
@@ -232,8 +251,7 @@ class TimeStepping:
                         f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
                     ) from error
         return self._state(
-            solution,
-            residual,
+            *solution,
             step,
             state.records,
             m_older=state.m,

@@ -12,6 +12,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.operators.jacobian_operator import PIVOT_REGULARISATION
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
@@ -48,7 +49,7 @@ def dense(problem, at, inactive_nodes):
     for end in (0, n - 1):
         by_pressure[end], by_film[end] = d.end_row(end), 0.0
         by_film[end, end] = d.end_row_coefficient
-    evaluation = problem.evaluate(*at, problem.inputs())
+    evaluation = problem.evaluate(Unknowns(*at), problem.inputs())
     nodes, derivatives = evaluation.state, evaluation.reynolds_derivatives
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
     leak = np.where((nodes.p_q > 0.0) | (nodes.p_w != 0.0), 0.0, PIVOT_REGULARISATION)
@@ -83,7 +84,7 @@ def test_distributed_lu_solves_its_matrix(model):
     lu = DistributedLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)
     mine = inactive_nodes[(inactive_nodes >= first) & (inactive_nodes < last)] - first
     nodes = part.model.state(at[0][part.window], at[1][part.window])
-    derivatives = whole.evaluate(*at, whole.inputs()).reynolds_derivatives[first:last]
+    derivatives = whole.evaluate(Unknowns(*at), whole.inputs()).reynolds_derivatives[first:last]
     entries = part.model.band_entries(nodes, derivatives, lu.band.stencil)
     other = entries._replace(
         p_first=np.zeros_like(entries.p_first),

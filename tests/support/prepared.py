@@ -56,12 +56,10 @@ HEAVY = (
     "ehlpetsc.run.restart.resume_advice",
     "ehlpetsc.run.scene",
     "ehlpetsc.run.series.member",
-    "ehlpetsc.stepping.domain_ends",
     "ehlpetsc.stepping.observables",
     "ehlpetsc.stepping.predictor",
     "ehlpetsc.stepping.state",
     "ehlpetsc.stepping.steady_start",
-    "ehlpetsc.stepping.step_control",
     "ehlpetsc.surfaces.body_field",
     "ehlpetsc.surfaces.roughness",
 )

@@ -8,6 +8,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact import contact_model
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
 from ehlpetsc.effects.wear import WearRecord
 from ehlpetsc.errors import OutputError
@@ -17,8 +18,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.resume_advice import resume_advice
-from ehlpetsc.stepping.predictor import TimeLevel
-from ehlpetsc.stepping.state import State
+from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.body_field import BodyFields
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
@@ -64,7 +64,7 @@ def state_of(scene, mixed=False):
     earlier = tuple(TimeLevel(time, *unknowns()) for time in (2e-6, 1e-6))
     m, m_older = rng.uniform(0.0, 1e-3, (2, n))
     more = dict(time=3e-6, dt=1e-6, step=3, retries=1, earlier=earlier, travelled=(2e-5, 1e-5))
-    return State(*unknowns(), -0.4, m=m, m_older=m_older, **more), unknowns()
+    return State(Unknowns(*unknowns(), -0.4), m=m, m_older=m_older, **more), unknowns()
 
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])

@@ -5,6 +5,7 @@ import pytest
 from support import CASES
 
 import ehlpetsc
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.errors import NotConverged
 from ehlpetsc.stepping.convergence_check import find_fault
 
@@ -21,14 +22,14 @@ def solved(request):
     return simulation
 
 
-def fault(simulation, change=lambda q, w, rows: None, h00=None, tolerance=None):
+def fault(simulation, change=lambda q, w, rows: None, tolerance=None):
     """Fault of the solution once its copy is changed."""
     state, solver = simulation.solution, simulation.stepper.solver
     rows = [np.copy(part) for part in solver.residual()]
     q, w = state.q.copy(), state.w.copy()
     change(q, w, rows)
     tolerance = solver.tolerance if tolerance is None else tolerance
-    return find_fault(solver.problem, q, w, state.h00 if h00 is None else h00, rows, tolerance)
+    return find_fault(solver.problem, Unknowns(q, w, state.h00), rows, tolerance)
 
 
 def test_solution_passes_the_convergence_check(solved):
@@ -90,11 +91,11 @@ def test_nan_tolerances_fail_the_check(solved):
 
 
 def test_unconverged_guess_is_rejected(solved, monkeypatch):
-    def solve(q, w, h00, inputs, max_it=None, watch=None):
+    def solve(guess, inputs, max_it=None, watch=None):
         solver = simulation.stepper.solver
         solver.tolerance = 1e-7
-        solver.system.set_initial_guess(q, w, h00, inputs)
-        return q, w, h00, 0
+        solver.system.set_initial_guess(guess, inputs)
+        return guess, 0
 
     simulation = ehlpetsc.Simulation(solved.case)
     monkeypatch.setattr(simulation.stepper.solver, "solve", solve)

@@ -10,7 +10,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.interleaving import q_of
+from ehlpetsc.discretisation.unknowns import Unknowns, q_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -71,6 +71,6 @@ def test_film_equation_has_zero_deflection_residual(model):
     q, phi, h00 = rng.uniform(0.1, 1.5, scales.nx), 1e-3 * rng.standard_normal(scales.nx), 9.0
     film = problem.film(q, h00, phi)
     assert film.min() > 0.0
-    evaluation = problem.evaluate(q, problem.model.w_from_film(film), h00, problem.inputs(phi))
+    evaluation = problem.evaluate(Unknowns(q, problem.model.w_from_film(film), h00), problem.inputs(phi))
     terms = problem.deflection.curvature_coefficient * film.max()
     assert np.abs(q_of(evaluation.residual, problem.n)).max() < 1e-12 * terms

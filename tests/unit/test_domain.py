@@ -14,7 +14,7 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.preview.domain import domain_faults, domain_warnings
-from ehlpetsc.stepping.domain_ends import check_ends
+from ehlpetsc.stepping.convergence_check import check_ends
 
 SMOOTH = CASES / "table1_smooth.toml"
 SLOW = {"contact.load": 2.1e6, "motion.entrainment_speed": 0.005}

@@ -13,8 +13,8 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import BLOCK
-from ehlpetsc.discretisation.interleaving import q_of, w_index, w_of
 from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
 from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.operators.jacobian_operator import (
@@ -61,8 +61,8 @@ class Scene:
     def residual(self, state):
         system = self.solver.system
         n = system.n
-        parts = q_of(state, n).copy(), w_of(state, n).copy(), state[-1]
-        return system.problem.evaluate(*parts, self.inputs).residual.copy()
+        unknowns = Unknowns(q_of(state, n).copy(), w_of(state, n).copy(), state[-1])
+        return system.problem.evaluate(unknowns, self.inputs).residual.copy()
 
 
 def scene(name):
@@ -98,7 +98,7 @@ def differences(at, direction, step):
 def linearised(at):
     """The system with its Jacobian at the state, as SNES asks for it."""
     system, n = at.solver.system, at.solver.system.n
-    system.set_initial_guess(q_of(at.state, n), w_of(at.state, n), at.state[-1], at.inputs)
+    system.set_initial_guess(Unknowns(q_of(at.state, n), w_of(at.state, n), at.state[-1]), at.inputs)
     at.solver.snes.computeJacobian(system.x, system.operator, system.preconditioned)
     return system
 

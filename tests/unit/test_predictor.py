@@ -9,7 +9,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.predictor import TimeLevel, advected, predict
+from ehlpetsc.stepping.predictor import advected, predict
+from ehlpetsc.stepping.state import TimeLevel
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 

@@ -15,7 +15,7 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.series.member import Member, named
 from ehlpetsc.run.series.series import PrefixedStream
-from ehlpetsc.stepping.step_control import next_step, on_level
+from ehlpetsc.stepping.time_stepping import next_step, on_level
 
 
 def series(tmp_path, *overrides):

@@ -8,6 +8,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
@@ -99,6 +100,11 @@ def test_void_has_no_shear_stress():
         np.testing.assert_allclose(half[side], 0.5 * full[side], rtol=1e-12)
 
 
+def state_of(problem, q, w):
+    unknowns = Unknowns(q, w, 0.0)
+    return State(unknowns, problem.solution(unknowns, np.zeros_like(w)))
+
+
 def test_cavity_shear_is_proportional_to_its_oil():
     """Eyring shear of the full gap times the fraction of oil, in the fields of an accepted state."""
     case, scales, _, h = scene(0.5)
@@ -106,7 +112,7 @@ def test_cavity_shear_is_proportional_to_its_oil():
     void = np.linspace(0.1, 0.9, scales.nx)
     film = h / scales.h
     q = np.where(np.arange(scales.nx) < 2, 0.1, -void)  # p0; something carries
-    state = State(q, film, 0.0, h=film, m=film, reynolds_residual=np.zeros_like(film))
+    state = state_of(problem, q, film)
     setting = Scene(case, scales, operation_of(case, scales), None)
     _, fields, _ = diagnostics(setting, problem, [], state, 0.0)
     full = EYRING * np.arcsinh(0.005 * (scales.u1 - scales.u2) / h / EYRING)
@@ -140,7 +146,7 @@ def test_film_of_rounding_size_has_solid_shear():
     for left in (0.0, 1e-17, 1e-9):
         w = h / scales.h
         w[[30, 60]] = left
-        state = State(p / scales.p0, w, 0.0, h=w, m=w, reynolds_residual=np.zeros_like(w))
+        state = state_of(problem, p / scales.p0, w)
         _, fields, touching = diagnostics(
             Scene(case, scales, operation_of(case, scales), None), problem, [], state, 0.0
         )

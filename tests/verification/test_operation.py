@@ -10,6 +10,7 @@ import ehlpetsc
 from ehlpetsc.analysis.gear_run import GearRun
 from ehlpetsc.analysis.gears import main as gears
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.gears import path_of_contact
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.outputs.recorder import Recorder
@@ -253,7 +254,7 @@ def test_squeeze_film_of_an_approaching_cylinder():
     pressure = (200.0 / film) ** 2
     pressure *= 0.5 * np.pi / (pressure.sum() * (x[1] - x[0]))
     model = simulation.stepper.problem.model
-    simulation.solution = State(pressure, model.w_from_film(film), 200.0, p=pressure, h=film, m=film.copy())
+    simulation.solution = State(Unknowns(pressure, model.w_from_film(film), 200.0), m=film.copy())
 
     def sinking(_, h):
         gap = h[0] + y**2 / (2.0 * radius)

@@ -17,6 +17,7 @@ petsc4py.init([])
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear import gauss_seidel as sweep
 from ehlpetsc.run.cli.options import UsageError
@@ -59,8 +60,8 @@ def test_sweeps_equal_newton(rough, step):
         scales, travelled = simulation.scales, simulation.operation.travelled(time + dt)
         phi = simulation.roughness.phi_after(scales.x * scales.a, travelled, scales.dx) / scales.h
         with simulation.options:
-            found.append(stepper.solver.solve(q, h, h00, stepper.problem.inputs(phi, history)))
-    for _, film, _, _ in found:
+            found.append(stepper.solver.solve(Unknowns(q, h, h00), stepper.problem.inputs(phi, history))[0])
+    for _, film, _ in found:
         np.testing.assert_array_equal(np.flatnonzero(film <= 0.0), CONTACTS[step])
     assert_same(rough[0].stepper.problem, *found, rtol=1e-5)
     assert found[1][2] == pytest.approx(found[0][2], rel=1e-5)
@@ -92,9 +93,8 @@ def test_sweeps_stop_at_the_evaluation_limit(monkeypatch):
     monkeypatch.setattr(sweep, "MAX_EVALUATIONS", 2)
     stepper = simulations("table1_smooth.toml", "mesh.points_per_half_width=50")[1].stepper
     with pytest.raises(SolveFailed, match="MAX_IT after 2 "):
-        stepper.solver.solve(
-            np.ones(stepper.problem.n), np.ones(stepper.problem.n), 0.0, stepper.problem.inputs()
-        )
+        ones = np.ones(stepper.problem.n)
+        stepper.solver.solve(Unknowns(ones, ones, 0.0), stepper.problem.inputs())
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     limit_cavitation,
 )
 from ehlpetsc.discretisation.contact.yielding import Yielding
-from ehlpetsc.discretisation.interleaving import q_columns, w_columns
+from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
 
 

@@ -21,7 +21,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     full_of_oil,
     limit_cavitation,
 )
-from ehlpetsc.discretisation.interleaving import q_columns, w_columns
+from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 
 
 class SeparatedContact(ContactModel):

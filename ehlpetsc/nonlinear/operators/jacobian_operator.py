@@ -13,7 +13,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import STENCIL
-from ehlpetsc.discretisation.interleaving import (
+from ehlpetsc.discretisation.unknowns import (
     n_dofs,
     nodes_of_w,
     q_columns,

@@ -13,7 +13,7 @@ from ehlpetsc.results.writer import ResultWriter
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.outputs.stored_surfaces import body_depths, profiles
-from ehlpetsc.stepping.step_control import on_level
+from ehlpetsc.stepping.time_stepping import on_level
 
 MESSAGE_BYTES = 2**30  # half of the largest count of MPI
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
@@ -13,8 +14,7 @@ from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.series_index import flat_keys
 from ehlpetsc.run.restart.contents import RECORD, TOTAL, fault
 from ehlpetsc.run.restart.rescaling import rescale
-from ehlpetsc.stepping.predictor import TimeLevel
-from ehlpetsc.stepping.state import State
+from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
@@ -129,8 +129,7 @@ def load(path, case, scales, model):
         (float(attributes["begin_1"]), float(attributes["begin_2"])),
     )
     state = State(
-        *_unknowns(model, arrays, ""),
-        float(attributes["h00"]),
+        Unknowns(*_unknowns(model, arrays, ""), float(attributes["h00"])),
         m=arrays.get("m"),
         m_older=arrays.get("m_older"),
         time=float(attributes["time"]),

@@ -1,0 +1,85 @@
+"""Unknowns of the discrete problem, and their order in a vector: (q_0, w_0, q_1, w_1, ..., h00).
+
+Rows have the same order. Rows of coefficients over some nodes have it too, without h00.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+def mirrored(values: np.ndarray) -> np.ndarray:
+    """Values at the nodes in reverse order."""
+    return np.ascontiguousarray(values[::-1])
+
+
+class Unknowns(NamedTuple):
+    """Both unknowns of the nodes, shape (nx,), see :mod:`.contact`, and the approach h00 in a^2/R."""
+
+    q: np.ndarray
+    w: np.ndarray
+    h00: float
+
+    def mirrored(self) -> Unknowns:
+        """Unknowns with the nodes in reverse order."""
+        return Unknowns(mirrored(self.q), mirrored(self.w), self.h00)
+
+
+class Rows(NamedTuple):
+    """Residual: deflection and Reynolds rows, shape (nx,), and the load row."""
+
+    deflection: np.ndarray
+    reynolds: np.ndarray
+    load: float
+
+
+def q_index(nodes: np.ndarray) -> np.ndarray:
+    """Indices of q, or of the deflection rows."""
+    return 2 * nodes
+
+
+def w_index(nodes: np.ndarray) -> np.ndarray:
+    """Indices of w, or of the Reynolds rows."""
+    return 2 * nodes + 1
+
+
+def n_dofs(nodes: int) -> int:
+    """Number of unknowns q and w of `nodes` nodes, which is also the index of h00."""
+    return 2 * nodes
+
+
+def nodes_of_w(indices: np.ndarray) -> np.ndarray:
+    """Nodes whose w, or Reynolds row, is among the indices."""
+    return indices[indices % 2 == 1] // 2
+
+
+def q_of(vector: np.ndarray, nodes: int) -> np.ndarray:
+    """View of q, or of the deflection rows, of the first nodes."""
+    return vector[: 2 * nodes : 2]
+
+
+def w_of(vector: np.ndarray, nodes: int) -> np.ndarray:
+    """View of w, or of the Reynolds rows, of the first nodes."""
+    return vector[1 : 2 * nodes : 2]
+
+
+def pairs(vector: np.ndarray, nodes: int) -> np.ndarray:
+    """View of q and w, or of both rows, of the first nodes; shape (nodes, 2)."""
+    return vector[: 2 * nodes].reshape(nodes, 2)
+
+
+def q_columns(rows: np.ndarray) -> np.ndarray:
+    """View of the coefficients of q in each row, shape (rows, nodes)."""
+    return rows[:, ::2]
+
+
+def w_columns(rows: np.ndarray) -> np.ndarray:
+    """View of the coefficients of w, or of the film, in each row, shape (rows, nodes)."""
+    return rows[:, 1::2]
+
+
+def dofs_of(nodes: np.ndarray) -> np.ndarray:
+    """Indices of both unknowns of each node, last axis (q, w)."""
+    return np.stack([q_index(nodes), w_index(nodes)], axis=-1)
