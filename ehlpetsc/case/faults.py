@@ -5,6 +5,7 @@ import json
 from ehlpetsc.case.hints import nearest, not_modelled, slip
 from ehlpetsc.case.schema.table import Needs, item_type
 from ehlpetsc.case.schema.validation import ValidationError
+from ehlpetsc.keys import Refused
 
 
 def allowed(field):
@@ -97,6 +98,8 @@ def describe(error, model, data, where=""):
             faults.append(f"{where.rstrip('.') or 'case'}: {cause}")
         elif isinstance(cause, ValidationError):
             faults += describe(cause, cause.model, value, key + ".")
+        elif isinstance(cause, Refused) and str(cause):
+            faults.append(f"{key} = {show(value)}: {cause}")
         elif name not in data:
             faults.append(f"{key} is missing; allowed: {allowed(field)}")
         elif field is None or name != field.alias:

@@ -47,6 +47,8 @@ class Law:
         Of `[fluid]` that belong to this law.
     complete
         Values of keys that are left out; raises `Refused` where one is missing or impossible.
+    of_temperature
+        Whether it has a temperature of its own in isothermal cases too.
     """
 
     function: Callable[..., Derivatives]
@@ -54,6 +56,7 @@ class Law:
     equation: str
     keys: Mapping[str, Key] = field(default_factory=dict)
     complete: Callable[[Any], Mapping[str, Any]] = lambda fluid: {}
+    of_temperature: bool = False
 
     def __call__(self, *arguments: Any) -> Derivatives:
         """Value and derivatives of the state, by its constants, which may be padded."""
@@ -178,14 +181,21 @@ def _roelands(fluid: Any, heat: Any) -> tuple[float, ...]:
     return factor, pressure, z, *temperature_constants(fluid, heat)
 
 
+def _with_coefficient(fluid: Any) -> dict[str, float]:
+    if fluid.pressure_viscosity is None:
+        raise Refused("", "pressure_viscosity")
+    return {}
+
+
 def _complete_roelands(fluid: Any) -> dict[str, float]:
     """Exponent from the viscosity that the oil tends to under tension, by default Roelands' 6.315e-5 Pa s."""
+    _with_coefficient(fluid)
     pressure = fluid.roelands_pressure or ROELANDS_PRESSURE
     if fluid.roelands_z is not None:
         return {"roelands_pressure": pressure}
     reference = fluid.reference_viscosity or ROELANDS_VISCOSITY
     if fluid.reference_viscosity is not None and reference >= fluid.viscosity:
-        raise Refused("too large", "reference_viscosity")
+        raise Refused("", "reference_viscosity")
     decades = math.log(fluid.viscosity / reference)
     z = fluid.pressure_viscosity * pressure / decades if decades > 0.0 else math.inf
     if fluid.reference_viscosity is None and not 1e-3 <= z <= 2.0:
@@ -222,7 +232,7 @@ def gold_pressure_viscosity(nu: float) -> float:
 
 
 LAWS = {
-    "barus": Law(power_law, _barus, "ln(eta/eta0) = alpha p"),
+    "barus": Law(power_law, _barus, "ln(eta/eta0) = alpha p", complete=_with_coefficient),
     "roelands": Law(
         power_law,
         _roelands,
@@ -295,7 +305,7 @@ def _complete_density(fluid: Any) -> dict[str, float]:
         for name, default in DENSITY.items()
     }
     if values["lambda_"] > values["gamma"]:  # the density would fall with pressure
-        raise Refused("too large", "lambda")
+        raise Refused("", "lambda")
     return values
 
 
@@ -335,6 +345,11 @@ def density(p: np.ndarray, fluid: Any) -> tuple[np.ndarray, np.ndarray]:
 def completed(fluid: Mapping[str, Any]) -> dict[str, Any]:
     """Values of `[fluid]` with those that its laws complete."""
     values = dict(fluid)
+    if values["temperature"] and not (values["grade"] or LAWS[values["law"]].of_temperature):
+        raise Refused(
+            "needs fluid.grade; the temperature at which viscosity holds is heat.reference_temperature",
+            "temperature",
+        )
     for laws, name in ((LAWS, "law"), (DENSITY_LAWS, "density")):
         values |= laws[values[name]].complete(SimpleNamespace(**values))
     return values

@@ -16,6 +16,7 @@ GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
 def oil(**changes):
     keys = dict(
         viscosity=0.005,
+        temperature=None,
         law="roelands",
         pressure_viscosity=11.1e-9,
         reference_viscosity=63.2e-6,

@@ -2,7 +2,7 @@
 
 from typing import Any, Literal
 
-from ehlpetsc.case.schema.table import Needs, Table
+from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.schema.validation import Field, pydantic, root_validator, validator
 from ehlpetsc.keys import Key
 from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, completed
@@ -39,8 +39,8 @@ class _Fluid(Table):
         None, ge=200, le=700, unit="K", description="at which grade gives viscosity; left out: that of [heat]"
     )
     law: Literal[tuple(LAWS)] = Field(..., description="viscosity law")
-    pressure_viscosity: float = Field(
-        ..., ge=1e-12, le=1e-6, unit="1/Pa", description="alpha; left out: of grade"
+    pressure_viscosity: float | None = Field(
+        None, ge=1e-12, le=1e-6, unit="1/Pa", description="alpha; left out: of grade, or of a law that has it"
     )
     density: Literal[tuple(DENSITY_LAWS)] = Field(..., description="density law")
     eyring_stress: float | None = Field(None, ge=1e3, le=1e12, unit="Pa", description="left out: Newtonian")
@@ -50,12 +50,6 @@ class _Fluid(Table):
     inlet_film: float | None = Field(
         None, ge=1e-10, le=1e-2, unit="m", description="oil film at the inlet; left out: fully flooded"
     )
-
-    @validator("temperature")
-    def _of_a_grade(cls, value, values):
-        if value is not None and values.get("grade") is None:
-            raise Needs("fluid.grade; the temperature at which viscosity holds is heat.reference_temperature")
-        return value
 
     @root_validator(skip_on_failure=True)
     def _of_laws(cls, values):
