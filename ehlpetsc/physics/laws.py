@@ -231,6 +231,62 @@ def gold_pressure_viscosity(nu: float) -> float:
     return 9.904e-9 * nu**0.139
 
 
+def doolittle(
+    p: Any,
+    T: Any,
+    b: float,
+    occupied: float,
+    occupied_rise: float,
+    k_slope: float,
+    k_zero: float,
+    k_decay: float,
+    expansion: float,
+    reference: float,
+    offset: float,
+) -> Derivatives:
+    r"""Doolittle's free volume, :math:`B[v_\infty/(v-v_\infty)-\ldots_0]`, v by Tait, over that at T_R.
+
+    :math:`v_\infty=R_0(1+\varepsilon(T-T_R))`, :math:`v=(1+a_V(T-T_R))[1-\ln(1+X)/(1+K_0')]`,
+    :math:`X=p(1+K_0')/K_0`, :math:`K_0=K_{00}e^{-\beta_KT}`, T in K (Bair 2007, High-Pressure Rheology).
+    """
+    rise, one = T - reference, 1.0 + k_slope
+    ratio = p * one * np.exp(k_decay * T) / k_zero
+    ambient, shrinkage = 1.0 + expansion * rise, 1.0 - np.log(1.0 + ratio) / one
+    v, full = ambient * shrinkage, occupied * (1.0 + occupied_rise * rise)
+    v_p = -ambient * np.exp(k_decay * T) / (k_zero * (1.0 + ratio))
+    v_t = expansion * shrinkage - ambient * k_decay * ratio / (one * (1.0 + ratio))
+    over_free = 1.0 / (v - full)
+    scale = b * over_free * over_free
+    ln_eta = b * (full * over_free - offset)
+    return ln_eta, -scale * full * v_p, scale * (occupied * occupied_rise * v - full * v_t)
+
+
+DOOLITTLE = {
+    "doolittle_b": Key("B of Doolittle's law", gt=0, le=20),
+    "doolittle_occupied": Key("R0, occupied volume at doolittle_temperature", gt=0, lt=1),
+    "doolittle_occupied_rise": Key("its relative rise with temperature", unit="1/K", ge=-0.01, le=0.01),
+    "tait_slope": Key("K0', of the bulk modulus with pressure", gt=0, le=50),
+    "tait_modulus": Key("K00, bulk modulus K00 exp(-beta_K T)", unit="Pa", gt=0, le=1e12),
+    "tait_decay": Key("beta_K of the bulk modulus, T in K", unit="1/K", ge=0, le=0.1),
+    "tait_expansion": Key("a_V of the volume at ambient pressure", unit="1/K", ge=0, le=0.01),
+    "doolittle_temperature": Key("T_R at which R0 holds", unit="K", ge=150, le=700),
+}
+
+
+def _doolittle(fluid: Any, heat: Any) -> tuple[float, ...]:
+    constants = *(getattr(fluid, name) for name in DOOLITTLE), 0.0
+    ambient = doolittle(0.0, reference_temperature(fluid, heat), *constants)[0]
+    return *constants[:-1], ambient / fluid.doolittle_b
+
+
+def _complete_doolittle(fluid: Any) -> dict[str, float]:
+    for name in DOOLITTLE:
+        if getattr(fluid, name) is None:
+            raise Refused("", name)
+    slope = doolittle(0.0, reference_temperature(fluid), *_doolittle(fluid, None))[1]
+    return {"pressure_viscosity": fluid.pressure_viscosity or float(slope)}
+
+
 LAWS = {
     "barus": Law(power_law, _barus, "ln(eta/eta0) = alpha p", complete=_with_coefficient),
     "roelands": Law(
@@ -248,6 +304,14 @@ LAWS = {
             ),
         },
         _complete_roelands,
+    ),
+    "doolittle": Law(
+        doolittle,
+        _doolittle,
+        "ln(eta/eta0) = B (v_inf/(v - v_inf) - v_inf0/(v0 - v_inf0)), v of Tait",
+        DOOLITTLE,
+        _complete_doolittle,
+        of_temperature=True,
     ),
 }
 _ln_viscosity = switched(LAWS, 2)
