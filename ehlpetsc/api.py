@@ -46,8 +46,7 @@ class Result(reader.Result):
         """
         from matplotlib import pyplot
 
-        from ehlpetsc.plot import labels
-        from ehlpetsc.plot.panels import frames
+        from ehlpetsc.pictures import frames, labels
 
         (index,), ((colour,), *_) = frames.choose_frames([self], step, time), labels.series_colours([self])
         window = self._window(window)

@@ -15,12 +15,12 @@ from ehlpetsc.environment import NUMERICS, missing
 
 PLOTTING = (*NUMERICS, "matplotlib")
 SUBCOMMANDS = {  # name: module, function, packages needed, description
-    "plot": ("ehlpetsc.plot.__main__", "main", PLOTTING, "pictures of results, of a series or of a case"),
+    "plot": ("ehlpetsc.pictures.command", "main", PLOTTING, "pictures of results, of a series or of a case"),
     "post": ("ehlpetsc.post.command", "command", NUMERICS, "subsurface stresses, fatigue damage, statistics"),
     "summary": ("ehlpetsc.analysis.summary", "main", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.compare", "main", NUMERICS, "two results field by field"),
     "gears": (
-        "ehlpetsc.analysis.gears",
+        "ehlpetsc.gears.command",
         "main",
         PLOTTING,
         "path of contact of spur gears, and runs along it",

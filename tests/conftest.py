@@ -83,7 +83,7 @@ def signals_as_before():
 @pytest.fixture(scope="module")
 def coarse_pictures():
     """Pictures of post-processing of few dots and in one format, but where a test asks for both."""
-    from ehlpetsc.post.pictures import gallery
+    from ehlpetsc.pictures import damage as gallery
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(gallery, "DPI", 20)

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result, read_result
-from ehlpetsc.plot.panels.frames import deformed_heights
+from ehlpetsc.pictures.frames import deformed_heights
 from ehlpetsc.results.contacts import in_contact
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil

@@ -161,7 +161,7 @@ def _pass_figures(damage):
 
 
 def _draw(paths, chosen):
-    from ehlpetsc.post.pictures.gallery import draw
+    from ehlpetsc.pictures.damage import draw
 
     outputs = [_output(path, chosen) for path in paths]
     try:

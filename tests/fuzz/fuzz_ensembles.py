@@ -8,7 +8,7 @@ from sandbox import process, word_of
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.analysis import compare, ensemble
-from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.pictures import command as plot
 
 LIMIT = 120  # s
 SPEEDS = (10.0, 5.0, 1.0)

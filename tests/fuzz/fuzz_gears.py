@@ -10,7 +10,7 @@ from support import CASES
 from support.made_results import make_result, with_solids
 from test_case_fuzz import corrupted
 
-from ehlpetsc.analysis.gears import main
+from ehlpetsc.gears.command import main
 
 LIMIT = 120  # s
 FOREIGN = {"foreign.csv": b"0,1\n", "foreign.png": b"mine", "foreign.toml": b"title = 'a'"}

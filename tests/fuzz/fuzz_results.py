@@ -52,7 +52,7 @@ class Draw:
             print("DIFFERENT CONTENT", [name for name in now if now[name] != self.content.get(name)])
         statuses = [compare.main([str(self.sound), str(self.path)])]
         if drawn:
-            from ehlpetsc.plot import __main__ as plot
+            from ehlpetsc.pictures import command as plot
 
             statuses.append(plot.main([str(self.path), "-o", str(self.folder / "picture.png")]))
         return 2 if now is None or 2 in statuses else 1 if set(statuses) - {0, 1} else 0

@@ -341,7 +341,7 @@ def test_missing_packages_print_the_command_to_type(case, tmp_path):
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
 
 
-@pytest.mark.parametrize("command", ["compare", "plot", "post", "analysis.ensemble"])
+@pytest.mark.parametrize("command", ["compare", "post", "analysis.ensemble"])
 def test_every_subcommand_reports_missing_packages(tmp_path, command):
     done = subprocess.run(
         [PYTHON, "-S", "-m", f"ehlpetsc.{command}", "a b.h5"],

@@ -10,7 +10,7 @@ from support import ROOT, is_line_with
 from support.running import SHORT, run, settings, summary
 
 from ehlpetsc.analysis import ensemble
-from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.post.arguments import arguments
 from ehlpetsc.results.reader import read_result
 

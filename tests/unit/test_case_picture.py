@@ -8,8 +8,8 @@ from support import CASES
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.plot import __main__ as plot
-from ehlpetsc.plot.case_picture import draw_case, passing
+from ehlpetsc.pictures import command as plot
+from ehlpetsc.pictures.case_profiles import draw_case, passing
 from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameters
 from ehlpetsc.surfaces.roughness import Roughness
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from support import ROOT
 from support.made_results import TABLE_1, A, make_result
 
-from ehlpetsc.plot.panels.over_time import space_time_map
+from ehlpetsc.pictures.over_time import space_time_map
 from ehlpetsc.results.contacts import film_at_contact, in_contact
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.reader import read_result

@@ -9,7 +9,7 @@ from ehlpetsc.errors import ExitStatus, not_written
 
 COMMANDS = {
     "ehlpetsc.post": "ehlpetsc.post.command",
-    "ehlpetsc.plot": "ehlpetsc.plot.__main__",
+    "ehlpetsc.plot": "ehlpetsc.pictures.command",
     "ehlpetsc.compare": "ehlpetsc.analysis.compare",
     "ehlpetsc.analysis.ensemble": "ehlpetsc.analysis.ensemble",
 }

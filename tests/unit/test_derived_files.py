@@ -12,7 +12,7 @@ from test_output import file_size_limit
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
@@ -123,7 +123,7 @@ def test_failed_movie_encoder_is_reported_in_one_line(tmp_path):
     encoder.write_text("#!/bin/sh\ncat >/dev/null\necho 'No space left on device' >&2\nexit 1\n")
     encoder.chmod(0o755)
     done = subprocess.run(
-        [sys.executable, "-m", "ehlpetsc.plot", result, "--movie", "-o", tmp_path / "m.mp4"],
+        [sys.executable, "-m", "ehlpetsc", "plot", result, "--movie", "-o", tmp_path / "m.mp4"],
         cwd=ROOT,
         env={"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin", "HOME": str(tmp_path)},
         capture_output=True,

@@ -13,17 +13,17 @@ from support.made_results import make_result
 from test_derived_files import PROFILE, foreign
 from test_output import file_size_limit
 
-from ehlpetsc.analysis.gears import main as gears
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import OutputError
+from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.command import main as life
 from ehlpetsc.life.driver import run_life
 from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.pictures import damage as gallery
 from ehlpetsc.post import run as post_run
 from ehlpetsc.post.command import main as post
-from ehlpetsc.post.pictures import gallery
 from ehlpetsc.results.restart_file import save_restart
 
 

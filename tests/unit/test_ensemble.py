@@ -11,8 +11,8 @@ from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.run_scalars import run_scalars
-from ehlpetsc.plot.__main__ import main as plot
-from ehlpetsc.plot.series.ensemble import draw_ensemble
+from ehlpetsc.pictures.command import main as plot
+from ehlpetsc.pictures.ensemble import draw_ensemble
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.series_index import distinguishing_names

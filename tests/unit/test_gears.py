@@ -8,10 +8,10 @@ import pytest
 from support import is_line_with
 
 from ehlpetsc.analysis.flank_damage import FlankDamage
-from ehlpetsc.analysis.gears import main
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.gears import GearPair, path_of_contact
+from ehlpetsc.gears.command import main
 from ehlpetsc.gears.load_sharing import relief_ratio
 from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus

@@ -12,8 +12,8 @@ from ehlpetsc.analysis.run_scalars import run_scalars
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.plot.series.operating_points import operating_point
-from ehlpetsc.plot.series.running_in import draw_running_in
+from ehlpetsc.pictures.operating_points import operating_point
+from ehlpetsc.pictures.running_in import draw_running_in
 from ehlpetsc.results.means import both_fill, filled_from, means, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import pass_summary

@@ -14,7 +14,7 @@ import pytest
 from ehlpetsc.analysis import compare, ensemble
 from ehlpetsc.errors import OutputError
 from ehlpetsc.names import former_name
-from ehlpetsc.plot.__main__ import main as plot
+from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart

@@ -14,12 +14,10 @@ from support import is_line_with
 from support.made_results import P0, TABLE_1, A, change_case, make_result, with_solids
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot import __main__ as plot
-from ehlpetsc.plot import figures, labels, movies
-from ehlpetsc.plot.panels import frames as drawing
-from ehlpetsc.plot.panels import over_time
-from ehlpetsc.plot.series import stribeck
-from ehlpetsc.plot.series.operating_points import time_statistics
+from ehlpetsc.pictures import command as plot
+from ehlpetsc.pictures import figures, labels, movies, over_time, stribeck
+from ehlpetsc.pictures import frames as drawing
+from ehlpetsc.pictures.operating_points import time_statistics
 from ehlpetsc.results import series_index as swept
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.means import both_fill
@@ -110,8 +108,8 @@ def test_drawing_keeps_matplotlib_state(tmp_path, result):
         "import matplotlib, sys\n"
         "matplotlib.use('svg'); matplotlib.rcParams['font.size'] = 7; before = dict(matplotlib.rcParams)\n"
         "from matplotlib import pyplot; pyplot.figure()\n"
-        "import ehlpetsc.post.pictures.gallery, ehlpetsc.plot.movies\n"
-        "from ehlpetsc.plot.__main__ import main\n"
+        "import ehlpetsc.pictures.damage, ehlpetsc.pictures.movies\n"
+        "from ehlpetsc.pictures.command import main\n"
         "assert main(sys.argv[1:]) == 0 and pyplot.get_fignums() == [1]\n"
         "assert dict(matplotlib.rcParams) == before, 'settings'\n"
     )

@@ -9,8 +9,8 @@ import pytest
 from support.made_results import change_case, make_result
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.figures import FIGURES
-from ehlpetsc.plot.series.stribeck import curves_by_contact
+from ehlpetsc.pictures.figures import FIGURES
+from ehlpetsc.pictures.stribeck import curves_by_contact
 from ehlpetsc.results.series_index import open_all
 
 HEAT = {"heat.bulk_temperature": 350.0}

@@ -15,18 +15,19 @@ from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus
+from ehlpetsc.pictures import damage as gallery
+from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.outputs.passes_file import same_points
-from ehlpetsc.post.pictures import gallery, plots
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.results.post_result import PostResult
 
 pytestmark = pytest.mark.usefixtures("coarse_pictures")
-FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.run", "ehlpetsc.plot")
+FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.run", "ehlpetsc.life")
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +85,7 @@ def test_result_has_the_fixed_names(result, scene, capsys):
 def test_post_imports_no_petsc_mpi_solver_or_matplotlib(result):
     code = (
         f"import sys; from ehlpetsc.post.command import main; assert main([{str(result)!r}]) == 0; "
-        "assert 'matplotlib' not in sys.modules; import ehlpetsc.post.pictures.gallery; "
+        "assert 'matplotlib' not in sys.modules; import ehlpetsc.pictures.damage; "
         f"bad = [m for m in sys.modules if m.startswith({FORBIDDEN!r})]; "
         "assert not bad, bad"
     )

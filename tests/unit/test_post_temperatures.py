@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.made_loads import A, Scene, write
 
+from ehlpetsc.pictures.damage import damage_picture, history_picture
 from ehlpetsc.post.command import main
-from ehlpetsc.post.pictures.gallery import damage_picture, history_picture
 from ehlpetsc.results.post_result import PostResult
 
 BULK = 350.0, 360.0

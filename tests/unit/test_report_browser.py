@@ -10,7 +10,7 @@ import pytest
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.environment import has
-from ehlpetsc.plot import __main__ as plot
+from ehlpetsc.pictures import command as plot
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 pytestmark = [

@@ -11,8 +11,8 @@ import pytest
 from plotly.offline import get_plotlyjs
 from support.made_results import make_result, with_solids
 
-from ehlpetsc.plot import __main__ as plot
-from ehlpetsc.plot.page import report, report_data
+from ehlpetsc.pictures import command as plot
+from ehlpetsc.pictures.page import report, report_data
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
 
@@ -79,7 +79,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
 
 
 def plot_first(result):
-    from ehlpetsc.plot.panels.frames import frame_to_show
+    from ehlpetsc.pictures.frames import frame_to_show
 
     return frame_to_show(result)
 

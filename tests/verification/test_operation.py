@@ -8,10 +8,10 @@ from support.convergence import observed_order
 
 import ehlpetsc
 from ehlpetsc.analysis.gear_run import GearRun
-from ehlpetsc.analysis.gears import main as gears
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.gears import path_of_contact
+from ehlpetsc.gears.command import main as gears
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation

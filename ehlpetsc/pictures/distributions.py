@@ -5,9 +5,9 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
+from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
 from ehlpetsc.post.fatigue.weibull import CONFIDENCE, WeibullLikelihood, weibull_bounds, weibull_likelihood
-from ehlpetsc.post.pictures import plots
 
 COLOUR_MAP = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
     "distinct", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot import labels
-from ehlpetsc.plot.panels.frames import frame_to_show
+from ehlpetsc.pictures import labels
+from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.running_in import heights, pass_summary
 

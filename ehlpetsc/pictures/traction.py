@@ -3,8 +3,8 @@
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import UNITS, conditions, legend_beside, new_figure
-from ehlpetsc.plot.series.operating_points import operating_point
+from ehlpetsc.pictures.labels import UNITS, conditions, legend_beside, new_figure
+from ehlpetsc.pictures.operating_points import operating_point
 from ehlpetsc.results.series_index import distinguishing_names
 
 RATIO = "motion.slide_roll_ratio"

@@ -4,7 +4,7 @@ import base64
 
 import numpy as np
 
-from ehlpetsc.plot.panels.frames import default_window, frame_to_show, travel_of
+from ehlpetsc.pictures.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import means

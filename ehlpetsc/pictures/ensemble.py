@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from ehlpetsc.analysis.ensemble import CONFIDENCE, bootstrap, ensembles
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
+from ehlpetsc.pictures.labels import SINGLE_COLOUR, UNITS, legend_beside, new_figure
 
 RUNS_COLOUR = "0.6"
 PANEL_SIZE = (3.1, 2.4)  # inches

@@ -2,13 +2,12 @@
 
 from matplotlib.lines import Line2D
 
-from ehlpetsc.plot import labels
-from ehlpetsc.plot.panels import frames, over_time
-from ehlpetsc.plot.series.ensemble import draw_ensemble
-from ehlpetsc.plot.series.running_in import draw_running_in
-from ehlpetsc.plot.series.stribeck import draw_stribeck
-from ehlpetsc.plot.series.traction import draw_traction
-from ehlpetsc.plot.temperatures import temperatures
+from ehlpetsc.pictures import frames, labels, over_time
+from ehlpetsc.pictures.ensemble import draw_ensemble
+from ehlpetsc.pictures.running_in import draw_running_in
+from ehlpetsc.pictures.stribeck import draw_stribeck
+from ehlpetsc.pictures.temperatures import temperatures
+from ehlpetsc.pictures.traction import draw_traction
 
 SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches

@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.post.fatigue.statistics import rank_correlation
-from ehlpetsc.post.pictures import plots
 
 NAMES = {
     "fatemi-socie": "Fatemi-Socie",

@@ -9,8 +9,15 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SECOND_COLOUR, SINGLE_COLOUR, UNITS, conditions, legend_beside, new_figure
-from ehlpetsc.plot.series.operating_points import BAND, QUANTITIES, operating_point
+from ehlpetsc.pictures.labels import (
+    SECOND_COLOUR,
+    SINGLE_COLOUR,
+    UNITS,
+    conditions,
+    legend_beside,
+    new_figure,
+)
+from ehlpetsc.pictures.operating_points import BAND, QUANTITIES, operating_point
 from ehlpetsc.results.series_index import series_values
 
 SPEED = "motion.entrainment_speed"

@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.post.fatigue.passes import pass_statistics
 from ehlpetsc.post.outputs.passes_file import same_points
-from ehlpetsc.post.pictures import plots
 
 
 def passes_picture(results, surface):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ehlpetsc.life.pictures.life_picture import under_profile
-from ehlpetsc.plot.movies import recording
+from ehlpetsc.pictures.life import under_profile
+from ehlpetsc.pictures.movies import recording
 
 FRAMES_PER_ROUND = 3  # frames that a round is shown
 

@@ -7,8 +7,8 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter, PillowWriter
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.figures import fill_frame, two_panels
-from ehlpetsc.plot.panels.frames import choose_frames
+from ehlpetsc.pictures.figures import fill_frame, two_panels
+from ehlpetsc.pictures.frames import choose_frames
 from ehlpetsc.results.atomic_write import replacing
 
 MAX_FRAMES = 150

@@ -6,13 +6,12 @@ import json
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.life.regimes import FATIGUE, NEITHER, WEAR
 from ehlpetsc.results.atomic_write import replacing
 
 MARKS = {  # shape, colour, label
-    FATIGUE: ("v", "#cc3311", "fatigue wins: pits"),
-    WEAR: ("o", "#0077bb", "wear wins: D stays below 1"),
-    NEITHER: ("s", "#bbbbbb", "neither yet: no pits, but D would reach 1"),
+    "fatigue": ("v", "#cc3311", "fatigue wins: pits"),
+    "wear": ("o", "#0077bb", "wear wins: D stays below 1"),
+    "neither": ("s", "#bbbbbb", "neither yet: no pits, but D would reach 1"),
 }
 LABELS = {  # of a key: its name, unit, and the unit's size
     "wear.coefficient": ("specific wear rate k", "m²/N", 1.0),
@@ -94,7 +93,7 @@ def _panel(axes, keys, values, rows):
         mark, colour, _ = MARKS[row["winner"]]
         axes.plot(x, y + 0.14, mark, mfc="white", mec=colour, mew=2.0, ms=11.0)
         note = "no wear" if unworn else f"D {row['damage_ahead']:.2g}"
-        if row["winner"] == FATIGUE:
+        if row["winner"] == "fatigue":
             note = f"first pit after\n{row['first_failure'] / 1e6:.2g} million"
         box = {"fc": "w", "ec": "none", "pad": 1}
         axes.text(x, y - 0.18, note, ha="center", va="center", fontsize=7, bbox=box)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import SECOND_COLOUR, SINGLE_COLOUR, conditions, new_figure
-from ehlpetsc.plot.panels import frames
-from ehlpetsc.plot.panels.over_time import MAX_MAP_ROWS
+from ehlpetsc.pictures import frames
+from ehlpetsc.pictures.labels import SECOND_COLOUR, SINGLE_COLOUR, conditions, new_figure
+from ehlpetsc.pictures.over_time import MAX_MAP_ROWS
 
 SIZE = (8.4, 10.0)  # inches
 STEADY_SIZE = (8.4, 6.6)

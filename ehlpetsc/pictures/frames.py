@@ -6,7 +6,7 @@ from matplotlib.patches import Patch
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
-from ehlpetsc.plot.labels import (
+from ehlpetsc.pictures.labels import (
     CONTACT_COLOUR,
     SECOND_COLOUR,
     SINGLE_COLOUR,

@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.labels import CONTACT_COLOUR
-from ehlpetsc.plot.panels.frames import ACROSS
+from ehlpetsc.pictures.frames import ACROSS
+from ehlpetsc.pictures.labels import CONTACT_COLOUR
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import travelled
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.figures import AROUND_WIDTH, FIGURES, draw_frame, window
+from ehlpetsc.pictures.figures import AROUND_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PICTURE_SIGNATURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
@@ -74,11 +74,11 @@ def draw(results, kind, options, output):
     """Draw one picture or movie into a file."""
     _check(results, kind, options)
     if kind == "movie":
-        from ehlpetsc.plot.movies import save_movie
+        from ehlpetsc.pictures.movies import save_movie
 
         save_movie(results, options, output)
     elif kind == "report":
-        from ehlpetsc.plot.page.report import save_report
+        from ehlpetsc.pictures.page.report import save_report
 
         if len(results) > 1:
             raise OutputError(f"{len(results)} results; allowed: --report of one")
@@ -91,7 +91,7 @@ def draw(results, kind, options, output):
 
 def _draw_case(options, cases):
     """Picture of the profiles of one case file."""
-    from ehlpetsc.plot.case_picture import draw_case
+    from ehlpetsc.pictures.case_profiles import draw_case
 
     if len(options.results) > 1:
         raise OutputError(f"{cases[0]}: a case is drawn alone, without results")

@@ -57,7 +57,7 @@ def run(chosen):
         atomic_write(chosen.csv, csv(path).encode())
         print(chosen.csv)
     if target:
-        from ehlpetsc.gears.picture import draw
+        from ehlpetsc.pictures.gears import draw
 
         with replacing(target, keep_ending=True) as temporary:
             draw(path, stresses, temporary, str(case.get("title", chosen.case)))

@@ -7,7 +7,7 @@ from importlib.resources import files
 
 from ehlpetsc.environment import has
 from ehlpetsc.errors import OutputError
-from ehlpetsc.plot.page.report_data import report_data
+from ehlpetsc.pictures.page.report_data import report_data
 from ehlpetsc.results.atomic_write import atomic_write
 
 PAGE_FILES = {"style": "report.css", "script": "report.js"}
@@ -30,7 +30,7 @@ def save_report(result, path):
     """
     plotly = _plotly()
     data = report_data(result)
-    page = files("ehlpetsc.plot.page")
+    page = files("ehlpetsc.pictures.page")
     text = page.joinpath("report.html").read_text(encoding="utf-8")
     for name, file in PAGE_FILES.items():
         text = text.replace("{{" + name + "}}", page.joinpath(file).read_text(encoding="utf-8"))

@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.plot import labels
+from ehlpetsc.pictures import labels
 from ehlpetsc.surfaces.entry_times import entry_times
 from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameters
 from ehlpetsc.surfaces.roughness import Roughness

@@ -1,1 +1,0 @@
-"""Pictures and movies of lives and of their regimes."""

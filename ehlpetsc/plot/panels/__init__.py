@@ -1,1 +1,0 @@
-"""Curves and maps drawn into axes: one instant, over time."""

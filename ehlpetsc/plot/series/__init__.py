@@ -1,1 +1,0 @@
-"""Figures of several results: over the speed, the slide/roll ratio, seeds, passes."""

@@ -1,1 +1,0 @@
-"""Pictures of stresses, histories, damage and its distributions."""
