@@ -6,7 +6,7 @@ set -eu
 usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n one contact on 1 rank, a series on 2
-./run_mpi.sh --explain CASE.toml                    tell it in words: film, run time, file size; nothing is run
+./run_mpi.sh explain CASE.toml                      a case in words: film, run time, file size; nothing is run
 ./run_mpi.sh plot|post|summary|compare|gears|life ...    the same as ehlpetsc plot ..., each with -h
 ./run_mpi.sh docs [FOLDER]                          the pages as one site, opened in a browser or built there
 ./run_mpi.sh test                                   run the whole test suite, serial and under mpirun
@@ -29,7 +29,7 @@ drawing="matplotlib xarray h5netcdf pint" # pictures, reading of results, values
 site="sphinx myst_parser furo" # the pages as one site
 testing="$drawing plotly pytest xdist hypothesis pip hatchling"
 
-commands="ehlpetsc ehlpetsc-post ehlpetsc-plot ehlpetsc-compare"
+commands="ehlpetsc"
 called=$(basename "$0")
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 check="$here/ehlpetsc/environment.py"
@@ -341,7 +341,7 @@ write_commands() {
 
 if [[ " $commands " = *" $called "* ]]; then # by a link of write_commands
     prepare "$run_modules" "$drawing"
-    exec "$python" -m ehlpetsc.commands "$called" "$@"
+    exec "$python" -m ehlpetsc "$@"
 fi
 
 ranks=""
@@ -353,14 +353,10 @@ fi
 case ${1-} in
     "") usage; exit 2 ;;
     -h | --help | -help) usage; exit 0 ;;
-    --explain)
-        prepare "$run_modules" "$drawing"
-        "$python" -m ehlpetsc "$@"
-        ;;
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_commands "${2-}" ;;
     -*) say "$1 stands before the case file"; usage >&2; exit 2 ;;
-    plot | post | summary | compare | gears | life | ensemble | explain | keys | template | docs | python)
+    plot | post | summary | compare | gears | life | ensemble | explain | keys | template | docs | python | --version)
         [ "$1" != docs ] || run_modules+=" $site"
         prepare "$run_modules" "$drawing"
         exec "$python" -m ehlpetsc "$@"

@@ -5,7 +5,6 @@ a file. ``gears`` computes paths of contact of spur gears. They are imported at 
 """
 
 import importlib
-import sys
 
 __version__ = "0.1.0"
 
@@ -38,9 +37,3 @@ def __getattr__(name):
 
 def __dir__():
     return [*globals(), *_HOMES, *_PACKAGES]
-
-
-if sys.argv[0] == "-m":  # a command of this package, about to be imported: what it needs may not be there
-    from ehlpetsc.environment import require_numerics
-
-    require_numerics()

@@ -1,126 +1,173 @@
-"""``mpirun -n N python3 -m ehlpetsc CASE.toml [options]``: run a case; ``-help`` lists the options."""
+"""The program: ``ehlpetsc CASE.toml`` runs a case, ``ehlpetsc plot RESULT.h5`` draws, and so on: `COMMANDS`.
 
-import errno
+``mpirun -n N python3 -m ehlpetsc CASE.toml`` takes the same words on N ranks. A command imports only what it
+needs, and names the packages that are missing.
+"""
+
+import difflib
+import importlib
 import os
+import shlex
 import signal
 import sys
 import traceback
 import warnings
+from pathlib import Path
+from typing import NamedTuple, NoReturn
 
-from ehlpetsc import environment
-from ehlpetsc.errors import CaseError, ExitStatus, UsageError
-from ehlpetsc.run.cli.streams import harden_std_streams
+import ehlpetsc.environment as packages
+from ehlpetsc import __version__
+from ehlpetsc.environment import NUMERICS, READING
+from ehlpetsc.errors import ExitStatus, UsageError
 from ehlpetsc.run.stop import EarlyStop
 
-NO_SIGNAL_HANDLER = "-no_signal_handler"  # PETSc's handler would end the process with its own report
+DRAWING = (*NUMERICS, "matplotlib")
 
 
-def main(argv):
-    """Run the command; returns its exit status."""
-    missing = environment.prepare()
+class Command(NamedTuple):
+    """A command: module and function of its words, packages that it needs, description."""
+
+    module: str
+    needs: tuple[str, ...]
+    text: str
+    function: str = "main"
+
+
+COMMANDS = {
+    "post": Command("ehlpetsc.post.command", NUMERICS, "stresses, fatigue damage, statistics", "command"),
+    "plot": Command("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
+    "summary": Command("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
+    "compare": Command("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),
+    "ensemble": Command("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
+    "gears": Command("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
+    "life": Command("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
+    "explain": Command("ehlpetsc.run.preview.explain", (*READING, "h5py"), "a case in words, before it runs"),
+    "keys": Command("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
+    "template": Command("ehlpetsc.case.key_page", READING, "a commented case to begin with", "main_template"),
+    "docs": Command("ehlpetsc.docs.__main__", (), "these pages as one site, opened in a browser"),
+}
+
+
+def main(words: list[str] | None = None) -> int:
+    """Run the program; returns its exit status. An unexpected error on one rank ends all ranks."""
+    words = sys.argv[1:] if words is None else words
+    if not sys.warnoptions:  # warnings of numpy are for developers: python3 -W default shows them
+        warnings.simplefilter("ignore")
+    stop = EarlyStop()
+    try:
+        status = _start(words)
+        sys.stdout.flush()
+    except SystemExit:
+        raise
+    except BrokenPipeError:  # the reader has gone, as `head -1` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = ExitStatus.STOPPED
+    except BaseException as error:  # otherwise the other ranks would wait for ever
+        status = _after_error(error, stop)
+        mpi = sys.modules.get("mpi4py.MPI")
+        if mpi and mpi.COMM_WORLD.size > 1:
+            mpi.COMM_WORLD.Abort(status)
+    signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # run_mpi.sh may repeat it while Python ends
+    return status
+
+
+def _start(words: list[str]) -> int:
+    """Start the command of the first word, otherwise run a case; returns the exit status."""
+    first = words[0] if words else ""
+    if "--version" in words[:1]:
+        return _print(f"ehlpetsc {__version__}")
+    if words in (["-h"], ["--help"], ["-help"]):
+        return _print(help_text())
+    if first in COMMANDS:
+        return _start_command(first, words[1:])
+    if first == "python":
+        return _run_script(words[1:])
+    if first and not (first.startswith("-") or first.endswith(".toml") or Path(first).exists()):
+        close = difflib.get_close_matches(first, [*COMMANDS, *(path.stem for path in Path().glob("*.toml"))])
+        meant = f"{close[0]}{'' if close[0] in COMMANDS else '.toml'}" if close else ""
+        hint = f"did you mean {meant}?" if meant else f"allowed: CASE.toml, {', '.join(COMMANDS)}"
+        return refuse(f"ehlpetsc: {first}: unknown command; {hint}")
+    return _run(words)
+
+
+def _start_command(name: str, words: list[str]) -> int:
+    command = COMMANDS[name]
+    lacks = packages.missing(command.needs)
+    if lacks:
+        return refuse(
+            f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
+            f"type: {shlex.join([sys.executable, '-m', 'pip', 'install', *lacks])}"
+        )
+    return getattr(importlib.import_module(command.module), command.function)(words)
+
+
+def _run_script(words: list[str]) -> NoReturn:
+    """Run a script, or Python itself, with ehlpetsc and PETSc on the path."""
+    packages.prepare()
+    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
+    os.execv(sys.executable, [sys.executable, *words])
+
+
+def _run(words: list[str]) -> int:
+    """Run a case with PETSc on all ranks."""
+    missing = packages.prepare()
     if missing:
-        return refuse(environment.advice(missing, argv[1:]))
-    if argv[1:2] in (["--keys"], ["--template"]):
-        return print_keys(argv[1:])
-    from ehlpetsc.run.cli.command_line import parse_command_line
-    from ehlpetsc.run.cli.options import help_text
+        return refuse(packages.advice(missing, words))
+    from ehlpetsc.run.cli import parse
 
     try:
-        command = parse_command_line(argv[1:])
+        command = parse(words)
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
     if "-help" in [*command.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
-        status = print_once(help_text())
-        if command.case is None and command.petsc == ["-help"]:  # works without PETSc
-            return status
-    if command.explain or command.ranks:
-        return explain(command)
-    problem = environment.startup_problem()
+        _print(help_text())
+        if command.case is None:
+            return ExitStatus.DONE
+    if command.shows_ranks:
+        return _print(command.worthwhile_ranks())
+    problem = packages.startup_problem()
     if problem:
         return refuse(f"ehlpetsc: {problem}")
-    import petsc4py
-
-    try:
-        petsc4py.init([argv[0], NO_SIGNAL_HANDLER, *command.petsc])
-    except RuntimeError as error:  # PETSc.Error, which cannot be imported before initialisation
-        return refuse(f"ehlpetsc: PETSc cannot begin with {' '.join(command.petsc)}: {error}")
-    from petsc4py import PETSc
-
-    PETSc.Options().delValue(NO_SIGNAL_HANDLER)  # not an option of the run
-    from ehlpetsc.run.cli.command import run
-
-    return run(command.case, command.overrides)
+    return command.run()
 
 
-def print_keys(arguments):
-    """Print the keys of a case file or of one table, or a commented case; returns the exit status."""
-    from ehlpetsc.case import key_page
+def help_text() -> str:
+    """All commands and the options of a run, in the manner of PETSc's ``-help``."""
+    from ehlpetsc.run.cli import OPTIONS
 
-    try:
-        is_template = arguments[0] == "--template"
-        text = key_page.template() if is_template else key_page.keys(*arguments[1:2]) + "\n"
-    except UsageError as error:
-        return refuse(f"ehlpetsc: {error}")
-    return print_once(text, end="")
-
-
-def explain(command):
-    """Print the summary of a case, or its default number of ranks; returns the exit status."""
-    from ehlpetsc.case.loading import load
-    from ehlpetsc.run.preview.banner import worthwhile_ranks
-    from ehlpetsc.run.preview.explain import explain as summary
-
-    try:
-        return print_once(
-            (worthwhile_ranks if command.ranks else summary)(load(command.case, command.overrides))
-        )
-    except CaseError as error:
-        return refuse("\n".join(error.faults))
+    lines = [
+        "usage: ehlpetsc CASE.toml [options]    run a case, under mpirun on any number of ranks",
+        "       ehlpetsc COMMAND ...            each with -h:",
+        *(f"  {name:9s} {command.text}" for name, command in COMMANDS.items()),
+        "  python    SCRIPT.py: run a script in which import ehlpetsc works",
+        "Options of a run, also as -ehl_output ..., in [petsc] of the case, in PETSC_OPTIONS or a file:",
+        *(option.help_line(name) for name, option in OPTIONS.items()),
+        "  --version",
+        "Of one option the last of [petsc], PETSC_OPTIONS and the command line counts.",
+        "With a case, -help lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",
+        "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
+    ]
+    return "\n".join(lines)
 
 
-def print_once(text, end="\n"):
-    """Print on one rank; returns the exit status, bad input if standard output cannot be written."""
-    if environment.first_rank():
-        print(text, end=end)
-    sys.stdout.flush()
-    lost = getattr(sys.stdout, "lost", None)
-    return ExitStatus.DONE if lost is None or lost.errno == errno.EPIPE else ExitStatus.BAD_INPUT
+def _print(text: object) -> int:
+    if packages.first_rank():
+        print(text, flush=True)
+    return ExitStatus.DONE
 
 
-def refuse(text):
+def refuse(text: str) -> int:
     """Print a fault on one rank; returns the exit status of bad input."""
-    if environment.first_rank():
+    if packages.first_rank():
         print(text, file=sys.stderr, flush=True)
     return ExitStatus.BAD_INPUT
 
 
-def run_guarded(argv):
-    """Run `main`; an unexpected error on one rank ends all ranks, with its traceback."""
-    if not sys.warnoptions:  # warnings of numpy are for developers: python3 -W default shows them
-        warnings.simplefilter("ignore")
-    harden_std_streams()
-    stop = EarlyStop()
-    try:
-        status = main(argv)
-    except SystemExit:
-        raise
-    except BaseException as error:  # otherwise the other ranks would wait for ever
-        status = _after_error(error, stop)
-        if "mpi4py.MPI" in sys.modules:
-            mpi = sys.modules["mpi4py.MPI"]
-            if mpi.COMM_WORLD.size > 1:
-                mpi.COMM_WORLD.Abort(status)
-    signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # run_mpi.sh may repeat it while Python ends
-    sys.stdout.flush()
-    sys.stderr.flush()
-    return status
-
-
-def _after_error(error, stop):
+def _after_error(error: BaseException, stop: EarlyStop) -> int:
     """Report an error, or the stop that caused it; returns the exit status."""
-    if stop.is_requested:  # an import may have raised another error instead
-        if environment.first_rank():
-            print("ehlpetsc: stopped before the run had begun; nothing to continue from", file=sys.stderr)
+    if stop.is_requested or isinstance(error, KeyboardInterrupt):  # an import may have raised another error
+        if packages.first_rank():
+            print("ehlpetsc: stopped; nothing was written", file=sys.stderr)
         return ExitStatus.STOPPED
     traceback.print_exception(error)
     sys.stdout.flush()
@@ -129,6 +176,4 @@ def _after_error(error, stop):
 
 
 if __name__ == "__main__":
-    from ehlpetsc.commands import dispatch
-
-    sys.exit(dispatch(lambda: run_guarded(sys.argv)))
+    sys.exit(main())

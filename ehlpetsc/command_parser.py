@@ -1,10 +1,12 @@
-"""Common parser, name in help texts and exit status of all commands except the run."""
+"""Common parser, text output and exit status of all commands except the run."""
 
 import argparse
-import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
+from ehlpetsc import __version__
+from ehlpetsc.environment import first_rank
 from ehlpetsc.errors import (
     CaseError,
     ExitStatus,
@@ -18,60 +20,62 @@ from ehlpetsc.errors import (
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Argument parser whose errors are one line without the usage, with exit status 2.
+    """Parser of ``ehlpetsc NAME`` with the options of every command; errors are one line, exit status 2.
 
-    Parameters
-    ----------
-    module : str
-        See :func:`program`.
-    description : str
-        Description of the command; line breaks are kept.
+    A command may define ``-o``, ``--set`` or ``--overwrite`` anew, with a help of its own.
     """
 
-    def __init__(self, module, description):
+    def __init__(self, name: str, description: str) -> None:
         keeps = "\n" in description
         formatter = argparse.RawDescriptionHelpFormatter if keeps else argparse.HelpFormatter
-        super().__init__(prog=program(module), description=description, formatter_class=formatter)
+        text = description.replace("``", "")
+        resolve = {"formatter_class": formatter, "conflict_handler": "resolve"}
+        super().__init__(prog=f"ehlpetsc {name}", description=text, **resolve)
+        self.add_argument("-o", "--output", type=Path, metavar="FILE", help="output")
+        key = "key of the case; may be repeated"
+        self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
+        self.add_argument("--overwrite", action="store_true", help="replace an existing file")
+        self.add_argument("--version", action="version", version=f"ehlpetsc {__version__}")
 
-    def error(self, message):
+    def error(self, message: str) -> None:
         """End the command with the fault and a hint to the list of options."""
-        name = self.prog.removeprefix("python3 -m ")
-        self.exit(2, f"{name}: {message}; {self.prog} -h lists the options\n")
+        self.exit(2, f"{self.prog}: {message}; {self.prog} -h lists the options\n" if first_rank() else None)
 
 
-def program(module):
-    """Name of a command in its help, as it was called: a subcommand, the name of pip, or a module.
-
-    Parameters
-    ----------
-    module : str
-        As in ``ehlpetsc.post``.
-
-    Returns
-    -------
-    str
-        ``ehlpetsc post``, ``ehlpetsc-post`` or ``python3 -m ehlpetsc.post``.
-    """
-    name = module.replace(".", "-")
-    if re.fullmatch(r"(python3 -m )?ehlpetsc \w+", sys.argv[0]):  # a subcommand
-        return sys.argv[0]
-    return name if Path(sys.argv[0]).name == name else f"python3 -m {module}"
+def put(text: str, chosen: argparse.Namespace) -> None:
+    """Print a text on the first rank, or write it to the file of ``-o``."""
+    if not first_rank():
+        return
+    if chosen.output is None:
+        print(text, end="" if text.endswith("\n") else "\n")
+        return
+    try:
+        with open(chosen.output, "w" if chosen.overwrite else "x") as file:
+            file.write(text)
+    except FileExistsError:
+        raise OutputError(f"{chosen.output}: exists; give another -o, or --overwrite to replace it") from None
 
 
-def exit_status(name, action, faults=(), output=None):
+def exit_status(
+    name: str,
+    action: Callable[[], int | None],
+    faults: tuple[type[Exception], ...] = (),
+    output: Path | str | None = None,
+) -> int:
     """Exit status of a command; the message of a failure goes to standard error.
 
     Parameters
     ----------
-    name : str
-        Name of the command's module, as ``ehlpetsc.post``, for the message.
-    action : callable
-        Function of the command, which returns the status; None: done.
-    faults : tuple of type
+    name
+        Name of the command, as ``plot``.
+    action
+        The command, which returns the status; None: done.
+    faults
         Further exceptions that mean bad input.
-    output : path-like, optional
+    output
         Output file, for errors of writing without a file name.
     """
+    name = f"ehlpetsc {name}"
     try:
         status = action()
     except Stopped:
@@ -82,6 +86,8 @@ def exit_status(name, action, faults=(), output=None):
         return ExitStatus.NOT_CONVERGED
     except CaseError as error:
         print("\n".join(error.faults), file=sys.stderr)
+    except BrokenPipeError:
+        raise
     except OSError as error:
         print(f"{name}: {not_written(error, error.filename or output)}", file=sys.stderr)
     except (OutputError, PostError, UsageError, *faults) as error:

@@ -11,12 +11,12 @@ import importlib
 import importlib.util
 import os
 import re
-import shlex
 import sys
 from pathlib import Path
 
 DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
+READING = ("numpy", "scipy", "pydantic", "tomlkit")  # of a case file
 SOLVER = ("mpi4py", "petsc4py")
 NEEDED = (*NUMERICS, "numba", "pydantic", "tomlkit", *SOLVER)
 RANK_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
@@ -77,20 +77,6 @@ def _debians():
     built = f"petsc4py/lib/PETSc.{sys.implementation.cache_tag}-*.so"
     folders = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
     return sorted(folders, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
-
-
-def require_numerics():
-    """End a command (exit 2) with advice if packages are missing."""
-    lacks = missing(NUMERICS)
-    if lacks and "ehlpetsc" not in sys.orig_argv:  # a run reports all missing packages itself
-        command = shlex.join(sys.orig_argv[1:])
-        print(
-            f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
-            f"type: /usr/bin/python3 {command}   "
-            "(./run_mpi.sh installs on Debian 12 and newer what is missing)",
-            file=sys.stderr,
-        )
-        sys.exit(2)
 
 
 def advice(lacks, arguments):

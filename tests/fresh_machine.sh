@@ -96,7 +96,7 @@ expect 2 guest "$first" "$install"
 expect 0 root "$first" '^run_mpi.sh: installed$' '^result: mixed.h5$' "$finished"
 say "$release: $((SECONDS - began)) s from the clone to the first result"
 expect 0 guest "$first" ' 1 rank;' "$finished"
-expect 0 guest './run_mpi.sh --commands ~/.local/bin' 'in /home/guest/.local/bin: ehlpetsc ehlpetsc-post '
+expect 0 guest './run_mpi.sh --commands ~/.local/bin' 'in /home/guest/.local/bin: ehlpetsc$'
 picture='cd /tmp && PATH=$HOME/.local/bin:$PATH && ehlpetsc plot ~/ehlpetsc/mixed.h5'
 expect 0 guest "$picture" '^/home/guest/ehlpetsc/mixed.png$'
 began=$SECONDS

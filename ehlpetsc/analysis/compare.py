@@ -225,16 +225,16 @@ def _tolerance(text):
     return value
 
 
-def main(arguments=None):
+def main(words):
     """Run the command; returns its exit status."""
     description = "Compare two result files field by field."
-    parser = CommandParser("ehlpetsc.compare", description)
+    parser = CommandParser("compare", description)
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=_tolerance, default=RTOL, help="over the scale [%(default)s]")
     parser.add_argument("--atol", type=_tolerance, default=0.0, help="in SI units [%(default)s]")
-    options = parser.parse_args(arguments)
-    return exit_status("ehlpetsc.compare", lambda: _compare_files(options))
+    options = parser.parse_args(words)
+    return exit_status("compare", lambda: _compare_files(options))
 
 
 def _compare_files(options):

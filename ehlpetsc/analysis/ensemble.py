@@ -13,7 +13,6 @@ import contextlib
 import csv
 import io
 import json
-import sys
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -168,7 +167,7 @@ def text(rows):
 
 def arguments(argv):
     """Parse the command line."""
-    parser = CommandParser("ehlpetsc.analysis.ensemble", __doc__)
+    parser = CommandParser("ensemble", __doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
     parser.add_argument("-o", "--output", type=Path, help="table, .csv or .json [OUTPUT.ensemble.csv]")
     samples = f"of the bootstrap, 1 to {MAX_RESAMPLES} [{RESAMPLES}]"
@@ -190,13 +189,12 @@ def _whole_number_within(low, high):
     return number
 
 
-def main(argv=None):
+def main(words):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    chosen = arguments(argv)
+    chosen = arguments(words)
     stem = chosen.results[0].removesuffix(".series.json").removesuffix(".h5")
     output = chosen.output or Path(f"{stem}.ensemble.csv")
-    name = "ehlpetsc.analysis.ensemble"
-    return exit_status(name, lambda: _run(chosen, output), (tomllib.TOMLDecodeError,), output)
+    return exit_status("ensemble", lambda: _run(chosen, output), (tomllib.TOMLDecodeError,), output)
 
 
 def _run(chosen, output):
@@ -207,7 +205,3 @@ def _run(chosen, output):
     write(rows, output)
     print("\n".join(text(rows)))
     print(output)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -9,7 +9,6 @@ run if it ends before (column ``from_s``). SI units. Means and percentiles are w
 import contextlib
 import csv
 import io
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -65,14 +64,14 @@ def table(results):
     return rows
 
 
-def main(arguments=None):
+def main(words):
     """Run the command; returns its exit status: 0 done, 2 bad input."""
     description = "Means, percentiles and extremes of every scalar of runs, as CSV."
-    parser = CommandParser("ehlpetsc.summary", description)
+    parser = CommandParser("summary", description)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
     parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
-    chosen = parser.parse_args(arguments)
-    return exit_status("ehlpetsc.summary", lambda: _run(chosen), output=chosen.output)
+    chosen = parser.parse_args(words)
+    return exit_status("summary", lambda: _run(chosen), output=chosen.output)
 
 
 def _run(chosen):
@@ -87,7 +86,3 @@ def _run(chosen):
         check_derived(chosen.output, read, {".csv": ",".join(COLUMNS[:4]).encode()})
         atomic_write(chosen.output, text.getvalue().encode())
         print(chosen.output)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -7,6 +7,7 @@ from ehlpetsc.case.loading import Case
 from ehlpetsc.case.schema.equations import EQUATIONS, SYMBOLS
 from ehlpetsc.case.schema.table import Table
 from ehlpetsc.case.tables.surface import SYNTHETIC
+from ehlpetsc.command_parser import CommandParser, exit_status, put
 from ehlpetsc.errors import UsageError
 
 # keys that are required or set in almost every case: Table 1 of Holmes et al. 2005
@@ -106,7 +107,7 @@ def keys(table=None):
         models = {name: models[name] for name in models if name == table or name.startswith(f"{table}.")}
         if not models:
             names = [name for name in tables() if name and " " not in name]
-            raise UsageError(f"--keys {table}: no such table or key; tables: {', '.join(names)}")
+            raise UsageError(f"keys {table}: no such table or key; tables: {', '.join(names)}")
     lines = []
     for name, model in models.items():
         lines += [f"[{name}]" if name else "above all tables", *_lines(model, _keys(model))]
@@ -154,6 +155,20 @@ def template():
             shown = value or ("..." if field.default is None else json.dumps(field.default))
             lines.append(f"{'' if value else '# '}{field.alias} = {shown}  # {allowed(field)}")
     return "\n".join(lines) + "\n"
+
+
+def main(words: list[str]) -> int:
+    """Run the command ``ehlpetsc keys``; returns its exit status."""
+    parser = CommandParser("keys", "Keys of a case file: meaning, unit, bounds, default.")
+    parser.add_argument("table", nargs="?", metavar="TABLE or TABLE.KEY", help="default: all")
+    chosen = parser.parse_args(words)
+    return exit_status("keys", lambda: put(keys(chosen.table), chosen))
+
+
+def main_template(words: list[str]) -> int:
+    """Run the command ``ehlpetsc template``; returns its exit status."""
+    chosen = CommandParser("template", "A commented case file to begin with.").parse_args(words)
+    return exit_status("template", lambda: put(template(), chosen))
 
 
 if __name__ == "__main__":

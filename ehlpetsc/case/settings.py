@@ -1,4 +1,4 @@
-"""Overrides of keys of a case, by -ehl_set and by series, in its tables and its text."""
+"""Overrides of keys of a case, by --set and by series, in its tables and its text."""
 
 import tomllib
 

@@ -91,14 +91,14 @@ def build(folder):
     return folder / f"{FRONT}.html"
 
 
-def main(arguments=None):
+def main(words):
     """Run the command; returns its exit status."""
     description = "Build the pages as one site, with search and typeset equations, and open it in a browser."
-    parser = CommandParser("ehlpetsc.docs", description)
+    parser = CommandParser("docs", description)
     folder = "build it here, to publish it, and open nothing"
     parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
-    chosen = parser.parse_args(arguments)
-    return exit_status("ehlpetsc docs", lambda: _run(chosen))
+    chosen = parser.parse_args(words)
+    return exit_status("docs", lambda: _run(chosen))
 
 
 def _run(chosen):
@@ -108,7 +108,3 @@ def _run(chosen):
     print(page)
     if chosen.folder is None:
         webbrowser.open(page.as_uri())
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -6,7 +6,6 @@ prints friction and losses of the mesh and draws pressure, films and friction al
 RESULT.post.h5 exists, the damage along both flanks.
 """
 
-import sys
 from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser, exit_status
@@ -18,7 +17,7 @@ from ehlpetsc.toml_file import parse_toml, read_text
 
 def arguments():
     """Parse the command line."""
-    parser = CommandParser("ehlpetsc.gears", __doc__)
+    parser = CommandParser("gears", __doc__)
     parser.add_argument("case", help="case file with a [gears] table, or a result of one")
     parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
@@ -26,10 +25,10 @@ def arguments():
     return parser
 
 
-def main(argv=None):
+def main(words):
     """Run the command; returns its exit status."""
-    chosen = arguments().parse_args(argv)
-    return exit_status("ehlpetsc.gears", lambda: run(chosen), (ValueError,))
+    chosen = arguments().parse_args(words)
+    return exit_status("gears", lambda: run(chosen), (ValueError,))
 
 
 def run(chosen):
@@ -98,7 +97,3 @@ def _picture(chosen):
     target = Path(f"{Path(chosen.case).stem}.gears.png" if chosen.output is None else chosen.output)
     check_derived(target, [Path(chosen.case)], PICTURE_SIGNATURES)
     return target
-
-
-if __name__ == "__main__":
-    sys.exit(main())

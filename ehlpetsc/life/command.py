@@ -9,7 +9,6 @@ position of surface 2, or a life.
 
 from __future__ import annotations
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,16 +22,9 @@ if TYPE_CHECKING:
 
 def arguments() -> CommandParser:
     """The command line."""
-    parser = CommandParser("ehlpetsc.life", __doc__)
+    parser = CommandParser("life", __doc__)
     parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 or its index to draw")
     parser.add_argument("-o", "--output", metavar="FILE.h5", help="default: CASE.life.h5")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="TABLE.KEY=VALUE",
-        help="a key of the case; may be repeated",
-    )
     parser.add_argument("--overwrite", action="store_true", help="start again")
     parser.add_argument(
         "--unresolved", action="store_true", help="run also on a mesh too coarse for the profiles"
@@ -43,10 +35,10 @@ def arguments() -> CommandParser:
     return parser
 
 
-def main(argv: list[str] | None = None) -> ExitStatus:
+def main(words: list[str]) -> ExitStatus:
     """Run the command; returns its exit status."""
-    chosen = arguments().parse_args(argv)
-    return exit_status("ehlpetsc.life", lambda: _run(chosen), (ImportError,))
+    chosen = arguments().parse_args(words)
+    return exit_status("life", lambda: _run(chosen), (ImportError,))
 
 
 def _run(chosen: Namespace) -> None:
@@ -133,7 +125,3 @@ def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
         run_life(case, path, after=chosen.after, **shared)
     show(str(output))
     return output, is_root
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -12,7 +12,6 @@ Exit status: 0 drawn, 2 bad input.
 
 import contextlib
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -47,10 +46,8 @@ def _check(results, kind, options):
 
 def _parser():
     description = "Draw results, a series by its index, or the profiles of a case as they will be used."
-    parser = CommandParser("ehlpetsc.plot", description)
+    parser = CommandParser("plot", description)
     parser.add_argument("results", nargs="+", metavar="RESULT.h5", help="results, an index; or one CASE.toml")
-    settings = "of a case: a key set, as in a run"
-    parser.add_argument("-ehl_set", action="append", metavar="TABLE.KEY=VALUE", help=settings)
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")
     instant = parser.add_mutually_exclusive_group()
     instant.add_argument("--step", type=int, help="number of the time step [largest share on solids]")
@@ -97,7 +94,7 @@ def _draw_case(options, cases):
         raise OutputError(f"{cases[0]}: a case is drawn alone, without results")
     output = options.output or Path(Path(cases[0]).stem + ".case.png")
     check_derived(output, [Path(cases[0])], PICTURE_SIGNATURES)
-    figure = draw_case(cases[0], options.ehl_set or ())
+    figure = draw_case(cases[0], options.set)
     with replacing(output, keep_ending=True) as temporary:
         figure.savefig(temporary, dpi=DPI)
     print(output)
@@ -111,13 +108,13 @@ def _stem(paths):
     return f"{first}_and_{Path(others[0]).name if len(others) == 1 else f'{len(others)}_more'}"
 
 
-def main(arguments=None):
+def main(words):
     """Run the command; returns its exit status."""
-    options = _parser().parse_args(arguments)
+    options = _parser().parse_args(words)
     kind = next((k for k in (*FIGURES, *ENDINGS) if getattr(options, k) not in (None, False)), None)
     ending = ENDINGS.get(kind, f".{kind}.png" if kind else ".png")
     output = options.output or Path(_stem(options.results) + ending)
-    return exit_status("ehlpetsc.plot", lambda: _run(options, kind, output), (ValueError,), output)
+    return exit_status("plot", lambda: _run(options, kind, output), (ValueError,), output)
 
 
 def _run(options, kind, output):
@@ -131,7 +128,3 @@ def _run(options, kind, output):
         check_derived(output, inputs, SIGNATURES.get(kind, PICTURE_SIGNATURES))
         draw(results, kind, options, output)
     print(output)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -24,10 +24,10 @@ def _jobs(text):
     return value
 
 
-def arguments(argv=None):
+def arguments(argv):
     """Parse the command line."""
     parser = CommandParser(
-        "ehlpetsc.post",
+        "post",
         "Stress histories of body points, rainflow cycles, fatigue damage and its statistics "
         "from result files. Material and depths come from the case text in the file, section [post].",
     )

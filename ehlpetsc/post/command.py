@@ -192,12 +192,12 @@ def _status(work, path, output):
     return ExitStatus.DONE
 
 
-def main(argv=None, call=lambda name, work: work()):
+def main(argv, call=lambda name, work: work()):
     """Process each file and draw the processed results; returns the exit status.
 
     Parameters
     ----------
-    argv : list of str, optional
+    argv : list of str
     call : callable(name, work), optional
         Runs the function `work` for the file `name` and returns its exit status.
     """
@@ -230,8 +230,8 @@ def main(argv=None, call=lambda name, work: work()):
     return max(statuses, key=SEVERITY.index)
 
 
-def command():
+def command(words):
     """Run as a command, every file in a separate process, so that a crash leaves the others unaffected."""
-    status = main(call=SubprocessGuard(say))
+    status = main(words, call=SubprocessGuard(say))
     sys.stdout.flush()
     os._exit(status)  # faster than Python's end, which collects cycles

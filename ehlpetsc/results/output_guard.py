@@ -12,8 +12,8 @@ import h5py
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.hdf5.opening import open_for_reading
 
-WAIT_ADVICE = "wait for it, or give another -ehl_output"
-OVERWRITE_ADVICE = "give another -ehl_output, or -ehl_overwrite to lose it"
+WAIT_ADVICE = "wait for it, or give another -o"
+OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 SIGNATURE_BYTES = 512  # at the beginning of a file, in which its signature is searched
 PICTURE_SIGNATURES = {
     ".png": b"\x89PNG",
@@ -31,7 +31,7 @@ MOVIE_SIGNATURES = {".gif": b"GIF8", ".mp4": b"ftyp", ".webm": b"webm"}
 PAGE_SIGNATURES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
 
 
-def check_output_path(path, inputs, option="-ehl_output"):
+def check_output_path(path, inputs, option="-o"):
     """Refuse an output path that is an input or not a regular file.
 
     Parameters

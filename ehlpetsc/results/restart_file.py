@@ -123,8 +123,8 @@ def restart_of_same(path, restart, case_text):
     except (OutputError, KeyError) as error:
         raise OutputError(f"{error}; remove it, {OVERWRITE_ADVICE}") from None
     if not same or status is None:
-        kind = "whose result is gone" if same else "of another case, or of other -ehl_set"
-        advice = f"continue with -ehl_restart {restart}, {OVERWRITE_ADVICE}"
+        kind = "whose result is gone" if same else "of another case, or of other --set"
+        advice = f"continue with --restart {restart}, {OVERWRITE_ADVICE}"
         raise OutputError(f"{restart}: a restart file waits there, {kind}; {advice}")
     return restart
 
@@ -142,5 +142,5 @@ def _status_of_same(path, case_text):
     if case != case_text:
         unfinished = "" if status == "done" else f" that is {status}, not done"
         kind = f"a run{unfinished}" if unfinished else "the result"
-        raise OutputError(f"{path}: holds {kind} of another case, or of other -ehl_set; {OVERWRITE_ADVICE}")
+        raise OutputError(f"{path}: holds {kind} of another case, or of other --set; {OVERWRITE_ADVICE}")
     return status

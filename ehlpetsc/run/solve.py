@@ -158,7 +158,7 @@ class Run:
         elif outcome.status is ExitStatus.STOPPED and state is None:
             self._print("ehlpetsc: stopped during the steady start; nothing to continue from")
         elif outcome.status is ExitStatus.STOPPED:
-            advice = f"continue with -ehl_restart {recorder.restart} or the same command"
+            advice = f"continue with --restart {recorder.restart} or the same command"
             self._print(f"ehlpetsc: stopped at step {state.step}; {advice}")
         for line in recorder.result.limits:
             self._print(f"limit: {line}")

@@ -97,7 +97,7 @@ def counting_speed(points=2000, samples=6000):
 def post(path, jobs):
     """Wall and processor time (user and system) of one run of the command, s."""
     output = path.with_name("out.post.h5")
-    command = [sys.executable, "-m", "ehlpetsc.post", path, "-o", output, "--surface", "2"]
+    command = [sys.executable, "-m", "ehlpetsc", "post", path, "-o", output, "--surface", "2"]
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     root = Path(__file__).resolve().parents[2]
     subprocess.run([*command, "--jobs", str(jobs)], check=True, capture_output=True, cwd=root)

@@ -45,7 +45,7 @@ def steady(folder, repeats=5):
         sys.executable,
         "-c",
         "from ehlpetsc import environment; environment.prepare(); import petsc4py; petsc4py.init(); "
-        "import ehlpetsc.run.cli.command",
+        "import ehlpetsc.run.simulation",
     ]
     imports, whole = [], []
     for _ in range(repeats):

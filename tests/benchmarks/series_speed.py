@@ -22,11 +22,11 @@ RANK = "--rank"  # first argument of this file where it stands for one rank of t
 
 def as_rank(arguments):
     """Run the program and note the processor time it took."""
-    from ehlpetsc.__main__ import run_guarded
+    from ehlpetsc.__main__ import main as run_program
     from ehlpetsc.environment import prepare
 
     prepare()
-    status = run_guarded([sys.argv[0], *arguments])
+    status = run_program(arguments)
     Path(f"cpu.{os.environ.get('OMPI_COMM_WORLD_RANK', '0')}").write_text(str(time.process_time()))
     return status
 

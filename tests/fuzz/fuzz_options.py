@@ -9,7 +9,7 @@ from support import CASES
 
 import ehlpetsc.discretisation.ehl_problem
 import ehlpetsc.physics.rheology  # noqa: F401
-from ehlpetsc.__main__ import run_guarded
+from ehlpetsc.__main__ import main
 from ehlpetsc.results.reader import read_result
 
 MESH = ["mesh.inlet=-1.3", "mesh.outlet=1.3", "mesh.points_per_half_width=15", "output.checkpoint=1e-4"]
@@ -176,7 +176,7 @@ class Draw:
 
         def work():
             os.chdir(self.folder)
-            return int(run_guarded(arguments))
+            return int(main(arguments[1:]))
 
         return process(work, self.folder / "report", LIMIT)
 

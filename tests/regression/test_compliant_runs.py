@@ -1,4 +1,4 @@
-"""Runs of a compliant layer through restart, passes, a series, post-processing and --explain."""
+"""Runs of a compliant layer through restart, passes, a series, post-processing and explain."""
 
 import json
 import re
@@ -66,7 +66,7 @@ def test_passes_add_plastic_deformation(case, tmp_path):
 
 
 def test_explain_names_no_fault(case, tmp_path):
-    done = run("--explain", case, cwd=tmp_path)
+    done = run("explain", case, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "Refused" not in done.stdout
     # half of 10 nm times ln(E*/p), E* = 113.7 GPa

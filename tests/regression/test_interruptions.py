@@ -46,7 +46,7 @@ def test_signal_to_mpirun_writes_a_restart_file(tmp_path):
     process.send_signal(signal.SIGTERM)
     _, output, errors = ended(process)
     assert process.returncode in (1, 4)
-    assert " -ehl_restart r.restart.h5" in output or "(Open MPI) 5." in version
+    assert " --restart r.restart.h5" in output or "(Open MPI) 5." in version
     assert "Traceback" not in errors and "PETSC ERROR" not in errors
     assert_stopped_whole(tmp_path)
 
@@ -122,7 +122,7 @@ def test_full_or_closed_output_does_not_end_a_run(tmp_path, redirection):
 
 
 def test_keys_on_a_full_device_end_with_status_2(tmp_path):
-    line = " ".join(command("--keys")) + " >/dev/full"
+    line = " ".join(command("keys")) + " >/dev/full"
     done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
     assert done.returncode == 2 and "No space left on device" in done.stderr
 

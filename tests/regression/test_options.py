@@ -1,6 +1,5 @@
 """The command line: precedence of options, refused options, output of -help and -options_left."""
 
-import os
 import re
 import subprocess
 
@@ -10,8 +9,7 @@ from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings
 
 from ehlpetsc.errors import UsageError
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.cli.command_line import parse_command_line
-from ehlpetsc.run.cli.options import OWN, faults
+from ehlpetsc.run.cli import OPTIONS, OWN, faults, parse
 
 SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
 MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]
@@ -69,7 +67,7 @@ def test_options_file_has_the_precedence_of_its_position(case, tmp_path):
 
 def test_ehl_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
     monkeypatch.setenv("PETSC_OPTIONS", "-ehl_set a.b=1 -snes_monitor -ehl_set 'title=two words'")
-    command = parse_command_line(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
+    command = parse(["-ehl_set", "c.d=2", "x.toml", "-ehl_set", "a.b=3", "-ksp_view"])
     assert command.overrides == ["a.b=1", "title=two words", "c.d=2", "a.b=3"]
     assert command.petsc == ["-ksp_view"]
     assert command.case == "x.toml"
@@ -82,21 +80,20 @@ def test_ehl_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
         assert "viscosity = 0.01 " in result.attrs["case"]
 
 
-def test_two_dashes_equal_one(monkeypatch):
-    """PETSc would store --ehl_output under another name, and the result silently go elsewhere."""
-    monkeypatch.setenv("PETSC_OPTIONS", "--ksp_rtol 1e-3 -snes_rtol 1e-4")
-    command = parse_command_line(["x.toml", "--ehl_output", "a--b.h5", "--ehl_overwrite", "--help", "--1"])
-    assert command.petsc == ["-ehl_output", "a--b.h5", "-ehl_overwrite", "-help", "--1"]
-    assert os.environ["PETSC_OPTIONS"] == "-ksp_rtol 1e-3 -snes_rtol 1e-4"
-    with pytest.raises(UsageError, match="^-options_file none: "):
-        parse_command_line(["x.toml", "--options_file", "none"])
+def test_options_of_the_program_have_long_names():
+    words = "x.toml -o a--b.h5 --overwrite --time-limit=5 --set a.b=1 --set=c.d=2 --restart r.h5 --help --1"
+    command = parse(words.split())
+    assert command.overrides == ["a.b=1", "c.d=2"]
+    own = "-ehl_output a--b.h5 -ehl_overwrite -ehl_time_limit 5 -ehl_restart r.h5"
+    assert command.petsc == [*own.split(), "-help", "--1"]
 
 
-def test_output_option_with_two_dashes(case, tmp_path):
-    done = run(case, "--ehl_output", "a.h5", "--ehl_overwite", cwd=tmp_path)
-    assert done.returncode == 2 and is_line_with(done.stderr, "-ehl_overwite: ", "-ehl_overwrite?")
-    done = run(case, "--ehl_output", "a.h5", cwd=tmp_path)
-    assert done.returncode == 0 and (tmp_path / "a.h5").exists()
+def test_long_names_in_a_run(case, tmp_path):
+    for more in ([], ["--set", "title=edited", "--overwrite"]):
+        done = run(case, "-o", "a.h5", *more, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    done = run(case, "-o", "a.h5", cwd=tmp_path)  # an edited case
+    assert done.returncode == 2 and is_line_with(done.stderr, "ehlpetsc: a.h5: ", "--overwrite")
 
 
 def test_misspelt_own_options_are_refused_together(case, tmp_path):
@@ -141,13 +138,13 @@ def test_output_that_is_a_link_stays_one(case, tmp_path):
 )
 def test_exactly_one_case_file_is_required(arguments, message):
     with pytest.raises(UsageError, match=message):
-        parse_command_line(arguments)
+        parse(arguments)
 
 
 @pytest.mark.parametrize(
     "words, message",
     [
-        (["-ehl_output"], r"^ehlpetsc: -ehl_output .* -ehl_output FILE\.h5"),
+        (["-ehl_output"], r"^ehlpetsc: -ehl_output .* -ehl_output FILE"),
         (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: .* > 0"),
         (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: .* > 0"),
         (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: .*, No such file or directory"),
@@ -174,13 +171,13 @@ def test_exactly_one_case_file_is_required(arguments, message):
         (["-snes_view", "5"], "PETSc .*-snes_view 5: "),
         (["-snes_atol", "nan"], "-snes_atol nan: "),
         (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: "),
-        (["-ehl_set", "mesh.inlet"], r"-ehl_set mesh\.inlet: .*-ehl_set mesh\.inlet=VALUE"),
-        (["-ehl_set", "mesh.inlet", "-2"], r"-ehl_set mesh\.inlet: .*-ehl_set mesh\.inlet=-2"),
-        (["-restart", "x.h5"], r"^ehlpetsc: -restart: .* -ehl_restart\?"),
-        (["--output", "x.h5"], r"^ehlpetsc: --output: .* -ehl_output\?"),
+        (["-ehl_set", "mesh.inlet"], r"--set mesh\.inlet: .*--set mesh\.inlet=VALUE"),
+        (["-ehl_set", "mesh.inlet", "-2"], r"--set mesh\.inlet: .*--set mesh\.inlet=-2"),
+        (["-restart", "x.h5"], r"^ehlpetsc: -restart: .* --restart\?"),
+        (["--outptu", "x.h5"], r"^ehlpetsc: --outptu: .* --output\?"),
         (["--frobnicate"], "^ehlpetsc: --frobnicate: "),
         (["-n", "2"], "-n .*mpirun.*run_mpi.sh"),
-        (["-ehl_set", "-help"], r"-ehl_set .* -ehl_set TABLE\.KEY=VALUE"),
+        (["-ehl_set", "-help"], r"--set .* --set TABLE\.KEY=VALUE"),
     ],
 )
 def test_bad_option_values_are_refused_in_one_line(case, tmp_path, words, message):
@@ -286,17 +283,11 @@ def test_unused_options_are_listed_before_the_first_step(case, tmp_path):
 def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
     done = run(case, "-help", cwd=tmp_path, ranks=2)
     assert done.returncode == 0
-    own = done.stdout.split("Own options:\n")[1].splitlines()
-    for line, (name, option) in zip(own, OWN.items(), strict=False):
-        assert line == f"  -{name}{option.placeholder}: {option.text} (default: {option.default})"
-    assert done.stdout.count("Own options:") == 1 and done.stdout.index("Own options:") < 300
+    assert all(f"--{name.replace('_', '-')} " in done.stdout for name in OPTIONS)
+    assert done.stdout.count("usage: ehlpetsc") == 1
     for petscs in ("-snes_linesearch_type", "-ksp_rtol", "-pc_type"):
         assert petscs in done.stdout
     assert not (tmp_path / "case.h5").exists()
-    alone = run("-help", cwd=tmp_path).stdout
-    for words in ("Own options:", "--keys", "--template", "--explain", "--ranks"):
-        assert words in alone
-    assert len(alone.splitlines()) < 25 and "-malloc_dump" not in alone
 
 
 def test_views_are_printed_once_and_monitors_have_headings(tmp_path):
@@ -341,23 +332,8 @@ def test_missing_packages_print_the_command_to_type(case, tmp_path):
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
 
 
-@pytest.mark.parametrize("command", ["compare", "post", "analysis.ensemble"])
-def test_every_subcommand_reports_missing_packages(tmp_path, command):
-    done = subprocess.run(
-        [PYTHON, "-S", "-m", f"ehlpetsc.{command}", "a b.h5"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)},
-    )
-    assert done.returncode == 2
-    message, typed = done.stderr.splitlines()
-    assert message.endswith(" numpy, scipy, h5py")
-    assert f"type: /usr/bin/python3 -S -m ehlpetsc.{command} 'a b.h5' " in typed
-
-
 def test_explain_prints_once_and_writes_no_file(case, tmp_path):
-    done = run("--explain", case, cwd=tmp_path, ranks=2)
+    done = run("explain", case, cwd=tmp_path, ranks=2)
     assert done.returncode == 0
     assert done.stdout.count("Table 1, smooth and steady") == 1
     assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]

@@ -28,9 +28,7 @@ def test_same_case_overwrites_and_another_is_refused(done):
     other = [*CASE, *settings("fluid.viscosity=0.004")]
     refused = run(*other, cwd=done)
     assert refused.returncode == 2 and path.read_bytes() == before
-    assert is_line_with(
-        refused.stderr, "table1_smooth.h5: ", "another case", "-ehl_set", "-ehl_output", "-ehl_overwrite"
-    )
+    assert is_line_with(refused.stderr, "table1_smooth.h5: ", "another case", "--set", "-o", "--overwrite")
     assert run(*other, "-ehl_overwrite", cwd=done).returncode == 0
     with read_result(path) as result:
         assert "viscosity = 0.004" in result.attrs["case"]

@@ -112,9 +112,7 @@ def test_rerun_computes_missing_members_only(finished):
 def test_foreign_file_in_a_series_is_refused_and_kept(tmp_path, name, what):
     (tmp_path / name).write_text("mine")
     refused = series(tmp_path, ranks=0)
-    assert refused.returncode == 2 and is_line_with(
-        refused.stderr, f"{name}: ", what, "-ehl_output", "-ehl_overwrite"
-    )
+    assert refused.returncode == 2 and is_line_with(refused.stderr, f"{name}: ", what, "-o", "--overwrite")
     assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
 
 
@@ -197,7 +195,7 @@ def test_killed_series_is_completed_by_the_same_command(tmp_path, finished, rank
     "words, fault",
     [
         (["-ehl_ranks_per_member", "3"], "-ehl_ranks_per_member 3: "),
-        (["-ehl_restart", "x.h5"], "-ehl_restart with a [series]: "),
+        (["-ehl_restart", "x.h5"], "--restart with a [series]: "),
         (["-ehl_set", "series.values=[0.01,0.010]"], "same name"),
         (["-ehl_set", "series.values=[0.01,-1]"], "series.values: -1"),
     ],

@@ -48,7 +48,7 @@ def test_run_stopped_by_a_signal_restarts_on_other_ranks(whole, tmp_path, name, 
     stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), step))
     assert stopped.returncode == 4, stopped.stderr
     assert f" step {step}; " in stopped.stdout
-    assert " -ehl_restart table1_rough.restart.h5" in stopped.stdout
+    assert " --restart table1_rough.restart.h5" in stopped.stdout
     assert last_step(tmp_path / "table1_rough.h5") == (step, "stopped")
     going_on = [*CASE, "-ehl_restart", "table1_rough.restart.h5"]
     done = run(*going_on, cwd=tmp_path, ranks=others)
@@ -234,7 +234,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
         full.stderr,
         "table1_rough.h5: ",
         "File too large",
-        f"-ehl_restart table1_rough.restart.h5 (step {step})",
+        f"--restart table1_rough.restart.h5 (step {step})",
     )
     with read_result(tmp_path / "table1_rough.h5") as result:
         np.testing.assert_array_equal(result.steps("step"), range(int(step) + 1))

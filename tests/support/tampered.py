@@ -12,9 +12,9 @@ import signal
 import sys
 from types import SimpleNamespace
 
-from ehlpetsc.__main__ import run_guarded
+from ehlpetsc.__main__ import main
 from ehlpetsc.environment import prepare
-from ehlpetsc.run.cli.command_line import parse_command_line
+from ehlpetsc.run.cli import parse
 
 
 def kill_at_index(rank, count):
@@ -64,9 +64,9 @@ if __name__ == "__main__":
     prepare()
     import petsc4py
 
-    petsc4py.init([sys.argv[0], *parse_command_line(rest).petsc])  # what is tampered with imports PETSc
+    petsc4py.init([sys.argv[0], *parse(rest).petsc])  # what is tampered with imports PETSc
     if accident == "index":
         kill_at_index(int(rank), int(step))
     else:
         tamper(accident, int(rank), int(step))
-    sys.exit(run_guarded([sys.argv[0], *rest]))
+    sys.exit(main(rest))

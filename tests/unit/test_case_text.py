@@ -140,8 +140,8 @@ def test_stored_case_equals_the_run_case_in_any_layout(tmp_path):
 def test_numpy_warnings_are_hidden():
     """They are for developers: python3 -W default shows them."""
     code = "import sys; import numpy; from ehlpetsc import __main__ as command\n"
-    code += "command.main = lambda argv: numpy.log(numpy.zeros(1)) is None\n"
-    code += "sys.exit(command.run_guarded(['ehlpetsc']))"
+    code += "command._start = lambda words: numpy.log(numpy.zeros(1)) is None\n"
+    code += "sys.exit(command.main([]))"
     warnings_shown = {}
     for words in ((), ("-W", "default")):
         done = subprocess.run(

@@ -279,8 +279,8 @@ def test_resume_advice_names_matching_restart_files_only(tmp_path, stored, other
     scene = Scene()
     scene.save(path, *state_of(scene))
     advice = resume_advice(path, Scene(*other).case, stored)
-    assert advice.endswith(f"continue with -ehl_restart {path} (step 3)") == there
+    assert advice.endswith(f"continue with --restart {path} (step 3)") == there
     assert ("no restart file" in advice) != there
-    assert there or advice.endswith(" -ehl_overwrite"), "an existing file would be refused"
+    assert there or advice.endswith(" --overwrite"), "an existing file would be refused"
     path.unlink()
     assert resume_advice(path, scene.case, stored).endswith(" at time 0")

@@ -103,7 +103,7 @@ def test_missing_field_and_different_status_are_differences(tmp_path, result, ca
 
 def test_bad_input_to_compare_is_refused(tmp_path, result, capsys):
     status, _, text = run(capsys, result, tmp_path / "no.h5")
-    assert status == 2 and is_line_with(text, f"ehlpetsc.compare: {tmp_path / 'no.h5'}: ", "such file")
+    assert status == 2 and is_line_with(text, f"ehlpetsc compare: {tmp_path / 'no.h5'}: ", "such file")
     with pytest.raises(SystemExit) as stop:
         main([str(result), str(result), "--rtol", "-1"])
     assert stop.value.code == 2

@@ -117,7 +117,7 @@ def test_life_picture_overwrites_pictures_only(lived, tmp_path, capsys):
     before = picture.read_bytes()
     with file_size_limit(4096):
         message = sentence(capsys, life, lived)
-    assert message.startswith(f"ehlpetsc.life: {picture}: ") and message.endswith(", File too large")
+    assert message.startswith(f"ehlpetsc life: {picture}: ") and message.endswith(", File too large")
     assert picture.read_bytes() == before
     make_result(picture)
     before = picture.read_bytes()

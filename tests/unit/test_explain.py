@@ -1,4 +1,4 @@
-"""--explain: figures of a case, predicted size and run time, disabled effects, warnings."""
+"""explain: figures of a case, predicted size and run time, disabled effects, warnings."""
 
 import re
 

@@ -69,15 +69,13 @@ MAY_IMPORT = (
             "results",
             "quantities",
         },
-        "compare": {"analysis"},
         "docs": set(),
         "life": {"run", "post", "api", "effects", "case", "surfaces", "results", "physics"},
         "api": {"case", "results", "run", "pictures"},  # what the package offers: imports when asked
-        "__main__": {"run", "case", "commands"},
-        "commands": set(),  # starts each command by its name
+        "__main__": {"run"},  # starts each command by its name
     }
     | {name: set() for name in GROUND}
-    | {"command_parser": {"errors"}, "toml_file": {"errors"}}
+    | {"command_parser": {"errors", "environment"}, "toml_file": {"errors"}}
 )
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
@@ -179,7 +177,7 @@ def test_heavy_libraries_are_imported_where_allowed_only(library):
     assert users and {room(module) for module in users} <= LIBRARIES[library]
 
 
-@pytest.mark.parametrize("name", ["post", "analysis", "pictures", "compare", "case", "results", "gears"])
+@pytest.mark.parametrize("name", ["post", "analysis", "pictures", "case", "results", "gears"])
 def test_reading_packages_reach_neither_solver_nor_petsc_nor_mpi(name):
     everything = set().union(*(reached(module) for module in FILES if room(module) == name))
     assert not {room(module) for module in everything} & SOLVER

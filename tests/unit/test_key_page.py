@@ -35,9 +35,9 @@ def test_keys_of_one_table_have_units_bounds_and_defaults():
     assert listed[3].endswith("default: 0.0")
     assert "[surface.1.synthetic (ridge)]" in key_page.keys("surface.1")
     assert "[surface.2]" in key_page.keys("surface")
-    with pytest.raises(UsageError, match="--keys fluids: .*tables: contact, fluid"):
+    with pytest.raises(UsageError, match="keys fluids: .*tables: contact, fluid"):
         key_page.keys("fluids")
-    with pytest.raises(UsageError, match=r"--keys contact\.laod: "):
+    with pytest.raises(UsageError, match=r"keys contact\.laod: "):
         key_page.keys("contact.laod")
     (line, equation) = key_page.keys("contact.load").splitlines()
     assert line.startswith("  load: a number >= 0.001") and "a = sqrt" in equation
@@ -76,8 +76,8 @@ def test_commands_print_keys_and_template(tmp_path):
         command = [sys.executable, "-m", "ehlpetsc", *words]
         return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
 
-    assert run("--keys").stdout == key_page.keys() + "\n"
-    assert run("--keys", "mesh").stdout == key_page.keys("mesh") + "\n"
-    assert run("--template").stdout == key_page.template()
-    wrong = run("--keys", "mush")
-    assert (wrong.returncode, wrong.stdout) == (2, "") and "--keys mush: " in wrong.stderr
+    assert run("keys").stdout == key_page.keys() + "\n"
+    assert run("keys", "mesh").stdout == key_page.keys("mesh") + "\n"
+    assert run("template").stdout == key_page.template()
+    wrong = run("keys", "mush")
+    assert (wrong.returncode, wrong.stdout) == (2, "") and "keys mush: " in wrong.stderr

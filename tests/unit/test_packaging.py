@@ -4,19 +4,16 @@ import email
 import re
 import subprocess
 import sys
-import tomllib
 import zipfile
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from support import ROOT, is_line_with
+from support import ROOT
 
-from ehlpetsc import commands
 from ehlpetsc.results.reader import read_result
 
-COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post"]
 # to compile takes longer than these few steps
 OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/", "NUMBA_DISABLE_JIT": "1"}
 
@@ -88,18 +85,18 @@ def test_petsc_and_mpi_are_requirements_of_the_solver_extra_only(wheel):
         assert not [line for line in needed if line.startswith(module) and "solver" not in line]
 
 
-def test_installation_adds_the_commands_and_keeps_packages(environment):
+def test_installation_adds_the_command_and_keeps_packages(environment):
     there = sorted(path.name for path in (environment / "bin").glob("ehlpetsc*"))
-    assert there == COMMANDS
+    assert there == ["ehlpetsc"]
     (packages,) = environment.glob("lib/python3*/site-packages")
     assert {path.name.split("-")[0] for path in packages.iterdir()} == {"ehlpetsc"}
 
 
 @pytest.mark.slow
 def test_installed_commands_work_in_any_folder(environment, tmp_path):
-    def call(name, *words):
+    def call(*words):
         done = subprocess.run(
-            [environment / "bin" / name, *words],
+            [environment / "bin" / "ehlpetsc", *words],
             cwd=tmp_path,
             env=OUTSIDE,
             capture_output=True,
@@ -117,11 +114,11 @@ def test_installed_commands_work_in_any_folder(environment, tmp_path):
         "time.travel=3.5",
         "time.courant=2",
     ]
-    message = call("ehlpetsc", case, *(word for key in short for word in ("-ehl_set", key)))
+    message = call(case, *(word for key in short for word in ("-ehl_set", key)))
     assert message.splitlines()[-1].startswith("ehlpetsc: done steps=")
-    assert "ridge.post.h5" in call("ehlpetsc-post", "ridge.h5", "--depths", "0.1")
-    assert call("ehlpetsc-plot", "ridge.h5") == "ridge.png\n"
-    assert "same" in call("ehlpetsc-compare", "ridge.h5", "ridge.h5")
+    assert "ridge.post.h5" in call("post", "ridge.h5", "--depths", "0.1")
+    assert call("plot", "ridge.h5") == "ridge.png\n"
+    assert "same" in call("compare", "ridge.h5", "ridge.h5")
     with read_result(tmp_path / "ridge.h5") as result:
         assert result.attrs["status"] == "done" and len(result.steps("dt")) > 10
     with h5py.File(tmp_path / "ridge.post.h5") as post:
@@ -129,44 +126,11 @@ def test_installed_commands_work_in_any_folder(environment, tmp_path):
     assert (tmp_path / "ridge.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-@pytest.mark.parametrize("by_name", [True, False])
-def test_help_names_the_command_as_it_was_called(monkeypatch, capsys, name, by_name):
-    words = [f"/anywhere/bin/{name}" if by_name else "/anywhere/__main__.py"]
-    monkeypatch.setattr(sys, "argv", words if name == "ehlpetsc" else [*words, "--help"])
-    module = name.replace("-", ".")
-    called = name if by_name else f"python3 -m {module}"
-    try:
-        commands.BY_NAME[name]()
-    except SystemExit as end:
-        assert end.code == 0
-        printed = capsys.readouterr().out
-        assert printed.startswith(f"usage: {called} [-h]")
-        assert not (by_name and f"-m {module} " in printed)
-    else:  # without a case
-        printed = capsys.readouterr().err
-        assert is_line_with(printed, f"{called} CASE.toml", f"{called} -help")
-
-
-def test_command_names_equal_entry_points():
-    with open(ROOT / "pyproject.toml", "rb") as file:
-        scripts = tomllib.load(file)["project"]["scripts"]
-    modules, functions = zip(*(target.split(":") for target in scripts.values()), strict=True)
-    assert set(modules) == {"ehlpetsc.commands"}
-    assert {
-        name: getattr(commands, f) for name, f in zip(scripts, functions, strict=True)
-    } == commands.BY_NAME
-    (line,) = re.findall(r'^commands="(.*)"$', (ROOT / "run_mpi.sh").read_text(), re.MULTILINE)
-    assert sorted(line.split()) == COMMANDS
-
-
-@pytest.mark.parametrize(
-    "name, lacks", [("ehlpetsc-post", "numpy, scipy, h5py"), ("ehlpetsc-plot", "matplotlib")]
-)
+@pytest.mark.parametrize("name, lacks", [("post", "numpy, scipy, h5py"), ("plot", "matplotlib")])
 def test_command_reports_missing_packages(environment, tmp_path, name, lacks):
     (packages,) = environment.glob("lib/python3*/site-packages")
     done = subprocess.run(
-        [environment / "bin" / "python", "-S", environment / "bin" / name, "result.h5"],
+        [environment / "bin" / "python", "-S", environment / "bin" / "ehlpetsc", name, "result.h5"],
         cwd=tmp_path,
         env=OUTSIDE | {"PYTHONPATH": str(packages)},
         capture_output=True,

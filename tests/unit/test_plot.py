@@ -318,7 +318,7 @@ def test_map_includes_contacts_of_skipped_frames(result):
 def test_plot_faults_are_reported(result, options, parts, capsys):
     assert draw(result, *options) == 2
     fault = capsys.readouterr().err
-    assert fault.startswith("ehlpetsc.plot: ") and is_line_with(fault, *parts)
+    assert fault.startswith("ehlpetsc plot: ") and is_line_with(fault, *parts)
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.post_result import PostResult
 
 pytestmark = pytest.mark.usefixtures("coarse_pictures")
-COMMAND = [sys.executable, "-m", "ehlpetsc.post"]
+COMMAND = [sys.executable, "-m", "ehlpetsc", "post"]
 
 
 @pytest.fixture(scope="module")

@@ -115,7 +115,7 @@ def test_report_accepts_one_steady_result_and_refuses_several(tmp_path, page, ca
     _, data = page(steady)
     assert data["steps"]["figures"] == [] and len(data["frames"]["step"]) == 1
     assert plot.main([str(steady), str(steady), "--report"]) == 2
-    assert "ehlpetsc.plot: 2 results; allowed: --report " in capsys.readouterr().err
+    assert "ehlpetsc plot: 2 results; allowed: --report " in capsys.readouterr().err
 
 
 def test_missing_plotly_names_its_package(tmp_path, monkeypatch, capsys):
@@ -123,5 +123,5 @@ def test_missing_plotly_names_its_package(tmp_path, monkeypatch, capsys):
     path = make_result(tmp_path / "r.h5")
     assert plot.main([str(path), "--report"]) == 2
     error = capsys.readouterr().err
-    assert error.startswith("ehlpetsc.plot: ") and error.endswith(" apt-get install python3-plotly\n")
+    assert error.startswith("ehlpetsc plot: ") and error.endswith(" apt-get install python3-plotly\n")
     assert not path.with_suffix(".html").exists()

@@ -289,43 +289,33 @@ def test_mpi_uses_shared_memory_only_on_a_single_node(script, nodes, alone):
     assert ("'OMPI_MCA_btl'" in done.stdout, "'PMIX_MCA_psec'" in done.stdout) == (alone, alone)
 
 
-COMMANDS = ["ehlpetsc", "ehlpetsc-compare", "ehlpetsc-plot", "ehlpetsc-post"]
-
-
-def test_command_links_work_in_any_folder(script, tmp_path):
+def test_command_link_works_in_any_folder(script, tmp_path):
     folder = tmp_path / "some where" / "bin"
-    for _ in range(2):  # the second time they are there
+    for _ in range(2):  # the second time it is there
         done = script("--commands", str(folder))
         assert done.returncode == 0
         assert f"in {folder}: " in done.stderr and f'export PATH="{folder}:$PATH"' in done.stderr
-        assert sorted(path.name for path in folder.iterdir()) == COMMANDS
+    assert [path.name for path in folder.iterdir()] == ["ehlpetsc"]
     assert "export PATH" not in script("--commands", str(folder), PATH=f"{folder}:/usr/bin:/bin").stderr
-    (tmp_path / "ehlpetsc" / "commands.py").write_text("import os, sys; print(sys.argv[1:], os.getcwd())")
-    for name in COMMANDS:
-        called = subprocess.run(
-            [name, "-n", "a b"],
-            cwd=tmp_path / "elsewhere",
-            env={"PATH": f"{folder}:/usr/bin:/bin"},
-            capture_output=True,
-            text=True,
-            timeout=60,
-        )
-        assert called.stdout == f"{[name, '-n', 'a b']} {tmp_path}/elsewhere\n", called.stderr
+    (tmp_path / "ehlpetsc" / "__main__.py").write_text("import os, sys; print(sys.argv[1:], os.getcwd())")
+    called = subprocess.run(
+        ["ehlpetsc", "-n", "a b"],
+        cwd=tmp_path / "elsewhere",
+        env={"PATH": f"{folder}:/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert called.stdout == f"{['-n', 'a b']} {tmp_path}/elsewhere\n", called.stderr
 
 
-def test_command_links_replace_no_other_file(script, tmp_path):
-    (tmp_path / "ehlpetsc-post").write_text("another program")
-    (tmp_path / "ehlpetsc-plot").symlink_to("nowhere/run_mpi.sh")  # of a clone that was moved
+def test_command_link_replaces_no_other_file(script, tmp_path):
     done = script("--commands", str(tmp_path))
-    assert done.returncode == 2
-    assert f" {tmp_path}/ehlpetsc " in done.stderr  # the package's folder
+    assert done.returncode == 2 and f" {tmp_path}/ehlpetsc " in done.stderr  # the package's folder
     (tmp_path / "bin").mkdir()
-    for name in ("ehlpetsc-post", "ehlpetsc-plot"):
-        (tmp_path / name).rename(tmp_path / "bin" / name)
-    assert script("--commands", str(tmp_path / "bin")).returncode == 2
-    (tmp_path / "bin" / "ehlpetsc-post").unlink()
+    (tmp_path / "bin" / "ehlpetsc").symlink_to("nowhere/run_mpi.sh")  # of a clone that was moved
     assert script("--commands", str(tmp_path / "bin")).returncode == 0
-    assert (tmp_path / "bin" / "ehlpetsc-plot").resolve() == tmp_path / "run_mpi.sh"
+    assert (tmp_path / "bin" / "ehlpetsc").resolve() == tmp_path / "run_mpi.sh"
 
 
 @pytest.mark.parametrize("folder", [[], [""], ["/proc/nonesuch"], ["/etc/hostname"]])

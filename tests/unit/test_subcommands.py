@@ -1,4 +1,4 @@
-"""One program with subcommands: each starts, names itself as it was called, and old names stay."""
+"""One program: its commands start, help and version are everywhere, a mistyped command is one sentence."""
 
 import csv
 import io
@@ -11,7 +11,8 @@ import pytest
 from support import ROOT, is_line_with
 from support.made_results import make_result, with_solids
 
-from ehlpetsc import command_parser, commands
+from ehlpetsc import __version__
+from ehlpetsc.__main__ import COMMANDS, main
 from ehlpetsc.analysis import summary
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import read_result
@@ -24,31 +25,43 @@ def call(*words, cwd):
     return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=120)
 
 
-@pytest.mark.parametrize("name", commands.SUBCOMMANDS)
-@pytest.mark.parametrize("called", ["/usr/local/bin/ehlpetsc", "/work/ehlpetsc/__main__.py"])
-def test_subcommand_help_has_its_name(monkeypatch, capsys, name, called):
-    monkeypatch.setattr(sys, "argv", [called, name, "-h"])
-    with pytest.raises(SystemExit) as end:
-        commands.dispatch(lambda: pytest.fail("ran a case"))
-    assert end.value.code == 0
-    program = "ehlpetsc" if called.endswith("bin/ehlpetsc") else "python3 -m ehlpetsc"
-    assert capsys.readouterr().out.startswith(f"usage: {program} {name} [-h]")
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help_and_version(capsys, name):
+    for option, begin in (("-h", f"usage: ehlpetsc {name} [-h]"), ("--version", f"ehlpetsc {__version__}\n")):
+        with pytest.raises(SystemExit) as end:
+            main([name, option])
+        printed = capsys.readouterr().out
+        assert end.value.code == 0 and printed.startswith(begin)
+        assert "``" not in printed
+
+
+@pytest.mark.parametrize("word", ["-h", "--help", "-help"])
+def test_help_lists_all_commands(capsys, word):
+    assert main([word]) == 0
+    printed = capsys.readouterr().out
+    assert all(f"\n  {name} " in printed for name in COMMANDS)
+    assert main(["--version"]) == 0 and capsys.readouterr().out == f"ehlpetsc {__version__}\n"
 
 
 @pytest.mark.parametrize(
-    ("words", "left"),
+    "words, message",
     [
-        (["explain", "c.toml"], ["--explain", "c.toml"]),
-        (["keys", "fluid"], ["--keys", "fluid"]),
-        (["template"], ["--template"]),
-        (["run", "c.toml", "-ksp_view"], ["c.toml", "-ksp_view"]),
-        (["c.toml"], ["c.toml"]),
-        ([], []),
+        (["plt", "roller.h5"], "plt: unknown command; did you mean plot?"),
+        (["runn", "roller.toml"], "runn: unknown command; did you mean run.toml?"),
+        (["rollr"], "rollr: unknown command; did you mean roller.toml?"),
+        (
+            ["roller.toml", "plot"],
+            "plot: neither an option nor a value; a command comes first: ehlpetsc plot ",
+        ),
+        (["roller.toml", "--explain"], "--explain: unknown option; "),
     ],
 )
-def test_other_arguments_start_a_run(monkeypatch, words, left):
-    monkeypatch.setattr(sys, "argv", ["ehlpetsc", *words])
-    assert commands.dispatch(lambda: sys.argv[1:]) == left
+def test_mistyped_command_is_one_sentence(tmp_path, monkeypatch, capfd, words, message):
+    monkeypatch.chdir(tmp_path)
+    for name in ("roller", "run"):
+        (tmp_path / f"{name}.toml").touch()
+    assert main(words) == 2
+    assert is_line_with(capfd.readouterr().err, f"ehlpetsc: {message}")
 
 
 def test_package_is_importable_from_any_folder(tmp_path):
@@ -57,24 +70,26 @@ def test_package_is_importable_from_any_folder(tmp_path):
     assert done.returncode == 0 and done.stdout.endswith("['a']\n"), done.stderr
 
 
-def test_mistyped_subcommand_option_is_refused_in_one_line(tmp_path):
-    done = call("plot", "a.h5", "--mpa", cwd=tmp_path)
-    assert done.returncode == 2
-    assert is_line_with(done.stderr, "--mpa", "ehlpetsc plot -h")
+def test_text_goes_to_a_file_that_is_not_replaced(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for words, status in (([], 0), ([], 2), (["--overwrite"], 0)):
+        assert main(["template", "-o", "my.toml", *words]) == status
+    assert is_line_with(capsys.readouterr().err, "ehlpetsc template: my.toml: exists", "--overwrite")
+    assert "[contact]" in (tmp_path / "my.toml").read_text()
 
 
-def test_completion_lists_every_subcommand(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["ehlpetsc", "completion"])
-    assert commands.dispatch(None) == 0
-    script = capsys.readouterr().out
-    assert all(f"{name}" in script for name in (*commands.SUBCOMMANDS, *commands.OF_A_CASE))
-    assert subprocess.run(["bash", "-n"], input=script, text=True).returncode == 0
+@pytest.mark.parametrize("words", [["explain", "cases/dry_hertz.toml"], ["keys"], ["template"]])
+def test_texts_of_cases_need_neither_petsc_nor_mpi(words):
+    code = "import sys; sys.modules.update(dict.fromkeys(['petsc4py', 'mpi4py']))\n"
+    code += "from ehlpetsc.__main__ import main; sys.exit(main(sys.argv[1:]))"
+    done = subprocess.run([sys.executable, "-c", code, *words], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout, done.stderr
 
 
-def test_run_script_has_every_subcommand():
+def test_run_script_has_every_command():
     text = (ROOT / "run_mpi.sh").read_text()
     (line,) = [line for line in text.splitlines() if line.strip().startswith("plot | post |")]
-    assert {*commands.SUBCOMMANDS, *commands.OF_A_CASE} <= {word.strip(" )") for word in line.split("|")}
+    assert set(COMMANDS) <= {word.strip(" )") for word in line.split("|")}
 
 
 def test_means_percentiles_and_extremes_of_a_run(tmp_path, capsys):
@@ -102,18 +117,3 @@ def test_weighted_percentiles_are_those_of_repeated_values():
     repeated = np.repeat(values, weights.astype(int))
     found = summary.weighted_percentiles(values, weights, (30.0, 70.0, 90.0))
     assert found == pytest.approx(np.percentile(repeated, (30.0, 70.0, 90.0)), abs=0.3)
-
-
-def test_program_name_is_that_of_the_call(monkeypatch):
-    monkeypatch.setattr(sys, "argv", ["ehlpetsc post"])
-    assert command_parser.program("ehlpetsc.post") == "ehlpetsc post"
-    monkeypatch.setattr(sys, "argv", ["/home/my ehlpetsc dir/x"])
-    assert command_parser.program("ehlpetsc.post") == "python3 -m ehlpetsc.post"
-
-
-@pytest.mark.parametrize("name", commands.OF_A_CASE)
-@pytest.mark.parametrize("option", ["-h", "--help"])
-def test_options_as_commands_have_help(monkeypatch, capsys, name, option):
-    monkeypatch.setattr(sys, "argv", ["ehlpetsc", name, option])
-    assert commands.solver() == 0
-    assert capsys.readouterr().out.startswith(f"usage: ehlpetsc {name}")

@@ -18,9 +18,8 @@ petsc4py.init([])
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.errors import SolveFailed
+from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import gauss_seidel as sweep
-from ehlpetsc.run.cli.options import UsageError
 from ehlpetsc.run.simulation import Simulation
 
 STORED = Path(__file__).with_name("rough_contacts.npz")

@@ -40,7 +40,7 @@ def copy_up_to(file, path, step, contact_count):
         try:
             fault = _misfit(file, old, step, contact_count is None)
             if fault:
-                raise OutputError(f"{path}: cannot be continued, {fault}; give another -ehl_output")
+                raise OutputError(f"{path}: cannot be continued, {fault}; give another -o")
             count = old.contact_count if contact_count is None else contact_count
             _copy(file, old, step, count)
         except (KeyError, ValueError, TypeError, OverflowError) as damage:

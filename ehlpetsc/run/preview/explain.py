@@ -4,7 +4,8 @@ import math
 import tomllib
 
 from ehlpetsc.case.combinations import combinations, keys_of
-from ehlpetsc.case.loading import members
+from ehlpetsc.case.loading import load, members
+from ehlpetsc.command_parser import CommandParser, exit_status, put
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
@@ -20,6 +21,14 @@ from ehlpetsc.run.preview.forecast import (
 from ehlpetsc.run.preview.surfaces import height_lines, lambda_line, surface_lines
 from ehlpetsc.run.preview.warnings import warnings
 from ehlpetsc.surfaces.roughness import Roughness
+
+
+def main(words: list[str]) -> int:
+    """Run the command ``ehlpetsc explain``; returns its exit status."""
+    parser = CommandParser("explain", "A case in words: film, lambda ratio, run time, effects switched off.")
+    parser.add_argument("case", metavar="CASE.toml")
+    chosen = parser.parse_args(words)
+    return exit_status("explain", lambda: put(explain(load(chosen.case, chosen.set)), chosen))
 
 
 def explain(case):

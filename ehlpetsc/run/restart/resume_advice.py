@@ -23,8 +23,8 @@ def resume_advice(restart, case, step):
     try:
         attributes = load_restart(restart)[1]
         if step is not None and attributes["case"] == case.text and attributes["step"] <= step:
-            return f"once this is mended, continue with -ehl_restart {restart} (step {attributes['step']})"
+            return f"once this is mended, continue with --restart {restart} (step {attributes['step']})"
     except (OutputError, KeyError):
         pass  # no restart file, a damaged one, or a file of another program
-    again = "repeat it with -ehl_overwrite" if restart.exists() else "the same command begins at time 0"
+    again = "repeat it with --overwrite" if restart.exists() else "the same command begins at time 0"
     return f"there is no restart file of it: once this is mended, {again}"

@@ -18,7 +18,6 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.atomic_write import atomic_write, remove_stale
 from ehlpetsc.results.output_guard import Lock, check_index
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.cli.options import text_of
 from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.preview.warnings import warnings
@@ -54,19 +53,20 @@ class Series:
     world : mpi4py communicator
     case : case.loading.Case
         Case with a series.
-    options : petsc4py.PETSc.Options
-    stop : stop.StopRequest
     output : path-like
         Its stem is the prefix of the members' file names.
+    stop : stop.StopRequest
+    ranks : int
+        Ranks of each member.
+    overwrite : bool
+        Whether to replace results of other cases.
 
     Raises
     ------
     UsageError, OutputError
     """
 
-    def __init__(self, world, case, options, stop, output):
-        if options.hasName("ehl_restart"):
-            raise UsageError("-ehl_restart with a [series]: leave it out: unfinished members are continued")
+    def __init__(self, world, case, output, stop, ranks=1, overwrite=False):
         self.world, self.case, self.stop = world, case, stop
         output = Path(output)
         self.index = output.parent / f"{output.stem}.series.json"
@@ -79,8 +79,6 @@ class Series:
         files = {member.output for member in self.members}
         if min(len(files), len({repr(setting) for setting in settings})) < len(self.members):
             raise UsageError("series.values: two values have the same name; allowed: values that differ")
-        ranks = ranks_per_member(options, world.size)
-        overwrite = options.getBool("ehl_overwrite", False)
         if not overwrite:
             on_root(world, lambda: check_index(self.index, "members", [m.output for m in self.members]))
         foreign = world.bcast(
@@ -88,8 +86,8 @@ class Series:
         )
         if foreign and not overwrite:
             raise OutputError(
-                f"{', '.join(map(str, foreign))}: the result of another case, or of other -ehl_set; "
-                "give another -ehl_output, or -ehl_overwrite to lose it"
+                f"{', '.join(map(str, foreign))}: the result of another case, or of other --set; "
+                "give another -o, or --overwrite to replace it"
             )
         self._lock = Lock(self.index)
         on_root(world, self._lock.acquire)
@@ -201,17 +199,3 @@ class Series:
         totals = Totals.of_series(m.totals() for m in self.members)
         print(summary_line(status, totals, wall), flush=True)
         return status
-
-
-def ranks_per_member(options, size):
-    """Value of -ehl_ranks_per_member; default: 1.
-
-    Raises
-    ------
-    UsageError
-        Not a whole number from 1 to the number of ranks.
-    """
-    text = text_of(options, "ehl_ranks_per_member") or "1"
-    if not text.isdecimal() or not 1 <= int(text) <= size:
-        raise UsageError(f"-ehl_ranks_per_member {text}: allowed: whole numbers 1 to {size}, all ranks")
-    return int(text)

@@ -1,1 +1,0 @@
-"""Command line of a run: options, case file, streams of the process."""
