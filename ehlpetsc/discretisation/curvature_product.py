@@ -41,7 +41,7 @@ def exponentials(kernel, nearest, tolerance=TOLERANCE):
     Parameters
     ----------
     kernel : ndarray, shape (n,)
-        :func:`.elasticity.curvature_kernel`.
+        :func:`.deflection.curvature_kernel`.
     nearest : int
         First distance represented, at least 3.
     tolerance : float

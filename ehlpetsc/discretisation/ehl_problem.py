@@ -5,7 +5,7 @@ because SNESVI pairs row with unknown:
 
 * row of q: deflection, :mod:`ehlpetsc.discretisation.deflection`;
 * row of w: Reynolds equation, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact
-  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.no_oil.NoOil`;
+  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.reynolds.NoOil`;
 * last row: load, :math:`\sum p\,\Delta x=\pi/2`.
 
 The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from
@@ -22,8 +22,7 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads, directional_derivative
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums, deflection_rows
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
-from ehlpetsc.discretisation.no_oil import NoOil
-from ehlpetsc.discretisation.reynolds import FilmHistory, Reynolds
+from ehlpetsc.discretisation.reynolds import FilmHistory, NoOil, Reynolds
 from ehlpetsc.discretisation.unknowns import Unknowns, mirrored, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 

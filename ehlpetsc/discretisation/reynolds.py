@@ -10,6 +10,9 @@ half widths, films in a^2/R, pressures in p0; F is divided by u times a film sca
 over nodes is the relative mass defect.
 
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.
+
+Without oil the Reynolds unknown vanishes: in direct contact q is then the pressure of the solids,
+complementary to the gap; in mixed contact, whose solids have a pressure of their own, q = 0.
 """
 
 import numpy as np
@@ -191,3 +194,29 @@ def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
         p = fill_mass(i, here, gap, density, p0, film, unit, at)
         ln_eta, ln_eta_p, _ = ln_viscosity(viscosity, p, viscosity[2])
         at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
+
+
+class NoOil:
+    """Rows of the nodes first .. last-1; interface of :class:`.reynolds.Reynolds`.
+
+    Parameters
+    ----------
+    first, last : int
+    start : int
+        First node of the arrays that are passed in.
+    """
+
+    def __init__(self, first, last, start=0):
+        self.owned, local = slice(first - start, last - start), last - first
+        self.columns = np.full((local, n_dofs(STENCIL)), -1, dtype=np.int32)
+        self.columns[:, OWN : OWN + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
+        self._derivatives = np.zeros((local, n_dofs(STENCIL)))
+        self._derivatives[:, OWN] = 1.0
+
+    def mass_per_area(self, q, h, fluid):
+        """Return None: there is no oil."""
+        return None
+
+    def evaluate(self, q, h, inputs):
+        """See :meth:`.reynolds.Reynolds.evaluate`."""
+        return q[self.owned], self._derivatives

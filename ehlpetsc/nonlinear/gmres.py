@@ -21,9 +21,9 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.nonlinear.collectives import exchange
-from ehlpetsc.nonlinear.operators.jacobian_product import jacobian_product
-from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
+from ehlpetsc.nonlinear.jacobian import jacobian_product
+from ehlpetsc.nonlinear.preconditioner.distributed_lu import solve
+from ehlpetsc.nonlinear.ranks import exchange
 
 MAX_IT = 100  # of a solve
 CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences is right to as many digits
@@ -122,7 +122,7 @@ def iterations(
     place, lu, cuts, border, room : tuple
         Of `RankFactors`.
     units : ndarray
-        As of :func:`.distributed_solve.solve`.
+        As of :func:`.distributed_lu.solve`.
     max_it : int
     rtol, atol, divtol : float
 

@@ -7,6 +7,9 @@ is repeated with it. Mixed contact: ``newtonls`` on the semismooth system, whose
 complementarity in their sign and have no bounds; ``vinewtonrsls`` then takes the same iterations.
 """
 
+import ctypes
+import traceback
+import weakref
 from collections.abc import Callable
 
 import numpy as np
@@ -14,11 +17,9 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
-from ehlpetsc.errors import SolveFailed
-from ehlpetsc.nonlinear import snes as snes_objects
-from ehlpetsc.nonlinear.defaults import RunOptions
+from ehlpetsc.errors import SolveFailed, UsageError
+from ehlpetsc.nonlinear.options import RunOptions, refusal
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
-from ehlpetsc.nonlinear.snes import owned, weakly
 
 LINEAR_ATOL = 1e-2  # absolute tolerance of the linear residual over that of Newton's method
 LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton iteration allowed
@@ -37,7 +38,7 @@ class NewtonSolver:
     Parameters
     ----------
     system : two_fields.TwoFields
-    options : defaults.RunOptions, optional
+    options : options.RunOptions, optional
         Options, entered before because PETSc reads its table when its objects are created; default: none.
 
     Attributes
@@ -87,7 +88,7 @@ class NewtonSolver:
     def _snes_of_type(self, kind):
         system = self.system
         callbacks = self._function, self._before_step
-        snes = snes_objects.create(system.comm, kind, system.f, *callbacks, self._options.given)
+        snes = create(system.comm, kind, system.f, *callbacks, self._options.given)
         self._petsc_objects.append(snes)
         return snes
 
@@ -101,7 +102,7 @@ class NewtonSolver:
             return
         f.array[:] = self.system.evaluate(x, self._reaches_bound).residual
         if self.system.bound_reached:
-            snes_objects.set_function_domain_error(snes)  # rejects the step
+            set_function_domain_error(snes)  # rejects the step
 
     def _jacobian(self, snes, x, operator, preconditioner):
         self.system.linearise(x, self._accepts_last and self._is_solving)
@@ -182,11 +183,11 @@ class NewtonSolver:
             raised = error.__cause__  # exception of a callback, which newer releases wrap
             if raised and not isinstance(raised, PETSc.Error):
                 raise raised from None
-            snes_objects.release_frames(error)
+            release_frames(error)
             snes.destroy()
-            snes_objects.raise_refusal(error, self._options.given)
+            raise_refusal(error, self._options.given)
         except BaseException as error:
-            snes_objects.release_frames(error)
+            release_frames(error)
             raise
         finally:
             self._is_solving = False
@@ -210,7 +211,7 @@ class NewtonSolver:
         # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
         self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:
-            raise SolveFailed("SNES", snes_objects.REASONS.get(reason, str(reason)), iterations)
+            raise SolveFailed("SNES", REASONS.get(reason, str(reason)), iterations)
         solution = self.system.solution()
         q, w, h00 = solution
         if not np.isfinite([q.sum(), w.sum(), h00]).all():
@@ -232,3 +233,86 @@ class NewtonSolver:
 def is_ours(pc):
     """Whether a preconditioner is a :class:`.preconditioner.FarFieldBand`."""
     return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
+
+
+REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
+
+
+def owned(owner, *objects):
+    """List of PETSc's objects, destroyed with their owner or before Python ends, in reverse order.
+
+    Destroyed by PetscFinalize they would call Python objects that no longer exist.
+    """
+    petsc_objects = list(objects)
+    weakref.finalize(owner, _destroy, petsc_objects)
+    return petsc_objects
+
+
+def _destroy(petsc_objects):
+    while petsc_objects:
+        petsc_objects.pop().destroy()
+
+
+def release_frames(error: BaseException) -> None:
+    """Clear the frames of the callbacks that an exception left, with their references to PETSc's objects.
+
+    Kept alive by a traceback until Python ends, such an object would be destroyed by PetscFinalize, too late.
+    """
+    traceback.clear_frames(error.__traceback__)
+
+
+def create(comm, kind, f, function, pre_check, user_options):
+    """Create a SNES of a type, or of the user's ``-snes_type``.
+
+    Parameters
+    ----------
+    comm : petsc4py.PETSc.Comm
+    kind : str
+    f : petsc4py.PETSc.Vec
+        Vector of the residual.
+    function, pre_check : bound method
+        Residual function and pre-check of the line search; SNES does not keep their object alive.
+    user_options : dict of str to str
+        Options of the user.
+
+    Raises
+    ------
+    UsageError
+        PETSc refuses an option, or the type is not supported.
+    """
+    snes = PETSc.SNES().create(comm)
+    try:
+        snes.setType(kind)
+        snes.setFunction(weakly(function), f)
+        snes.setFromOptions()
+        if snes.getType() == "vinewtonssls":
+            raise UsageError(
+                "-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
+                "allowed: vinewtonrsls, and types without bounds where nothing touches"
+            )
+    except (PETSc.Error, UsageError) as error:
+        snes.destroy()
+        if isinstance(error, PETSc.Error):
+            raise_refusal(error, user_options)
+        raise
+    snes.setLineSearchPreCheck(weakly(pre_check))
+    return snes
+
+
+def raise_refusal(error, user_options):
+    """Raise an error of PETSc, as a `UsageError` where an option of the user can be its cause."""
+    message = refusal(error, user_options)
+    if message is None:
+        raise error
+    raise UsageError(message) from None
+
+
+def set_function_domain_error(snes):
+    """Report x outside the domain of the function (SNESSetFunctionDomainError, which petsc4py lacks)."""
+    ctypes.CDLL(PETSc.__file__).SNESSetFunctionDomainError(ctypes.c_void_p(snes.handle))
+
+
+def weakly(method):
+    """Function that calls a bound method without keeping its object alive."""
+    method = weakref.WeakMethod(method)
+    return lambda *arguments: method()(*arguments)

@@ -24,7 +24,7 @@ def solver_of(case, scales, film_scale, comm, options):
     film_scale : float
         Expected film in a^2/R.
     comm : petsc4py.PETSc.Comm
-    options : defaults.RunOptions
+    options : options.RunOptions
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 Each rank stores the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), h00 on the last rank, and
 evaluates its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`) with data of other ranks from
-:mod:`ehlpetsc.nonlinear.halo_exchange`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.operators`), so
+:mod:`ehlpetsc.nonlinear.ranks`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.jacobian`), so
 that Newton's method converges as with the full matrix; the default preconditioner reads its coefficients from
 it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of the near field.
 """
@@ -17,11 +17,18 @@ from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.collectives import all_ranks, gathered, global_max, global_sum
-from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE, Halo, exchange_unknowns
-from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator, NearFieldMatrix, python_matrix
-from ehlpetsc.nonlinear.preconditioner.far_field_band import Factors
-from ehlpetsc.nonlinear.snes import owned
+from ehlpetsc.nonlinear.jacobian import JacobianOperator, NearFieldMatrix, python_matrix
+from ehlpetsc.nonlinear.newton import owned
+from ehlpetsc.nonlinear.preconditioner import Factors
+from ehlpetsc.nonlinear.ranks import (
+    LINEAR_TOLERANCE,
+    Halo,
+    all_ranks,
+    exchange_unknowns,
+    gathered,
+    global_max,
+    global_sum,
+)
 
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R

@@ -11,8 +11,8 @@ from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
 from ehlpetsc.errors import CaseError, NotConverged, Stopped
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.defaults import RunOptions
 from ehlpetsc.nonlinear.newton import NewtonSolver
+from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -63,7 +63,7 @@ class Simulation:
     roughness : surfaces.roughness.Roughness or None
     scene : effects.effect.Scene
         Case, scales, operation and the positions of both surfaces at the beginning of this run.
-    options : nonlinear.defaults.RunOptions
+    options : nonlinear.options.RunOptions
         Context manager; entering it once around many steps saves time.
     stepper : stepping.time_stepping.TimeStepping
     pass_number : int

@@ -65,7 +65,7 @@ class UnusedOptions:
 
     Parameters
     ----------
-    options : nonlinear.defaults.RunOptions
+    options : nonlinear.options.RunOptions
     show : callable
         Prints a line.
     """

@@ -18,7 +18,7 @@ from petsc4py import PETSc
 from scenes import rough, scene, timed
 from scipy.linalg import lapack
 
-from ehlpetsc.nonlinear.operators.jacobian_operator import NearFieldMatrix
+from ehlpetsc.nonlinear.jacobian import NearFieldMatrix
 
 HALF_BAND = 30  # nodes
 PAIRS = 9

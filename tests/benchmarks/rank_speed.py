@@ -102,18 +102,18 @@ def count_exchanges(traffic):
     """Count the collectives of compiled code and their bytes from now on; returns what must be kept."""
     import ctypes
 
-    from ehlpetsc.nonlinear import collectives
+    from ehlpetsc.nonlinear import ranks
 
     word, number = ctypes.c_size_t, ctypes.c_int
     kind = ctypes.CFUNCTYPE(number, *[word, number, word, word, number, word, word])
-    allgather = kind(collectives.ALLGATHER)
+    allgather = kind(ranks.ALLGATHER)
 
     def counting(*arguments):
         traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + 8 * arguments[4]
         return allgather(*arguments)
 
     kept = kind(counting)
-    collectives.ALLGATHER = ctypes.cast(kept, ctypes.c_void_p).value
+    ranks.ALLGATHER = ctypes.cast(kept, ctypes.c_void_p).value
     return kept
 
 

@@ -13,10 +13,9 @@ from petsc4py import PETSc
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.nonlinear.operators.jacobian_operator import PIVOT_REGULARISATION
+from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
-from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU
-from ehlpetsc.nonlinear.preconditioner.distributed_solve import solve
+from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales

@@ -33,7 +33,6 @@ HEAVY = (
     "ehlpetsc.discretisation.heat.bodies",
     "ehlpetsc.discretisation.heat.mixing",
     "ehlpetsc.discretisation.heat.step",
-    "ehlpetsc.nonlinear.option_checks",
     "ehlpetsc.results.output_guard",
     "ehlpetsc.results.reader",
     "ehlpetsc.results.restart_file",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.discretisation.elasticity import curvature_kernel
+from ehlpetsc.discretisation.deflection import curvature_kernel
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials, grouped_kernel
 
 

@@ -8,8 +8,8 @@ petsc4py.init([])
 
 from petsc4py import PETSc
 
-from ehlpetsc.nonlinear.collectives import collective
 from ehlpetsc.nonlinear.gmres import MAX_IT, orthonormalise
+from ehlpetsc.nonlinear.ranks import collective
 
 SIZE, VECTORS = 300, 4
 

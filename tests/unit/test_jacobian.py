@@ -15,14 +15,14 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.reynolds import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
-from ehlpetsc.nonlinear.halo_exchange import LINEAR_TOLERANCE
-from ehlpetsc.nonlinear.newton import NewtonSolver
-from ehlpetsc.nonlinear.operators.jacobian_operator import (
+from ehlpetsc.nonlinear.jacobian import (
     PIVOT_REGULARISATION,
     JacobianOperator,
     NearFieldMatrix,
     python_matrix,
 )
+from ehlpetsc.nonlinear.newton import NewtonSolver
+from ehlpetsc.nonlinear.ranks import LINEAR_TOLERANCE
 from ehlpetsc.nonlinear.two_fields import TwoFields
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales

@@ -10,7 +10,7 @@ from support import CASES
 
 import ehlpetsc
 from ehlpetsc.errors import SolveFailed, UsageError
-from ehlpetsc.nonlinear.operators.jacobian_operator import JacobianOperator
+from ehlpetsc.nonlinear.jacobian import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
 TOUCHING = {

@@ -9,7 +9,7 @@ from petsc4py import PETSc
 
 import ehlpetsc
 from ehlpetsc import CaseError, OutputError, Simulation, UsageError
-from ehlpetsc.nonlinear.defaults import RunOptions
+from ehlpetsc.nonlinear.options import RunOptions
 
 matplotlib.use("Agg")
 RIDGE = {"mesh.points_per_half_width": 20, "time.travel": 0.1}

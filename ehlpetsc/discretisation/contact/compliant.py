@@ -15,9 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
-from ehlpetsc.discretisation.contact.node_state import NodeState, full_of_oil, limit_cavitation
+from ehlpetsc.discretisation.contact.node_state import BandEntries, NodeState, full_of_oil, limit_cavitation
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import (
     CONTACT_PRESSURE,

@@ -14,11 +14,11 @@ w = h. Of yielding ones
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.compliant import FREE_RISE, CompliantContact
 from ehlpetsc.discretisation.contact.node_state import (
     AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
+    BandEntries,
     PlasticState,
     limit_cavitation,
 )

@@ -7,10 +7,10 @@ At the bound the pressure of the oil is that of the solids too, and the Reynolds
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     PRESSURE_AFTER_REFILL,
+    BandEntries,
     NodeState,
     SurfaceLoads,
     full_of_oil,

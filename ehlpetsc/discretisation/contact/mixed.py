@@ -12,10 +12,10 @@ w, and the Reynolds equation holds at every node.
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     PRESSURE_AFTER_REFILL,
+    BandEntries,
     NodeState,
     SurfaceLoads,
     full_of_oil,

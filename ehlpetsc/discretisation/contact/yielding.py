@@ -16,9 +16,8 @@ all of them hold exactly at any q and w. Where solids yield, P remains their pre
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.band import BandEntries
 from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch, swap_pairs
-from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL, PlasticState
+from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL, BandEntries, PlasticState
 
 MIN_CARRYING_PRESSURE = 0.1  # of the yield pressure: nodes above it carry
 ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method loses the load

@@ -1,5 +1,65 @@
-"""The near-exact inverse of a contact's matrix: an LU of a band that knows the far deflection."""
+"""The near-exact inverse of a contact's matrix as a PETSc preconditioner, on any number of ranks.
 
-from ehlpetsc.nonlinear.preconditioner.far_field_band import FarFieldBand
+Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.preconditioner.FarFieldBand`` (the default).
 
-__all__ = ["FarFieldBand"]
+The band of :mod:`.banded_jacobian` includes the far deflection; :mod:`.distributed_lu` splits it by ranks.
+The error left to GMRES is that of three exponentials, the same on any number of ranks.
+"""
+
+import numpy as np
+
+from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
+
+UNITS = np.eye(2)[:, None]  # of both unknowns of the band at a node
+
+
+class Factors:
+    """Factors of one scene, kept from one matrix to the next.
+
+    PETSc creates a new preconditioner whenever the contact set changes.
+
+    Parameters
+    ----------
+    problem : ehl_problem.EHLProblem
+    ranks : mpi4py communicator
+    """
+
+    def __init__(self, problem, ranks):
+        self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
+        self.fresh, self._owned = False, problem.owned
+        self.units = np.empty((2, problem.local, 2))
+
+    def invalidate(self):
+        """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
+        self.fresh = False
+
+    def factor(self, operator):
+        """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian`."""
+        state, derivatives = operator.state, operator.reynolds_derivatives
+        entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
+        self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
+        self.fresh = True
+        self.units[:] = UNITS
+        for unit in self.units:
+            operator.model.from_band(state, self._owned, unit)
+
+
+class FarFieldBand:
+    """Context of PETSc's Python preconditioner."""
+
+    def setUp(self, pc):
+        """Factor for the state of the operator."""
+        with events.FACTOR:
+            self.operator = pc.getOperators()[0].getPythonContext()
+            self.operator.factors.factor(self.operator)
+
+    def apply(self, pc, x, y):
+        """Solve for one right-hand side."""
+        operator = self.operator
+        b, solution = np.zeros(operator.size), np.empty(operator.size)
+        b[operator.active] = x.array_r
+        with events.BACK_SOLVE:
+            solve(*operator.factors.lu.factors, b, operator.factors.units, solution)
+        y.array[:] = solution[operator.active]

@@ -10,10 +10,10 @@ left; the coefficients of other ranks' groups are stored as those of a group bef
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.band import same_deflection
+from ehlpetsc.discretisation.contact.node_state import same_deflection
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.finite_volumes import OWN
-from ehlpetsc.nonlinear.operators.jacobian_operator import pivot_regularisation
+from ehlpetsc.nonlinear.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
 
@@ -38,7 +38,7 @@ class BandedJacobian:
         Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
     end_groups : ndarray, shape (2, LINE)
         Numbers of the unknowns of the first and of the last group, and of the room behind them.
-    entries : contact.band.BandEntries or None
+    entries : contact.node_state.BandEntries or None
         Of the state last filled in.
     dense : ndarray, shape (3, size)
         Of the same state: deflection at both end nodes that the band lacks, and the load.
@@ -189,7 +189,7 @@ class BandedJacobian:
 
         Parameters
         ----------
-        entries : contact.band.BandEntries
+        entries : contact.node_state.BandEntries
         inactive_nodes : ndarray of int
             Local nodes whose second unknown is not in the system.
 

@@ -32,7 +32,7 @@ def exponentials(kernel, nodes_per_half_width):
     Parameters
     ----------
     kernel : ndarray, shape (n,)
-        :func:`ehlpetsc.discretisation.elasticity.curvature_kernel`.
+        :func:`ehlpetsc.discretisation.deflection.curvature_kernel`.
     nodes_per_half_width : float
 
     Returns

@@ -4,15 +4,16 @@ Every rank sends the unknowns of its outer nodes, which the stencils of its neig
 pressures what :mod:`ehlpetsc.discretisation.curvature_product` sends and the sums over its nodes.
 """
 
+import ctypes
 from typing import NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.compiled import call_allgather, compiled
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import HALO
 from ehlpetsc.discretisation.unknowns import n_dofs
-from ehlpetsc.nonlinear.collectives import collective, exchange
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
 EDGE = n_dofs(HALO)
@@ -26,7 +27,7 @@ class Halo(NamedTuple):
     Attributes
     ----------
     collective : tuple
-        As of :func:`.collectives.collective`.
+        As of :func:`collective`.
     load_weights : ndarray, shape (3, local nodes)
         As of `deflection.Deflection`.
     messages : ndarray, shape (ranks, size)
@@ -110,3 +111,66 @@ def exchange_unknowns(
     for other in range(last):
         load += messages[other + 1, LOAD:BEHIND_LOAD]
     return nodes, messages[last, LOAD - 1], unpack(rank, matrices, room, messages[:, BEHIND_LOAD:]), load
+
+
+ALLGATHER = ctypes.cast(ctypes.CDLL(MPI.__file__).MPI_Allgather, ctypes.c_void_p).value
+HANDLES = {4: ctypes.c_int, 8: ctypes.c_size_t}  # numbers of MPICH, addresses of Open MPI
+
+
+def global_max(ranks, number):
+    """Largest of the numbers of all ranks."""
+    return _reduced(ranks, number, MPI.MAX)
+
+
+def global_sum(ranks, number):
+    """Sum of the numbers of all ranks, also of each of several numbers."""
+    return _reduced(ranks, number, MPI.SUM)
+
+
+def _reduced(ranks, number, operation):
+    if ranks.size == 1:
+        return number
+    received = np.array([number], dtype=float)
+    ranks.Allreduce(MPI.IN_PLACE, received, operation)
+    return received[0]
+
+
+def all_ranks(ranks, condition):
+    """Whether a condition holds on every rank."""
+    return global_max(ranks, not condition) == 0.0
+
+
+def collective(ranks):
+    """What :func:`exchange` takes of a communicator, which must outlive it: addresses and arguments for MPI.
+
+    As all that compiled functions are called with, arrays and plain tuples of four arrays at most: numba asks
+    Python for the types of longer ones and for the class of named ones at every call, 50 microseconds.
+    """
+    return ALLGATHER, int(MPI.IN_PLACE), _handle(MPI.DOUBLE), _handle(ranks)
+
+
+def _handle(of_mpi):
+    return HANDLES[MPI._sizeof(of_mpi)].from_address(MPI._addressof(of_mpi)).value
+
+
+@compiled
+def exchange(collective, everyone):
+    """Fill in what all other ranks have in their rows, the first axis; collective."""
+    if len(everyone) > 1:
+        function, in_place, number, communicator = collective
+        at, count = everyone.ctypes.data, everyone.size // len(everyone)
+        if call_allgather(function, in_place, number, at, count, communicator):
+            raise RuntimeError("MPI_Allgather failed")
+
+
+def gathered(ranks, record, owned):
+    """Named tuple of the arrays of all nodes, from one of arrays of which `owned` are those of the rank."""
+    if ranks.size == 1:
+        return record
+    return record._make(_gathered(ranks, field, owned) for field in record)
+
+
+def _gathered(ranks, field, owned):
+    if isinstance(field, np.ndarray):
+        return np.concatenate(ranks.allgather(field[owned]))
+    return gathered(ranks, field, owned) if isinstance(field, tuple) else field

@@ -7,11 +7,15 @@ the default preconditioner reads its coefficients (``pc.getOperators()``). Other
 
 from copy import copy
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc.compiled import compiled
+from ehlpetsc.discretisation.contact.node_state import directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
+from ehlpetsc.discretisation.ehl_problem import jacobian_rows
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.unknowns import (
     n_dofs,
@@ -24,8 +28,7 @@ from ehlpetsc.discretisation.unknowns import (
     w_of,
 )
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.collectives import global_sum
-from ehlpetsc.nonlinear.operators.jacobian_product import Linearisation, jacobian_product
+from ehlpetsc.nonlinear.ranks import exchange_unknowns, global_sum
 
 PIVOT_REGULARISATION = 1e-3  # in place of dp/dq at cavitated nodes, in preconditioners alone
 
@@ -48,9 +51,9 @@ class JacobianOperator:
     Parameters
     ----------
     problem : ehl_problem.EHLProblem
-    halo : halo_exchange.Halo
+    halo : ranks.Halo
     ranks : mpi4py communicator
-    factors : preconditioner.far_field_band.Factors or None
+    factors : preconditioner.Factors or None
         Factors of the default preconditioner, kept between solves.
 
     Attributes
@@ -86,9 +89,6 @@ class JacobianOperator:
         return Linearisation(
             (*self._derivatives, self.inactive_nodes, self.problem.deflection.form), self._work
         )
-
-    def _ranks_sum(self, numbers):
-        return np.sum(self.ranks.allgather(numbers), axis=0)
 
     def mult(self, mat, v, out):
         """PETSc's product."""
@@ -210,3 +210,40 @@ def python_matrix(context, sizes, comm):
     matrix = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
     matrix.setUp()
     return matrix
+
+
+class Linearisation(NamedTuple):
+    """Coefficients of the product with the Jacobian, and work arrays.
+
+    Attributes
+    ----------
+    state : tuple
+        :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the Reynolds
+        rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
+        :func:`.deflection.deflection_rows`.
+    work : tuple of ndarray
+        Work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3, window).
+    """
+
+    state: tuple
+    work: tuple
+
+
+@compiled
+def jacobian_product(state, work, halo, v, out):
+    """Fill in the local rows of the product with a vector, zero in inactive rows; collective.
+
+    Parameters
+    ----------
+    state, work : tuple
+        Fields of a `Linearisation`.
+    halo : tuple
+        Fields of a `ranks.Halo`.
+    v, out : ndarray
+    """
+    (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
+    directional_derivative(by[0], v[: 2 * len(pressure)].reshape(len(pressure), 2), form[0], pressure)
+    nodes, h00, curvature, load = exchange_unknowns(*halo, v, pressure, False)
+    jacobian_rows(by, derivatives, nodes, h00, curvature, load, *form, change, out)
+    for i in inactive_nodes:
+        out[2 * i + 1] = 0.0

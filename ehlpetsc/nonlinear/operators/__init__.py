@@ -1,1 +1,0 @@
-"""The Jacobian as PETSc's matrices."""
