@@ -24,8 +24,8 @@ END
 # what cannot be imported -> the Debian packages that have it
 declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3-petsc4py-real [mpirun]=openmpi-bin
     [xdist]=python3-pytest-xdist [myst_parser]=python3-myst-parser [furo]="furo libjs-mathjax")
-run_modules="numpy scipy numba pydantic tomlkit mpi4py h5py petsc4py"
-drawing="matplotlib xarray h5netcdf pint" # pictures, reading of results, values with units
+run_modules="numpy scipy numba mpi4py h5py petsc4py"
+drawing="matplotlib xarray h5netcdf" # pictures, reading of results
 site="sphinx myst_parser furo" # the pages as one site
 testing="$drawing plotly pytest xdist hypothesis pip hatchling"
 
@@ -113,7 +113,7 @@ other_machine() {
     cat <<END
 run_mpi.sh: something is missing, and this is not Debian 12 or newer, where it could be installed.
 found:   $PRETTY_NAME; $found; $(mpirun --version 2>/dev/null | head -n 1 || true)
-needed:  Python 3.11 or newer with numpy, scipy, numba, pydantic, tomlkit, h5py, mpi4py and petsc4py, on PETSc 3.18 or
+needed:  Python 3.11 or newer with numpy, scipy, numba, h5py, mpi4py and petsc4py, on PETSc 3.18 or
          newer of real numbers in double precision, and the mpirun of the MPI that mpi4py and petsc4py were built with
 to go on, make them the first on the PATH and run the same command again:
   a cluster: module load ... (module avail petsc), until python3 -c 'import petsc4py, mpi4py, h5py' works

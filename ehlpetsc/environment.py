@@ -16,9 +16,9 @@ from pathlib import Path
 
 DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
-READING = ("numpy", "scipy", "pydantic", "tomlkit")  # of a case file
+READING = ("numpy", "scipy", "numba")  # of a case file
 SOLVER = ("mpi4py", "petsc4py")
-NEEDED = (*NUMERICS, "numba", "pydantic", "tomlkit", *SOLVER)
+NEEDED = (*NUMERICS, "numba", *SOLVER)
 RANK_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
 OLDEST_PYTHON = (3, 11)
 

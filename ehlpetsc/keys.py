@@ -41,10 +41,14 @@ class Key:
     default
         Value where the key is left out; None: it is stored as None.
     required
-        Whether the key must be given, unless `replaced_by` (``"grade"``, ``"[gears]"``) provides its value.
+        Whether the key must be given.
+    replaced_by
+        Keys of the table, or tables (``"[gears]"``), that provide the value of a required key.
     many
         "": one value; "both": one for both surfaces or a list of one for each, stored as a pair; "two": a
         list of two; "list".
+    min_items, max_items
+        Length of a list, or of a text.
     needs
         What must hold where the key is given: ``"contact.asperity_height"`` (given), ``"[time]"`` (given),
         ``'contact.model = "mixed"'``, ``"heat.roelands_s0 left out"``.
@@ -52,8 +56,8 @@ class Key:
         Key of the same table below which the value must be.
     equation
         In which the key appears.
-    table
-        Keys of the table that is the value.
+    table, variants
+        Keys of the table that is the value, or of the tables by the value of their key `kind`.
     """
 
     text: str
@@ -61,7 +65,7 @@ class Key:
     unit: str = ""
     default: Any = None
     required: bool = False
-    replaced_by: str = ""
+    replaced_by: tuple[str, ...] = ()
     ge: float | None = None
     gt: float | None = None
     le: float | None = None
@@ -74,6 +78,7 @@ class Key:
     below: str = ""
     equation: str = ""
     table: KeyTable | None = None
+    variants: Mapping[str, KeyTable] | None = None
 
 
 class Values:
@@ -89,7 +94,7 @@ class Values:
         raise AttributeError(f"no key {name}")
 
     def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and other.__dict__ == self.__dict__
+        return isinstance(other, Values) and type(other) is type(self) and other.as_dict() == self.as_dict()
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -138,4 +143,9 @@ class KeyTable:
     always: bool = False
     needs: tuple[str, ...] = ()
     values: type[Values] = Values
-    complete: Callable[[Values], Mapping[str, Any]] | None = field(default=None)
+    complete: Callable[[Any], Mapping[str, Any]] | None = field(default=None)
+
+    @property
+    def key(self) -> Key:
+        """Key of this table in the one above."""
+        return Key(self.text, kind=dict, required=self.required, table=self)

@@ -1,4 +1,4 @@
-r"""Steels by name: elastic constants, hardness, cyclic and strain-life constants, and the pressure they bear.
+r"""Steels and oils by name: elastic constants, hardness, fatigue constants and the pressure a steel bears.
 
 A case names one steel for both solids or one for each (``contact.material``); the fatigue constants and the
 pressure at which solids yield then belong to the same steel. Constants that tests have given are quoted; for
@@ -18,15 +18,23 @@ the standards, not from these: EN 10084 for 16MnCr5 (Akrostal: at least 60 HRC c
 tempered), EN ISO 683-17 for 100Cr6 (Lucefin: 62 HRC tempered at 250 C, 59 HRC at 300 C), DIN 50150 for
 42CrMo4 (995 MPa: 310 HV, 295 HB, 31 HRC). SAE4340 has none: the paper that gives its constants does not give
 its hardness, and no formula here needs it. Steels without tests and hardness are left out.
+
+Oils are mineral ones of a viscosity index of 95 to 100, with figures typical of the data sheets of gear and
+hydraulic oils of their ISO VG class: kinematic viscosities at 40 and 100 degrees C, density at 15 degrees C.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
+from typing import Any
 
 PLASTIC_STRAIN = 0.002  # at which the cyclic yield stress is read
 FLOW_FACTOR = (2 + pi) / sqrt(3)  # 2.97
 HRC_60 = 654  # HB of 60 HRC, ASTM E140
 ISO_MODULUS = 206e9  # Pa, ISO 6336-2
+FATIGUE_KEYS = ("fatigue_strength", "fatigue_ductility", "b", "c", "cyclic_hardening", "cyclic_strength")
 
 
 @dataclass(frozen=True)
@@ -35,14 +43,13 @@ class Steel:
 
     Attributes
     ----------
-    source : str
+    source
         Condition, and where the constants are from.
-    youngs_modulus, poisson_ratio : float
-    hardness : float or None
+    hardness
         Brinell, HB; None: not published with the constants.
-    fatigue_strength, fatigue_ductility, b, c : float
+    fatigue_strength, fatigue_ductility, b, c
         sigma_f' [Pa], eps_f', b, c of the strain-life curve.
-    cyclic_hardening, cyclic_strength : float
+    cyclic_hardening, cyclic_strength
         n' and K' [Pa] of the cyclic stress-strain curve.
     """
 
@@ -57,57 +64,39 @@ class Steel:
     cyclic_hardening: float
 
     @property
-    def cyclic_strength(self):
+    def cyclic_strength(self) -> float:
         """K' [Pa] that makes both curves agree."""
         return cyclic_strength(self.fatigue_strength, self.fatigue_ductility, self.cyclic_hardening)
 
     @property
-    def yield_pressure(self):
+    def yield_pressure(self) -> float:
         """Pressure [Pa] at which a solid of it yields, see :func:`flow_pressure`."""
         return flow_pressure(self.cyclic_strength, self.cyclic_hardening)
 
 
-def cyclic_strength(fatigue_strength, fatigue_ductility, cyclic_hardening):
+def cyclic_strength(fatigue_strength: float, fatigue_ductility: float, cyclic_hardening: float) -> float:
     """K' = sigma_f'/eps_f'^n' [Pa], by which the cyclic and the strain-life curve agree."""
     return fatigue_strength / fatigue_ductility**cyclic_hardening
 
 
-def cyclic_yield_stress(strength, hardening):
+def cyclic_yield_stress(strength: float, hardening: float) -> float:
     """Cyclic yield stress K' 0.002^n' [Pa] at 0.2 % plastic strain."""
     return strength * PLASTIC_STRAIN**hardening
 
 
-def flow_pressure(strength, hardening):
+def flow_pressure(strength: float, hardening: float) -> float:
     r"""Mean pressure [Pa] under which a half plane flows: :math:`(2+\pi)\,Y/\sqrt3 = 2.97\,Y`.
 
     Prandtl's slip lines with von Mises' shear yield stress (Johnson (1985), Contact Mechanics, section 6.2),
-    Y the cyclic yield stress of :func:`cyclic_yield_stress`.
-
-    Parameters
-    ----------
-    strength, hardening : float
-        K' [Pa] and n'.
+    Y the cyclic yield stress of :func:`cyclic_yield_stress`, of K' [Pa] and n'.
     """
     return FLOW_FACTOR * cyclic_yield_stress(strength, hardening)
 
 
-def steel_of_hardness(hardness, youngs_modulus, source, poisson_ratio=0.3):
-    """Steel with the constants of Roessle and Fatemi (2000).
-
-    Parameters
-    ----------
-    hardness : float
-        HB, 150 to 700.
-    youngs_modulus : float
-        Pa.
-    source : str
-    poisson_ratio : float
-
-    Raises
-    ------
-    ValueError
-        A hardness outside of the tests.
-    """
+def steel_of_hardness(
+    hardness: float, youngs_modulus: float, source: str, poisson_ratio: float = 0.3
+) -> Steel:
+    """Steel with the constants of Roessle and Fatemi (2000), of a hardness of 150 to 700 HB."""
     if not 150 <= hardness <= 700:
         raise ValueError(f"hardness = {hardness:g} HB: allowed: 150 to 700")
     ductility = (0.32 * hardness**2 - 487 * hardness + 191000) / (1e-6 * youngs_modulus)
@@ -144,24 +133,52 @@ STEELS = {
 DEFAULT = "SAE4340"
 
 
-def elastic_constants(contact):
+@dataclass(frozen=True)
+class Oil:
+    """Mineral oil: kinematic viscosities at 40 and 100 C [m^2/s], density at 15 C [kg/m^3]."""
+
+    v40: float
+    v100: float
+    density: float
+
+    def density_at(self, temperature: float) -> float:
+        """Density [kg/m^3] at a temperature [K]."""
+        return self.density * (1.0 - OIL_EXPANSION * (temperature - 288.15))
+
+
+OIL_EXPANSION = 7e-4  # 1/K, of mineral oils
+OILS = {
+    "ISO VG 32": Oil(32e-6, 5.4e-6, 875.0),
+    "ISO VG 46": Oil(46e-6, 6.7e-6, 879.0),
+    "ISO VG 68": Oil(68e-6, 8.7e-6, 887.0),
+    "ISO VG 100": Oil(100e-6, 11.4e-6, 891.0),
+    "ISO VG 150": Oil(150e-6, 15.0e-6, 897.0),
+    "ISO VG 220": Oil(220e-6, 19.4e-6, 899.0),
+    "ISO VG 320": Oil(320e-6, 25.0e-6, 903.0),
+    "ISO VG 460": Oil(460e-6, 30.8e-6, 904.0),
+}
+
+
+def named_steels(material: str | list[str] | tuple[str, str] | None) -> tuple[Steel, Steel]:
+    """Steel of each surface by ``contact.material``, by default the default steel; KeyError: unknown."""
+    first, second = [material or DEFAULT] * 2 if material is None or isinstance(material, str) else material
+    return STEELS[first], STEELS[second]
+
+
+def fatigue_constants(steel: Steel, post: Mapping[str, Any]) -> dict[str, float]:
+    """Fatigue constants of a steel by key, overridden by `[post]`; K' follows unless `[post]` has it."""
+    constants = {key: getattr(steel, key) for key in FATIGUE_KEYS if key != "cyclic_strength"}
+    constants |= {key: post[key] for key in FATIGUE_KEYS if post.get(key) is not None}
+    names = ("fatigue_strength", "fatigue_ductility", "cyclic_hardening")
+    return {"cyclic_strength": cyclic_strength(*(constants[name] for name in names))} | constants
+
+
+def elastic_constants(contact: Mapping[str, Any]) -> tuple[Any, Any]:
     """Elastic moduli [Pa] and Poisson's ratios of a table `[contact]`: given there, else those of its steels.
 
-    Parameters
-    ----------
-    contact : dict
-
-    Returns
-    -------
-    youngs_modulus, poisson_ratio : pair of float
-
-    Raises
-    ------
-    KeyError
-        The table has neither.
+    KeyError: the table has neither.
     """
-    names = contact.get("material")
-    steels = [STEELS[name] for name in ([names] * 2 if isinstance(names, str) else names or ())]
     keys = ("youngs_modulus", "poisson_ratio")
-    constants = {key: [getattr(steel, key) for steel in steels] for key in keys if steels} | contact
+    steels = named_steels(contact["material"]) if contact.get("material") else ()
+    constants = {key: [getattr(steel, key) for steel in steels] for key in keys if steels} | dict(contact)
     return constants["youngs_modulus"], constants["poisson_ratio"]

@@ -1,11 +1,15 @@
-"""Case files: reading as text, parsing as TOML, messages on faults."""
+"""Case files: reading as text, parsing as TOML with messages on faults, writing."""
+
+from __future__ import annotations
 
 import contextlib
 import difflib
+import json
 import os
 import re
 import tomllib
 from pathlib import Path
+from typing import Any
 
 from ehlpetsc.errors import CaseError
 
@@ -14,13 +18,8 @@ MAX_BYTES = 2**26  # of a case file
 LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MAX_KEY_PARTS}}}""")
 
 
-def read_text(path):
-    """Text of a case file.
-
-    Raises
-    ------
-    CaseError
-    """
+def read_text(path: str | os.PathLike) -> str:
+    """Text of a case file; raises `CaseError`."""
     if not isinstance(path, str | os.PathLike):  # for open a number is a file descriptor
         raise CaseError([f"{path!r}: allowed: the name of a TOML file, or a dict of its tables"])
     try:
@@ -38,7 +37,7 @@ def read_text(path):
         raise CaseError([f"{path}: cannot be read: {reason}{_similar_name_hint(path)}"]) from None
 
 
-def _similar_name_hint(path):
+def _similar_name_hint(path: str | os.PathLike) -> str:
     """Hint to a case file with a similar name in the same folder."""
     with contextlib.suppress(OSError, ValueError):
         neighbours = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
@@ -48,13 +47,8 @@ def _similar_name_hint(path):
     return ""
 
 
-def parse_toml(path, text):
-    """Tables of a TOML text; `path` is its name in messages.
-
-    Raises
-    ------
-    CaseError
-    """
+def parse_toml(path: str | os.PathLike, text: str) -> dict[str, Any]:
+    """Tables of a TOML text, whose name in messages is `path`; raises `CaseError`."""
     long_key = LONG_KEY.search(text)
     if long_key:  # the time of tomllib grows as the square of their number
         line = text.count("\n", 0, long_key.start()) + 1
@@ -67,9 +61,44 @@ def parse_toml(path, text):
         raise CaseError([f"{path}: not valid TOML: {error}{_decimal_comma_hint(text, str(error))}"]) from None
 
 
-def _decimal_comma_hint(text, error):
+def _decimal_comma_hint(text: str, error: str) -> str:
     """Hint to a decimal comma in the line of an error."""
     line = re.search(r"at line (\d+)", error)
     typed = text.splitlines()[int(line[1]) - 1] if line else ""
     decimal_comma = re.search(r"=\s*([+-]?\d+),(\d+)", typed)
     return f"; a decimal point, as in {decimal_comma[1]}.{decimal_comma[2]}?" if decimal_comma else ""
+
+
+def is_plain(text: str) -> bool:
+    """Whether a text is one line of UTF-8 without control characters, as HDF5 and PETSc need."""
+    return text.isprintable() or not re.search(r"[\x00-\x1f\x7f\ud800-\udfff]", text)
+
+
+def plain(value: Any) -> Any:
+    """Dicts, arrays and numpy numbers converted to types of TOML; without None."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items() if item is not None}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def toml_text(tables: dict[str, Any]) -> str:
+    """TOML text of plain tables, with a heading for each table of the first level."""
+    lines = [f"{_key(k)} = {_value(v)}" for k, v in tables.items() if not isinstance(v, dict)]
+    for name, table in tables.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{_key(name)}]", *(f"{_key(k)} = {_value(v)}" for k, v in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    return json.dumps(value, ensure_ascii=False)

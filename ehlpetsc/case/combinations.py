@@ -1,24 +1,25 @@
 """Members of a series: the same case with different values of one or several keys."""
 
+from __future__ import annotations
+
 import copy
 import itertools
+from collections.abc import Callable
+from os import PathLike
+from typing import Any
 
-from ehlpetsc.case.faults import show
+from ehlpetsc.case.messages import show
 from ehlpetsc.case.settings import put
 
+Settings = list[tuple[list[str], Any]]
 
-def keys_of(series):
-    """Dotted keys that vary over the series.
 
-    Parameters
-    ----------
-    series : dict
-        Table `[series]` of the case file.
-    """
+def keys_of(series: dict[str, Any]) -> list[str]:
+    """Dotted keys that vary over a series, by its table `[series]`."""
     return [series["key"]] if "key" in series else list(series["keys"])
 
 
-def combinations(series):
+def combinations(series: dict[str, Any]) -> list[tuple]:
     """Tuples of the values of the keys for each member: of one key, a grid of several, or in parallel."""
     if "key" in series:
         return [(value,) for value in series["values"]]
@@ -27,20 +28,14 @@ def combinations(series):
     return list(itertools.product(*series["values"]))
 
 
-def settings_of(series):
+def settings_of(series: dict[str, Any]) -> list[Settings]:
     """Settings of each member: pairs of a split key and its value."""
     keys = [key.split(".") for key in keys_of(series)]
     return [list(zip(keys, values, strict=True)) for values in combinations(series)]
 
 
-def member_tables(data, settings):
-    """Tables of one member: tables of the case without `[series]`.
-
-    Raises
-    ------
-    ValueError
-        A key does not exist in this case.
-    """
+def member_tables(data: dict[str, Any], settings: Settings) -> dict[str, Any]:
+    """Tables of one member: tables of the case without `[series]`; ValueError: no such key."""
     member = copy.deepcopy(data)
     del member["series"]
     for keys, value in settings:
@@ -48,17 +43,10 @@ def member_tables(data, settings):
     return member
 
 
-def series_faults(path, data, faults_of):
-    """Faults of members that the base case does not have.
-
-    Parameters
-    ----------
-    path : path-like
-    data : dict
-        Tables of the case.
-    faults_of : callable
-        Faults of the tables of one member.
-    """
+def series_faults(
+    path: str | PathLike, data: dict[str, Any], faults_of: Callable[[dict[str, Any]], list[str]]
+) -> list[str]:
+    """Faults of members that the base case does not have, by a function of the tables of a member."""
     if "series" not in data:
         return []
     faults = []

@@ -1,174 +1,138 @@
-"""Text of every key of a case file, generated from the schema: list, page, commented example case."""
+"""Text of every key of a case file, from the table of keys: list, page, template with all keys."""
+
+from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 
-from ehlpetsc.case.faults import allowed
-from ehlpetsc.case.loading import Case
-from ehlpetsc.case.schema.equations import EQUATIONS, SYMBOLS
-from ehlpetsc.case.schema.table import Table
-from ehlpetsc.case.tables.surface import SYNTHETIC
+from ehlpetsc.case.messages import nearest, value_text
+from ehlpetsc.case.tables import CASE
 from ehlpetsc.command_parser import CommandParser, exit_status, put
 from ehlpetsc.errors import UsageError
+from ehlpetsc.keys import Key, KeyTable
 
-# keys that are required or set in almost every case: Table 1 of Holmes et al. 2005
-EXAMPLE = {
-    "title": '"My contact"',
-    "contact.radius": "0.0191",
-    "contact.load": "527e3",
-    "contact.youngs_modulus": "[207e9, 207e9]",
-    "contact.poisson_ratio": "[0.3, 0.3]",
-    "contact.boundary_friction": "0.1",
-    "contact.model": '"mixed"',
-    "fluid.viscosity": "0.005",
-    "fluid.law": '"roelands"',
-    "fluid.pressure_viscosity": "11.1e-9",
-    "fluid.density": '"dowson-higginson"',
-    "fluid.eyring_stress": "10e6",
-    "motion.entrainment_speed": "5.0",
-    "motion.slide_roll_ratio": "0.25",
-    "mesh.inlet": "-2.5",
-    "mesh.outlet": "1.5",
-    "mesh.points_per_half_width": "200",
-    "time.travel": "6.0",
-}
 PAGE = """# Every key of a case file
 
-`ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys contact.load` a key,
-`ehlpetsc template` a commented case to begin from. Numbers are in SI units; a value may also be written with
-its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"` (this needs the package pint). Unknown keys, values
-out of bounds, nan and inf are rejected. A key whose default is "none" is required where its table is. Made
-from the schema by `python3 -m ehlpetsc.case.key_page > cases/keys.md`.
+`ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys asperity_height` one
+key; `ehlpetsc template roller` and `gears` print a case to begin with, `full` one with every key. Numbers are
+in SI units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys,
+values out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2.
+
+Symbols: a half width and p0 maximum pressure by Hertz, E' reduced modulus, h film thickness, p pressure, p_c
+pressure of the solids, q shear stress, theta void fraction, eta and rho viscosity and density, eta0 and rho0
+at ambient pressure, u1 and u2 speeds of surfaces 1 and 2, u_max the maximum of both, X and z abscissa and
+height of a profile, N cycles to failure, de and ds ranges of strain and stress, D damage.
 """
 
 
-def tables():
-    """Tables of a case file with their models, in the order of the file.
+def tables() -> dict[str, KeyTable]:
+    """Tables of a case file by name, "" for the keys at the top, in the order of the file."""
+    return {"": CASE} | dict(_below(CASE, ""))
 
-    Returns
-    -------
-    dict of str to type
-        By dotted name, "" for the keys above all tables; kinds of synthetic profiles as
-        ``surface.1.synthetic (ridge)``.
+
+def _below(table: KeyTable, above: str) -> Iterator[tuple[str, KeyTable]]:
+    for name, key in table.keys.items():
+        if key.table:
+            if _keys(key.table):
+                yield above + name, key.table
+            yield from _below(key.table, f"{above}{name}.")
+        for variant in dict.fromkeys(map(id, (key.variants or {}).values())):
+            kinds = [kind for kind, one in key.variants.items() if id(one) == variant]
+            yield f"{above}{name} ({', '.join(kinds)})", key.variants[kinds[0]]
+
+
+def _keys(table: KeyTable) -> dict[str, Key]:
+    return {name: key for name, key in table.keys.items() if not key.table}
+
+
+def _value(key: Key) -> str:
+    return f"{value_text(key)}; needs {' and '.join(key.needs)}" if key.needs else value_text(key)
+
+
+def _default(key: Key) -> str:
+    if key.required:
+        return "required" + (f" without {' or '.join(key.replaced_by)}" if key.replaced_by else "")
+    return "" if key.default is None else json.dumps(key.default)
+
+
+def keys(name: str | None = None) -> str:
+    """Keys with meaning, allowed values and default, a line each, followed by the equation of the key.
+
+    `name` is a table, as "fluid" or "surface.1", or a key, as "contact.load" or "asperity_height".
     """
-    models = {"": Case}
-    for name, model in _below(Case):
-        models[name] = model
-        if name == "surface.1":
-            models |= {f"{name}.synthetic ({kind})": profile for kind, profile in SYNTHETIC.items()}
-    return models
-
-
-def _below(model, above=""):
-    for field in model.__fields__.values():
-        if _is_table(field):
-            name = above + field.alias
-            if _keys(field.type_):
-                yield name, field.type_
-            yield from _below(field.type_, name + ".")
-
-
-def _is_table(field):
-    return isinstance(field.type_, type) and issubclass(field.type_, Table)
-
-
-def _keys(model):
-    return [field for field in model.__fields__.values() if not _is_table(field)]
-
-
-def _default(field):
-    if field.required:
-        return "none"
-    return "left out" if field.default is None else json.dumps(field.default)
-
-
-def _equation(model, field):
-    return EQUATIONS.get(f"{model.__name__}.{field.alias}", "")
-
-
-def keys(table=None):
-    """Keys with allowed values and default, a line each, followed by the equation in which they appear.
-
-    Parameters
-    ----------
-    table : str, optional
-        Single table, as in "fluid" or "surface.1", or single key, as in "contact.load".
-
-    Raises
-    ------
-    UsageError
-        There is no such table or key.
-    """
-    models = tables()
-    if table is not None:
-        above, _, key = table.rpartition(".")
-        fields = [field for field in _keys(models[above]) if field.alias == key] if above in models else []
-        if fields:
-            return "\n".join(_lines(models[above], fields))
-        models = {name: models[name] for name in models if name == table or name.startswith(f"{table}.")}
-        if not models:
-            names = [name for name in tables() if name and " " not in name]
-            raise UsageError(f"keys {table}: no such table or key; tables: {', '.join(names)}")
+    every = tables()
+    if name is None:
+        chosen = every
+    else:
+        above, _, last = name.rpartition(".")
+        if above in every and last in _keys(every[above]):
+            return "\n".join(_lines("", {last: every[above].keys[last]}))
+        inside = (f"{name}.", f"{name} (")
+        chosen = {p: table for p, table in every.items() if p == name or p.startswith(inside)}
+        if not chosen:
+            return _found(name, every)
     lines = []
-    for name, model in models.items():
-        lines += [f"[{name}]" if name else "above all tables", *_lines(model, _keys(model))]
+    for place, table in chosen.items():
+        same = place.replace("surface.2", "surface.1") if name is None else place
+        lines += [f"[{place}]" if place else "top-level keys"]
+        lines += [f"  as [{same}]"] if same != place else _lines("  ", _keys(table))
     return "\n".join(lines)
 
 
-def _lines(model, fields):
-    for field in fields:
-        yield f"  {field.alias}: {allowed(field)}; default: {_default(field)}"
-        if _equation(model, field):
-            yield f"      {_equation(model, field)}"
-
-
-def page():
-    """Markdown page of all keys."""
-    texts = [PAGE, SYMBOLS]
-    for name, model in tables().items():
-        heading = f"`[{name}]`" if name else "Above all tables"
-        equations = any(_equation(model, field) for field in _keys(model))
-        head = ["key", "takes", "default", *["equation"] * equations]
-        texts.append(f"\n## {heading}\n\n{_row(head)}{'|---' * len(head)}|\n")
-        for field in _keys(model):
-            cells = [f"`{field.alias}`", allowed(field), _default(field)]
-            cells += [_equation(model, field)] * equations
-            texts.append(_row([cell.replace("|", r"\|").replace("*", r"\*") for cell in cells]))
-    return "".join(texts)
-
-
-def _row(cells):
-    return "| " + " | ".join(cells) + " |\n"
-
-
-def template():
-    """Text of a complete case with all other keys in comments."""
+def _found(name: str, every: dict[str, KeyTable]) -> str:
+    """Keys of one name in any table; raises `UsageError`."""
     lines = []
-    for name, model in tables().items():
-        written = [EXAMPLE.get(f"{name}.{f.alias}" if name else f.alias) for f in _keys(model)]
-        if name in ("surface.2", "post", "petsc", "series") or " (" in name:
+    for place, table in every.items():
+        if name in _keys(table) and not place.startswith("surface.2"):
+            lines += _lines("", {f"{place}.{name}".lstrip("."): table.keys[name]})
+    if lines:
+        return "\n".join(lines)
+    above, _, last = name.rpartition(".")
+    names = (
+        every[above].keys if above and above in every else {k for table in every.values() for k in table.keys}
+    )
+    places = ", ".join(place for place in every if place and " " not in place)
+    raise UsageError(f"{name}: no such table or key; {nearest(last, sorted(names)) or f'tables: {places}'}")
+
+
+def _lines(indent: str, chosen: dict[str, Key]) -> list[str]:
+    lines = []
+    for name, key in chosen.items():
+        default = _default(key)
+        parts = [key.text, _value(key), default if key.required or not default else f"default {default}"]
+        lines.append(f"{indent}{name}: {'; '.join(filter(None, parts))}")
+        if key.equation:
+            lines.append(f"{indent}    {key.equation}")
+    return lines
+
+
+def page() -> str:
+    """Markdown page of all keys."""
+    texts = [PAGE]
+    for place, table in tables().items():
+        if place.startswith("surface.2"):
             continue
-        if name:
-            lines += ["", f"[{name}]" if any(written) else f"# [{name}]"]
-        for field, value in zip(_keys(model), written, strict=True):
-            if isinstance(field.default, dict):
-                continue
-            shown = value or ("..." if field.default is None else json.dumps(field.default))
-            lines.append(f"{'' if value else '# '}{field.alias} = {shown}  # {allowed(field)}")
-    return "\n".join(lines) + "\n"
+        heading = f"`[{place}]`" if place else "Top-level keys"
+        also = " and `[surface.2]`" if place == "surface.1" else ""
+        texts.append(f"\n## {heading}{also}\n\n")
+        texts.append(f"{table.text[:1].upper()}{table.text[1:]}.\n\n" if place else "")
+        texts.append("| key | meaning | value | default |\n|---|---|---|---|\n")
+        for name, key in _keys(table).items():
+            meaning = f"{key.text}. {key.equation}" if key.equation else key.text
+            cells = [f"`{name}`", meaning, _value(key), _default(key)]
+            escaped = [cell.replace("|", r"\|").replace("*", r"\*") for cell in cells]
+            texts.append(f"| {' | '.join(escaped)} |\n")
+    return "".join(texts)
 
 
 def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc keys``; returns its exit status."""
     parser = CommandParser("keys", "Keys of a case file: meaning, unit, bounds, default.")
-    parser.add_argument("table", nargs="?", metavar="TABLE or TABLE.KEY", help="default: all")
+    parser.add_argument(
+        "key", nargs="?", metavar="TABLE or KEY", help="as fluid or contact.load (default: all)"
+    )
     chosen = parser.parse_args(words)
-    return exit_status("keys", lambda: put(keys(chosen.table), chosen))
-
-
-def main_template(words: list[str]) -> int:
-    """Run the command ``ehlpetsc template``; returns its exit status."""
-    chosen = CommandParser("template", "A commented case file to begin with.").parse_args(words)
-    return exit_status("template", lambda: put(template(), chosen))
+    return exit_status("keys", lambda: put(keys(chosen.key), chosen))
 
 
 if __name__ == "__main__":

@@ -1,54 +1,43 @@
 """Reading of case files: overrides and checks; all faults are reported at once."""
 
-import tomllib
-from functools import partial
-from pathlib import Path
+from __future__ import annotations
 
+import copy
+import tomllib
+from collections.abc import Collection, Iterable
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ehlpetsc.case.checking import Fault, Tables, check, in_si
 from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
-from ehlpetsc.case.derived.conditions import (
-    TableFault,
-    conditions_of,
-    reversal_faults,
-    with_columns,
-    with_reference_state,
-)
-from ehlpetsc.case.derived.measured_layer import resolve_measured_layer
-from ehlpetsc.case.derived.oil_grade import with_grade
-from ehlpetsc.case.derived.solids import with_material
-from ehlpetsc.case.faults import describe, shortened, show
+from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
+from ehlpetsc.case.conditions_file import TableFault
+from ehlpetsc.case.derived import resolve_measured_layer, with_derived
+from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.profiles import profile_faults
-from ehlpetsc.case.schema.validation import ValidationError
-from ehlpetsc.case.settings import parsed, put, text_with
-from ehlpetsc.case.tables.case import Case
-from ehlpetsc.case.toml_text import plain, toml_text
-from ehlpetsc.case.units import in_si
+from ehlpetsc.case.settings import parsed, put
+from ehlpetsc.case.tables import CASE, Case
 from ehlpetsc.errors import CaseError
-from ehlpetsc.toml_file import parse_toml, read_text
+from ehlpetsc.toml_file import parse_toml, plain, read_text
 
 DICT_NAME = "case"  # name of a case without a file in messages
-__all__ = ["Case", "CaseError", "load", "members"]
+SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
+Overrides = dict[str, Any] | Iterable[str] | str | None
+__all__ = ["Case", "CaseError", "load", "members", "stored_case"]
 
 
-def load(case, overrides=None):
-    """Read and check a case.
+def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> Case:
+    """Read and check a case; raises `CaseError` with all faults, one message each.
 
     Parameters
     ----------
-    case : str, path-like or dict
+    case
         TOML file or its tables; profile files of a dict are in the current folder, and heights of
         a surface may be arrays, ``{"surface": {"1": {"x": x, "z": z}}}`` [m].
-    overrides : dict, str or iterable of str, optional
+    overrides
         ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
         syntax, otherwise text.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    CaseError
-        Contains all faults, one message each.
 
     Examples
     --------
@@ -59,124 +48,93 @@ def load(case, overrides=None):
     """
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
-    from_python = isinstance(case, dict) or isinstance(overrides, dict)  # tomlkit is slow on long arrays
-    settings, faults = _override(path, data, overrides)
-    converted = in_si(path, data, Case)
-    measured, unresolved = resolve_measured_layer(path, data)
-    settings, faults = settings + converted + measured, faults + [f"{path}: {line}" for line in unresolved]
-    if unresolved:
-        raise CaseError(faults)
-    faults += _faults(path, data)
-    if not faults:
-        faults += series_faults(path, data, lambda member: _faults(path, member))
-    if faults:
-        raise CaseError(faults)
-    stored, columns = with_columns(data, Path(path).parent)
-    text = toml_text(stored) if from_python else text_with(text, [*settings, *columns], stored)
-    return _case_from(path, data, text)
+    written, folder = copy.deepcopy(data), Path(path).parent
+    faults = _override(data, overrides)
+    faults += in_si(data)
+    faults += resolve_measured_layer(folder, data)
+    checked, found = _checked(folder, data, {fault.place for fault in faults})
+    found += [Fault("", line) for line in profile_faults(folder, data.get("surface"), checked)]
+    lines = _lines(path, faults + found)
+    if checked and not lines:
+        lines = series_faults(path, data, lambda member: _member_faults(path, member))
+    if lines:
+        raise CaseError(lines)
+    stored = with_columns(data, folder)
+    text = text if stored == written else None
+    return checked.copy({"_path": Path(path), "_tables": stored, "_text": text})
 
 
-def stored_case(text, overrides=None):
-    """Case from the text in a result file, without its profile files.
-
-    Parameters
-    ----------
-    text : str
-    overrides : dict or iterable of str, optional
-        See `load`.
-
-    Returns
-    -------
-    Case
-        Case with the stored text.
-
-    Raises
-    ------
-    CaseError
-    """
+def stored_case(text: str, overrides: Overrides = None) -> Case:
+    """Case from the text in a result file, which it keeps, without its profile files; raises `CaseError`."""
     data = parse_toml(DICT_NAME, text)
-    _, faults = _override(DICT_NAME, data, overrides)
-    faults += _table_faults(DICT_NAME, data, stored=True)[1]
-    if faults:
-        raise CaseError(faults)
-    return _case_from(DICT_NAME, data, text, stored=True)
+    faults = _override(data, overrides) + in_si(data)
+    case, found = _checked(Path(), data, is_stored=True)
+    if faults + found:
+        raise CaseError(_lines(DICT_NAME, faults + found))
+    return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
 
 
-def _override(path, data, overrides):
-    """Set keys in the tables; returns the settings and a fault for each invalid one."""
-    settings, faults = [], []
-    items = overrides.items() if isinstance(overrides, dict) else overrides or ()
-    for override in [items] if isinstance(items, str | int | float) else list(items):
-        try:
-            settings.append(parsed(override))
-            put(data, *settings[-1])
-        except ValueError:
-            text_of_override = shortened(" ".join(str(override).split()))  # a fault is one line
-            faults.append(
-                f"{path}: {text_of_override}: allowed: table.key=value, as in fluid.viscosity=0.003"
-            )
-    return settings, faults
+def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Case]]:
+    """Values and members of a series: the same case without `[series]`, with one value of each varied key.
 
-
-def members(case):
-    """Members of a series: the same case without `[series]`, with one value of each varied key.
-
-    Parameters
-    ----------
-    case : Case, or an argument of `load`
-
-    Returns
-    -------
-    list of (value, Case)
-        For several keys the value is a tuple.
+    For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
     data, result = tomllib.loads(case.text), []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
-    alone = text_with(case.text, [], member_tables(data, []), without="series")
     for settings in settings_of(data["series"]):
         tables = member_tables(data, settings)
-        text = partial(text_with, alone, settings, tables)
+        member, _ = _checked(case.path.parent, tables)
         values = tuple(value for _, value in settings)
-        result.append((values[0] if case.series.key else values, _case_from(case.path, tables, text)))
+        member = member.copy({"_path": case.path, "_tables": tables, "_text": None})
+        result.append((values[0] if case.series.key else values, member))
     return result
 
 
-def _case_from(path, data, text, stored=False):
-    data = with_grade(with_material(data))
-    table, _ = _conditions(path, data, stored)
-    return Case.of(with_reference_state(data, table), text, Path(path), table)
+def _override(data: Tables, overrides: Overrides) -> list[Fault]:
+    """Set keys in the tables; returns a fault for each invalid one."""
+    faults = []
+    items = overrides.items() if isinstance(overrides, dict) else overrides or ()
+    for override in [items] if isinstance(items, str | int | float) else list(items):
+        try:
+            put(data, *parsed(override))
+        except ValueError:
+            text = shortened(" ".join(str(override).split()))  # a fault is one line
+            faults.append(Fault("", f"{text}: allowed: table.key=value, as in fluid.viscosity=0.003"))
+    return faults
 
 
-def _conditions(path, data, stored=False):
-    """Conditions over time, or None, and the faults of their table, which is not read for a stored case."""
+def _checked(
+    folder: Path, data: Tables, known: Collection[str] = (), is_stored: bool = False
+) -> tuple[Any, list[Fault]]:
+    """The case with its conditions over time, None with faults, and the faults of its tables."""
+    faults, conditions = [], None
+    data = with_derived(data)
     try:
-        return conditions_of(data, Path(path).parent), []
+        conditions = conditions_of(data, folder)
     except TableFault as error:
         file = data["operation"].get("file")
-        return None, [f"operation{f'.file = {show(file)}' if file else ''}: {error}"] * (not stored)
-
-
-def _faults(path, data):
-    """Faults of the tables and of their profile files."""
-    case, faults = _table_faults(path, data)
-    in_files = profile_faults(Path(path).parent, data.get("surface"), case if not faults else None)
-    return faults + [f"{path}: {fault}" for fault in in_files]
-
-
-def _table_faults(path, data, stored=False):
-    """The case, or None, and the faults of its tables."""
-    data = with_grade(with_material(data))
-    table, faults = _conditions(path, data, stored)
-    data = with_reference_state(data, table)
+        place = f"operation{f'.file = {show(file)}' if file else ''}"
+        faults = [] if is_stored else [Fault("operation", f"{place}: {error}")]
+    data = with_reference_state(data, conditions)
     if "motion" not in data and ("fluid" in data or "time" in data):
-        faults.append("motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])")
-    case = None
-    try:
-        case = Case(**data)
-    except ValidationError as error:
-        faults += describe(error, Case, data)
-    if case and table:
-        faults += reversal_faults(case, table)
-    return case, [f"{path}: {fault}" for fault in faults]
+        faults.append(Fault("motion", SPEEDS))
+    case, found = check(CASE, data, known=known)
+    if case:
+        case = case.copy({"_conditions": conditions})
+        faults += [Fault("mesh", line) for line in reversal_faults(case, conditions)] if conditions else []
+    return (case if case and not faults else None), faults + found
+
+
+def _member_faults(path: str | PathLike, data: Tables) -> list[str]:
+    folder = Path(path).parent
+    case, faults = _checked(folder, data)
+    faults += [Fault("", line) for line in profile_faults(folder, data.get("surface"), case)]
+    return _lines(path, faults)
+
+
+def _lines(path: str | PathLike, faults: list[Fault]) -> list[str]:
+    """Messages of faults, each once, without consequences of others."""
+    own = [fault for fault in faults if not fault.is_consequence] or faults
+    return list(dict.fromkeys(f"{path}: {fault.text}" for fault in own))

@@ -1,35 +1,28 @@
 """Faults of the profile files of a case: unreadable, or implausible for its contact."""
 
-from ehlpetsc.case.faults import show
-from ehlpetsc.case.schema.validation import ValidationError
-from ehlpetsc.case.tables.surface import SurfaceProfile
-from ehlpetsc.errors import ProfileError
-from ehlpetsc.names import FORMER, SIDES
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.messages import show
+from ehlpetsc.case.tables import Case
+from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
 from ehlpetsc.surfaces.samples import layout_of, samples
 
 
-def profile_faults(folder, surface, case):
-    """Faults of both surfaces' files.
+def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
+    """Faults of the files or heights of both surfaces.
 
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Folder of the case file.
-    surface : object
-        Table `surface` of the case file.
-    case : Case or None
-        None if other tables have faults; the profiles are then not compared with the contact.
-
-    Returns
-    -------
-    list of str
-        ``key = value: what is wrong; allowed: ...``
+    Without a case, as other tables have faults, the profiles are not compared with the contact.
     """
     faults = []
-    for side in (*SIDES, *FORMER):
+    for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         if not isinstance(table, dict):
             continue
@@ -42,10 +35,10 @@ def profile_faults(folder, surface, case):
     return faults
 
 
-def _check_profile(folder, table, case):
+def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> None:
     try:
-        spec = SurfaceProfile(**table)
-    except ValidationError:  # reported with its keys; only the existence of the file can be checked
+        spec = values_of(PROFILE, table)
+    except CaseError:  # reported with its keys; only the existence of the file can be checked
         spec = None
     if spec is None:
         if "file" not in table:
@@ -63,7 +56,7 @@ def _check_profile(folder, table, case):
     return None
 
 
-def _check_file(path):
+def _check_file(path: Path) -> None:
     try:
         if path.is_file():
             return

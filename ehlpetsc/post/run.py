@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.case.derived.solids import FATIGUE_KEYS
 from ehlpetsc.errors import OutputError, PostError
-from ehlpetsc.materials import DEFAULT
+from ehlpetsc.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.post.counters import PAPER, Counters, columns
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.inputs.loads import Loads

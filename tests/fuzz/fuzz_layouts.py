@@ -55,7 +55,7 @@ class Draw:
             again = load(self.stored)
         except Exception as error:
             return "different", f"{error!r}\n{what}\n---\n{case.text}"
-        if again.dict() != case.dict() or self._asked(sets, case) != "":
+        if again.as_dict() != case.as_dict() or self._asked(sets, case) != "":
             return "different", f"{self._asked(sets, case)}\n{what}\n---\n{case.text}"
         return "done", ""
 

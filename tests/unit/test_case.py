@@ -66,17 +66,17 @@ def test_values_are_read_as_written():
 
 
 def test_case_is_immutable():
-    with pytest.raises(TypeError):
+    with pytest.raises(AttributeError):
         case.load(SMOOTH).contact.radius = 1.0
 
 
-def test_overrides_replace_values_and_keep_comments():
+def test_overrides_replace_values_and_no_override_keeps_the_text():
     c = case.load(
         ROUGH, ["fluid.viscosity=0.003", "output.fields=['pressure']", "time.travel = 2", "title=Mine"]
     )
     assert (c.fluid.viscosity, c.output.fields, c.time.travel, c.title) == (0.003, ["pressure"], 2, "Mine")
     assert tomllib.loads(c.text)["output"]["fields"] == ["pressure"]
-    assert "# Pa s at ambient pressure" in c.text
+    assert case.load(ROUGH).text == ROUGH.read_text()
 
 
 def test_overridden_text_loads_to_the_same_case(tmp_path):
@@ -159,7 +159,7 @@ def test_all_faults_of_a_case_are_reported_together():
         ("fluid.lambda_=3e-9", ["fluid.lambda_ = 3e-09: ", '"lambda"?']),
         ("motion.entrainment_speed=0", ["motion.entrainment_speed = 0: ", ">= 1e-09 and <= 1000 [m/s]"]),
         ("mesh.points_per_half_width=200.5", ["mesh.points_per_half_width = 200.5: ", ">= 4"]),
-        ("mesh.points_per_half_width=90000", ["mesh.points_per_half_width = 90000: ", " 200000 nodes"]),
+        ("mesh.points_per_half_width=90000", ["mesh.points_per_half_width = 90000: ", " 200000 in all"]),
         ("mesh.inlet=-0.5", ["mesh.inlet = -0.5: ", "< -1 "]),
         ("mesh.points_per_half_with=100", ['did you mean "points_per_half_width"?']),
         ("output.fields=['presure']", ['output.fields = ["presure"]: ', '"pressure"']),

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from support import CASES
 
-from ehlpetsc.case.hints import nearest
-from ehlpetsc.case.loading import Case, load
+from ehlpetsc.case.loading import load
+from ehlpetsc.case.messages import nearest
+from ehlpetsc.case.tables import CASE
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.laws import viscosity
 
@@ -51,8 +52,8 @@ def test_values_not_off_by_a_power_of_ten_have_no_hint(value):
 
 
 def test_hints_name_existing_tables_and_keys():
-    assert nearest("movement", Case) == 'did you mean "motion"?'
-    assert nearest("oil", Case) == 'did you mean "fluid"?'
+    assert nearest("movement", CASE.keys) == 'did you mean "motion"?'
+    assert nearest("oil", CASE.keys) == 'did you mean "fluid"?'
 
 
 def test_decimal_comma_is_recognised(tmp_path):

@@ -5,8 +5,9 @@ import math
 import pytest
 from support.made_loads import Scene, write
 
+from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load, stored_case
-from ehlpetsc.case.tables.post import Post
+from ehlpetsc.case.tables.outputs import POST
 from ehlpetsc.errors import CaseError
 from ehlpetsc.materials import STEELS, flow_pressure, steel_of_hardness
 from ehlpetsc.post import Material
@@ -53,7 +54,7 @@ def test_both_curves_of_every_steel_agree_and_fit_the_schema(name):
     assert steel.cyclic_hardening == pytest.approx(steel.b / steel.c, rel=0.02)
     assert 1.5e9 < steel.yield_pressure < 6e9
     keys = ("fatigue_strength", "fatigue_ductility", "b", "c", "cyclic_hardening", "cyclic_strength")
-    Post(**{key: getattr(steel, key) for key in keys})
+    values_of(POST, {key: getattr(steel, key) for key in keys})
 
 
 def with_material(**keys):

@@ -117,7 +117,6 @@ def test_case_text_contains_its_table(with_table, tmp_path):
     for one, other in zip(alone.conditions, case.conditions, strict=True):
         np.testing.assert_array_equal(one, other)
     assert alone.fluid.viscosity == 0.004 and alone.contact.load == case.contact.load
-    assert "# m" in case.text  # comments of the file stay
 
 
 def test_columns_from_the_case_or_from_python():

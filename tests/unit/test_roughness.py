@@ -5,7 +5,8 @@ import pytest
 from support import CASES
 
 from ehlpetsc.case import loading as case
-from ehlpetsc.case.tables.surface import SurfaceProfile
+from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.entry_times import entry_times
@@ -311,11 +312,11 @@ def test_fraction_of_short_waves_is_that_of_the_variance():
 def test_constant_offset_is_removed_with_a_note(tmp_path):
     X, z, _ = read_profile(ALICONA)
     np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
-    spec = SurfaceProfile(file="p.csv", scale=0.5)
+    spec = values_of(PROFILE, {"file": "p.csv", "scale": 0.5})
     given = samples(tmp_path, spec)
     assert len(given.notes) == 1 and "height of 1 um " in given.notes[0]
     np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
-    assert samples(ALICONA.parent, SurfaceProfile(file=ALICONA.name)).notes == ()
+    assert samples(ALICONA.parent, values_of(PROFILE, {"file": ALICONA.name})).notes == ()
 
 
 def test_spikes_narrower_than_a_cell_are_a_warning():

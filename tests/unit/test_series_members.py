@@ -115,7 +115,7 @@ def test_complete_result_of_the_same_case_is_done(tmp_path, monkeypatch):
     make_result(member.output)
     assert member.state_of_files() == "waiting" and member.is_of_another_case()  # of another case
     with read_result(member.output) as result:
-        member.case._text = str(result.attrs["case"])
+        member.case = member.case.copy({"_text": str(result.attrs["case"])})
     assert not member.is_of_another_case()
     assert member.state_of_files() == "done"
     raw = bytearray(member.output.read_bytes())

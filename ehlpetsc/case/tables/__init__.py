@@ -1,5 +1,107 @@
-"""The tables of a case file: every key with its type, unit, bounds, default and meaning.
+"""The table of keys: every key of a case file with unit, bounds, choices, default, needs and meaning.
 
-Attribute names are the keys (`lambda` is `lambda_`). Bounds are wide enough for any machine element in SI
-units and narrow enough to detect a value in GPa, mm or um.
+Bounds are wide enough for any machine element in SI units and narrow enough to detect a value in GPa, mm, um.
 """
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ehlpetsc.case.tables.contact import CONTACT, WEAR
+from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
+from ehlpetsc.case.tables.oil import FLUID, HEAT
+from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
+from ehlpetsc.case.tables.surface import SURFACE
+from ehlpetsc.keys import Key, KeyTable, Refused, Values
+from ehlpetsc.toml_file import is_plain, toml_text
+
+TABLES = (
+    CONTACT,
+    FLUID,
+    MOTION,
+    MESH,
+    SURFACE,
+    TIME,
+    OPERATION,
+    GEARS,
+    WEAR,
+    HEAT,
+    OUTPUT,
+    POST,
+    LIFE,
+    SERIES,
+)
+
+
+class Case(Values):
+    """Case by tables, `case.fluid.viscosity`; a missing table is None.
+
+    `contact` and `motion` of variable conditions contain the reference state of the scales.
+    """
+
+    @property
+    def text(self) -> str:
+        """TOML text with the overrides, which in the same folder defines the same case."""
+        if self._text is None:  # generated when it is needed: members of a long series
+            self.__dict__["_text"] = toml_text(self._tables)
+        return self._text
+
+    @property
+    def path(self) -> Path:
+        """Path of the case file, in whose folder profile files are."""
+        return self._path
+
+    @property
+    def conditions(self) -> Any:
+        """Load, radius and speeds over time: a `physics.conditions_table.ConditionsTable`; None: constant."""
+        return self._conditions
+
+
+def _petsc_options(case: Case) -> dict[str, dict[str, str]]:
+    """Options as texts, as PETSc requires; true is an option without a value, false none."""
+    options = {}
+    for name, value in case.petsc.items():
+        number = isinstance(value, int | float) and abs(value) < 1e300
+        if not name or name.startswith("-") or not is_plain(name) or not (number or _is_text(value)):
+            raise Refused(key="petsc")
+        if value is not False:
+            options[name] = value if isinstance(value, str) else "" if value is True else repr(value)
+    return {"petsc": options}
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str) and is_plain(value)
+
+
+CASE = KeyTable(
+    "",
+    "keys at the top",
+    {"title": Key("one line for the result file and its pictures", str, required=True, max_items=1000)}
+    | {table.name: table.key for table in TABLES}
+    | {
+        "petsc": Key(
+            "PETSc options without the dash: a text, a number, true (no value) or false (not set)",
+            dict,
+            default={},
+        )
+    },
+    values=Case,
+    complete=_petsc_options,
+)
+
+
+def table_of(name: str) -> KeyTable | None:
+    """Table by its dotted name, "" for the top."""
+    table: KeyTable | None = CASE
+    for part in filter(None, name.split(".")):
+        key = table.keys.get(part) if table else None
+        table = key.table if key else None
+    return table
+
+
+def key_of(name: str) -> Key | None:
+    """Key by its dotted name."""
+    above, _, last = str(name).rpartition(".")
+    table = table_of(above)
+    return table.keys.get(last) if table else None

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.case.derived.solids import fatigue_constants, named_steels
 from ehlpetsc.errors import PostError
+from ehlpetsc.materials import fatigue_constants, named_steels
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
 
@@ -52,7 +52,7 @@ def read_settings(case):
         return {name: value for name, value in values.items() if value is not None}
 
     materials = [
-        Material(modulus, ratio, **fatigue_constants(steel, post.dict()))
+        Material(modulus, ratio, **fatigue_constants(steel, post.as_dict()))
         for modulus, ratio, steel in zip(
             contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True
         )

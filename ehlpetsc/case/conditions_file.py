@@ -1,11 +1,14 @@
 """CSV tables of conditions over time, read by the names of the columns."""
 
-import re
+from __future__ import annotations
 
-from ehlpetsc.case.tables.operation import COLUMNS
+import re
+from pathlib import Path
+
+from ehlpetsc.case.tables.motion import COLUMNS, OPERATION
 from ehlpetsc.units import UnitFault, factor
 
-SI = {"time": "s", "load": "N/m", "radius": "m", "speed_1": "m/s", "speed_2": "m/s"}
+SI = {key: OPERATION.keys[key].unit for key in COLUMNS}
 UNIT = re.compile(r"(?P<name>[^\[(]*)(?:[\[(](?P<unit>[^\])]*)[\])].*)?.*", re.DOTALL)
 MAX_TABLE_BYTES = 2**26
 
@@ -14,19 +17,10 @@ class TableFault(Exception):
     """A table of conditions cannot be used; the message names the reason and the line."""
 
 
-def read_table(path):
-    """Columns of a CSV file.
+def read_table(path: Path) -> tuple[dict[str, list[float]], list[int]]:
+    """Columns of a CSV file in SI units, by key of `COLUMNS`, and the line number of each row.
 
-    Returns
-    -------
-    columns : dict of str to list of float
-        By key of `COLUMNS`.
-    lines : list of int
-        Number of each row's line in the file.
-
-    Raises
-    ------
-    TableFault
+    Raises `TableFault`.
     """
     rows = [(k, line.partition("#")[0].strip()) for k, line in enumerate(_text(path).splitlines(), 1)]
     rows = [(k, line) for k, line in rows if line]
@@ -52,12 +46,12 @@ def read_table(path):
     return {key: [row[k] * factors.get(key, 1.0) for row in columns] for k, key in enumerate(keys)}, lines
 
 
-def shown(line):
+def shown(line: str) -> str:
     """Line of a file, shortened for messages."""
     return line if len(line) <= 40 else line[:37] + "..."
 
 
-def _text(path):
+def _text(path: Path) -> str:
     try:
         if path.stat().st_size > MAX_TABLE_BYTES:
             raise TableFault(f"larger than {MAX_TABLE_BYTES >> 20} MB; allowed: a table of conditions")
@@ -70,7 +64,7 @@ def _text(path):
         raise TableFault(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
 
-def _numbers(line, separator):
+def _numbers(line: str, separator: str | None) -> list[float]:
     """Numbers of a line; empty if an entry is not a number."""
     words = [word.strip() for word in line.split(separator)]
     if separator == ";":
@@ -81,7 +75,7 @@ def _numbers(line, separator):
         return []
 
 
-def _factors(number, line, separator):
+def _factors(number: int, line: str, separator: str | None) -> dict[str, float]:
     """Factor to SI units of each column named in a line, by key; units are in brackets: ``time [us]``."""
     key_by_name = {name: key for key, names in COLUMNS.items() for name in names}
     factors = {}

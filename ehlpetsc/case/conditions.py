@@ -4,16 +4,19 @@ A case with either has a reference state, from which its scales come: the load a
 contact and the fastest entrainment. It is filled in under the keys of constant cases.
 """
 
+from __future__ import annotations
+
 import math
+from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.case.derived.conditions_file import TableFault, read_table
-from ehlpetsc.case.schema.validation import ValidationError
-from ehlpetsc.case.tables.gears import Gears
-from ehlpetsc.case.tables.operation import COLUMNS
-from ehlpetsc.errors import CaseError
-from ehlpetsc.gears import path_of_contact
+from ehlpetsc.case.checking import Tables, check, is_number
+from ehlpetsc.case.conditions_file import TableFault, read_table
+from ehlpetsc.case.tables import Case
+from ehlpetsc.case.tables.motion import COLUMNS, GEARS
+from ehlpetsc.gears.path import Path as ContactPath
+from ehlpetsc.gears.path import path_of_contact
 from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
@@ -22,34 +25,17 @@ PLACEHOLDER = {"radius": 1.0, "load": 1.0}
 MOTION = {"entrainment_speed": 1.0}
 
 
-def conditions_of(tables, folder):
-    """Conditions over time from the tables of a case.
+def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
+    """Conditions over time from the unchecked tables of a case in a folder; raises `TableFault`.
 
-    Parameters
-    ----------
-    tables : dict
-        Of the case, unchecked.
-    folder : pathlib.Path
-        Of the case file.
-
-    Returns
-    -------
-    ConditionsTable or None
-        None: constant conditions, or a table with faults that the schema reports.
-
-    Raises
-    ------
-    TableFault
+    None: constant conditions, or a table with faults that the check of the keys reports.
     """
     gears, operation = tables.get("gears"), tables.get("operation")
     if gears is not None and isinstance(operation, dict):
         raise TableFault("[gears] gives the same conditions; allowed: one of both")
     if isinstance(gears, dict):
-        try:
-            Gears(**gears)
-            return of_gears(path_of_contact(gears))
-        except (ValidationError, CaseError):  # reported by the schema
-            return None
+        values, _ = check(GEARS, gears)
+        return of_gears(path_of_contact(values.pair)) if values else None
     if not isinstance(operation, dict):
         return None
     file = operation.get("file")
@@ -61,32 +47,17 @@ def conditions_of(tables, folder):
     return _checked(columns, lines, tables, operation.get("repeat", 1))
 
 
-def with_columns(tables, folder):
-    """Tables of a case with the columns of the file of `[operation]` in place of its name, as in results.
-
-    Returns
-    -------
-    tables : dict
-    settings : list of (list of str, value)
-        The changes; a value None removes the key.
-    """
+def with_columns(tables: Tables, folder: Path) -> Tables:
+    """Tables of a case with the columns of the file of `[operation]` in place of its name, as in results."""
     operation = tables.get("operation", {})
     if "file" not in operation:
-        return tables, []
+        return tables
     columns = read_table(folder / operation["file"])[0]
-    other_keys = {key: value for key, value in operation.items() if key != "file"}
-    settings = [(["operation", "file"], None)]
-    settings += [(["operation", key], values) for key, values in columns.items()]
-    return tables | {"operation": other_keys | columns}, settings
+    return tables | {"operation": {k: v for k, v in operation.items() if k != "file"} | columns}
 
 
-def of_gears(path):
-    """Conditions along a path of contact, where teeth carry at least `MIN_LOAD_FRACTION` of the load.
-
-    Parameters
-    ----------
-    path : ehlpetsc.gears.Path
-    """
+def of_gears(path: ContactPath) -> ConditionsTable:
+    """Conditions along a path of contact, where teeth carry at least `MIN_LOAD_FRACTION` of the load."""
     min_load = MIN_LOAD_FRACTION * path.load.max()
     carries = np.flatnonzero(path.load >= min_load)
     first, last = carries[0], carries[-1]
@@ -110,7 +81,9 @@ def of_gears(path):
     )
 
 
-def _checked(columns, lines, tables, repeat):
+def _checked(
+    columns: Tables, lines: list[int] | None, tables: Tables, repeat: object
+) -> ConditionsTable | None:
     """Conditions of the columns; for missing columns the constants of the case."""
     if "time" not in columns:
         raise TableFault("no column time; allowed: one, increasing")
@@ -120,13 +93,13 @@ def _checked(columns, lines, tables, repeat):
         values = {key: np.array(column, float) for key, column in columns.items()}
     except (TypeError, ValueError):
         return None
-    if any(column.ndim == 0 for column in values.values()):  # a number: reported by the schema
+    if any(column.ndim == 0 for column in values.values()):  # a number: reported by the check of the keys
         return None
     count = len(values["time"])
     if count < 2 or any(v.ndim != 1 or len(v) != count for v in values.values()):
         raise TableFault("allowed: columns of the same length, two times at least")
 
-    def where(k):
+    def where(k: int) -> str:
         return f"line {lines[k]}" if lines else f"entry {k + 1}"
 
     for key, column in values.items():
@@ -158,49 +131,36 @@ def _checked(columns, lines, tables, repeat):
     )
 
 
-def _constants(tables):
+def _constants(tables: Tables) -> dict[str, float]:
     """Constant conditions in the other tables of a case."""
     constants = {}
     contact, motion = tables.get("contact"), tables.get("motion")
     for key in ("load", "radius"):
         value = contact.get(key) if isinstance(contact, dict) else None
-        if _is_number(value) and value > 0.0:
+        if is_number(value) and value > 0.0:
             constants[key] = float(value)
-    if isinstance(motion, dict) and _is_number(motion.get("entrainment_speed")):
+    if isinstance(motion, dict) and is_number(motion.get("entrainment_speed")):
         u, xi = motion["entrainment_speed"], motion.get("slide_roll_ratio", 0.0)
-        if _is_number(xi):
+        if is_number(xi):
             constants["speed_1"], constants["speed_2"] = u * (1.0 + xi / 2.0), u * (1.0 - xi / 2.0)
     return constants
 
 
-def _is_number(value):
-    return isinstance(value, int | float) and not isinstance(value, bool) and np.isfinite(value)
-
-
-def _sources(missing):
+def _sources(missing: list[str]) -> str:
     keys = {"load": "contact.load", "radius": "contact.radius"}
     names = {keys.get(key, "motion") for key in missing}
     return f"neither {', '.join(missing)} nor {', '.join(sorted(names))}"
 
 
-def with_reference_state(tables, table):
+def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Tables:
     """Tables of a case with the reference state of its conditions filled in.
 
-    Parameters
-    ----------
-    tables : dict
-    table : ConditionsTable or None
-        None: constant conditions; if they are faulty, placeholders prevent reports of keys that follow
-        from the table.
-
-    Returns
-    -------
-    dict
+    Without a table, as it is faulty, placeholders prevent reports of keys that follow from it.
     """
     named = ("contact", "motion", "time")
     if not ("gears" in tables or "operation" in tables):
         return tables
-    if any(not isinstance(tables.get(name, {}), dict) for name in named):  # reported by the schema
+    if any(not isinstance(tables.get(name, {}), dict) for name in named):  # reported by the check of the keys
         return tables
     contact, motion, time = (tables.get(name, {}) for name in named)
     if table is None:
@@ -220,18 +180,8 @@ def with_reference_state(tables, table):
     return tables | {"contact": contact, "motion": motion, "time": time}
 
 
-def reversal_faults(case, table):
-    """Fault of a domain that is not symmetric although the entrainment speed becomes negative.
-
-    Parameters
-    ----------
-    case : ehlpetsc.case.loading.Case
-    table : ConditionsTable
-
-    Returns
-    -------
-    list of str
-    """
+def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
+    """Fault of a domain that is not symmetric although the entrainment speed becomes negative."""
     mesh = case.mesh
     last = mesh.inlet + (mesh.nodes - 1) / mesh.points_per_half_width
     if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:

@@ -1,0 +1,245 @@
+"""Tables of a case file against their keys: values with units converted, checked values, and faults."""
+
+from __future__ import annotations
+
+import keyword
+import math
+from collections.abc import Collection, Iterator
+from typing import Any, NamedTuple
+
+from ehlpetsc.case.messages import allowed, show, slip, unknown
+from ehlpetsc.case.tables import CASE, key_of
+from ehlpetsc.errors import CaseError
+from ehlpetsc.keys import Key, KeyTable, Refused
+from ehlpetsc.toml_file import is_plain
+from ehlpetsc.units import UnitFault, converted
+
+NUMBERS_ONLY = {"half widths", "boundary films"}  # units that are no units of measurement
+MAX_FLOAT = 1e308
+
+Tables = dict[str, Any]
+
+
+class Fault(NamedTuple):
+    """A fault of the key at a place; a consequence disappears with the other faults."""
+
+    place: str
+    text: str
+    is_consequence: bool = False
+
+
+class _Wrong(Exception):
+    """A value is not an allowed one."""
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a finite number of TOML: an integer is one, true and false are not."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and -MAX_FLOAT < value < MAX_FLOAT
+
+
+def in_si(data: Tables, table: KeyTable = CASE, where: str = "") -> list[Fault]:
+    """Replace the texts with a unit in tables by numbers in SI units; returns the faults."""
+    faults = []
+    for holder, name, key, place in _texts(data, table, where):
+        try:
+            holder[name] = converted(holder[name], key.unit)
+        except UnitFault as fault:
+            faults.append(Fault(place, f"{place} = {fault}"))
+    return faults
+
+
+def _texts(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key, str]]:
+    """Texts in place of numbers: their table or list, their key in it, the key of the case, the place."""
+    for name, key in table.keys.items():
+        value = data.get(name)
+        inner = _table_of(key, value)
+        if inner and isinstance(value, dict):
+            yield from _texts(value, inner, f"{where}{name}.")
+        elif _takes_units(key) and _has_text(value):
+            yield data, name, key, where + name
+    series = data.get("series") if not where else None
+    if isinstance(series, dict):
+        yield from _series_texts(series)
+
+
+def _series_texts(series: Tables) -> Iterator[tuple[Any, Any, Key, str]]:
+    values = series.get("values")
+    if "key" in series:
+        key = key_of(series["key"])
+        if key and _takes_units(key) and _has_text(values):
+            yield series, "values", key, "series.values"
+        return
+    keys = series.get("keys")
+    for number, name in enumerate(keys if isinstance(keys, list) else ()):
+        key = key_of(name)
+        if key and _takes_units(key) and isinstance(values, list) and _has_text(values[number : number + 1]):
+            yield values, number, key, f"series.values.{number}"
+
+
+def _takes_units(key: Key) -> bool:
+    return key.kind is float and key.unit not in NUMBERS_ONLY
+
+
+def _has_text(value: object, depth: int = 2) -> bool:
+    if isinstance(value, list) and depth:
+        return any(_has_text(item, depth - 1) for item in value)
+    return isinstance(value, str)
+
+
+def check(
+    table: KeyTable,
+    data: Tables,
+    where: str = "",
+    root: Tables | None = None,
+    known: Collection[str] = (),
+) -> tuple[Any, list[Fault]]:
+    """Checked values of a table, None with faults, and its faults.
+
+    Parameters
+    ----------
+    where
+        Dotted name of the table with a dot at its end, "" for the whole case.
+    root
+        Tables of the whole case, by default `data`.
+    known
+        Places of faults that have been found already.
+    """
+    root = data if root is None else root
+    values: Tables = {}
+    faults: list[Fault] = []
+    for name, key in table.keys.items():
+        place, value = where + name, data.get(name)
+        if place in known:
+            faults.append(Fault(place, ""))
+        elif value is None and not (key.table and key.table.always):
+            faults += _missing(place, key, data, root)
+            values[_attribute(name)] = key.default
+        else:
+            given = {} if value is None else value
+            values[_attribute(name)], found = _checked(place, key, given, data, root, known)
+            faults += found
+    for name in data:
+        if name not in table.keys:
+            faults.append(Fault(f"{where}{name}", unknown(where, str(name), data[name], table.keys)))
+    if faults:
+        return None, [fault for fault in faults if fault.text]
+    result = table.values(values)
+    try:
+        return (result.copy(table.complete(result)) if table.complete else result), []
+    except Refused as refused:
+        return None, [_refused(table, data, where, refused)]
+
+
+def values_of(table: KeyTable, data: Tables) -> Any:
+    """Checked values of a single table; raises `CaseError`."""
+    values, faults = check(table, data, f"{table.name}." if table.name else "")
+    if faults:
+        raise CaseError([fault.text for fault in faults])
+    return values
+
+
+def _missing(place: str, key: Key, data: Tables, root: Tables) -> list[Fault]:
+    if not key.required:
+        return []
+    given = [name for name in key.replaced_by if (root.get(name[1:-1]) if name[0] == "[" else data.get(name))]
+    text = f"{place} is missing" + (f", and does not follow from {given[0]}" if given else "")
+    return [Fault(place, f"{text}; allowed: {allowed(key)}", bool(given))]
+
+
+def _checked(
+    place: str, key: Key, value: Any, data: Tables, root: Tables, known: Collection[str]
+) -> tuple[Any, list[Fault]]:
+    """Value of a key and its faults."""
+    inner = _table_of(key, value)
+    if inner and isinstance(value, dict):
+        unmet = [need for need in inner.needs if not _holds(need, root)]
+        result, faults = check(inner, value, f"{place}.", root, known)
+        needs = [Fault(place, f"{place}: needs {' and '.join(unmet)}")] if unmet else []
+        return result, needs + faults
+    try:
+        result = _value(key, value)
+    except _Wrong:
+        if isinstance(value, dict) and key.kind is not dict:
+            return None, [Fault(place, f"{place}: a table here; allowed: {allowed(key)}")]
+        return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}{slip(key, value)}")]
+    limit = data.get(key.below)
+    if key.below and is_number(limit) and result >= limit:
+        return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}")]
+    unmet = [need for need in key.needs if result != key.default and not _holds(need, root)]
+    if unmet:
+        return None, [Fault(place, f"{place} = {show(value)}: needs {' and '.join(unmet)} ({key.text})")]
+    return result, []
+
+
+def _table_of(key: Key, value: Any) -> KeyTable | None:
+    """Table of the value of a key; of several that of its kind."""
+    if key.variants and isinstance(value, dict):
+        return key.variants.get(str(value.get("kind")))
+    return key.table
+
+
+def _value(key: Key, value: Any) -> Any:
+    """Value with the type of the key."""
+    if key.table or key.variants or key.kind is dict:
+        if key.kind is not dict or key.table or key.variants or not isinstance(value, dict):
+            raise _Wrong
+        return dict(value)
+    if key.many == "both" and not isinstance(value, list | tuple):
+        value = [value, value]
+    if not key.many:
+        return _item(key, value)
+    shortest, longest = (2, 2) if key.many in ("both", "two") else (key.min_items, key.max_items or math.inf)
+    if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
+        raise _Wrong
+    items = [_item(key, item) for item in value]
+    return items if key.many == "list" else tuple(items)
+
+
+def _item(key: Key, value: Any) -> Any:
+    if key.kind is object:
+        return value
+    if key.kind in (int, float):
+        bounds = (key.ge is None or value >= key.ge) if is_number(value) else False
+        if not bounds or key.kind is int and not isinstance(value, int):
+            raise _Wrong
+        if key.gt is not None and value <= key.gt or key.lt is not None and value >= key.lt:
+            raise _Wrong
+        if key.le is not None and value > key.le:
+            raise _Wrong
+        return key.kind(value)
+    if not isinstance(value, key.kind) or key.choices and value not in key.choices:
+        raise _Wrong
+    longest = key.max_items if key.max_items and not key.many else math.inf
+    if key.kind is str and not (is_plain(value) and 0 < len(value) <= longest):
+        raise _Wrong
+    return value
+
+
+def _holds(need: str, root: Tables) -> bool:
+    """Whether a need of a key is met by the tables of a case, see :class:`ehlpetsc.keys.Key`."""
+    place, equals, wanted = (part.strip() for part in need.partition("="))
+    left_out = place.endswith(" left out")
+    place = place.removesuffix(" left out").strip("[]")
+    value: Any = root
+    for name in place.split("."):
+        value = value.get(name) if isinstance(value, dict) else None
+    if equals:
+        key = key_of(place)
+        return (key.default if value is None and key else value) == wanted.strip('"')
+    return (value is None) == left_out
+
+
+def _refused(table: KeyTable, data: Tables, where: str, refused: Refused) -> Fault:
+    if not refused.key:
+        place = where.rstrip(".") or "case"
+        return Fault(place, f"{place}: {refused}")
+    place, key = where + refused.key, table.keys[refused.key]
+    if data.get(refused.key) is None:
+        return Fault(place, f"{place} is missing; allowed: {allowed(key)}")
+    reason = str(refused) or f"allowed: {allowed(key)}"
+    return Fault(place, f"{place} = {show(data[refused.key])}: {reason}")
+
+
+def _attribute(name: str) -> str:
+    """Attribute of a key: `lambda_`, `body_1`."""
+    return f"body_{name}" if name.isdigit() else f"{name}_" if keyword.iskeyword(name) else name

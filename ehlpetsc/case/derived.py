@@ -1,0 +1,118 @@
+"""Values of a case that follow from named steels, oil grades and the short waves of its profiles."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from ehlpetsc.case.checking import Fault, Tables, is_number, values_of
+from ehlpetsc.case.tables.surface import PROFILE
+from ehlpetsc.errors import CaseError, ProfileError
+from ehlpetsc.keys import Values
+from ehlpetsc.materials import OILS, Steel, fatigue_constants, flow_pressure, named_steels
+from ehlpetsc.physics.laws import gold_pressure_viscosity, walther, walther_constants
+from ehlpetsc.surfaces.samples import samples
+
+BY_MATERIAL = "material"
+ELASTIC = ("youngs_modulus", "poisson_ratio")
+MEASURED_KEY = "asperity_height"
+DIGITS = 6  # of a measured asperity height
+MM2 = 1e6  # mm^2/s in m^2/s
+
+
+def with_derived(tables: Tables) -> Tables:
+    """Tables of a case with the constants of its steels and of its oil grade.
+
+    Tables with faults, which are found by the check of the keys, do not change.
+    """
+    return _with_grade(_with_material(tables))
+
+
+def _with_material(tables: Tables) -> Tables:
+    """Elastic constants of the steels, and their flow pressure for ``yield_pressure = "material"``."""
+    contact, post = tables.get("contact"), tables.get("post", {})
+    if not isinstance(contact, dict) or contact.get("material") is None:
+        return tables
+    try:
+        steels = named_steels(contact["material"])
+    except (KeyError, TypeError, ValueError):
+        return tables
+    filled = {key: [getattr(steel, key) for steel in steels] for key in ELASTIC} | contact
+    if contact.get("yield_pressure") == BY_MATERIAL:
+        try:
+            filled["yield_pressure"] = [_flow_pressure(steel, post) for steel in steels]
+        except (AttributeError, TypeError, ValueError, ZeroDivisionError, OverflowError):
+            return tables
+    return tables | {"contact": filled}
+
+
+def _flow_pressure(steel: Steel, post: Tables) -> float:
+    constants = fatigue_constants(steel, post)
+    return float(flow_pressure(constants["cyclic_strength"], constants["cyclic_hardening"]))
+
+
+def _with_grade(tables: Tables) -> Tables:
+    """Viscosity by Walther's equation (ASTM D341) times the density, and alpha by Gold et al. (2001)."""
+    fluid, heat = tables.get("fluid"), tables.get("heat", {})
+    if not isinstance(fluid, dict) or not isinstance(heat, dict):
+        return tables
+    grade, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
+    if isinstance(grade, str) and grade in OILS:
+        oil = OILS[grade]
+        density = oil.density_at(temperature) if is_number(temperature) else oil.density
+        grade = {"v40": oil.v40, "v100": oil.v100, "density": density}
+        fluid = fluid | {"grade": grade}
+        tables = tables | {"fluid": fluid}
+    if not isinstance(grade, dict):
+        return tables
+    v40, v100, density = (grade.get(key) for key in ("v40", "v100", "density"))
+    if not all(is_number(value) for value in (v40, v100, density, temperature)):
+        return tables
+    if not (2e-6 < v100 < v40 < 1.0 and 200.0 < temperature < 700.0 and density > 0.0):
+        return tables
+    nu = float(walther(temperature, *walther_constants(v40, v100))[0])
+    properties = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}
+    tables = tables | {"fluid": properties | fluid}
+    return tables | {"heat": {"oil_density": density} | heat} if heat else tables
+
+
+def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:
+    """Temperature at which `viscosity` holds [K], None if there is none."""
+    bulk = heat.get("bulk_temperature")
+    if isinstance(bulk, list):
+        bulk = 0.5 * sum(bulk) if len(bulk) == 2 and all(map(is_number, bulk)) else None
+    given = heat.get("reference_temperature"), fluid.get("temperature"), heat.get("inlet_temperature"), bulk
+    return next((value for value in given if value is not None), None)
+
+
+def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
+    r"""Replace ``asperity_height = "measured"`` in the tables of a case by a number; returns the faults.
+
+    .. math:: \sigma^2=\sum_{surfaces}\overline{(z-z_S)^2},
+
+    z_S the profile after the S-filter (`short_cutoff`), both with the scale of the case.
+    """
+    contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
+    if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
+        return []
+    series = data["series"] if isinstance(data.get("series"), dict) else {}
+    swept = [series.get("key"), *(series.get("keys") or [])]
+    if any(isinstance(key, str) and key.startswith("surface.") for key in swept):
+        return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
+    surface = data["surface"] if isinstance(data.get("surface"), dict) else {}
+    tables = [table for table in surface.values() if isinstance(table, dict) and "short_cutoff" in table]
+    if not tables:
+        return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
+    try:
+        removed = [_removed(folder, values_of(PROFILE, table)) for table in tables]
+    except (ProfileError, CaseError):  # reported by the checks of the profiles
+        contact[MEASURED_KEY] = None
+        return []
+    contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
+    return []
+
+
+def _removed(folder: Path, profile: Values) -> float:
+    """Rms height [m] that the short cut-off removes from one profile."""
+    before = samples(folder, profile.copy(update={"short_cutoff": None}))
+    return float((before.z - samples(folder, profile).z).std())

@@ -1,1 +1,0 @@
-"""Schema of a case file: base class of its tables, its validation library, equations of its keys."""
