@@ -106,25 +106,9 @@ def test_closed_pipe_does_not_end_a_run(tmp_path):
     errors = process.stderr.read()
     process.wait(60)
     assert process.returncode == 0
-    assert is_line_with(errors, "standard output", "Broken pipe")
+    assert errors == ""
     with read_result(tmp_path / "table1_smooth.h5") as result:
         assert result.attrs["status"] == "done"
-
-
-@pytest.mark.parametrize("redirection", [">/dev/full 2>&1", ">&- 2>&-", "<&- >&-"])
-def test_full_or_closed_output_does_not_end_a_run(tmp_path, redirection):
-    line = " ".join(map(str, command(*STEADY, "-snes_monitor"))) + f" {redirection}"
-    done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert len(done.stderr.splitlines()) <= 1 and "Traceback" not in done.stderr
-    with read_result(tmp_path / "table1_smooth.h5") as result:
-        assert result.attrs["status"] == "done"
-
-
-def test_keys_on_a_full_device_end_with_status_2(tmp_path):
-    line = " ".join(command("keys")) + " >/dev/full"
-    done = subprocess.run(["sh", "-c", line], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True)
-    assert done.returncode == 2 and "No space left on device" in done.stderr
 
 
 def test_removed_working_folder_is_refused(tmp_path):

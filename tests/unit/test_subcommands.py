@@ -86,12 +86,6 @@ def test_texts_of_cases_need_neither_petsc_nor_mpi(words):
     assert done.returncode == 0 and done.stdout, done.stderr
 
 
-def test_run_script_has_every_command():
-    text = (ROOT / "run_mpi.sh").read_text()
-    (line,) = [line for line in text.splitlines() if line.strip().startswith("plot | post |")]
-    assert set(COMMANDS) <= {word.strip(" )") for word in line.split("|")}
-
-
 def test_means_percentiles_and_extremes_of_a_run(tmp_path, capsys):
     paths = [make_result(tmp_path / f"{u:g}.h5", speed=u, rough=True) for u in (50.0, 40.0)]
     for path in paths:
