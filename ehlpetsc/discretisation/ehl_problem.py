@@ -49,7 +49,7 @@ class StepInputs:
         Length of the step [s]; None: steady.
     contact : contact.model.ContactModel or None
         Contact model of the solve; None: that of the problem.
-    heat : physics.heat.film.FilmHeat or None
+    heat : effects.heat.film_law.FilmHeat or None
         Data of the film's temperature; None: isothermal.
     """
 

@@ -108,14 +108,14 @@ class Reynolds:
     def properties(self, q, h, inputs, again=False):
         """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
 
-        `again` as of :func:`.heat.film.heated_nodal`.
+        `again` as of :func:`.film.heated_nodal`.
         """
         q, h, fluid = q[self.input_nodes], h[self.input_nodes], inputs.fluid
         s, of_density = self.scales, tuple(density_law(fluid))
         rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
         at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
-            from ehlpetsc.discretisation.heat.film import heated_nodal
+            from ehlpetsc.effects.heat.film import heated_nodal
 
             law, *arrays = inputs.heat.at_nodes(self.nodes)
             heated_nodal(q, h, of_density, *units, tuple(law), *arrays, again, at)

@@ -3,7 +3,7 @@
 An effect is one module with a class derived from :class:`.effect.Effect` and one entry in `EFFECTS`.
 """
 
-from ehlpetsc.effects.heat import Heat
+from ehlpetsc.effects.heat.effect import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
 from ehlpetsc.effects.roughness import RoughSurfaces
 from ehlpetsc.effects.wear import Wear

@@ -23,7 +23,7 @@ class Scene:
     positions : surfaces.roughness.SurfacePositions
         Positions of both surfaces at the beginning of the run.
     heat_transfer : callable or None
-        Returns the `discretisation.heat.step.HeatStep` of a scene; None if no solution is computed.
+        Returns the `effects.heat.step.HeatStep` of a scene; None if no solution is computed.
     """
 
     case: object

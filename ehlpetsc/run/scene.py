@@ -25,6 +25,6 @@ def scene_of(case, scales, operation, pass_number):
 
 def _heat_transfer(scene):
     """Time stepping of the temperatures of a scene."""
-    from ehlpetsc.discretisation.heat.step import HeatStep
+    from ehlpetsc.effects.heat.step import HeatStep
 
     return HeatStep(scene)

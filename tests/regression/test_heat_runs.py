@@ -72,4 +72,4 @@ def test_isothermal_run_imports_no_heat_module(name, heated, tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
-    assert ("ehlpetsc.discretisation.heat.step" in done.stdout.decode()) == heated
+    assert ("ehlpetsc.effects.heat.step" in done.stdout.decode()) == heated

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.exact_solutions import moving_band
 
-from ehlpetsc.discretisation.heat.bodies import Body
-from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature
-from ehlpetsc.physics.heat.half_space_conduction import StepWeights, diffuse, exponentials
+from ehlpetsc.effects.heat.bodies import Body
+from ehlpetsc.effects.heat.body_heat import Solid
+from ehlpetsc.physics.flash_temperature import blok_flash_temperature
+from ehlpetsc.effects.heat.half_space_conduction import StepWeights, diffuse, exponentials
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 FLUX = 1e9  # W/m^2

@@ -10,8 +10,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
 from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.physics.heat.film import FilmHeat, FilmLaw, film_temperature
-from ehlpetsc.physics.heat.laws import film_law
+from ehlpetsc.effects.heat.film_law import FilmHeat, FilmLaw, film_temperature
+from ehlpetsc.effects.heat.laws import film_law
 from ehlpetsc.physics.laws import EXPONENTIAL, ROELANDS, padded
 from ehlpetsc.physics.scales import Scales
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.discretisation.heat.transport import explicit_transport, heat_taken, transport
-from ehlpetsc.physics.heat.film import FilmHeat, FilmLaw
+from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
+from ehlpetsc.effects.heat.film_law import FilmHeat, FilmLaw
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
 LAW = FilmLaw((0.0, 1.0, 1.0), (0, 0.0, 0.0, 300.0), 1.0, np.inf, np.inf, 0.14, 0.0, 0.0)

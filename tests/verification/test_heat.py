@@ -6,8 +6,8 @@ from support import CASES
 from support.exact_solutions import moving_band
 
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.heat.flash_temperature import blok_flash_temperature
+from ehlpetsc.effects.heat.body_heat import Solid
+from ehlpetsc.physics.flash_temperature import blok_flash_temperature
 from ehlpetsc.run.simulation import Simulation
 
 BULK = 363.0

@@ -5,7 +5,7 @@ The messages follow from the totals over all steps and are also stored in the re
 
 import numpy as np
 
-from ehlpetsc.physics.heat.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
+from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.heat.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
+from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
 from ehlpetsc.physics.laws import LAWS
 from ehlpetsc.run.preview.domain import domain_warnings
 from ehlpetsc.surfaces.entry_times import entry_warnings

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.heat.body_heat import BodyHeat
-from ehlpetsc.physics.heat.half_space_conduction import (
+from ehlpetsc.effects.heat.body_heat import BodyHeat
+from ehlpetsc.effects.heat.half_space_conduction import (
     StepWeights,
     add_flux,
     advance_terms,
@@ -48,7 +48,7 @@ class Body:
 
     Parameters
     ----------
-    solid : physics.heat.body_heat.Solid
+    solid : effects.heat.body_heat.Solid
     speed : float
         Of its surface at the start [m/s].
     scales : physics.scales.Scales

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.physics.heat.body_heat import Solid
+from ehlpetsc.effects.heat.body_heat import Solid
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.rheology import wall_shear
 

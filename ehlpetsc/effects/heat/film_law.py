@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import inlined
-from ehlpetsc.physics.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
-from ehlpetsc.physics.heat.shear import shear_stress
+from ehlpetsc.effects.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
+from ehlpetsc.effects.heat.shear import shear_stress
 from ehlpetsc.physics.laws import ln_viscosity
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
@@ -198,7 +198,7 @@ class FilmHeat(NamedTuple):
         Temperature to start from [K]; that of the last evaluation.
     last_evaluation : ndarray, shape (4, nx)
         Unknown of the Reynolds equation and film, not a number before the first evaluation; fluidity and
-        thermal factor of :func:`.discretisation.heat.film.heated_nodal`.
+        thermal factor of :func:`.effects.film.heated_nodal`.
     """
 
     law: FilmLaw

@@ -1,6 +1,6 @@
 r"""Heat in the film: its temperature in the Reynolds equation, and the dissipation of a solution.
 
-In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.physics.heat.film`, whose derivatives are
+In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.effects.heat.film_law`, whose derivatives are
 part of those of the viscosity. Transport along the film: :mod:`.transport`.
 """
 
@@ -20,7 +20,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
     positive_extrapolation,
 )
-from ehlpetsc.physics.heat.film import A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import A, B, FilmLaw, film_temperature, fixed_at
 from ehlpetsc.physics.laws import ln_viscosity
 from ehlpetsc.physics.rheology import mobilities
 
@@ -34,7 +34,7 @@ def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, last_evalu
     q, h, density, p0, film, unit, at
         As of :func:`.reynolds.nodal`; at the node beyond the outlet the temperature is that of the last one.
     law, of_nodes, guess, last_evaluation
-        :class:`ehlpetsc.physics.heat.film.FilmHeat` of these nodes, `law` as a tuple: numba looks up the type
+        :class:`ehlpetsc.effects.heat.film_law.FilmHeat` of these nodes, `law` as a tuple: numba looks up the type
         of a named one anew in some calls, slowly. `guess` becomes their temperature.
     again : bool
         Whether nodes whose unknowns are those of the last evaluation get its viscosity, without derivatives.

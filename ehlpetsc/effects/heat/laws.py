@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.physics.heat.film import FilmLaw
+from ehlpetsc.effects.heat.film_law import FilmLaw
 from ehlpetsc.physics.laws import SLOTS, is_linear_in_temperature, viscosity_law
 
 

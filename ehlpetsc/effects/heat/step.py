@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
-from ehlpetsc.discretisation.heat.bodies import Body
-from ehlpetsc.discretisation.heat.film import faces
-from ehlpetsc.discretisation.heat.mixing import mixing
-from ehlpetsc.discretisation.heat.transport import Film, explicit_transport, heat_taken, transport
+from ehlpetsc.effects.heat.bodies import Body
+from ehlpetsc.effects.heat.film import faces
+from ehlpetsc.effects.heat.mixing import mixing
+from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.physics.heat.body_heat import Solid
-from ehlpetsc.physics.heat.film import R1, R2, SPREAD, W1, W2, FilmHeat, G
-from ehlpetsc.physics.heat.laws import film_law
+from ehlpetsc.effects.heat.body_heat import Solid
+from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, W1, W2, FilmHeat, G
+from ehlpetsc.effects.heat.laws import film_law
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat

@@ -1,7 +1,7 @@
 r"""Heat: temperatures of the film and of both surfaces, and the viscosity at them.
 
-Equations and the temperature of a node: :mod:`ehlpetsc.physics.heat.film`; conduction into the bodies:
-:mod:`ehlpetsc.physics.heat.half_space_conduction`. In the solve of a step the temperature of a node follows
+Equations and the temperature of a node: :mod:`ehlpetsc.effects.heat.film_law`; conduction into the bodies:
+:mod:`ehlpetsc.effects.heat.half_space_conduction`. In the solve of a step the temperature of a node follows
 from its pressure and film, with the response of both surfaces to the flux of the step; heat of the pressure
 flow and of rubbing solids, and the heat that the film carries along, are those of the last level there. Of
 the accepted solution all temperatures and fluxes are then computed with its own flow, so that the energy
@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.physics.heat.body_heat import BodyHeat
+from ehlpetsc.effects.heat.body_heat import BodyHeat
 from ehlpetsc.quantity import Field, StepScalar
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
@@ -33,7 +33,7 @@ class HeatRecord(NamedTuple):
     source
         Heat that does not depend on the film's temperature in a step [W/m^2].
     spread
-        Of :func:`ehlpetsc.physics.heat.film.shear_stress`.
+        Of :func:`ehlpetsc.effects.heat.film_law.shear_stress`.
     flow
         Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
     response_1, response_2
@@ -43,7 +43,7 @@ class HeatRecord(NamedTuple):
     rate
         Change of the film's temperature over the last step [K/s]; 0: steady.
     extrapolated
-        Heat of the film beyond that at its temperature, see :mod:`.discretisation.heat.transport` [J/m^2].
+        Heat of the film beyond that at its temperature, see :mod:`.effects.heat.transport` [J/m^2].
     body_1, body_2 : BodyHeat
     heat : float
         Dissipated [W/m].

@@ -1,1 +1,0 @@
-"""Heat: temperatures of the film in the Reynolds equation, of both surfaces, and their step in time."""
