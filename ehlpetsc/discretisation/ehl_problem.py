@@ -13,6 +13,7 @@ the unknowns of its window, see :mod:`.deflection`.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -49,8 +50,10 @@ class StepInputs:
         Length of the step [s]; None: steady.
     contact : contact.model.ContactModel or None
         Contact model of the solve; None: that of the problem.
-    heat : effects.heat.film_law.FilmHeat or None
+    heat : effects.heat.film.FilmHeat or None
         Data of the film's temperature; None: isothermal.
+    boundary_friction : float or ndarray
+        Coefficient of friction between the solids.
     """
 
     phi: np.ndarray
@@ -62,6 +65,7 @@ class StepInputs:
     dt: float | None = None
     contact: ContactModel | None = None
     heat: object = None
+    boundary_friction: float | np.ndarray = 0.0
 
     def mirrored(self):
         """Mirrored step: x, the speeds and all arrays over nodes in reverse order."""
@@ -113,6 +117,8 @@ class Solution:
         Rows F of the Reynolds equation.
     mass
         Mass per area of the film, :math:`\rho h(1-\theta)`; None without oil.
+    inputs
+        Of the solve.
     """
 
     unknowns: Unknowns
@@ -120,6 +126,7 @@ class Solution:
     loads: SurfaceLoads
     residual: np.ndarray
     mass: np.ndarray | None
+    inputs: StepInputs
 
 
 class EHLProblem:
@@ -146,7 +153,7 @@ class EHLProblem:
         self.n, self.x, self.scales = scales.nx, scales.x, scales
         self.dx = self.x[1] - self.x[0]
         self.first, self.last, self.local = first, last, last - first
-        self.fluid = case.fluid
+        self.fluid, self.boundary_friction = case.fluid, case.contact.boundary_friction
         self.film_scale = film_scale = film_scale_of(case, scales, film_scale)
         self.model = contact_model(case, scales, film_scale, bound_tolerance)
         self.deflection = Deflection(self.n, self.dx, first, last)
@@ -170,7 +177,10 @@ class EHLProblem:
         """Inputs of a step of this case; by default smooth, steady, under the reference conditions."""
         phi = np.zeros(self.n) if phi is None else phi
         conditions = conditions or self.scales.conditions
-        return StepInputs(phi, history, self.fluid, self.inlet_film, conditions, dt=dt)
+        friction = self.boundary_friction
+        return StepInputs(
+            phi, history, self.fluid, self.inlet_film, conditions, dt=dt, boundary_friction=friction
+        )
 
     def film(self, pressure, h00, phi):
         """Separation by the integral form, in a^2/R."""
@@ -178,24 +188,29 @@ class EHLProblem:
 
     def mass_per_area(self, q: np.ndarray, w: np.ndarray) -> np.ndarray | None:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
-        return self._mass(self.model.state(q, w))
+        return self._mass(self.model.state(q, w), self.fluid)
 
-    def _mass(self, nodes: NodeState) -> np.ndarray | None:
-        return self.reynolds.mass_per_area(nodes.reynolds_unknown, nodes.film, self.fluid)
+    def _mass(self, nodes: NodeState, fluid: Any) -> np.ndarray | None:
+        return self.reynolds.mass_per_area(nodes.reynolds_unknown, nodes.film, fluid)
 
-    def solution(self, unknowns: Unknowns, residual: np.ndarray) -> Solution:
+    def solution(self, unknowns: Unknowns, residual: np.ndarray, inputs: StepInputs) -> Solution:
         """Solution at unknowns of the whole mesh with their rows of the Reynolds equation."""
         q, w, _ = unknowns
         nodes = self.model.state(q, w)
         loads = self.model.surface_loads(q, w, nodes.film, residual)
-        return Solution(unknowns, nodes, loads, residual, self._mass(nodes))
+        return Solution(unknowns, nodes, loads, residual, self._mass(nodes, inputs.fluid), inputs)
 
     def evaluate(
-        self, unknowns: Unknowns, inputs: StepInputs, sums: PressureSums | None = None
+        self,
+        unknowns: Unknowns,
+        inputs: StepInputs,
+        sums: PressureSums | None = None,
+        temperatures: np.ndarray | None = None,
     ) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.
 
         `sums` of the pressures at these unknowns are required unless the window is the whole mesh.
+        `temperatures` are those of the film to start from, and then the solved ones; None: no warm start.
         """
         (q, w, h00), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
@@ -205,7 +220,9 @@ class EHLProblem:
         separation = state.separation - curvature * self._parabola - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
         q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
-        reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
+        reynolds, derivatives = self.reynolds.evaluate(
+            state.reynolds_unknown, state.film, inputs, temperatures
+        )
         w_of(residual, self.local)[:] = reynolds
         if self.load_is_local:
             residual[-1] = sums.load[2] - 0.5 * np.pi * inputs.load_share * (

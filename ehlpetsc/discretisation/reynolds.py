@@ -105,20 +105,17 @@ class Reynolds:
         rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
-    def properties(self, q, h, inputs, again=False):
+    def properties(self, q, h, inputs, temperatures=None):
         """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
 
-        `again` as of :func:`.film.heated_nodal`.
+        `temperatures` of the whole mesh [K], with heat: those to start from, and then the solved ones.
         """
         q, h, fluid = q[self.input_nodes], h[self.input_nodes], inputs.fluid
         s, of_density = self.scales, tuple(density_law(fluid))
         rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
         at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
-            from ehlpetsc.effects.heat.film import heated_nodal
-
-            law, *arrays = inputs.heat.at_nodes(self.nodes)
-            heated_nodal(q, h, of_density, *units, tuple(law), *arrays, again, at)
+            inputs.heat.fill_properties(q, h, of_density, units, self.nodes, temperatures, at)
             return at
         nodal(q, h, tuple(viscosity_law(fluid)), of_density, *units, 1.0 / fluid.viscosity, at)
         return at
@@ -129,7 +126,7 @@ class Reynolds:
         eyring = np.inf if tau0 is None else tau0
         return s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
 
-    def evaluate(self, q, h, inputs):
+    def evaluate(self, q, h, inputs, temperatures=None):
         """Residual F of the local rows and its derivatives.
 
         Parameters
@@ -137,6 +134,8 @@ class Reynolds:
         q, h : ndarray
             Unknowns from the node `start` on.
         inputs : ehl_problem.StepInputs
+        temperatures
+            See :meth:`properties`.
 
         Returns
         -------
@@ -145,7 +144,7 @@ class Reynolds:
             With respect to q and h of the nodes of `columns`.
         """
         rows, history, law = self.rows, inputs.history, self.face_law(inputs)
-        at, first = self.properties(q, h, inputs), self.row_in_input
+        at, first = self.properties(q, h, inputs, temperatures), self.row_in_input
         storage = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
             storage = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
@@ -217,6 +216,6 @@ class NoOil:
         """Return None: there is no oil."""
         return None
 
-    def evaluate(self, q, h, inputs):
+    def evaluate(self, q, h, inputs, temperatures=None):
         """See :meth:`.reynolds.Reynolds.evaluate`."""
         return q[self.owned], self._derivatives

@@ -22,15 +22,12 @@ class Scene:
     operation : physics.operation.ConstantOperation
     positions : surfaces.roughness.SurfacePositions
         Positions of both surfaces at the beginning of the run.
-    heat_transfer : callable or None
-        Returns the `effects.heat.step.HeatStep` of a scene; None if no solution is computed.
     """
 
     case: object
     scales: object
     operation: object
     positions: object
-    heat_transfer: object = None
 
     @cached_property
     def roughness(self):
@@ -155,9 +152,9 @@ class Effect:
         """Whether a steady solution is consistent with the record after it; otherwise it is solved again."""
         return True
 
-    def log_viscosity(self, record, pressure):
-        """ln(eta/eta0) of the oil under a pressure [Pa], shape (nx,); None: isothermal law."""
-        return None
+    def log_viscosity(self, record, solution, ln_eta):
+        """ln(eta/eta0) of a solution, shape (nx,); `ln_eta` is that without this effect, None: isothermal."""
+        return ln_eta
 
     def observe(self, record, solution, step):
         """Values of `fields` and `scalars` by name, in SI units."""

@@ -77,7 +77,7 @@ class TwoFields:
         self.halo = Halo.of(self.problem, cuts, self.ranks)
         self.linear_halo = Halo.of(self.problem, cuts, self.ranks, LINEAR_TOLERANCE)
         self._create_vectors()
-        self.inputs = self.x_evaluated = self.rows = self.operator = None
+        self.inputs = self.x_evaluated = self.rows = self.operator = self.temperatures = None
         self.bound_reached = False
 
     def _create_vectors(self):
@@ -114,6 +114,7 @@ class TwoFields:
     def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
         """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve."""
         self.inputs, self.x_evaluated, self.rows = inputs, None, None
+        self.temperatures = None if inputs.heat is None else inputs.heat.guess.copy()
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
         if self.problem.load_is_local:
@@ -152,7 +153,9 @@ class TwoFields:
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
             nodes, h00, curvature, load = exchange_unknowns(*self.halo, *local_data)
             (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
-            self._evaluation = self.problem.evaluate(Unknowns(q, w, h00), self.inputs, sums)
+            self._evaluation = self.problem.evaluate(
+                Unknowns(q, w, h00), self.inputs, sums, self.temperatures
+            )
             self.bound_reached = load[3] > 0.0
         return self._evaluation
 

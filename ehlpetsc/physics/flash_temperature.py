@@ -1,10 +1,40 @@
 """Flash temperature of a line contact by Blok's formula, and the friction expected of a case."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ehlpetsc.effects.heat.body_heat import Solid
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.rheology import wall_shear
+
+
+class Solid(NamedTuple):
+    """Thermal properties of a body.
+
+    Attributes
+    ----------
+    conductivity : float
+        k [W/(m K)].
+    density : float
+        rho [kg/m^3].
+    heat_capacity : float
+        c [J/(kg K)].
+    """
+
+    conductivity: float
+    density: float
+    heat_capacity: float
+
+    @property
+    def diffusivity(self):
+        """Thermal diffusivity k/(rho c) [m^2/s]."""
+        return self.conductivity / (self.density * self.heat_capacity)
+
+    @property
+    def effusivity(self):
+        """Thermal effusivity sqrt(k rho c) [W s^(1/2)/(m^2 K)]."""
+        return (self.conductivity * self.density * self.heat_capacity) ** 0.5
+
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 MAX_ISOTHERMAL_FLASH = 20.0  # K: above it a case should not be isothermal

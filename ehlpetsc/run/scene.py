@@ -20,11 +20,4 @@ def scene_of(case, scales, operation, pass_number):
     offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
     shift = (pass_number - 1) * case.time.pass_shift if case.time else 0.0
     positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(offset_1, offset_2 + shift))
-    return Scene(case, scales, operation, positions, _heat_transfer)
-
-
-def _heat_transfer(scene):
-    """Time stepping of the temperatures of a scene."""
-    from ehlpetsc.effects.heat.step import HeatStep
-
-    return HeatStep(scene)
+    return Scene(case, scales, operation, positions)

@@ -26,10 +26,10 @@ def diagnostics(
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
     solution, loads = state.solution, state.solution.loads
-    of_effects = (
-        e.log_viscosity(state.records[e.name], s.p0 * loads.oil_pressure) for e in effects if e.is_in(case)
-    )
-    ln_eta = next((values for values in of_effects if values is not None), None)
+    ln_eta = None
+    for effect in effects:
+        if effect.is_in(case):
+            ln_eta = effect.log_viscosity(state.records[effect.name], solution, ln_eta)
     fields, contact_mask = _fields(scene, conditions, solution, ln_eta), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, film = s.dx * pressure.sum(), mean_film(s, solution.nodes.film)
@@ -71,11 +71,20 @@ def diagnostics(
 
 def _fields(scene: Scene, conditions: Conditions, solution: Solution, ln_eta: np.ndarray | None) -> dict:
     """Fields in SI units that every case has."""
-    case, s, loads = scene.case, scene.scales, solution.loads
-    void = np.zeros(s.nx) if case.fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
+    s, loads, fluid = scene.scales, solution.loads, solution.inputs.fluid
+    void = np.zeros(s.nx) if fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
-    shear_1, shear_2 = shear_stresses(case, s.dx, conditions.sliding, oil, solids, film, sheared, ln_eta)
+    shear_1, shear_2 = shear_stresses(
+        fluid,
+        solution.inputs.boundary_friction * solids,
+        s.dx,
+        conditions.sliding,
+        oil,
+        film,
+        sheared,
+        ln_eta,
+    )
     return {
         "pressure": loads.pressure * s.p0,
         "contact_pressure": loads.contact_pressure * s.p0,

@@ -106,7 +106,7 @@ class TimeStepping:
         *solution, newton = self._inlet_first(
             inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
         )
-        state = self._state(*solution, self._step_end(), records, newton=newton)
+        state = self._state(*solution, inputs, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
 
     def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
@@ -122,7 +122,7 @@ class TimeStepping:
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
             newton += iterations
-            state = self._state(*solution, end, before, newton=newton)
+            state = self._state(*solution, again, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
     def _solve_step(
@@ -205,9 +205,15 @@ class TimeStepping:
         return step, inputs
 
     def _state(
-        self, unknowns: Unknowns, residual: np.ndarray, end: Step, records: dict, **entries: object
+        self,
+        unknowns: Unknowns,
+        residual: np.ndarray,
+        inputs: StepInputs,
+        end: Step,
+        records: dict,
+        **entries: object,
     ) -> State:
-        solution = self.problem.solution(unknowns, residual)
+        solution = self.problem.solution(unknowns, residual, inputs)
         accepted = {e.name: e.accept(records[e.name], solution, end) for e in self.effects}
         q, w = self.problem.model.reset_yielding(unknowns.q, unknowns.w)
         return State(
@@ -252,6 +258,7 @@ class TimeStepping:
                     ) from error
         return self._state(
             *solution,
+            inputs,
             step,
             state.records,
             m_older=state.m,

@@ -68,7 +68,7 @@ def test_isothermal_run_imports_no_heat_module(name, heated, tmp_path):
         "import sys; from ehlpetsc.case.loading import load; from ehlpetsc.run.simulation import Simulation;"
         f"list(Simulation(load({str(ROOT / 'cases' / name)!r} + '.toml',"
         f" [*{list(QUICK)!r}, 'time.travel=0.05'])));"
-        "print(sorted(m for m in sys.modules if '.heat.' in m and 'discretisation' in m))"
+        "print(sorted(m for m in sys.modules if '.effects.heat.' in m))"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from support.exact_solutions import moving_band
 
-from ehlpetsc.effects.heat.bodies import Body
-from ehlpetsc.effects.heat.body_heat import Solid
-from ehlpetsc.physics.flash_temperature import blok_flash_temperature
-from ehlpetsc.effects.heat.half_space_conduction import StepWeights, diffuse, exponentials
+from ehlpetsc.effects.heat.half_spaces import Body, StepWeights, diffuse, exponentials
+from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 FLUX = 1e9  # W/m^2

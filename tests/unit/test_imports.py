@@ -25,7 +25,7 @@ MAY_IMPORT = (
     {
         "physics": set(),
         "surfaces": set(),
-        "effects": {"surfaces", "physics"},
+        "effects": {"surfaces", "physics", "discretisation"},
         "quantities": {"effects"},
         "gears": {"physics"},
         "case": {"gears", "surfaces", "physics", "quantities"},
@@ -109,11 +109,12 @@ class WithoutTypes(ast.NodeTransformer):
         return None if ast.unparse(node.test) == "TYPE_CHECKING" else self.generic_visit(node)
 
 
-def imports(module, source):
-    """Modules that a source text imports anywhere; ``__version__`` of the package counts as none."""
+def imports(module, source, when_loaded=False):
+    """Modules that a source text imports, anywhere or when it is loaded; ``__version__`` counts as none."""
     inside = module.split(".") if FILES[module].name == "__init__.py" else module.split(".")[:-1]
     found = set()
-    for node in ast.walk(WithoutTypes().visit(ast.parse(source))):
+    tree = WithoutTypes().visit(ast.parse(source))
+    for node in tree.body if when_loaded else ast.walk(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -136,12 +137,19 @@ def ours(module):
     return {name for name in imported(module) if name.split(".")[0] == "ehlpetsc"}
 
 
+def _loads(module):
+    if room(module) != "effects":
+        return ours(module)
+    source = FILES[module].read_text(encoding="utf-8")
+    return {name for name in imports(module, source, True) if name.split(".")[0] == "ehlpetsc"}
+
+
 def reached(module):
-    """A module and all of ours that it imports, directly or not."""
+    """A module and all of ours that it imports, directly or not; effects import the solver when used."""
     seen, waiting = set(), {module}
     while waiting:
         seen |= waiting
-        waiting = {name for one in waiting for name in ours(one)} - seen
+        waiting = {name for one in waiting for name in _loads(one)} - seen
     return seen
 
 

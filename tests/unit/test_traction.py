@@ -38,11 +38,16 @@ def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
     return case, scales, p, np.full(scales.nx, 0.2e-6)
 
 
+def stresses(case, scales, p, solids, h, sheared):
+    friction = case.contact.boundary_friction * solids
+    return shear_stresses(case.fluid, friction, scales.dx, scales.u1 - scales.u2, p, h, sheared)
+
+
 def shear(case, scales, p, h, void=0.0, touching=()):
     in_contact = np.zeros(scales.nx, bool)
     in_contact[list(touching)] = True
     solids, sheared = np.where(in_contact, p, 0.0), np.where(in_contact, 0.0, 1.0 - void)
-    return shear_stresses(case, scales.dx, scales.u1 - scales.u2, p, solids, h, sheared)
+    return stresses(case, scales, p, solids, h, sheared)
 
 
 @pytest.mark.parametrize("ratio", [0.5, -0.5])
@@ -102,7 +107,7 @@ def test_void_has_no_shear_stress():
 
 def state_of(problem, q, w):
     unknowns = Unknowns(q, w, 0.0)
-    return State(unknowns, problem.solution(unknowns, np.zeros_like(w)))
+    return State(unknowns, problem.solution(unknowns, np.zeros_like(w), problem.inputs()))
 
 
 def test_cavity_shear_is_proportional_to_its_oil():
@@ -128,10 +133,10 @@ def test_mixed_contact_adds_oil_and_solid_shear():
     touching = np.zeros(scales.nx, bool)
     touching[[30, 60]] = True
     solids, sheared = np.where(touching, 0.2e9, 0.0), np.ones(scales.nx)
-    oil_alone = shear_stresses(mixed, scales.dx, scales.u1 - scales.u2, p, np.zeros_like(p), h, sheared)
+    oil_alone = stresses(mixed, scales, p, np.zeros_like(p), h, sheared)
     for sign, both, oil in zip(
         (-1.0, 1.0),
-        shear_stresses(mixed, scales.dx, scales.u1 - scales.u2, p, solids, h, sheared),
+        stresses(mixed, scales, p, solids, h, sheared),
         oil_alone,
         strict=True,
     ):

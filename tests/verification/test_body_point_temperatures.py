@@ -8,7 +8,7 @@ from scipy.integrate import trapezoid
 from scipy.special import erf
 
 import ehlpetsc
-from ehlpetsc.effects.heat.body_heat import Solid
+from ehlpetsc.physics.flash_temperature import Solid
 from ehlpetsc.post.inputs.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.temperatures import temperature_history

@@ -6,8 +6,7 @@ from support import CASES
 from support.exact_solutions import moving_band
 
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.effects.heat.body_heat import Solid
-from ehlpetsc.physics.flash_temperature import blok_flash_temperature
+from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
 from ehlpetsc.run.simulation import Simulation
 
 BULK = 363.0

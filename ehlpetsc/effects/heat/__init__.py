@@ -1,1 +1,1 @@
-"""Laws of heat: viscosity and conductivity, the temperature of the film, conduction into the bodies."""
+"""Heat: the law of the film, conduction into both bodies, transport along the film, the effect."""

@@ -8,69 +8,17 @@ the accepted solution all temperatures and fluxes are then computed with its own
 balance holds in every step.
 """
 
+from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.heat.body_heat import BodyHeat
+from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.quantity import Field, StepScalar
 
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
 MIN_TEMPERATURE_RISE = 1e-3  # K
-
-
-class HeatRecord(NamedTuple):
-    """Temperatures and heat at a time level; arrays of shape (nx,) but for `flow`, (nx + 1,).
-
-    Attributes
-    ----------
-    film, wall_1, wall_2
-        Temperatures [K].
-    flux_1, flux_2
-        Heat fluxes into both bodies [W/m^2].
-    source
-        Heat that does not depend on the film's temperature in a step [W/m^2].
-    spread
-        Of :func:`ehlpetsc.effects.heat.film_law.shear_stress`.
-    flow
-        Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
-    response_1, response_2
-        Of the surfaces to their flux, in a steady solve [m^2 K/W].
-    pressure
-        Of the oil [Pa].
-    rate
-        Change of the film's temperature over the last step [K/s]; 0: steady.
-    extrapolated
-        Heat of the film beyond that at its temperature, see :mod:`.effects.heat.transport` [J/m^2].
-    body_1, body_2 : BodyHeat
-    heat : float
-        Dissipated [W/m].
-    error : float
-        Its imbalance over it.
-    solved : int
-        Number of solutions before this level; 0: none yet.
-    """
-
-    film: np.ndarray
-    wall_1: np.ndarray
-    wall_2: np.ndarray
-    flux_1: np.ndarray
-    flux_2: np.ndarray
-    source: np.ndarray
-    spread: np.ndarray
-    flow: np.ndarray
-    response_1: np.ndarray
-    response_2: np.ndarray
-    pressure: np.ndarray
-    rate: np.ndarray
-    extrapolated: np.ndarray
-    body_1: BodyHeat
-    body_2: BodyHeat
-    heat: float
-    error: float
-    solved: int
 
 
 def _temperature(name, over_run):
@@ -112,7 +60,9 @@ class Heat(Effect):
 
     @cached_property
     def _steps(self):
-        return self.scene.heat_transfer(self.scene)
+        from ehlpetsc.effects.heat.step import HeatStep
+
+        return HeatStep(self.scene)
 
     @cached_property
     def _contact(self):
@@ -129,8 +79,10 @@ class Heat(Effect):
         return HeatRecord(*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0)
 
     def inputs(self, record, inputs, step):
-        """Add the data of the film's temperature."""
-        return self._steps.prepare(record, inputs, step)
+        """Add the data of the film's temperature; the first steady solution is isothermal."""
+        if not record.solved and self.scene.case.fluid is not None:
+            return inputs
+        return replace(inputs, heat=self._steps.film_heat(record, inputs, step))
 
     def accept(self, record, solution, step):
         """Temperatures and fluxes of a solution."""
@@ -156,14 +108,12 @@ class Heat(Effect):
         rise = max(np.abs(after.film - self._steps.inlet).max(), MIN_TEMPERATURE_RISE)
         return self.scene.case.fluid is None or np.abs(after.film - before.film).max() < STEADY * rise
 
-    def log_viscosity(self, record, pressure):
+    def log_viscosity(self, record, solution, ln_eta):
         """ln(eta/eta0) at the temperatures of a record; None without oil."""
         from ehlpetsc.physics.laws import viscosity
 
-        case = self.scene.case
-        if case.fluid is None:
-            return None
-        return viscosity(pressure, case.fluid, case.heat, record.film)[0]
+        fluid, pressure = solution.inputs.fluid, self.scene.scales.p0 * solution.loads.oil_pressure
+        return fluid and viscosity(pressure, fluid, self.scene.case.heat, record.film)[0]
 
     def observe(self, record, solution, step):
         """Temperatures and heat fluxes; their largest and mean values."""

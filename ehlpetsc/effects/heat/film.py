@@ -1,8 +1,13 @@
 r"""Heat in the film: its temperature in the Reynolds equation, and the dissipation of a solution.
 
-In Newton's method the temperature is a nodal law, :mod:`ehlpetsc.effects.heat.film_law`, whose derivatives are
-part of those of the viscosity. Transport along the film: :mod:`.transport`.
+In Newton's method the temperature is a nodal law, :mod:`.film_law`, whose derivatives are part of
+those of the viscosity. Transport along the film: :mod:`.transport`.
 """
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,36 +26,94 @@ from ehlpetsc.discretisation.finite_volumes import (
     positive_extrapolation,
 )
 from ehlpetsc.effects.heat.film_law import A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.physics.laws import ln_viscosity
 from ehlpetsc.physics.rheology import mobilities
 
 
-@compiled
-def heated_nodal(q, h, density, p0, film, unit, law, of_nodes, guess, last_evaluation, again, at):
-    """Fill in what faces need of nodes, the viscosity at the film's temperature with its derivatives.
+class FilmHeat(NamedTuple):
+    """Coefficients of the film's temperature that are fixed in a solve.
 
-    Parameters
+    Attributes
     ----------
-    q, h, density, p0, film, unit, at
-        As of :func:`.reynolds.nodal`; at the node beyond the outlet the temperature is that of the last one.
-    law, of_nodes, guess, last_evaluation
-        :class:`ehlpetsc.effects.heat.film_law.FilmHeat` of these nodes, `law` as a tuple: numba looks up the type
-        of a named one anew in some calls, slowly. `guess` becomes their temperature.
-    again : bool
-        Whether nodes whose unknowns are those of the last evaluation get its viscosity, without derivatives.
+    law
+        Constants of the oil.
+    of_nodes
+        Rows `A` to `R2`, as of :func:`.film_law.film_temperature`, shape (8, nx): one array, as numba
+        looks up the types of many in a tuple anew in some calls, slowly.
+    guess
+        Temperature to start from [K], shape (nx,).
+    stored
+        Heat capacity of the oil carried over, over the step [W/(m^2 K)], shape (nx,).
+    bodies
+        Both bodies at the end of the step; None: steady.
+    """
+
+    law: FilmLaw
+    of_nodes: np.ndarray
+    guess: np.ndarray
+    stored: np.ndarray
+    bodies: tuple[BodyStep, BodyStep] | None = None
+
+    def with_rows(self, rows: Iterable[int], values: Iterable[np.ndarray]) -> FilmHeat:
+        """Coefficients with other values in some rows of `of_nodes`."""
+        of_nodes = self.of_nodes.copy()
+        for row, row_values in zip(rows, values, strict=True):
+            of_nodes[row] = row_values
+        return self._replace(of_nodes=of_nodes)
+
+    def mirrored(self) -> FilmHeat:
+        """Coefficients with the nodes in reverse order, for a solve."""
+        of_nodes, guess = (np.ascontiguousarray(array[..., ::-1]) for array in (self.of_nodes, self.guess))
+        return self._replace(of_nodes=of_nodes, guess=guess)
+
+    def fill_properties(
+        self,
+        q: np.ndarray,
+        h: np.ndarray,
+        density: tuple,
+        units: tuple[float, float, float],
+        nodes: slice,
+        temperatures: np.ndarray | None,
+        at: np.ndarray,
+    ) -> None:
+        """Fill in the properties of `nodes`, see :func:`heated_nodal`.
+
+        `temperatures` of the whole mesh to start from become those of the nodes; None: start from `guess`.
+        """
+        guess = self.guess[nodes].copy() if temperatures is None else temperatures[nodes]
+        heated_nodal(
+            q, h, density, *units, tuple(self.law), np.ascontiguousarray(self.of_nodes[:, nodes]), guess, at
+        )
+
+
+@compiled
+def heated_nodal(
+    q: np.ndarray,
+    h: np.ndarray,
+    density: tuple,
+    p0: float,
+    film: float,
+    unit: float,
+    law: tuple,
+    of_nodes: np.ndarray,
+    guess: np.ndarray,
+    at: np.ndarray,
+) -> None:
+    """Fill in the properties of nodes for their faces, viscosity at the film's temperature with derivatives.
+
+    q, h, density, p0, film, unit and `at` as of :func:`.reynolds.nodal`; the node beyond the outlet has the
+    temperature of the last one. `guess` becomes the temperature of the nodes. `law` is a tuple:
+    numba looks up the type of a named one anew in some calls, slowly.
     """
     nodes, law = len(q), FilmLaw(*law)
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
-        if again and q[i] == last_evaluation[0, i] and h[i] == last_evaluation[1, i]:
-            at[FLUIDITY, i], at[THERMAL, i] = last_evaluation[2, i], last_evaluation[3, i]
-            continue
         of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
         left = 1.0 + min(q[i], 0.0)
         t, t_p, t_h, _, _, _, viscosity = film_temperature(guess[i], p, at[H, i], left, *of_node)
         _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
-        guess[i], last_evaluation[0, i], last_evaluation[1, i] = t, q[i], h[i]
-        last_evaluation[2, i], last_evaluation[3, i] = at[FLUIDITY, i], at[THERMAL, i]
+        guess[i] = t
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
         t = guess[nodes - 1]

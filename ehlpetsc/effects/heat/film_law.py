@@ -6,6 +6,25 @@ With one temperature T of the film and both surfaces' response :math:`R_i` to th
 
 :math:`\Phi=\tau_m|u_1-u_2|`, the fluxes by :mod:`.exchange`, linear in T. What is left is one equation for T,
 monotone because the shear stress falls with T; the derivatives follow from the implicit function theorem.
+
+Heat fluxes from the film into both surfaces, by the film's mean temperature T.
+
+A parabola across the film gives
+
+.. math:: q_{1,2}=\frac{k_f}{h}\Big[6(T-T_w)\pm(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2.
+
+Oil that enters cold between surfaces far apart in temperature has no parabola: the law would cool the colder
+surface by oil that is warmer than it. Where it does, the sum of both fluxes stays and the colder surface has
+none; where the oil is colder than both surfaces, each gives heat by its own difference,
+:math:`q_i=6(k_f/h)(T-T_i)`, with the same sum. All three agree where they meet.
+
+With the responses :math:`T_i=W_i+R_iq_i` and :math:`r=h/k_f` the sum is :math:`(T-\alpha)/\kappa`, for the
+parabola with
+
+.. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r+R_1+R_2}\Big],\qquad
+   \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r+R_1+R_2)},
+
+regular at r = 0.
 """
 
 from typing import NamedTuple
@@ -13,9 +32,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import inlined
-from ehlpetsc.effects.heat.exchange import APART, INSULATED, NO_FLUX, PARABOLA, exchange_law, fluxes
-from ehlpetsc.effects.heat.shear import shear_stress
-from ehlpetsc.physics.laws import ln_viscosity
+from ehlpetsc.physics.laws import SLOTS, is_linear_in_temperature, ln_viscosity, viscosity_law
+from ehlpetsc.physics.rheology import limited_shear
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 200
@@ -25,6 +43,11 @@ ERROR = 1e-8  # K: estimated error of an iteration of Chebyshev's method that en
 SMALL = 0.3  # change of ln(eta) up to which that estimate holds
 
 A, B, G, SPREAD, W1, W2, R1, R2 = range(8)  # rows of FilmHeat.of_nodes
+PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
+NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
+MAX_LN_SINH = 20.0  # above it the stress is linear in ln(eta) to 1e-17
+
+_limited = inlined(limited_shear)
 
 
 class FilmLaw(NamedTuple):
@@ -61,6 +84,111 @@ class FilmLaw(NamedTuple):
     conductivity_pressure: float
     sliding: float
     thinnest: float = 0.0
+
+
+def film_law(fluid, heat, sliding, thinnest=0.0):
+    """Constants of the oil in a step, :class:`.film.FilmLaw`.
+
+    Parameters
+    ----------
+    fluid : case.tables.fluid.Fluid or None
+        None: dry.
+    heat : case.tables.heat.Heat
+    sliding : float
+        u1 - u2 [m/s].
+    thinnest : float
+        See :class:`.film.FilmLaw`.
+    """
+    conduction = float(heat.oil_conductivity), float(heat.oil_conductivity_pressure)
+    if fluid is None:
+        return FilmLaw((0, (0.0,) * SLOTS, 300.0), True, 1.0, np.inf, np.inf, *conduction, 0.0)
+    eyring = np.inf if fluid.eyring_stress is None else float(fluid.eyring_stress)
+    law = viscosity_law(fluid, heat)
+    limiting = getattr(fluid, "limiting_shear", None)
+    return FilmLaw(
+        tuple(law),
+        is_linear_in_temperature(law),
+        float(fluid.viscosity),
+        eyring,
+        np.inf if limiting is None else float(limiting),
+        *conduction,
+        abs(float(sliding)),
+        thinnest,
+    )
+
+
+@inlined
+def exchange_law(kind, r, walls):
+    """Flux into both surfaces per temperature [W/(m^2 K)], and the temperature without flux [K]."""
+    w1, w2, r1, r2 = walls
+    if kind == PARABOLA:
+        skew = (r1 - r2) / (r + r1 + r2)
+        resistance = r * (1.0 / 12.0) + 0.25 * (r1 + r2 - (r1 - r2) * skew)
+        return 1.0 / resistance, 0.5 * (w1 + w2) - 0.5 * skew * (w1 - w2)
+    if kind == INSULATED:
+        return 1.0 / (r * (1.0 / 12.0) + 0.5 * (r2 if w1 < w2 else r1)), 0.5 * (w1 + w2)
+    g1, g2 = 1.0 / (r / 6.0 + r1), 1.0 / (r / 6.0 + r2)
+    return g1 + g2, (g1 * w1 + g2 * w2) / (g1 + g2)
+
+
+@inlined
+def fluxes(kind, t, r, walls, exchange, alpha):
+    """Heat fluxes into both surfaces, and the derivative of their sum with respect to r."""
+    w1, w2, r1, r2 = walls
+    flow = (t - alpha) * exchange
+    if kind == PARABOLA:
+        over_total = 1.0 / (r + r1 + r2)
+        skew = (r1 - r2) * over_total
+        between = -2.0 * (w1 - w2) * over_total - skew * flow
+        by_r = -(0.5 * skew * (w1 - w2) * over_total + flow * (1.0 / 12.0 + 0.25 * skew * skew)) * exchange
+        return 0.5 * (flow + between), 0.5 * (flow - between), by_r
+    if kind == INSULATED:
+        first = 0.0 if w1 < w2 else flow
+        return first, flow - first, -flow * exchange / 12.0
+    g1, g2 = 1.0 / (r / 6.0 + r1), 1.0 / (r / 6.0 + r2)
+    q1, q2 = g1 * (t - w1), g2 * (t - w2)
+    return q1, q2, -(g1 * q1 + g2 * q2) / 6.0
+
+
+@inlined
+def shear_stress(ln_rate, ln_eta, p, eyring, limit):
+    r"""Mean shear stress of the film :math:`\tau_m` [Pa].
+
+    :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
+    Wang & Cusano 1987), limited by :func:`.rheology.limited_shear`.
+
+    Parameters
+    ----------
+    ln_rate : float
+        :math:`\ln(\eta_0|u_1-u_2|/(\tau_0h))-s`; Newtonian: :math:`\ln(\eta_0|u_1-u_2|/h)`.
+    ln_eta, p : float
+        ln(eta/eta0), pressure [Pa].
+    eyring, limit : float
+        Eyring stress [Pa], limiting shear stress over pressure; infinite: none.
+
+    Returns
+    -------
+    tau, by_ln_eta, by_ln_eta_twice, by_p : float
+        `by_p` at constant viscosity.
+    """
+    argument = ln_rate + ln_eta
+    if eyring == np.inf:
+        tau = by_ln_eta = twice = np.exp(min(argument, 600.0))
+    elif argument > MAX_LN_SINH:
+        tau, by_ln_eta, twice = eyring * (argument + 0.6931471805599453), eyring, 0.0
+    else:
+        x = np.exp(argument)
+        root = np.sqrt(1.0 + x * x)
+        over_root = 1.0 / root
+        by_ln_eta = eyring * x * over_root
+        tau = eyring * np.log(x + root) if x > 1e-4 else eyring * x
+        twice = by_ln_eta * over_root * over_root
+    if limit == np.inf:
+        return tau, by_ln_eta, twice, 0.0
+    value, by_tau, by_limit = _limited(tau, limit * p)
+    if tau > 0.0:
+        twice = by_tau * twice - 5.0 * by_tau * by_ln_eta * by_ln_eta / tau * (1.0 - (value / tau) ** 4)
+    return value, by_ln_eta * by_tau, twice, by_limit * limit
 
 
 @inlined
@@ -183,47 +311,3 @@ def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
         f_h += heat * by_ln_eta / h
     f_p = -by_r * r * law.conductivity_pressure / pressure_factor - heat * (by_ln_eta * viscosity[1] + by_p)
     return t, -f_p * over_f_t, -f_h * over_f_t, q1, q2, heat * tau, viscosity
-
-
-class FilmHeat(NamedTuple):
-    """Coefficients of the film's temperature that are fixed in a solve, and its last evaluation.
-
-    Attributes
-    ----------
-    law : FilmLaw
-    of_nodes : ndarray, shape (8, nx)
-        Rows `A` to `R2`, as of :func:`film_temperature`. One array, as numba looks up the types of many in a
-        tuple anew in some calls, slowly.
-    guess : ndarray, shape (nx,)
-        Temperature to start from [K]; that of the last evaluation.
-    last_evaluation : ndarray, shape (4, nx)
-        Unknown of the Reynolds equation and film, not a number before the first evaluation; fluidity and
-        thermal factor of :func:`.effects.film.heated_nodal`.
-    """
-
-    law: FilmLaw
-    of_nodes: np.ndarray
-    guess: np.ndarray
-    last_evaluation: np.ndarray
-
-    @classmethod
-    def begun(cls, law, of_nodes, guess):
-        """Coefficients without any evaluation, from the rows of `of_nodes`."""
-        return cls(law, np.array(of_nodes), guess, np.full((4, len(guess)), np.nan))
-
-    def with_rows(self, rows, values):
-        """Coefficients with other values in some rows of `of_nodes`."""
-        of_nodes = self.of_nodes.copy()
-        for row, row_values in zip(rows, values, strict=True):
-            of_nodes[row] = row_values
-        return self._replace(of_nodes=of_nodes)
-
-    def mirrored(self):
-        """Coefficients with the nodes in reverse order."""
-        return self.at_nodes(slice(None, None, -1))
-
-    def at_nodes(self, nodes):
-        """Coefficients at a slice of the nodes."""
-        if nodes == slice(0, len(self.guess)):
-            return self
-        return FilmHeat(self.law, *(np.ascontiguousarray(array[..., nodes]) for array in self[1:]))

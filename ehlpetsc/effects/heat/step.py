@@ -1,25 +1,28 @@
-"""Temperatures of one step: before the solve what they depend on, after it what they are."""
+"""Temperatures of one step: the data of a solve, and temperatures and heat of its solution."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
-from ehlpetsc.effects.heat.bodies import Body
-from ehlpetsc.effects.heat.film import faces
-from ehlpetsc.effects.heat.mixing import mixing
-from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
+from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.effects.heat.body_heat import Solid
-from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, W1, W2, FilmHeat, G
-from ehlpetsc.effects.heat.laws import film_law
+from ehlpetsc.effects.effect import Step
+from ehlpetsc.effects.heat.film import FilmHeat, faces
+from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, W1, W2, G, film_law
+from ehlpetsc.effects.heat.half_spaces import Body
+from ehlpetsc.effects.heat.record import HeatRecord
+from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
+from ehlpetsc.physics.flash_temperature import Solid
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the largest one
+DEPTH = 6
+ITERATIONS = 200
+ACCURACY = 1e-11  # of the largest value
 
 
 class Temperatures(NamedTuple):
@@ -45,7 +48,7 @@ class HeatStep:
 
     def __init__(self, scene):
         case, self.scales = scene.case, scene.scales
-        self.heat, self.fluid, self.contact = case.heat, case.fluid, case.contact
+        self.heat, self.fluid = case.heat, case.fluid
         s, self.bulk, self.inlet = self.scales, case.heat.bulk_temperature, case.heat.oil_inlet_temperature
         solids = map(Solid, self.heat.conductivity, self.heat.density, self.heat.heat_capacity)
         dt = s.dt or 0.5 * s.dx / s.u_max
@@ -55,17 +58,11 @@ class HeatStep:
         self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
         self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
         self.coldest = min(self.inlet, *self.bulk)
-        self._film_law = None, None
-        self._inputs = self._heat = self._stored = self._body_steps = None
 
-    def prepare(self, record, inputs, step):
-        """Inputs of the solve with the data of the film's temperature.
-
-        Parameters and result of :meth:`ehlpetsc.effects.effect.Effect.inputs`. The first steady solution is
-        isothermal.
-        """
+    def film_heat(self, record: HeatRecord, inputs: StepInputs, step: Step) -> FilmHeat:
+        """Data of the film's temperature in a solve, from the record at the beginning of the step."""
         n = self.scales.nx
-        self._body_steps, self._stored = None, np.zeros(n)
+        stored, bodies = np.zeros(n), None
         if step.dt is None:
             responses = [record.response_1, record.response_2]
             pairs = (record.wall_1, record.flux_1), (record.wall_2, record.flux_2)
@@ -73,29 +70,18 @@ class HeatStep:
         else:
             records, speeds = (record.body_1, record.body_2), (step.conditions.u1, step.conditions.u2)
             movements = zip(self.bodies, records, step.travelled, speeds, strict=True)
-            self._body_steps = [
+            bodies = tuple(
                 body.advance(body_heat, travelled, step.dt, speed)
                 for body, body_heat, travelled, speed in movements
-            ]
-            walls = [
-                bulk + body_step.history for bulk, body_step in zip(self.bulk, self._body_steps, strict=True)
-            ]
-            responses = [np.full(n, body_step.response) for body_step in self._body_steps]
+            )
+            walls = [bulk + body.history for bulk, body in zip(self.bulk, bodies, strict=True)]
+            responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
-                self._stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
+                stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
         t = record.film
-        rows = *explicit_transport(self._stored, record.flow, t, self.inlet), record.source, record.spread
-        law = self._law(step.conditions.sliding)
-        self._heat = FilmHeat.begun(law, (*rows, *walls, *responses), t.copy())
-        if record.solved and self.fluid is not None:
-            inputs = replace(inputs, heat=self._heat)
-        self._inputs = inputs
-        return inputs
-
-    def _law(self, sliding):
-        if self._film_law[0] != sliding:
-            self._film_law = sliding, film_law(self.fluid, self.heat, sliding, self.thinnest)
-        return self._film_law[1]
+        rows = *explicit_transport(stored, record.flow, t, self.inlet), record.source, record.spread
+        law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
+        return FilmHeat(law, np.array((*rows, *walls, *responses)), t, stored, bodies)
 
     def solve(self, record, solution, step):
         """Temperatures and heat of an accepted solution.
@@ -108,7 +94,8 @@ class HeatStep:
             See :class:`ehlpetsc.effects.heat.HeatRecord`.
         """
         s, loads = self.scales, solution.loads
-        friction = self.contact.boundary_friction * abs(step.conditions.sliding)
+        heat = solution.inputs.heat or self.film_heat(record, solution.inputs, step)
+        friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
         source = rubbing = friction * loads.friction_pressure * s.p0
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
         if self.fluid is None:
@@ -117,32 +104,34 @@ class HeatStep:
             spread = blank
         else:
             q = solution.nodes.reynolds_unknown
-            couette, pressure_heat, spread, gradient = self._flow(q, solution.nodes.film, loads.oil_mask)
+            solved, couette, pressure_heat, spread, gradient = self._flow(solution, heat)
+            heat = heat._replace(guess=solved)
             unit = self.capacity * s.u * s.h / s.dx
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
             left = 1.0 + np.minimum(q, 0.0)
             film_rubbing = rubbing if self.thinnest else blank
             last_step = (record.rate * step.dt, record.extrapolated / step.dt) if step.dt else (blank, blank)
             old, flow = record.film, unit * couette
-            film = Film(pressure, thickness, left, old, self._stored, *last_step, flow, film_rubbing)
+            film = Film(pressure, thickness, left, old, heat.stored, *last_step, flow, film_rubbing)
             source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
-        heat = self._heat.with_rows((G, SPREAD), (source, spread))
+        heat = heat.with_rows((G, SPREAD), (source, spread))
         heat = heat._replace(law=heat.law._replace(thinnest=0.0))
         temperatures = (
-            self._steady(record, heat, film, step) if self._body_steps is None else self._moving(heat, film)
+            self._steady(record, heat, film, step) if heat.bodies is None else self._moving(heat, film)
         )
         return temperatures, film, source, spread
 
-    def _flow(self, q, h, oil):
-        """Couette flow, heat of the pressure flow, `spread` and pressure gradient, see `film.faces`."""
-        n, inputs = self.scales.nx, self._inputs
+    def _flow(self, solution, heat):
+        """Temperatures of the film in the solve; results of `film.faces`."""
+        n, inputs = self.scales.nx, solution.inputs
+        q, h, oil = solution.nodes.reynolds_unknown, solution.nodes.film, solution.loads.oil_mask
         backward = inputs.conditions.entrainment < 0.0
         if backward:  # the first node is the inlet
             inputs, q, h, oil = inputs.mirrored(), q[::-1], h[::-1], np.ascontiguousarray(oil[::-1])
-        couette = np.zeros(n + 1)
+        solved, couette = heat.guess[::-1].copy() if backward else heat.guess.copy(), np.zeros(n + 1)
         pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
-        at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs, again=True)
+        at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs, solved)
         faces(
             at,
             self.reynolds.face_law(inputs),
@@ -154,10 +143,8 @@ class HeatStep:
             gradient,
         )
         if backward:
-            if inputs.heat is not None:
-                self._heat.guess[:] = inputs.heat.guess[::-1]
-            return -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
-        return couette, pressure_heat, spread, gradient
+            return solved[::-1].copy(), -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
+        return solved, couette, pressure_heat, spread, gradient
 
     def _max_flow(self, h, oil, inputs):
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
@@ -187,7 +174,7 @@ class HeatStep:
         walls = [w + r * q for w, r, q in zip(walls_before, responses, fluxes, strict=True)]
         bodies = [
             body.accept(body_step, q)
-            for body, body_step, q in zip(self.bodies, self._body_steps, fluxes, strict=True)
+            for body, body_step, q in zip(self.bodies, heat.bodies, fluxes, strict=True)
         ]
         return Temperatures(t, walls, fluxes, shear, extrapolated, bodies, responses)
 
@@ -226,3 +213,33 @@ class HeatStep:
         taken = heat_taken(*of_film, self.inlet, temperatures.film, temperatures.extrapolated)
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
         return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0
+
+
+def mixing(function, start):
+    r"""Fixed point :math:`x=g(x)` by Anderson's acceleration (Walker & Ni 2011).
+
+    Parameters
+    ----------
+    function : callable
+    start : ndarray
+
+    Returns
+    -------
+    ndarray
+        The last argument of the function.
+    """
+    x, steps, residuals = start, [], []
+    for _ in range(ITERATIONS):
+        new = function(x)
+        f = new - x
+        if np.abs(f).max() <= ACCURACY * max(np.abs(new).max(), 1e-300):
+            return x
+        steps, residuals = [*steps, x][-DEPTH:], [*residuals, f][-DEPTH:]
+        if len(steps) == 1:
+            x = new
+            continue
+        differences = np.diff(np.array(residuals), axis=0).T
+        gamma = np.linalg.lstsq(differences, f, rcond=1e-12)[0]
+        moved = np.diff(np.array(steps), axis=0).T
+        x = new - (moved + differences) @ gamma
+    return x

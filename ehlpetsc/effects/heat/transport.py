@@ -145,7 +145,7 @@ def transport(
     inlet, coldest : float
         Temperature of the oil that enters, least one of it and both bodies [K].
     law, of_nodes
-        As of :class:`ehlpetsc.effects.heat.film_law.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
+        As of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
     t_new, q1, q2, shear_heat, extrapolated : ndarray, shape (nodes,)
         Filled in; the last one is e at the end of the step, over the step [W/m^2].
 
