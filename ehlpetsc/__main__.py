@@ -34,7 +34,7 @@ class Command(NamedTuple):
 
 
 COMMANDS = {
-    "post": Command("ehlpetsc.post.command", NUMERICS, "stresses, fatigue damage, statistics", "command"),
+    "post": Command("ehlpetsc.post.command", NUMERICS, "stresses, fatigue damage, statistics"),
     "plot": Command("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
     "summary": Command("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": Command("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),

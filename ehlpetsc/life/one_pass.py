@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.errors import ExitStatus, OutputError, PostError, Stopped
 from ehlpetsc.post.fatigue.accumulate import Counting
-from ehlpetsc.post.inputs.loads import Loads
+from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, Task, solve
 from ehlpetsc.results.means import means

@@ -12,8 +12,8 @@ from ehlpetsc.pictures.criteria import criteria_picture
 from ehlpetsc.pictures.distributions import depth_picture, ratio_picture
 from ehlpetsc.pictures.passes import passes_picture
 from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
-from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.inputs.settings import read_settings
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 from ehlpetsc.post.temperatures import temperature_history

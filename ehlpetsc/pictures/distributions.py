@@ -6,8 +6,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ehlpetsc.pictures import damage_panels as plots
-from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance, log_life
-from ehlpetsc.post.fatigue.weibull import CONFIDENCE, WeibullLikelihood, weibull_bounds, weibull_likelihood
+from ehlpetsc.post.fatigue.statistics import (
+    CONFIDENCE,
+    exceedance,
+    fitted_exceedance,
+    log_life,
+    weibull_bounds,
+)
 
 COLOUR_MAP = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
     "distinct", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
@@ -23,7 +28,7 @@ def depth_picture(result):
     axes = figure.subplots()
     for k, color in enumerate(_colours(len(result.z))):
         _curve(axes, result.under[k], result.fits[k], f"z/a = {result.z[k]:g}", color)
-        _draw_confidence(axes, result.under[k], result.attrs["regression"], color)
+        _draw_confidence(axes, result.under[k], result.fits[k], color)
     _add_legend_entries(axes)
     counted = f"{result.height.size} asperities, surface {result.main}, slide/roll ratio {result.ratio:.3g}"
     _finish(axes, f"{counted}, {plots.strain_rule(result)}")
@@ -56,28 +61,24 @@ def _curve(axes, under, fit, label, color):
     axes.plot(falling[falling > 0], fraction[falling > 0], ".", ms=3, color=color)
     low, high = np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5)
     values = np.logspace(low, max(high, low + 1), 300)
-    axes.plot(values, fitted_exceedance(values, fit), color=color, lw=1.2, label=label)
+    axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), color=color, lw=1.2, label=label)
 
 
-def _draw_confidence(axes, under, regression, color):
-    """Draw the confidence band of the fit by resampling, and the fit of maximum likelihood."""
-    lives = log_life(under)
-    bounds, best = weibull_bounds(lives, regression), weibull_likelihood(lives)
-    if not (bounds.draws.size and np.isfinite(best.beta)):
+def _draw_confidence(axes, under, fit, color):
+    """Draw the confidence band of the fit by resampling."""
+    bounds = weibull_bounds(log_life(under))
+    if not (bounds.draws.size and np.isfinite(fit.beta)):
         return
     damaged = under[under > 0]
     values = np.logspace(np.log10(damaged.min()) - 0.5, min(0.0, np.log10(damaged.max()) + 0.5), 120)
-    drawn = [fitted_exceedance(values, WeibullLikelihood(*row)) for row in bounds.draws]
+    drawn = [fitted_exceedance(values, *row) for row in bounds.draws]
     low, high = np.quantile(drawn, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
     axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
-    axes.plot(values, fitted_exceedance(values, best), color=color, lw=0.8, ls="--")
 
 
 def _add_legend_entries(axes, with_limits=True):
-    """Add legend entries for dots and lines, and for dashes and bands."""
+    """Add legend entries for dots, lines and bands."""
     marks = [(dict(marker=".", ls=""), "asperities"), (dict(lw=1.2), "Weibull, median ranks")]
-    if with_limits:
-        marks.append((dict(lw=0.8, ls="--"), "Weibull, largest likelihood"))
     for style, words in marks:
         axes.plot([], [], color="0.3", label=words, **style)
     if not with_limits:

@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.pictures import damage_panels as plots
-from ehlpetsc.post.fatigue.passes import pass_statistics
-from ehlpetsc.post.outputs.passes_file import same_points
+from ehlpetsc.post.passes import pass_statistics, same_points
 
 
 def passes_picture(results, surface):

@@ -6,37 +6,34 @@ _HOMES = {
     "Criteria": "criteria.laws",
     "Damage": "fatigue.accumulate",
     "Material": "fatigue.strain_life",
-    "Passes": "fatigue.passes",
+    "Passes": "passes",
     "PlaneDamage": "criteria.search",
-    "WeibullBounds": "fatigue.weibull",
+    "WeibullBounds": "fatigue.statistics",
     "WeibullFit": "fatigue.statistics",
-    "WeibullLikelihood": "fatigue.weibull",
     "critical_plane": "criteria.search",
     "cycles_to_failure": "fatigue.strain_life",
     "damage": "fatigue.accumulate",
     "dang_van": "criteria.search",
     "equivalent_range": "fatigue.strain_life",
-    "fold": "fatigue.passes",
-    "largest_near": "fatigue.passes",
+    "largest_near": "fatigue.statistics",
     "out_of_plane": "stresses.half_plane",
-    "pass_statistics": "fatigue.passes",
+    "pass_statistics": "passes",
     "rainflow": "fatigue.cycles",
     "strain_range": "fatigue.strain_life",
     "stress": "stresses.half_plane",
     "von_mises": "stresses.half_plane",
-    "weibull_bounds": "fatigue.weibull",
+    "weibull_bounds": "fatigue.statistics",
     "weibull_fit": "fatigue.statistics",
-    "weibull_likelihood": "fatigue.weibull",
 }
 __all__ = list(_HOMES)
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> object:
     """Import at first use, so that the command can handle a signal before numba is loaded."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
 
 
-def __dir__():
+def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})

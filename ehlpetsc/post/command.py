@@ -1,135 +1,289 @@
-"""The command ``ehlpetsc.post``: steps, messages and exit status."""
+"""The command ``ehlpetsc post RESULT.h5 [...]``: options, messages and exit status."""
 
+from __future__ import annotations
+
+import argparse
+import math
 import os
 import sys
 import time
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from ehlpetsc.command_parser import CommandParser
 from ehlpetsc.compiled import COMPILED
-from ehlpetsc.errors import CaseError, ExitStatus, OutputError, PostError, not_written
-from ehlpetsc.post.arguments import arguments
+from ehlpetsc.errors import CaseError, ExitStatus, OutputError, PostError, UsageError, not_written
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import Counting
-from ehlpetsc.post.outputs.passes_file import store_passes
-from ehlpetsc.post.outputs.passes_index import note_damage
-from ehlpetsc.post.outputs.result_file import check_output
-from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.subprocess_guard import SubprocessGuard
-from ehlpetsc.results.hdf5.opening import open_for_reading
-from ehlpetsc.results.post_result import SURFACES, PostResult, post_path
+from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, Counting
+from ehlpetsc.post.fatigue.cycles import RESIDUES
+from ehlpetsc.post.passes import note_damage, store_passes
+from ehlpetsc.post.run import ASPERITY_HALF_WIDTH, Job, run
+from ehlpetsc.results.output_guard import check_output_path
+from ehlpetsc.results.post_result import SURFACES, PointTemperatures, PostResult, WeibullFit, post_path
+from ehlpetsc.results.series_index import files_of
 
+DESCRIPTION = (
+    "Stress histories of body points, rainflow cycles, fatigue damage and its statistics from result files. "
+    "Material and depths come from the case in the file, table [post]."
+)
 SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.STOPPED)
+PASSES_INDEX = ".passes.json"
+
+
+def _parser() -> CommandParser:
+    parser = CommandParser("post", DESCRIPTION)
+    add = parser.add_argument
+    add(
+        "results",
+        nargs="+",
+        metavar="RESULT.h5",
+        help="several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
+        "OUTPUT.passes.json: its passes, whose damage is then added to it",
+    )
+    output = "result, of a single input (default: RESULT.post.h5 beside it)"
+    add("-o", "--output", metavar="FILE", help=output)
+    add("--surface", choices=("both", *SURFACES), default="both")
+    add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
+    add(
+        "--set",
+        action="append",
+        default=[],
+        metavar="TABLE.KEY=VALUE",
+        help="a key of [post], or contact.material, instead of that of the case; may be repeated",
+    )
+    add(
+        "--count",
+        choices=CHANNELS,
+        default="max3",
+        help="counted scalar; max3: largest damage among counting sx, sz and txz (default)",
+    )
+    add("--residue", choices=RESIDUES, default="closed", help="history repeated (default), or half cycles")
+    add("--mean-stress", choices=MEAN_STRESSES, default="none", help="morrow: with a floor to compression")
+    add(
+        "--criterion",
+        nargs="+",
+        choices=CRITERIA,
+        default=(),
+        metavar="NAME",
+        help="also compute, beside the paper's damage: " + ", ".join(CRITERIA),
+    )
+    add(
+        "--within",
+        type=float,
+        default=ASPERITY_HALF_WIDTH,
+        metavar="W/A",
+        help=f"half widths either side of an asperity's peak in which its largest damage is sought "
+        f"(default {ASPERITY_HALF_WIDTH:g})",
+    )
+    add("--jobs", type=int, choices=range(1, 1025), default=1, metavar="N", help="threads (default 1)")
+    add(
+        "--pictures",
+        nargs="?",
+        const="",
+        metavar="FOLDER",
+        help="also draw PNG and SVG, in FOLDER or beside the result",
+    )
+    add(
+        "--passes",
+        choices=SURFACES,
+        help="the results are passes of this surface against other parts or alignments of the other one: "
+        "also write passes_SURFACE.post.h5: damage a pass with its scatter, Miner's sum to failure",
+    )
+    add(
+        "--point",
+        nargs=2,
+        type=float,
+        metavar=("S/A", "Z/A"),
+        help="body point of the history picture (default: that of the largest damage)",
+    )
+    add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
+    return parser
+
+
+def main(words: Sequence[str]) -> int:
+    """Process each file and draw the processed results; returns the exit status."""
+    parser = _parser()
+    arguments = parser.parse_args(words)
+    try:
+        files = [str(file) for path in arguments.results for file in files_of(path)]
+        _check(arguments, files)
+    except OutputError as fault:
+        _say(str(fault))
+        return ExitStatus.BAD_INPUT
+    except UsageError as fault:
+        parser.error(str(fault))
+    if not COMPILED:
+        _say("numba is not installed: the same results, a hundred times slower")
+    statuses, done = [], []
+    for path in files:
+        status = _status(partial(_process, path, arguments, files), path, _output(path, arguments))
+        if status == ExitStatus.STOPPED:
+            return status
+        statuses.append(status)
+        if status == ExitStatus.DONE:
+            done.append(path)
+    indexes = [path for path in arguments.results if path.endswith(PASSES_INDEX)]
+    for index in indexes if done else ():
+        statuses.append(_status(partial(_note_damage, index), index, index))
+    if arguments.passes:
+        output = _passes_file(files[0], arguments)
+        work = partial(_store_passes, [_output(path, arguments) for path in files], output, arguments)
+        statuses.append(_status(work if done == files else _not_all, "--passes", output))
+    if arguments.pictures is not None and done and not (arguments.passes and statuses[-1]):
+        statuses.append(
+            _status(partial(_draw, done, arguments), "pictures", arguments.pictures or "pictures")
+        )
+    return max(statuses, key=SEVERITY.index)
+
+
+def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
+    """Raise UsageError for options that do not fit each other."""
+    if chosen.output and len(files) > 1:
+        raise UsageError("-o names one file: give one RESULT.h5, or leave it out")
+    if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):
+        raise UsageError(f"--point {chosen.point[0]:g} {chosen.point[1]:g}: the depth z/a must be 0 or more")
+    for setting in chosen.set:
+        if not setting.startswith(("post.", "contact.material=")):
+            raise UsageError(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")
+    if chosen.passes and len(files) < 2:
+        raise UsageError("--passes: give the results of two passes or more")
+    if not 0 <= chosen.within < math.inf:
+        raise UsageError(f"--within {chosen.within:g}: must be 0 or more")
+
+
+def _say(text: str) -> None:
+    """Print lines to standard error."""
+    for line in text.splitlines():
+        print(f"ehlpetsc post: {line}", file=sys.stderr)
+
+
+def _status(work: Callable[[], None], path: str, output: str) -> int:
+    """Run work() and print its faults; `path` is its input, `output` its output."""
+    try:
+        work()
+    except (PostError, OutputError, CaseError, UsageError) as fault:
+        for line in str(fault).splitlines():
+            _say(line if line.startswith(str(path)) else f"{path}: {line}")
+        return ExitStatus.BAD_INPUT
+    except BrokenPipeError:  # closed by the reader, as `| head`
+        sys.stdout = open(os.devnull, "w")
+        return ExitStatus.STOPPED
+    except OSError as fault:
+        _say(not_written(fault, fault.filename or output))
+        return ExitStatus.BAD_INPUT
+    except KeyboardInterrupt:
+        _say(f"interrupted: {output} is not written")
+        return ExitStatus.STOPPED
+    return ExitStatus.DONE
 
 
 class Progress:
     """Progress in percent, rewritten in place; on terminals only."""
 
-    def __init__(self, name):
-        self.name, self.last = name, 0.0
-        self.shown, self.parent = sys.stderr.isatty(), os.getppid()
+    def __init__(self, name: str) -> None:
+        self.name, self.last, self.shown = name, 0.0, sys.stderr.isatty()
 
-    def __call__(self, done, total):
+    def __call__(self, done: float, total: int) -> None:
         """Show the finished fraction of the work, at most five times a second."""
-        if os.getppid() != self.parent:  # the parent process was killed
-            raise KeyboardInterrupt
         now = time.monotonic()
         if self.shown and (now - self.last > 0.2 or done >= total):
             self.last = now
             end = "\n" if done >= total else ""
-            print(
-                f"\r{self.name}: {100 * done / total:5.1f} % of {total} depths",
-                end=end,
-                file=sys.stderr,
-                flush=True,
-            )
+            text = f"\r{self.name}: {100 * done / total:5.1f} % of {total} depths"
+            print(text, end=end, file=sys.stderr, flush=True)
 
 
-def say(text):
-    """Print lines to standard error."""
-    for line in text.splitlines():
-        print(f"ehlpetsc.post: {line}", file=sys.stderr)
-
-
-def _output(path, chosen):
+def _output(path: str, chosen: argparse.Namespace) -> str:
     return chosen.output or str(post_path(path))
 
 
-def _process(path, chosen):
+def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> None:
     output = _output(path, chosen)
-    open_for_reading(path).close()
-    check_output(output, chosen.results)
-    surfaces = SURFACES if chosen.surface == "both" else (chosen.surface,)
-    counting = Counting(chosen.count, chosen.residue, chosen.ranges, chosen.mean_stress)
-    depths = None if chosen.depths is None else tuple(chosen.depths)
-    criteria = tuple(name for name in CRITERIA if name in chosen.criterion)
-    strain = () if chosen.strain is None else (f'post.strain="{chosen.strain}"',)
     job = Job(
         path,
         output,
-        surfaces,
-        depths,
-        counting,
-        chosen.regression,
+        SURFACES if chosen.surface == "both" else (chosen.surface,),
+        None if chosen.depths is None else tuple(chosen.depths),
+        Counting(chosen.count, chosen.residue, chosen.mean_stress),
         chosen.jobs,
-        criteria,
+        tuple(name for name in CRITERIA if name in chosen.criterion),
         chosen.within,
-        (*chosen.set, *strain),
+        tuple(chosen.set),
     )
     start = time.perf_counter()
-    run(job, lambda text: say(text if text.startswith(output) else f"{path}: {text}"), Progress(path))
-    _summary(output, time.perf_counter() - start)
+    if not chosen.overwrite and job.is_done():
+        _say(f"{output}: already there, of the same file and options")
+    else:
+        _check_output(Path(output), inputs, chosen.overwrite)
+        run(job, lambda text: _say(f"{path}: {text}"), Progress(path))
+    _summary(output, job.criteria, time.perf_counter() - start)
 
 
-def _summary(output, wall):
+def _check_output(output: Path, inputs: Sequence[str], overwrite: bool) -> None:
+    """Raise OutputError if an output must not be written."""
+    check_output_path(output, map(Path, inputs), "-o")
+    if not output.parent.is_dir():
+        raise OutputError(f"the folder of the output {output} does not exist")
+    if output.exists() and not overwrite:
+        raise OutputError(f"{output}: exists; give another -o, or --overwrite to replace it")
+
+
+def _summary(output: str, criteria: Sequence[str], wall: float) -> None:
     """Print one line for each depth and one for the result."""
     result = PostResult(output)
+    surfaces = sorted(result.surfaces)
     for k, z in enumerate(result.z):
-        print(
-            f"z/a={z:<6g}"
-            + "".join(f" {surface}: D_max={result.largest(surface, k):.3e}" for surface in result.surfaces)
-            + _weibull(result.fits[k])
-        )
-    for surface, temperatures in result.temperatures.items():
-        if result.complete[surface].any():
-            print(_temperatures(surface, temperatures))
-    points = " ".join(f"{name}={result.complete[name].sum()}" for name in result.surfaces)
+        words = [f"z/a={z:<6g}"]
+        for surface in surfaces:
+            words.append(f"{surface}: D_max={result.largest(surface, k):.3e}")
+            words += [f"{name}={_largest(result, name, surface, k):.3g}" for name in criteria]
+        print(" ".join([*words, *_weibull(result.fits[k])]))
+    for surface in surfaces:
+        if surface in result.temperatures and result.complete[surface].any():
+            print(_temperatures(surface, result.temperatures[surface]))
+    points = " ".join(f"{name}={result.complete[name].sum()}" for name in surfaces)
     print(
-        f"ehlpetsc.post: done {output} points {points} depths={len(result.z)} "
+        f"ehlpetsc post: done {output} points {points} depths={len(result.z)} "
         f"asperities={len(result.height)} wall={wall:.2f}"
     )
 
 
-def _temperatures(surface, temperatures):
+def _largest(result: PostResult, criterion: str, surface: str, depth: int) -> float:
+    """Largest damage or utilisation by a criterion at depth number `depth`; nan if no point passed."""
+    values = result.criteria[criterion][surface][depth, result.complete[surface]]
+    return values.max() if values.size else np.nan
+
+
+def _temperatures(surface: str, temperatures: PointTemperatures) -> str:
     """Text of the surface temperatures of body points."""
-    flash = temperatures.flash[~np.isnan(temperatures.flash)]
-    mean = temperatures.mean[~np.isnan(temperatures.mean)]
     return (
         f"surface {surface} temperature: highest={np.nanmax(temperatures.highest):.5g} K "
-        f"mean={mean.mean():.5g} K flash_max={flash.max():.4g} K flash_median={np.median(flash):.4g} K"
+        f"mean={np.nanmean(temperatures.mean):.5g} K flash_max={np.nanmax(temperatures.flash):.4g} K "
+        f"flash_median={np.nanmedian(temperatures.flash):.4g} K"
     )
 
 
-def _weibull(fit):
-    """Text of the Weibull distribution over asperities; "" if they are too few."""
-    if not fit.beta > 0:
-        return ""
-    return f" weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}"
+def _weibull(fit: WeibullFit) -> Iterator[str]:
+    """Words of the Weibull distribution over asperities; none if they are too few."""
+    if fit.beta > 0:
+        yield f"weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}"
 
 
-def _passes_file(chosen):
-    first = Path(_output(chosen.results[0], chosen))
-    return str(first.with_name(f"passes_{chosen.passes}.post.h5"))
+def _passes_file(first: str, chosen: argparse.Namespace) -> str:
+    return str(post_path(first).with_name(f"passes_{chosen.passes}.post.h5"))
 
 
-def _store_passes(paths, chosen):
+def _not_all() -> None:
+    raise PostError("not all of the passes could be processed")
+
+
+def _store_passes(outputs: Sequence[str], file: str, chosen: argparse.Namespace) -> None:
     """Store mean and scatter over passes in a separate file, and print one line for each depth."""
-    if len(paths) < len(chosen.results):
-        raise PostError("not all of the passes could be processed")
-    results = [PostResult(_output(path, chosen)) for path in paths]
-    passes = store_passes(_passes_file(chosen), results, chosen.passes)
+    results = [PostResult(output) for output in outputs]
+    passes = store_passes(file, results, chosen.passes)
     for k, z in enumerate(results[0].z):
         worst = passes.mean[k].argmax()
         print(
@@ -137,101 +291,29 @@ def _store_passes(paths, chosen):
             f"deviation={passes.deviation[k, worst]:.3e} largest={passes.largest[k].max():.3e} "
             f"first failure after {passes.life[k, worst]:.4g} passes"
         )
-    print(
-        f"ehlpetsc.post: done {_passes_file(chosen)} passes={len(results)} points={passes.mean.shape[1]} "
-        f"depths={passes.mean.shape[0]}"
-    )
+    print(f"ehlpetsc post: done {file} passes={len(results)} points={passes.mean.shape[1]}")
 
 
-def _note_damage(index):
+def _note_damage(index: str) -> None:
     """Add the damage of every pass to the index of a run, and print one line for each pass."""
     passes = note_damage(index)
     for number, damage in passes:
         print(f"pass {number}: {' '.join(_pass_figures(damage))}")
-    print(f"ehlpetsc.post: done {index} passes={len(passes)}")
+    print(f"ehlpetsc post: done {index} passes={len(passes)}")
 
 
-def _pass_figures(damage):
+def _pass_figures(damage: dict) -> Iterator[str]:
     """Maximum damage of each surface and, with [heat], maximum flash temperature."""
-    for side in ("1", "2"):
+    for side in sorted(SURFACES):
         if side in damage:
             yield f"{side} D_max={max(damage[side]['largest']):.3e}"
             if "flash_temperature" in damage[side]:
                 yield f"flash_max={damage[side]['flash_temperature']:.4g} K"
 
 
-def _draw(paths, chosen):
+def _draw(paths: Sequence[str], chosen: argparse.Namespace) -> None:
     from ehlpetsc.pictures.damage import draw
 
     outputs = [_output(path, chosen) for path in paths]
-    try:
-        names = draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame, chosen.passes)
-    except OSError as fault:
-        raise PostError(f"{not_written(fault)}; pictures before it are whole") from None
-    for name in names:
+    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame, chosen.passes):
         print(name)
-
-
-def _status(work, path, output):
-    """Run work(), print its faults and return the exit status; `path` is its input, `output` its output."""
-    try:
-        work()
-    except (PostError, OutputError, CaseError) as fault:
-        for line in str(fault).splitlines():
-            say(line if line.startswith(str(path)) else f"{path}: {line}")
-        return ExitStatus.BAD_INPUT
-    except BrokenPipeError:  # closed by the reader, as `| head`
-        sys.stdout = None
-        return ExitStatus.STOPPED
-    except OSError as fault:
-        say(f"{not_written(fault, output)}; nothing is left of it")
-        return ExitStatus.BAD_INPUT
-    except KeyboardInterrupt:
-        say("interrupted; the same command continues from the finished depths")
-        return ExitStatus.STOPPED
-    return ExitStatus.DONE
-
-
-def main(argv, call=lambda name, work: work()):
-    """Process each file and draw the processed results; returns the exit status.
-
-    Parameters
-    ----------
-    argv : list of str
-    call : callable(name, work), optional
-        Runs the function `work` for the file `name` and returns its exit status.
-    """
-    chosen = arguments(argv)
-    if not COMPILED:
-        say("numba is not installed: the same results, a hundred times slower")
-    outputs = [_output(path, chosen) for path in chosen.results]
-    if len(set(outputs)) < len(set(chosen.results)):
-        twice = max(outputs, key=outputs.count)
-        say(f"two of the results would have one output, {twice}: give them one by one, with -o")
-        return ExitStatus.BAD_INPUT
-    statuses, done = [], []
-    for path, output in zip(chosen.results, outputs, strict=True):
-        status = call(path, partial(_status, partial(_process, path, chosen), path, output))
-        if status == ExitStatus.STOPPED:
-            return status
-        statuses.append(status)
-        if status == ExitStatus.DONE:
-            done.append(path)
-    for index in chosen.indexes if done else ():
-        statuses.append(call(index, partial(_status, partial(_note_damage, index), index, index)))
-    if chosen.passes:
-        work = partial(_status, partial(_store_passes, done, chosen), "--passes", _passes_file(chosen))
-        statuses.append(call("passes", work))
-        if statuses[-1] != ExitStatus.DONE:
-            return max(statuses, key=SEVERITY.index)
-    if chosen.pictures is not None and done:
-        where = chosen.pictures or "pictures"
-        statuses.append(call("pictures", partial(_status, partial(_draw, done, chosen), "pictures", where)))
-    return max(statuses, key=SEVERITY.index)
-
-
-def command(words):
-    """Run as a command, every file in a separate process, so that a crash leaves the others unaffected."""
-    status = main(words, call=SubprocessGuard(say))
-    sys.stdout.flush()
-    os._exit(status)  # faster than Python's end, which collects cycles

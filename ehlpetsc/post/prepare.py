@@ -1,17 +1,21 @@
-"""Preparation of a result file: settings, body points and their passages."""
+"""Preparation of a result file: settings of its case, body points and their passages."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.case.loading import Case
 from ehlpetsc.errors import PostError
-from ehlpetsc.post.inputs.consistency import check_scales, check_time_step
-from ehlpetsc.post.inputs.gaps import find_gaps, frames_missed
-from ehlpetsc.post.inputs.input_checks import input_digest
-from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.inputs.settings import Settings, read_settings
-from ehlpetsc.post.stresses.body_points import NO_FLANK, body_points, passage
+from ehlpetsc.materials import fatigue_constants, named_steels
+from ehlpetsc.post.criteria.laws import Criteria
+from ehlpetsc.post.fatigue.strain_life import Material
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.stresses.body_points import NO_FLANK, Passage, body_points, passage
 
+DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5, 0.7, 1.0)  # z/a: down to the stresses of the smooth contact
 MAX_POINTS = 5_000_000
 MIN_REPRESENTATIVE_POINTS = 30  # of a surface
 END_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
@@ -21,74 +25,75 @@ DAMAGE_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
 # thinned by tests/benchmarks/post_every.py
 
 
-class Prepared(NamedTuple):
-    """Checked data of a result file, for all tasks.
+class Settings(NamedTuple):
+    """Depths z/a, material of each surface, constants of the criteria, residual stress (z/a, Pa)."""
 
-    Attributes
-    ----------
-    loads : Loads
-    settings : Settings
-    every : int
-        Steps between stored frames.
-    s : ndarray (ns,)
-        Body points, m.
-    motions : dict
-        Passage by surface; complete only without missing frames.
-    missed : dict
-        Frames missing while each point was among the nodes, (ns,), by surface.
-    digest : str
-        Digest of all inputs of the damage.
+    depths: tuple[float, ...]
+    material_1: Material
+    material_2: Material
+    criteria: Criteria = Criteria()
+    residual_stress: tuple[tuple[float, float], ...] = ()
+
+    def material(self, surface: str) -> Material:
+        """Material of surface "1" or "2"."""
+        return {"1": self.material_1, "2": self.material_2}[surface]
+
+    def residual(self, depth: float) -> float:
+        """Residual stress along the surface at a depth z/a [Pa], linearly interpolated."""
+        if not self.residual_stress:
+            return 0.0
+        depths, values = zip(*self.residual_stress, strict=True)
+        return float(np.interp(depth, depths, values))
+
+
+class Prepared(NamedTuple):
+    """Data of a result file for all tasks: body points s (ns,) [m], passages by surface.
+
+    `every` is the number of steps between stored frames.
     """
 
     loads: Loads
     settings: Settings
     every: int
     s: np.ndarray
-    motions: dict
-    missed: dict
-    digest: str
+    motions: dict[str, Passage]
 
 
-def prepare(loads, surfaces, report):
-    """Check a result file against its case and find the body points that can be computed.
+def read_settings(case: Case) -> Settings:
+    """Settings of `[post]`; PostError if the fatigue limits contradict each other."""
+    post, contact = case.post, case.contact
+    materials = [
+        Material(modulus, ratio, **fatigue_constants(steel, post.as_dict()))
+        for modulus, ratio, steel in zip(
+            contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True
+        )
+    ]
+    constants = {name: getattr(post, name) for name in Criteria.__dataclass_fields__}
+    try:
+        criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
+    except ValueError as fault:
+        raise PostError(f"post.{fault}") from None
+    depths = tuple(sorted(set(post.depths or DEPTHS)))
+    return Settings(depths, *materials, criteria, tuple(map(tuple, post.residual_stress or ())))
 
-    Parameters
-    ----------
-    loads : Loads
-    surfaces : sequence of str
-    report : callable(str)
-        Called with warnings.
+
+def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> Prepared:
+    """Find the body points whose damage can be computed, and report what limits it.
 
     Raises
     ------
     PostError
-        The file is not suitable for damage; the message states the reason.
+        The result is not suitable for damage; the message states the reason.
     """
     settings = read_settings(loads.case)
     loads.check(surfaces)
-    _check_frames(loads)
-    check_scales(loads)
-    check_time_step(loads)
-    gaps = find_gaps(loads)
+    every = max(int(np.median(np.diff(loads.step))), 1)
     s, motions = _motions(loads, surfaces)
-    missed = {name: frames_missed(gaps, motion, loads.x.size) for name, motion in motions.items()}
-    digest = input_digest(loads, surfaces)
-    complete = {name: m._replace(complete=m.complete & (missed[name] == 0)) for name, m in motions.items()}
-    _warn(loads, gaps, motions, complete, report)
-    return Prepared(loads, settings, gaps.every, s, complete, missed, digest)
+    _warn(loads, every, motions, report)
+    return Prepared(loads, settings, every, s, motions)
 
 
-def _check_frames(loads):
-    if loads.time.size < 2 or loads.case.time is None:
-        reason = "holds one stored frame" if loads.case.time else "is a steady run"
-        if loads.time.size == 0:
-            reason = "holds no stored frame"
-        raise PostError(
-            f"it {reason}: damage needs the stress history, a [time] section and output.every = 1"
-        )
-
-
-def _motions(loads, surfaces):
+def _motions(loads: Loads, surfaces: Sequence[str]) -> tuple[np.ndarray, dict[str, Passage]]:
     distances = [loads.travelled[surface] for surface in surfaces]
     moved = max(abs(distance[-1] - distance[0]) for distance in distances)
     if moved / loads.dx + loads.x.size > MAX_POINTS:
@@ -112,7 +117,7 @@ def _motions(loads, surfaces):
     return s, motions
 
 
-def _flank(loads, surface):
+def _flank(loads: Loads, surface: str) -> tuple[float, float]:
     """Points of a flank between the ends of its path of contact, if the run has reached its end."""
     case, number = loads.case, int(surface) - 1
     if case.gears is None:
@@ -123,21 +128,20 @@ def _flank(loads, surface):
     return begin - arc if ended else np.inf, begin
 
 
-def _warn(loads, gaps, motions, complete, report):
-    if loads.status not in ("done", "unknown"):
+def _warn(loads: Loads, every: int, motions: dict[str, Passage], report: Callable[[str], None]) -> None:
+    if loads.status != "done":
         report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
-    if gaps.every > 1:
-        steps = min(DAMAGE_LOSS, key=lambda studied: abs(studied - gaps.every))
+    if every > 1:
+        steps = min(DAMAGE_LOSS, key=lambda studied: abs(studied - every))
         top, below = DAMAGE_LOSS[steps]
         report(
-            f"warning: stored with output.every = {gaps.every}: peaks between frames are lost; with every "
+            f"warning: stored with output.every = {every}: peaks between frames are lost; with every "
             f"{steps} two measured surfaces lost {top} % of a typical point's damage at z = 0 and {below} % "
             "at z/a = 0.01, more where damage is largest"
         )
-    _report_gaps(loads, gaps, motions, complete, report)
-    for surface, motion in complete.items():
+    for surface, motion in motions.items():
         passed = np.count_nonzero(motion.complete)
-        if not motions[surface].complete.any():
+        if not passed:
             report(
                 f"warning: no point of surface {surface} passed the whole contact: its damage is nan"
                 f"{_travel_needed(loads, surface, 'lets some through')}"
@@ -150,35 +154,11 @@ def _warn(loads, gaps, motions, complete, report):
             )
 
 
-def _travel_needed(loads, surface, why, passed=0.0):
+def _travel_needed(loads: Loads, surface: str, why: str, passed: float = 0.0) -> str:
     """Text of the travel for `passed` half widths of a surface to cross the mesh; "" if it hardly moves."""
-    distance, longest = (abs(w[-1] - w[0]) for w in (loads.travelled[surface], _longest(loads)))
+    distances = {name: abs(travelled[-1] - travelled[0]) for name, travelled in loads.travelled.items()}
+    distance, longest = distances[surface], max(distances.values())
     if distance < MIN_SPEED * longest:
         return ""
     width = (loads.x[-1] - loads.x[0]) / loads.a + passed
     return f"; time.travel = {np.ceil(10 * width * longest / distance + 0.5) / 10:g} or more {why}"
-
-
-def _longest(loads):
-    return max(loads.travelled.values(), key=lambda distances: abs(distances[-1] - distances[0]))
-
-
-def _report_gaps(loads, gaps, motions, complete, report):
-    """Report points without damage because of missing frames; PostError if no point is left."""
-    if not gaps.after.size:
-        return
-    frame = gaps.after[0]
-    where = f"after step {loads.step[frame]}"
-    positions = f"{gaps.after.size} places, first" if gaps.after.size > 1 else "one place,"
-    lost = f"{gaps.missing.sum()} frames are missing in {positions} {where}"
-    if not any(motion.complete.any() for motion in complete.values()):
-        raise PostError(
-            f"{lost}, while every point that passed was in the contact: peaks are lost, so no damage is given"
-        )
-    for surface, motion in motions.items():
-        passed, left = motion.complete.sum(), complete[surface].complete.sum()
-        if left < passed:
-            report(
-                f"warning: {lost}: {passed - left} of {passed} points of surface {surface} were in the "
-                f"contact then; their damage is nan (damage/{surface}_missed)"
-            )

@@ -1,24 +1,27 @@
 """Post-processing of one result file, in tasks over surfaces and depths."""
 
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.errors import OutputError, PostError
+from ehlpetsc import __version__
+from ehlpetsc.case.loading import Case
+from ehlpetsc.errors import OutputError
 from ehlpetsc.materials import DEFAULT, FATIGUE_KEYS
-from ehlpetsc.post.counters import PAPER, Counters, columns
-from ehlpetsc.post.fatigue.accumulate import Counting
-from ehlpetsc.post.inputs.loads import Loads
-from ehlpetsc.post.outputs.contents import Contents
-from ehlpetsc.post.outputs.depth_cache import DepthCache
-from ehlpetsc.post.outputs.result_file import check_output, fingerprint, stored_fingerprint, write_result
-from ehlpetsc.post.prepare import prepare
+from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
+from ehlpetsc.post.fatigue.accumulate import Counter, Counting
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.prepare import Prepared, Settings, prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM
 from ehlpetsc.post.stresses.histories import HistoryCollector, runs_of_points, workers
-from ehlpetsc.results.output_guard import Lock
-from ehlpetsc.results.post_result import SURFACES
+from ehlpetsc.results.post_result import SURFACES, PostResult
 
 MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
 ASPERITY_HALF_WIDTH = 0.02  # half widths on either side of a peak, over which the damage is the maximum
@@ -34,80 +37,125 @@ class Job(NamedTuple):
 
     path: str
     output: str
-    surfaces: tuple = SURFACES
-    depths: tuple | None = None
+    surfaces: tuple[str, ...] = SURFACES
+    depths: tuple[float, ...] | None = None
     counting: Counting = Counting()
-    regression: str = "x on y"
     jobs: int = 1
-    criteria: tuple = ()
+    criteria: tuple[str, ...] = ()
     within: float = ASPERITY_HALF_WIDTH
-    settings: tuple = ()
+    settings: tuple[str, ...] = ()
 
-    def overrides(self):
+    def overrides(self) -> list:
         """Overrides of the case, see `ehlpetsc.load`."""
         depths = () if self.depths is None else (("post.depths", list(self.depths)),)
         return [*self.settings, *depths]
+
+    def fingerprint(self) -> str:
+        """Hash of the settings and of the version of the result file."""
+        source = Path(self.path).stat()
+        items = [__version__, *self._replace(output="", jobs=1), source.st_size, source.st_mtime_ns]
+        return hashlib.sha256(json.dumps(items).encode()).hexdigest()
+
+    def is_done(self) -> bool:
+        """Whether the output exists, made by this job."""
+        try:
+            return PostResult(self.output).attrs.get("fingerprint") == self.fingerprint()
+        except OutputError:
+            return False
 
 
 class Task(NamedTuple):
     """Depths of one surface that one task processes."""
 
     surface: str
-    depths: tuple
+    depths: tuple[float, ...]
 
 
-def run(job, report=None, progress=None):
-    """Compute damage and statistics of one result file and write them to `job.output`.
+class Counters:
+    """Columns of results of blocks of histories: damage of the paper, then other criteria."""
 
-    Finished depths of an interrupted run with the same input and settings are reused; a finished result of
-    the same input and settings is not computed again.
+    def __init__(
+        self, settings: Settings, surface: str, counting: Counting, criteria: Sequence[str], samples: int
+    ) -> None:
+        material = settings.material(surface)
+        self.parts = [Counter(material, counting, samples)]
+        if criteria:
+            from ehlpetsc.post.criteria.search import counter_of  # slow to compile: only if requested
 
-    Parameters
-    ----------
-    job : Job
-    report : callable(str), optional
-        Called with warnings and notes.
-    progress : callable(done, of), optional
-        Called with the finished work.
+            options = counting.residue, counting.strain, samples
+            self.parts += [counter_of(name, material, settings.criteria, *options) for name in criteria]
+
+    def __call__(
+        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
+    ) -> None:
+        """Stress (points, 3, samples), lengths (points,) -> out (points, columns); `residual` in Pa."""
+        first = 0
+        for counter in self.parts:
+            values = np.empty((len(out), len(counter.columns)))
+            counter(stress, lengths, values, residual)
+            out[:, first : first + values.shape[1]] = values
+            first += values.shape[1]
+
+
+def columns(criteria: Sequence[str]) -> list[tuple[str, str]]:
+    """Pairs (criterion, column) of the criteria other than the paper's, in the order of the results."""
+    if not criteria:
+        return []
+    from ehlpetsc.post.criteria.search import columns_of  # as above
+
+    return [(name, column) for name in criteria for column in columns_of(name)]
+
+
+def run(
+    job: Job,
+    report: Callable[[str], None] = lambda text: None,
+    progress: Callable[[float, int], None] = lambda done, of: None,
+) -> None:
+    """Compute damage and statistics of one result file and write them to `job.output`, replacing it.
+
+    `report` is called with warnings and notes, `progress` with the finished and all depths of surfaces.
 
     Raises
     ------
     OutputError, CaseError
-        The result file or its case cannot be read, or the output may not be overwritten.
+        The result file or its case cannot be read.
     PostError
         The result file is not suitable for damage.
     OSError
         The output cannot be written, as on a full disk; no file is left.
     """
-    report = report or (lambda text: None)
     job.counting.check()
-    check_output(job.output, [job.path])
     with Loads(job.path, job.overrides()) as loads:
+        identity = job.fingerprint()
         job = job._replace(counting=job.counting._replace(strain=loads.case.post.strain))
         prepared = prepare(loads, job.surfaces, report)
-        choices = job.counting, job.regression, job.criteria, job.within
-        identity = fingerprint(prepared.digest, job.surfaces, prepared.settings, *choices)
-        if stored_fingerprint(job.output) == identity:
-            report(f"{job.output}: already there, of the same file and options")
-            return
         _note_material(loads.case, job.criteria, report)
         _note_heat(loads, job.surfaces, report)
         if prepared.settings.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
             report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
-        if job.counting.ranges == "window":
-            report("note: counting takes four to eleven times as long with --ranges window")
-        lock = Lock(Path(job.output), "wait for it, or give another -o")
-        with lock, DepthCache(job.output, identity) as cache:
-            try:
-                _compute(job, prepared, cache, progress or (lambda done, of: None))
-                _store(job, prepared, cache, identity, report)
-            except (PostError, OutputError, OSError):
-                cache.remove()  # the run cannot be continued, unlike after an interruption
-                raise
-            cache.remove()
+        computed = _compute(job, prepared, progress)
+        depths = np.array(prepared.settings.depths)
+        datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": depths}
+        for surface, values in computed.items():
+            found, notes = datasets_of(prepared, surface, values, columns(job.criteria), job.within)
+            datasets |= found
+            for note in notes:
+                report(note)
+        attributes = attributes_of(prepared, job.within) | _settings_of(job, loads.case)
+        write_result(job.output, datasets, attributes | {"fingerprint": identity})
 
 
-def _note_material(case, criteria, report):
+def _settings_of(job: Job, case: Case) -> dict[str, Any]:
+    """Root attributes: settings of the job."""
+    return {
+        "material": ", ".join(case.contact.material or (DEFAULT,)),
+        "settings": "\n".join(job.settings),
+        "residual_stress": np.array(case.post.residual_stress or (), float).reshape(-1, 2),
+        **job.counting._asdict(),
+    }
+
+
+def _note_material(case: Case, criteria: Sequence[str], report: Callable[[str], None]) -> None:
     """Report the default steel if the case names none, and the assumptions of Dang Van's limits."""
     if case.contact.material is None and all(getattr(case.post, key) is None for key in FATIGUE_KEYS):
         report(f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel")
@@ -118,7 +166,7 @@ def _note_material(case, criteria, report):
         )
 
 
-def _note_heat(loads, surfaces, report):
+def _note_heat(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> None:
     """Report the treatment of heat in the result."""
     if loads.case.heat is None:
         return
@@ -128,37 +176,33 @@ def _note_heat(loads, surfaces, report):
     report("note: thermal stresses are not computed: damage is that of pressure and shear stress alone")
 
 
-def _compute(job, prepared, cache, progress):
-    depths = prepared.settings.depths
-    missing = {surface: [d for d in depths if not cache.has(surface, d)] for surface in prepared.motions}
-    tasks = _tasks(missing)
-    total = sum(len(task.depths) for task in tasks)
-    done = 0
+def _compute(job: Job, prepared: Prepared, progress: Callable[[float, int], None]) -> dict[str, np.ndarray]:
+    """Results (depths, points, columns) of each surface."""
+    depths, done = prepared.settings.depths, 0
+    number = -(-len(depths) // DEPTHS_AT_ONCE)  # of tasks of about equal size
+    found = {surface: {} for surface in prepared.motions}
     with workers(job.jobs) as map_:
-        for task in tasks:
+        for surface, values in found.items():
+            for task in (Task(surface, depths[k::number]) for k in range(number)):
 
-            def task_progress(fraction, done=done, task=task):
-                progress(done + fraction * len(task.depths), total)
+                def task_progress(fraction: float, done: int = done, task: Task = task) -> None:
+                    progress(done + fraction * len(task.depths), len(found) * len(depths))
 
-            values = solve(job, prepared, task, map_, task_progress)
-            for depth, results in zip(task.depths, values, strict=True):
-                cache.save(task.surface, depth, results)
-            done += len(task.depths)
-
-
-def _tasks(missing):
-    """Split the missing depths into tasks of about equal size."""
-    tasks = []
-    for surface, depths in missing.items():
-        number = -(-len(depths) // DEPTHS_AT_ONCE)
-        tasks += [Task(surface, tuple(depths[k::number])) for k in range(number)]
-    return tasks
+                values |= zip(task.depths, solve(job, prepared, task, map_, task_progress), strict=True)
+                done += len(task.depths)
+    return {surface: np.stack([values[depth] for depth in depths]) for surface, values in found.items()}
 
 
-def solve(job, prepared, task, map_=map, progress=None):
+def solve(
+    job: Job,
+    prepared: Prepared,
+    task: Task,
+    map_: Callable = map,
+    progress: Callable[[float], None] = lambda fraction: None,
+) -> np.ndarray:
     """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan for incomplete points."""
     loads, motion = prepared.loads, prepared.motions[task.surface]
-    width = len(PAPER) + len(columns(job.criteria))
+    width = len(Counter.columns) + len(columns(job.criteria))
     out = np.full((len(task.depths), prepared.s.size, width), np.nan)
     residual = [prepared.settings.residual(depth) for depth in task.depths]
     if not motion.complete.any():
@@ -168,14 +212,13 @@ def solve(job, prepared, task, map_=map, progress=None):
     frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points in runs)
     done = 0
 
-    def finish(counter, depth, first, last, histories):
+    def finish(counter: Counters, depth: int, first: int, last: int, histories: np.ndarray) -> None:
         counter(histories, lengths[first:last], out[depth, first:last], residual[depth])
 
-    def advance(count):
+    def advance(count: int) -> None:
         nonlocal done
         done += count
-        if progress:
-            progress(done / frames)
+        progress(done / frames)
 
     make = partial(Counters, prepared.settings, task.surface, job.counting, job.criteria)
     counters = list(map_(make, [motion.samples() + 2] * job.jobs))
@@ -184,14 +227,3 @@ def solve(job, prepared, task, map_=map, progress=None):
     for points in runs:
         collect(points, [partial(finish, counter) for counter in counters])
     return out
-
-
-def _store(job, prepared, cache, identity, report):
-    contents = Contents(prepared, job.regression, columns(job.criteria), job.within)
-    for surface in prepared.motions:
-        contents.add(surface, np.stack([cache.load(surface, d) for d in prepared.settings.depths]))
-        contents.add_temperatures(surface)
-    for note in contents.notes:
-        report(note)
-    attributes = contents.attributes(identity, job.counting, job.settings)
-    write_result(job.output, contents.datasets, attributes, contents.groups)

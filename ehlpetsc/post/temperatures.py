@@ -17,7 +17,7 @@ def point_temperatures(loads, surface, motion, points):
 
     Parameters
     ----------
-    loads : ehlpetsc.post.inputs.loads.Loads
+    loads : ehlpetsc.post.loads.Loads
     surface : {"1", "2"}
         Surface with stored temperature.
     motion : ehlpetsc.post.stresses.body_points.Passage

@@ -1,19 +1,85 @@
-"""Results of post-processing, ``RESULT.post.h5``, for summaries, pictures and indices."""
+"""Results of post-processing, ``RESULT.post.h5``: the table of their datasets, and their reader."""
+
+from __future__ import annotations
 
 from copy import copy
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.names import current_name, stored_name
 from ehlpetsc.results.hdf5.attributes import Attributes
 from ehlpetsc.results.hdf5.lazy_dataset import reading
 from ehlpetsc.results.hdf5.opening import open_for_reading
 
+if TYPE_CHECKING:
+    from ehlpetsc.results.reader import Result
+
 SURFACES = ("2", "1")
-BOUNDS = tuple(f"{name}_{kind}" for name in ("alpha", "beta") for kind in ("likelihood", "low", "high"))
+CRITERIA = {  # name in files: quantity that compares points
+    "fatemi_socie": "damage",
+    "shear": "damage",
+    "swt": "damage",
+    "dang_van": "utilisation",
+}
+
+
+class Dataset(NamedTuple):
+    """Unit, meaning and axes of a dataset: z depths, s body points, peak asperities, node of a profile."""
+
+    unit: str
+    text: str
+    axes: str
+
+
+NOT_PASSED = "nan where a point did not pass the whole contact"
+DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
+    "damage/s": Dataset("m", "body coordinate, x = s + distance travelled", "s"),
+    "damage/z_over_a": Dataset("1", "depth over half width", "z"),
+    "damage/{n}": Dataset("1", f"fatigue damage of one pass; {NOT_PASSED}", "z s"),
+    "damage/{n}_cycles": Dataset("1", "counted cycles of a pass", "z s"),
+    "damage/{n}_peak_range": Dataset("Pa", "largest equivalent stress range", "z s"),
+    "damage/{n}_complete": Dataset("1", "1 where a point entered and left the domain", "s"),
+    "damage/{n}_mean": Dataset("1", "fatigue damage of a pass, mean of the passes", "z s"),
+    "damage/{n}_deviation": Dataset("1", "standard deviation of the damage of a pass, with n - 1", "z s"),
+    "damage/{n}_largest": Dataset("1", "largest damage of a pass", "z s"),
+    "damage/{n}_count": Dataset("1", "passes", "z s"),
+    "damage/{n}_life": Dataset("1", "passes to failure by Miner's sum, 1/mean", "z s"),
+    "asperities/{n}_s": Dataset("m", "body coordinate of asperity peaks", "peak"),
+    "asperities/{n}_height": Dataset("m", "height of asperity peaks", "peak"),
+    "asperities/{n}_damage": Dataset("1", "damage under asperity peaks, at the nearest body point", "z peak"),
+    "asperities/{n}_largest": Dataset(
+        "1", "largest damage near asperity peaks, within the root attribute within (z/a)", "z peak"
+    ),
+    "criteria/{criterion}/{n}_damage": Dataset("1", "damage of one pass on the worst plane", "z s"),
+    "criteria/{criterion}/{n}_inclination": Dataset(
+        "degrees", "of the worst plane's normal, from x towards z in the section", "z s"
+    ),
+    "criteria/{criterion}/{n}_tilt": Dataset(
+        "degrees", "of the worst plane's normal, out of the section", "z s"
+    ),
+    "criteria/{criterion}/{n}_utilisation": Dataset(
+        "1", "of the fatigue limit; up to 1 no crack starts", "z s"
+    ),
+    "criteria/{criterion}/{n}_rank_correlation": Dataset(
+        "1", "Spearman's, with the damage of the paper's criterion", "z"
+    ),
+    "weibull/{n}_alpha": Dataset("1", "Weibull scale of -log10 of the damage under asperities", "z"),
+    "weibull/{n}_beta": Dataset("1", "Weibull shape", "z"),
+    "weibull/{n}_r_squared": Dataset("1", "squared correlation of the median rank regression", "z"),
+    "weibull/{n}_alpha_low": Dataset("1", "lower bound of alpha, by resampling, at bounds_level", "z"),
+    "weibull/{n}_alpha_high": Dataset("1", "upper bound of alpha", "z"),
+    "weibull/{n}_beta_low": Dataset("1", "lower bound of beta, by resampling, at bounds_level", "z"),
+    "weibull/{n}_beta_high": Dataset("1", "upper bound of beta", "z"),
+    "weibull/{n}_at_least_one": Dataset("1", "asperities with damage of 1 or more", "z"),
+    "weibull/{n}_undamaged": Dataset("1", "asperities without damage, censored in the fit", "z"),
+    "temperature/{n}_highest": Dataset("K", f"highest surface temperature in one pass; {NOT_PASSED}", "s"),
+    "temperature/{n}_mean": Dataset("K", "surface temperature, mean over the time in the Hertz contact", "s"),
+    "temperature/{n}_flash": Dataset("K", "flash temperature: the highest over that of the body", "s"),
+    "profile/{n}_s": Dataset("m", "body coordinate", "node"),
+    "profile/{n}_z": Dataset("m", "profile height, positive out of the metal", "node"),
+}
 
 
 class WeibullFit(NamedTuple):
@@ -25,125 +91,123 @@ class WeibullFit(NamedTuple):
 
 
 class PointTemperatures(NamedTuple):
-    """Surface temperatures of body points in one pass, (ns,) [K]; nan for points that did not pass.
-
-    Attributes
-    ----------
-    highest : ndarray
-    mean : ndarray
-        Mean over the time inside the Hertz contact.
-    flash : ndarray
-        Highest temperature minus that of the body.
-    """
+    """Surface temperatures [K] of body points in one pass: highest, mean in the Hertz contact, flash."""
 
     highest: np.ndarray
     mean: np.ndarray
     flash: np.ndarray
 
 
-def post_path(path):
+def post_path(path: str | Path) -> Path:
     """``RESULT.post.h5`` in the folder of ``RESULT.h5``."""
     path = Path(path)
     return path.with_name(f"{path.stem}.post.h5")
 
 
+def stored_names(surface: str) -> dict[str, Dataset]:
+    """The datasets that a result may have of a surface, by name in the file."""
+    return {
+        key.format(n=surface, criterion=criterion): dataset
+        for key, dataset in DATASETS.items()
+        for criterion in (CRITERIA if "{criterion}" in key else ("",))
+    }
+
+
 class PostResult:
-    """Result of post-processing in memory; data missing in an older file are empty.
+    """Result of post-processing in memory.
 
     Attributes
     ----------
-    s, z : ndarray
-        Body points, m; depths z/a.
-    surfaces : list of str
-    main : str
-        Surface of `height`, `under` and `fits`.
-    damage, complete : dict
-        By surface, (nz, ns) and (ns,).
-    profiles : dict
-        (s, z), by rough surface.
-    height : ndarray (n_peaks,)
-    under : ndarray (nz, n_peaks)
-        Damage under the asperity peaks.
-    fits : list of WeibullFit, one a depth
-    bounds : list of dict
-        alpha and beta of the largest likelihood and their bounds, one a depth.
-    criteria : dict
+    s, z
+        Body points [m]; depths z/a.
+    surfaces, main
+        Surfaces with damage; the one of `height`, `under`, `fits` and `bounds`.
+    damage, complete
+        By surface, shapes (nz, ns) and (ns,).
+    profiles
+        (s, z) by rough surface.
+    height, under
+        Heights (peaks,) of the asperities of `main`, and the damage (nz, peaks) under them.
+    fits, bounds
+        Weibull distribution of `under` and its bounds by name, one a depth.
+    criteria
         By criterion, then surface: damage or utilisation (nz, ns).
-    temperatures : dict
-        PointTemperatures by surface; empty of a run without [heat].
-    path, a, ratio, title, attrs
-
-    Raises
-    ------
-    OutputError
-        No such file, damaged, or not a result of post-processing.
+    temperatures
+        By surface; empty of a run without [heat].
+    ratio
+        Slide/roll ratio.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | Path) -> None:
         self.path = path
         with open_for_reading(path) as file, reading(path):
             if "damage/s" not in file:
                 raise OutputError(f"{path}: not a result of post-processing")
             self.attrs = Attributes(file, path)
-            self._read(file)
-
-    def _read(self, file):
+            names = [name for surface in SURFACES for name in stored_names(surface)]
+            self._arrays = {name: file[name][:] for name in names if name in file}
         self.a, self.ratio = float(self.attrs["a"]), self.attrs.get("slide_roll_ratio", np.nan)
         self.title = self.attrs.get("title", "")
-        damage = file["damage"]
-        self.s, self.z = damage["s"][:], damage["z_over_a"][:]
-        self.surfaces = [name for name in SURFACES if stored_name(damage, name) in damage]
-        main = Attributes(damage, self.path).get("surface", next(iter(self.surfaces), None))
-        self.main = main and current_name(main)
-        self.damage = {name: damage[stored_name(damage, name)][:] for name in self.surfaces}
+        self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
+        self.surfaces = [side for side in SURFACES if f"damage/{side}" in self._arrays]
+        self.main = self.attrs.get("surface", next(iter(self.surfaces), None))
+        self.damage = {side: self._arrays[f"damage/{side}"] for side in self.surfaces}
         self.complete = {
-            name: _array(damage, f"{name}_complete", ~np.isnan(values[0])).astype(bool)
-            for name, values in self.damage.items()
+            side: self._get(f"damage/{side}_complete", ~np.isnan(values[0])).astype(bool)
+            for side, values in self.damage.items()
         }
         self.profiles = {
-            name: tuple(file[f"{group}/{axis}"][:] for axis in "sz")
-            for name in self.surfaces
-            if (group := stored_name(file, f"profile/{name}")) in file
-        }
-        none = np.empty((len(self.z), 0))
-        self.height = _array(file, "asperities/height", none[0])
-        self.under = _array(file, "asperities/damage", none)
-        self.fits, self.bounds = [], []
-        if "weibull" in file:
-            group = file["weibull"]
-            columns = [group[name][:] for name in WeibullFit._fields]
-            self.fits = [WeibullFit(*row) for row in zip(*columns, strict=True)]
-            self.bounds = [{n: group[n][k] for n in BOUNDS if n in group} for k in range(len(self.z))]
-        heat = file.get("temperature", {})
-        self.temperatures = {
-            side: PointTemperatures(*(heat[f"{side}_{name}"][:] for name in PointTemperatures._fields))
+            side: (self._arrays[f"profile/{side}_s"], self._arrays[f"profile/{side}_z"])
             for side in self.surfaces
-            if f"{side}_flash" in heat
+            if f"profile/{side}_s" in self._arrays
         }
-        self.criteria = {}
-        for name, group in file.get("criteria", {}).items():
-            kind = "utilisation" if name == "dang_van" else "damage"
-            self.criteria[name.replace("_", "-")] = {
-                side: group[stored_name(group, f"{side}_{kind}")][:] for side in self.surfaces
+        self._read_asperities()
+        self.temperatures = {
+            side: PointTemperatures(
+                *(self._arrays[f"temperature/{side}_{name}"] for name in PointTemperatures._fields)
+            )
+            for side in self.surfaces
+            if f"temperature/{side}_flash" in self._arrays
+        }
+        self.criteria = {
+            name.replace("_", "-"): {
+                side: self._arrays[f"criteria/{name}/{side}_{kind}"] for side in self.surfaces
             }
+            for name, kind in CRITERIA.items()
+            if f"criteria/{name}/{self.main}_{kind}" in self._arrays
+        }
 
-    def with_damage(self, surface, values):
+    def _get(self, name: str, default: np.ndarray) -> np.ndarray:
+        return self._arrays.get(name, default)
+
+    def _read_asperities(self) -> None:
+        self.height = self._get(f"asperities/{self.main}_height", np.empty(0))
+        self.under = self._get(f"asperities/{self.main}_damage", np.empty((len(self.z), 0)))
+        prefix = f"weibull/{self.main}_"
+        weibull = {k.removeprefix(prefix): v for k, v in self._arrays.items() if k.startswith(prefix)}
+        rows = [{name: float(values[k]) for name, values in weibull.items()} for k in range(len(self.z))]
+        self.fits = [WeibullFit(*(row[name] for name in WeibullFit._fields)) for row in rows if row]
+        self.bounds = [
+            {name: value for name, value in row.items() if name.endswith(("_low", "_high"))} for row in rows
+        ]
+
+    def with_damage(self, surface: str, values: np.ndarray) -> PostResult:
         """A copy whose damage of one surface is `values` (nz, ns)."""
         other = copy(self)
         other.damage = {**self.damage, surface: values}
         return other
 
-    def passed(self, surface):
+    def passed(self, surface: str) -> np.ndarray:
         """Damage (nz, points) of the points that passed the whole contact; empty if not computed."""
         if surface not in self.damage:
             return np.empty((len(self.z), 0))
         return self.damage[surface][:, self.complete[surface]]
 
-    def largest(self, surface, depth):
+    def largest(self, surface: str, depth: int) -> float:
         """Largest damage of a surface at depth number `depth`; nan if no point passed."""
         return self.passed(surface)[depth].max(initial=-np.inf) if self.complete[surface].any() else np.nan
 
-    def summary(self):
+    def summary(self) -> dict:
         """Depths, and for each surface the maximum and median damage at each depth.
 
         With [heat] also the maximum flash temperature [K].
@@ -158,29 +222,15 @@ class PostResult:
                     summary[side]["flash_temperature"] = float(np.nanmax(self.temperatures[side].flash))
         return summary
 
-    def worst_point(self, surface):
+    def worst_point(self, surface: str) -> tuple[float, float]:
         """(s, z/a) of the largest damage."""
         values = np.nan_to_num(self.damage[surface], nan=-1.0)
         k, j = np.unravel_index(values.argmax(), values.shape)
         return self.s[j], self.z[k]
 
 
-def _array(file, name, default):
-    name = stored_name(file, name)
-    return file[name][:] if name in file else default
-
-
-def damage_beside(result):
-    """Post-processing result of a result, ``RESULT.post.h5``; None if it is missing or of another case.
-
-    Parameters
-    ----------
-    result : ehlpetsc.results.reader.Result
-
-    Returns
-    -------
-    PostResult or None
-    """
+def damage_beside(result: Result) -> PostResult | None:
+    """Post-processing result of a result, ``RESULT.post.h5``; None if it is missing or of another case."""
     path = post_path(result.path)
     if not path.exists():
         return None

@@ -12,7 +12,7 @@ gears     the command gears: keys of a pair, cases with mutations, damaged resul
 
 Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
 traceback, hang, signal, different (status 0 with another answer and no word), changed (an input is not as it
-was). Exit status 1 if any of these is not 0. ``tests/fuzz/post.py`` does the same for post-processing.
+was). Exit status 1 if any of these is not 0.
 """
 
 import argparse

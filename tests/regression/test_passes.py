@@ -13,7 +13,7 @@ from support.running import BARE, SCRIPT, command, run, settings
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError
-from ehlpetsc.post.outputs.passes_index import note_damage
+from ehlpetsc.post.passes import note_damage
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.outputs.recorder import Recorder

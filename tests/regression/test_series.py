@@ -11,7 +11,6 @@ from support.running import SHORT, run, settings, summary
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.pictures.command import main as plot
-from ehlpetsc.post.arguments import arguments
 from ehlpetsc.results.reader import read_result
 
 CASE = ROOT / "cases" / "fig4.toml"
@@ -228,4 +227,3 @@ def test_grid_of_keys_is_accepted_by_all_commands(tmp_path):
     assert plot([series_index]) == plot([series_index, "--ensemble"]) == 0
     assert ensemble.main([series_index]) == 0
     assert len((tmp_path / "out.ensemble.csv").read_text().splitlines()) > 20
-    assert arguments([series_index]).results == [str(tmp_path / one["file"]) for one in index["members"]]

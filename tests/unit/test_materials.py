@@ -11,7 +11,7 @@ from ehlpetsc.case.tables.outputs import POST
 from ehlpetsc.errors import CaseError
 from ehlpetsc.materials import STEELS, flow_pressure, steel_of_hardness
 from ehlpetsc.post import Material
-from ehlpetsc.post.inputs.settings import read_settings
+from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 

@@ -15,7 +15,6 @@ from ehlpetsc.analysis import compare, ensemble
 from ehlpetsc.errors import OutputError
 from ehlpetsc.names import former_name
 from ehlpetsc.pictures.command import main as plot
-from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import statistics
@@ -72,14 +71,6 @@ def test_scalars_are_read_under_current_and_former_names(folder):
         np.testing.assert_array_equal(result["steps/nodes_below_1nm"][:], thin)
         assert "nodes_below_1nm" in result.scalars and "molecular_films" not in result.scalars
         assert Totals.of_result(result).values["nodes_below_1nm"] == thin.sum()
-
-
-def test_older_post_results_are_read(folder):
-    found = PostResult(folder / "passes.pass1.post.h5")
-    assert found.z.tolist() == [0.05] and set(found.surfaces) == {"2", "1"}
-    assert np.nanmax(found.damage["2"]) == pytest.approx(1.979e-10, rel=1e-3)
-    with read_result(folder / "passes.pass1.h5") as result:
-        assert damage_beside(result).largest("1", 0) == pytest.approx(7.765e-11, rel=1e-3)
 
 
 @pytest.mark.parametrize(

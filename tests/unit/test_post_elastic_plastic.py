@@ -8,8 +8,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.post import Material, cycles_to_failure, damage, rainflow, strain_range
 from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
-from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, repeat_points, widest
-from ehlpetsc.post.fatigue.strain_life import equivalent_range, local_range
+from ehlpetsc.post.fatigue.loops import loop_of
+from ehlpetsc.post.fatigue.strain_life import local_range
 from ehlpetsc.results.post_result import PostResult
 
 STEEL = Material()
@@ -98,21 +98,6 @@ def test_loop_of_an_inner_cycle_and_of_the_whole():
     assert loop_of(series, 10, 0, 1, False) == (0, 8)
 
 
-def test_widest_is_the_largest_of_all_pairs():
-    rng = np.random.default_rng(1)
-    for count in (2, 3, 17, 200):
-        parts = rng.normal(scale=1e8, size=(3, count))
-        points = np.empty((3, 2 * count))
-        equivalent_points(parts, 0.3, points)
-        repeat_points(points, count)
-        d = parts[:, :, None] - parts[:, None, :]
-        pairs = equivalent_range(d[0], 0.3 * (d[0] + d[1]), d[1], d[2])
-        assert np.sqrt(widest(points, 0, count)) == pytest.approx(pairs.max(), rel=1e-12)
-        part = np.arange(count // 2, count // 2 + count // 2 + 1) % count  # round the end
-        found = widest(points, count // 2, count // 2 + 1)
-        assert np.sqrt(found) == pytest.approx(pairs[np.ix_(part, part)].max(), rel=1e-12)
-
-
 def test_loops_of_a_reversed_history_are_the_same_instants():
     series = np.random.default_rng(2).normal(size=200).cumsum()
 
@@ -136,18 +121,18 @@ def test_neuber_rule_is_the_default():
 
 def test_command_overrides_rule_and_steel(tmp_path, capsys):
     path, worst = str(write(tmp_path / "a.h5", Scene(per_width=20, travel=9.0), depths=(0.0,))), {}
-    for options in ((), ("--strain", "direct"), ("--set", "contact.material=16MnCr5")):
-        assert main([path, *options]) == 0
+    for options in ((), ("--set", "post.strain=direct"), ("--set", "contact.material=16MnCr5")):
+        assert main([path, *options, "--overwrite"]) == 0
         result = PostResult(tmp_path / "a.post.h5")
         worst[options] = result.passed("2").max()
-        assert result.attrs["strain"] == ("direct" if "direct" in options else "neuber")
+        assert result.attrs["strain"] == ("direct" if "post.strain=direct" in options else "neuber")
     assert result.attrs["material"] == "16MnCr5, 16MnCr5"
     neuber, direct, hard = worst.values()
     assert direct > 1.2 * neuber and hard < 0.1 * neuber
     assert " SAE4340, " in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main([path, "--set", "mesh.inlet=-3"])
-    assert main([path, "--set", "post.b=0.3"]) == 2
+    assert main([path, "--set", "post.b=0.3", "--overwrite"]) == 2
     assert "post.b = 0.3: allowed: a number > -2 and < 0" in capsys.readouterr().err
 
 
@@ -158,5 +143,5 @@ def test_few_points_are_a_warning(tmp_path, capsys):
     assert main([str(path)]) == 0
     message = capsys.readouterr()
     assert "only 1 point of surface 2 " in message.err
-    assert "time.travel = 7.6 or more" in message.err and "surface 1" not in message.err
+    assert "time.travel = 7.6 or more" in message.err and "of surface 1 passed the" not in message.err
     assert "nan" not in message.out

@@ -108,33 +108,6 @@ def test_rotating_shear_is_counted_at_constant_von_mises_stress():
     assert damage(*parts, STEEL, count="von_mises").peak_range == pytest.approx(np.sqrt(3) * 5e8, rel=1e-6)
 
 
-def test_range_is_the_widest_distance_of_the_loop():
-    parts = np.array([0.0, 0, 0, 0, 0]), np.array([0.0, -1, -2, -1, 0]) * 1e9, np.array([0.0, 1.5e9, 0, 0, 0])
-    by_reversals = damage(*parts, STEEL, count="sz")
-    by_window = damage(*parts, STEEL, count="sz", ranges="window")
-    assert by_reversals.peak_range == pytest.approx(2e9 * np.sqrt(0.79))
-    assert by_window.peak_range == pytest.approx(
-        np.sqrt(1e18 * 0.79 + 3 * 2.25e18)
-    )  # either end to the second
-
-
-def test_range_keeps_the_signs_of_a_stress_pair():
-    """sx and sz in step, as at a surface under pressure: the distance is that of the one pair there is."""
-    size = -1e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
-    window = damage(size, size, 0 * size, STEEL, ranges="window")
-    assert window.peak_range == pytest.approx(0.4e9, rel=1e-12)  # (1 - 2 nu) p
-    assert window.damage == pytest.approx(damage(size, size, 0 * size, STEEL).damage, rel=1e-12)
-
-
-def test_range_is_time_reversible():
-    parts = np.cumsum(np.random.default_rng(4).normal(scale=2e8, size=(3, 30, 150)), axis=-1)
-    for residue in ("closed", "half"):
-        forwards = damage(*parts, STEEL, ranges="window", residue=residue)
-        backwards = damage(*parts[..., ::-1], STEEL, ranges="window", residue=residue)
-        assert backwards.damage == pytest.approx(forwards.damage, rel=1e-12)
-        assert (forwards.damage >= damage(*parts, STEEL, residue=residue).damage * (1 - 1e-12)).all()
-
-
 def test_morrow_lengthens_life_under_compression_to_a_floor():
     result = damage(*pulse(1e9), STEEL, mean_stress="morrow")
     dsv = 1e9 * np.sqrt(0.79)
@@ -172,7 +145,7 @@ def test_no_stress_no_damage():
 
 @pytest.mark.parametrize(
     "choice",
-    [{"count": "signed"}, {"residue": "none"}, {"ranges": "x"}, {"mean_stress": "swt"}, {"strain": "x"}],
+    [{"count": "signed"}, {"residue": "none"}, {"mean_stress": "swt"}, {"strain": "x"}],
 )
 def test_unknown_choices(choice):
     ((name, value),) = choice.items()
@@ -204,7 +177,7 @@ from ehlpetsc.post import Material, damage, rainflow
 from ehlpetsc.compiled import COMPILED
 assert COMPILED is {compiled}
 parts = np.cumsum(np.random.default_rng(5).normal(scale=2e8, size=(3, 20, 300)), axis=-1)
-neuber = dict(ranges="window", mean_stress="morrow", strain="neuber")
+neuber = dict(mean_stress="morrow", strain="neuber")
 for choice in ({{}}, dict(residue="half", count="von_mises"), neuber):
     for row in damage(*parts, Material(), **choice):
         print(row.tobytes().hex())

@@ -1,15 +1,16 @@
-"""Statistics over passes, passes within one result, and damage near an asperity."""
+"""Statistics over passes, and damage near an asperity."""
 
 import json
 
 import numpy as np
 import pytest
+from support import refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus, PostError
-from ehlpetsc.post import command, fold, largest_near, pass_statistics
+from ehlpetsc.post import command, largest_near, pass_statistics
 from ehlpetsc.post.command import main
-from ehlpetsc.post.outputs.passes_file import same_points
+from ehlpetsc.post.passes import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 
@@ -37,20 +38,6 @@ def test_no_pass_gives_nan_and_bad_passes_are_refused():
     for none in ([], 3.0):
         with pytest.raises(ValueError, match="one pass"):
             pass_statistics(none)
-
-
-def test_fold_aligns_equal_points():
-    s = 1e-6 * np.arange(10)
-    damage = np.arange(20.0).reshape(2, 10)
-    damage[:, 0] = np.nan  # the last that entered has not left
-    passes = fold(s, damage, 4e-6)
-    assert passes.shape == (3, 2, 4)
-    assert passes[0][0, :2] == pytest.approx([8, 9]) and np.isnan(passes[0][0, 2:]).all()
-    assert passes[1][1] == pytest.approx([14, 15, 16, 17])
-    assert np.isnan(passes[2][0, 0]) and passes[2][0, 1:] == pytest.approx([1, 2, 3])
-    for stretch in (0.2e-6, 1e-4, np.nan):
-        with pytest.raises(ValueError, match=rf" {stretch:.3g} m .* 9e-06 m"):
-            fold(s, damage, stretch)
 
 
 def test_largest_damage_near_a_peak():
@@ -108,9 +95,7 @@ def test_foreign_json_is_no_pass_index(tmp_path, capsys):
     bad = tmp_path / "run.passes.json"
     for text, words in (("{", "not the index"), ('{"passes": [{}]}', "not the index")):
         bad.write_text(text)
-        with pytest.raises(SystemExit) as ended:
-            main([str(bad)])
-        assert ended.value.code == ExitStatus.BAD_INPUT and words in capsys.readouterr().err
+        assert words in refused(capsys, main, bad)
 
 
 @pytest.mark.parametrize("shift", [7.0, 7.4], ids=["whole spacings", "between points"])
@@ -138,7 +123,7 @@ def test_shifted_passes_are_aligned(shift, tmp_path):
     with pytest.raises(PostError, match="profiles of surface 1 "):
         scenes[1].profiles["1"] = scenes[1].profiles["2"]
         write(paths[1], scenes[1], depths=(0.1,), edit=edit)
-        assert main([paths[1]]) == ExitStatus.DONE
+        assert main([paths[1], "--overwrite"]) == ExitStatus.DONE
         same_points([results[0], PostResult(tmp_path / "1.post.h5")], "1")
 
 

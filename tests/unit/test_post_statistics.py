@@ -1,9 +1,9 @@
-"""Weibull fits, ranks, and asperity peaks."""
+"""Weibull fits with their bounds, ranks, and asperity peaks."""
 
 import numpy as np
 import pytest
 
-from ehlpetsc.post import weibull_fit
+from ehlpetsc.post import weibull_bounds, weibull_fit
 from ehlpetsc.post.fatigue.statistics import asperities, benard_ranks, exceedance, fitted_exceedance, log_life
 
 DATA = [16, 34, 53, 75, 93, 120]
@@ -12,8 +12,6 @@ DATA = [16, 34, 53, 75, 93, 120]
 def test_textbook_data():
     fit = weibull_fit(DATA)
     assert (fit.beta, fit.alpha) == pytest.approx((1.43966, 76.1096), rel=4e-6)
-    fit = weibull_fit(DATA[::-1], "y on x")
-    assert (fit.beta, fit.alpha) == pytest.approx((1.42697, 76.3454), rel=4e-6)
     assert 0.99 < fit.r_squared < 1
 
 
@@ -45,8 +43,8 @@ def test_too_few_values():
 def test_faults():
     with pytest.raises(ValueError, match="nan"):
         weibull_fit([1.0, np.nan])
-    with pytest.raises(ValueError, match="regression"):
-        weibull_fit([1.0, 2.0], "both")
+    with pytest.raises(ValueError, match="nan"):
+        weibull_bounds([1.0, np.nan])
 
 
 def test_exceedance_and_its_fit_agree():
@@ -54,9 +52,10 @@ def test_exceedance_and_its_fit_agree():
     damages = 10.0**-values
     falling, share = exceedance(damages)
     assert (np.diff(falling) <= 0).all()
-    assert fitted_exceedance(falling, weibull_fit(values)) == pytest.approx(share, rel=1e-9)
-    assert fitted_exceedance(1.0, weibull_fit(values)) == 0
-    assert fitted_exceedance(0.0 + 1e-300, weibull_fit(values)) == pytest.approx(1)
+    alpha, beta, _ = weibull_fit(values)
+    assert fitted_exceedance(falling, alpha, beta) == pytest.approx(share, rel=1e-9)
+    assert fitted_exceedance(1.0, alpha, beta) == 0
+    assert fitted_exceedance(0.0 + 1e-300, alpha, beta) == pytest.approx(1)
 
 
 def test_peaks_of_the_profile_that_passed():
@@ -76,3 +75,34 @@ def test_smooth_surface_has_no_asperities():
     assert asperities(None, np.arange(3.0), np.ones(3, bool)).s.size == 0
     flat = np.linspace(0, 1, 50), np.zeros(50)
     assert asperities(flat, np.linspace(0, 1, 9), np.ones(9, bool)).s.size == 0
+
+
+def sample(n, seed, alpha=7.0, beta=9.0):
+    return alpha * np.random.default_rng(seed).weibull(beta, n)
+
+
+def test_weibull_bounds_have_their_nominal_coverage():
+    inside = 0
+    for seed in range(120):
+        low, high = weibull_bounds(sample(69, seed), draws=200).beta
+        inside += low <= 9.0 <= high
+    assert 0.80 * 120 <= inside <= 0.97 * 120  # 90 % are asked for
+    narrow, wide = (weibull_bounds(sample(n, 5)).beta for n in (1000, 20))
+    assert narrow[1] - narrow[0] < (wide[1] - wide[0]) / 3
+
+
+def test_bounds_are_reproducible_and_enclose_the_fit():
+    values = sample(69, 3)
+    fit, bounds = weibull_fit(values), weibull_bounds(values)
+    again = weibull_bounds(values)
+    assert bounds.alpha == again.alpha and bounds.beta == again.beta
+    assert bounds.alpha[0] < fit.alpha < bounds.alpha[1] and bounds.beta[0] < fit.beta < bounds.beta[1]
+    assert weibull_bounds(values, level=0.5).beta[1] < bounds.beta[1]
+
+
+@pytest.mark.parametrize("spread", [0.0, 1e-12, 1e-7])
+def test_nearly_equal_values_have_no_shape(spread):
+    values = 7.0 * (1 + spread * np.linspace(0, 1, 20))
+    assert np.isnan(weibull_fit(values)).all()
+    assert np.isnan(weibull_bounds(values).beta).all()
+    assert np.isfinite(weibull_fit(7.0 * (1 + 1e-4 * np.linspace(0, 1, 20)))).all()

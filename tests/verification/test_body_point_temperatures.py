@@ -9,7 +9,7 @@ from scipy.special import erf
 
 import ehlpetsc
 from ehlpetsc.physics.flash_temperature import Solid
-from ehlpetsc.post.inputs.loads import Loads
+from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.temperatures import temperature_history
 from ehlpetsc.results.post_result import PostResult

@@ -11,11 +11,9 @@ from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
 from ehlpetsc.post.fatigue.elastic_plastic import DEFAULT_STRAIN, STRAINS
 from ehlpetsc.post.fatigue.evaluate import evaluate
 from ehlpetsc.post.fatigue.life_table import life_table, look_up
-from ehlpetsc.post.fatigue.loops import equivalent_points, loop_of, repeat_points, widest
 from ehlpetsc.post.fatigue.strain_life import cycle_damage
 
 CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,), "von_mises": (3,)}
-RANGES = ("reversals", "window")
 MEAN_STRESSES = ("none", "morrow")
 
 
@@ -32,13 +30,12 @@ class Counting(NamedTuple):
 
     count: str = "max3"
     residue: str = "closed"
-    ranges: str = "reversals"
     mean_stress: str = "none"
     strain: str = DEFAULT_STRAIN
 
     def check(self):
         """Raise ValueError for an unknown option."""
-        choices = (CHANNELS, RESIDUES, RANGES, MEAN_STRESSES, STRAINS)
+        choices = (CHANNELS, RESIDUES, MEAN_STRESSES, STRAINS)
         for name, value, allowed in zip(self._fields, self, choices, strict=True):
             if value not in allowed:
                 raise ValueError(f"{name} = {value!r}: must be one of {', '.join(allowed)}")
@@ -54,19 +51,15 @@ def _squared_range(dsx, dsz, dtxz, nu):
 
 
 @compiled(error_model="python", nogil=True)
-def _sum_cycles(stress, series, nu, n, first, second, weight, options, constants, table, points):
-    """Damage, number and largest squared range of n cycles of `series` in one history (3, samples)."""
-    closed, window, morrow, rule, residual = options
+def _sum_cycles(stress, nu, n, first, second, weight, options, constants, table):
+    """Damage, number and largest squared range of n cycles in one history (3, samples)."""
+    _, morrow, rule, residual = options
     modulus, hardening, exponent, strength, ductility, b, c = constants
     total = number = largest = 0.0
     for k in range(n):
         i, j = first[k], second[k]
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
-        if window:
-            start, count = loop_of(series, stress.shape[1], i, j, closed)
-            squared = widest(points, start, count)
-        else:
-            squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
+        squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
         if squared <= 0:
             continue
         if morrow:
@@ -90,12 +83,9 @@ def _fill_von_mises(stress, nu, scalar):
 @compiled(error_model="python", nogil=True)
 def damage_of_points(stress, lengths, nu, channels, options, constants, table, work, out):
     """Set out (points, 3) from stress (points, 3, samples) with lengths[point] samples each."""
-    stack, first, second, weight, scalar, equivalent = work
+    stack, first, second, weight, scalar = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
-        if options[1]:
-            equivalent_points(history, nu, equivalent)
-            repeat_points(equivalent, lengths[point])
         worst = -1.0
         for channel in channels:
             if channel == 3:
@@ -104,7 +94,7 @@ def damage_of_points(stress, lengths, nu, channels, options, constants, table, w
                 scalar[: lengths[point]] = history[channel]
             n = find_cycles(scalar[: lengths[point]], options[0], stack, first, second, weight)
             total, number, largest = _sum_cycles(
-                history, scalar, nu, n, first, second, weight, options, constants, table, equivalent
+                history, nu, n, first, second, weight, options, constants, table
             )
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
@@ -122,12 +112,11 @@ class Counter:
         self.channels = np.array(CHANNELS[counting.count])
         self.options = (
             counting.residue == "closed",
-            counting.ranges == "window",
             counting.mean_stress == "morrow",
             STRAINS.index(counting.strain),
         )
         self.table = life_table(material, counting.strain)
-        self.work = (*workspace(samples), np.empty(samples), np.empty((3, 2 * samples)))
+        self.work = (*workspace(samples), np.empty(samples))
 
     def __call__(self, stress, lengths, out, residual=0.0):
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range.
@@ -154,7 +143,6 @@ def damage(
     material,
     count="max3",
     residue="closed",
-    ranges="reversals",
     mean_stress="none",
     strain=DEFAULT_STRAIN,
     residual_stress=0.0,
@@ -174,10 +162,6 @@ def damage(
         not available, because its jumps pair nearly equal stress states.
     residue : {"closed", "half"}
         See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
-    ranges : {"reversals", "window"}
-        Component ranges of a cycle: the difference between its two reversals, with its sign; or the largest
-        von Mises distance between any two instants of the cycle's closed loop
-        (:mod:`ehlpetsc.post.fatigue.loops`), independent of the direction of time.
     mean_stress : {"none", "morrow"}
         Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading
         the mean stress) from the fatigue strength. The benefit of compression is limited to that of a
@@ -200,5 +184,5 @@ def damage(
     ValueError
         Unknown choice, unequal shapes, nan.
     """
-    counting = Counting(count, residue, ranges, mean_stress, strain)
+    counting = Counting(count, residue, mean_stress, strain)
     return Damage(*evaluate(sx, sz, txz, lambda n: Counter(material, counting, n), residual_stress))

@@ -7,8 +7,9 @@ import numpy as np
 from ehlpetsc.results.post_result import WeibullFit
 
 MIN_PROMINENCE = 0.1  # of Rq: smaller peaks are noise of the measurement
-REGRESSIONS = ("x on y", "y on x")
 MIN_SPREAD = 1e-6  # relative: damages are accurate to about 1e-6
+CONFIDENCE = 0.9  # of the bounds
+DRAWS = 1000  # of the bootstrap
 
 
 class Asperities(NamedTuple):
@@ -19,16 +20,20 @@ class Asperities(NamedTuple):
     point: np.ndarray
 
 
-def asperities(profile, s, complete):
-    """Peaks of a profile among the body points that passed the whole contact.
+class WeibullBounds(NamedTuple):
+    """Lower and upper bounds of scale and shape, and the drawn rows (alpha, beta)."""
 
-    Parameters
-    ----------
-    profile : (s, z) or None
-        From the result file, sorted; None: smooth, no peaks.
-    s : ndarray, shape (ns,)
-        Body points, uniform.
-    complete : ndarray of bool, shape (ns,)
+    alpha: tuple[float, float]
+    beta: tuple[float, float]
+    draws: np.ndarray
+
+
+def asperities(
+    profile: tuple[np.ndarray, np.ndarray] | None, s: np.ndarray, complete: np.ndarray
+) -> Asperities:
+    """Peaks of a profile (s, z) among the body points that passed the whole contact; none if it is smooth.
+
+    `s` are the uniform body points [m], `complete` is true for those that passed.
     """
     if profile is None or not complete.any():
         return Asperities(np.empty(0), np.empty(0), np.empty(0, int))
@@ -44,59 +49,100 @@ def asperities(profile, s, complete):
     return Asperities(abscissae[peaks], heights[peaks], nearest)
 
 
-def benard_ranks(n):
+def largest_near(s: np.ndarray, damage: np.ndarray, positions: np.ndarray, distance: float) -> np.ndarray:
+    """Maximum damage (..., n) within a distance [m] of each of n positions along the surface.
+
+    Parameters
+    ----------
+    s
+        Rising body coordinates [m], shape (ns,).
+    damage
+        Shape (..., ns); nan for points that did not pass, which are ignored.
+    distance
+        [m]; the nearest point always counts.
+    """
+    finite = np.where(np.isnan(damage), -np.inf, damage)
+    out = np.empty((*damage.shape[:-1], len(positions)))
+    for k, position in enumerate(positions):
+        first = np.searchsorted(s, position - distance, "left")
+        last = np.searchsorted(s, position + distance, "right")
+        nearest = int(np.abs(s - position).argmin())
+        out[..., k] = finite[..., min(first, nearest) : max(last, nearest + 1)].max(axis=-1)
+    return np.where(np.isinf(out), np.nan, out)
+
+
+def benard_ranks(n: int) -> np.ndarray:
     """Median ranks (i - 0.3)/(n + 0.4) of n values in rising order."""
     return (np.arange(1, n + 1) - 0.3) / (n + 0.4)
 
 
-def too_alike(values):
-    """Whether fewer than two values are above 0, or their range is below `MIN_SPREAD` of the largest."""
-    return values.size < 2 or values.max() - values.min() <= MIN_SPREAD * values.max()
+def _lines(rows: np.ndarray) -> np.ndarray:
+    """Columns alpha, beta, squared correlation of each row (draws, n); nan if its values are too similar."""
+    rows = np.sort(rows, axis=1)
+    used = (rows > 0) & np.isfinite(rows)
+    count = used.sum(axis=1)
+    y = np.where(used, np.log(-np.log1p(-benard_ranks(rows.shape[1]))), 0.0)
+    x = np.log(np.where(used, rows, 1.0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean_x, mean_y = x.sum(axis=1) / count, y.sum(axis=1) / count
+        dx, dy = np.where(used, x - mean_x[:, None], 0), np.where(used, y - mean_y[:, None], 0)
+        xx, xy, yy = (dx * dx).sum(axis=1), (dx * dy).sum(axis=1), (dy * dy).sum(axis=1)
+        beta = yy / xy
+        fits = np.column_stack([np.exp(mean_x - mean_y / beta), beta, xy**2 / (xx * yy)])
+    fits[~(np.isfinite(fits).all(axis=1) & (fits > 0).all(axis=1))] = np.nan
+    return fits
 
 
-def weibull_fit(values, regression="x on y"):
+def _checked(values: np.ndarray) -> tuple[np.ndarray, bool]:
+    """Values as one row, and whether they suffice for a fit: their range is above `MIN_SPREAD`."""
+    values = np.asarray(values, float).ravel()
+    if np.isnan(values).any():
+        raise ValueError("values must not be nan")
+    used = values[(values > 0) & np.isfinite(values)]
+    return values, used.size > 1 and bool(used.max() - used.min() > MIN_SPREAD * used.max())
+
+
+def weibull_fit(values: np.ndarray) -> WeibullFit:
     r"""Two-parameter Weibull by median rank regression.
 
     .. math:: F(x) = 1-\exp[-(x/\alpha)^\beta]
 
-    (Holmes et al. 2005, section 3.2), a straight line of ln(-ln(1 - F)) over ln x, through Benard's ranks.
+    (Holmes et al. 2005, section 3.2), a straight line of ln(-ln(1 - F)) over ln x, through Benard's ranks,
+    with the smallest deviations of ln x. nan if fewer than two values remain or their relative range is below
+    1e-6, where rounding would yield a beta of a million.
 
     Parameters
     ----------
-    values : array_like
+    values
         -log10 of damages. An infinite value (no damage) is censored: it counts in the ranks, above all other
         values. A value of 0 or less (damage of 1 or more) has a rank, but is not used for the line.
-    regression : {"x on y", "y on x"}
-        Minimised deviations: of ln x, or of the ranks.
-
-    Returns
-    -------
-    WeibullFit
-        nan if fewer than two values remain or their relative range is below 1e-6, where rounding would
-        yield a beta of a million.
-
-    Raises
-    ------
-    ValueError
-        nan among the values, unknown regression.
     """
-    values = np.sort(np.asarray(values, float).ravel())
-    if np.isnan(values).any():
-        raise ValueError("values must not be nan")
-    if regression not in REGRESSIONS:
-        raise ValueError(f"regression must be one of {', '.join(REGRESSIONS)}")
-    used = (values > 0) & np.isfinite(values)
-    if too_alike(values[used]):
-        return WeibullFit(np.nan, np.nan, np.nan)
-    x = np.log(values[used])
-    y = np.log(-np.log1p(-benard_ranks(values.size)[used]))
-    dx, dy = x - x.mean(), y - y.mean()
-    beta = dy @ dy / (dx @ dy) if regression == "x on y" else dx @ dy / (dx @ dx)
-    alpha = np.exp(x.mean() - y.mean() / beta)
-    return WeibullFit(float(alpha), float(beta), float((dx @ dy) ** 2 / (dx @ dx * (dy @ dy))))
+    values, enough = _checked(values)
+    return WeibullFit(*map(float, _lines(values[None])[0])) if enough else WeibullFit(np.nan, np.nan, np.nan)
 
 
-def rank_correlation(first, second):
+def weibull_bounds(
+    values: np.ndarray, level: float = CONFIDENCE, draws: int = DRAWS, seed: int = 0
+) -> WeibullBounds:
+    """Bounds of :func:`weibull_fit` by resampling the values with replacement (Efron's percentiles).
+
+    `level` is the fraction of the `draws` fits between the bounds; nan if the values are too similar.
+    Neighbouring asperities are in contact with the same parts of the other surface; if damages are
+    correlated, the true bounds are wider.
+    """
+    values, enough = _checked(values)
+    if not 0 < level < 1:
+        raise ValueError("level must lie between 0 and 1")
+    if not enough:
+        return WeibullBounds((np.nan, np.nan), (np.nan, np.nan), np.full((0, 2), np.nan))
+    chosen = np.random.default_rng(seed).integers(values.size, size=(draws, values.size))
+    fits = _lines(values[chosen])[:, :2]
+    fits = fits[np.isfinite(fits[:, 0])]
+    ends = np.quantile(fits, [(1 - level) / 2, (1 + level) / 2], axis=0)
+    return WeibullBounds(tuple(ends[:, 0]), tuple(ends[:, 1]), fits)
+
+
+def rank_correlation(first: np.ndarray, second: np.ndarray) -> float:
     """Spearman's rank correlation of two samples, ties at their mean rank; nan if one is constant."""
     from scipy.stats import rankdata  # an import of one second, only for pictures and criteria
 
@@ -105,19 +151,19 @@ def rank_correlation(first, second):
     return float(np.corrcoef(rankdata(first), rankdata(second))[0, 1])
 
 
-def log_life(damage):
+def log_life(damage: np.ndarray) -> np.ndarray:
     """-log10 D; infinite without damage."""
     with np.errstate(divide="ignore"):
         return -np.log10(damage)
 
 
-def exceedance(damage):
+def exceedance(damage: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fraction of asperities with more damage than each, by Benard's ranks: (falling damage, probability)."""
     falling = np.sort(np.asarray(damage, float))[::-1]
     return falling, benard_ranks(falling.size)
 
 
-def fitted_exceedance(damage, fit):
+def fitted_exceedance(damage: np.ndarray, alpha: float, beta: float) -> np.ndarray:
     """P(damage at a peak > D) of a fitted distribution, = F(-log10 D); 0 from D = 1 on."""
     x = np.clip(log_life(np.asarray(damage, float)), 0.0, None)
-    return -np.expm1(-((x / fit.alpha) ** fit.beta))
+    return -np.expm1(-((x / alpha) ** beta))

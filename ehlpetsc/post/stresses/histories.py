@@ -59,7 +59,7 @@ class HistoryCollector:
 
     Parameters
     ----------
-    loads : ehlpetsc.post.inputs.loads.Loads
+    loads : ehlpetsc.post.loads.Loads
     surface : str
     motion : ehlpetsc.post.stresses.body_points.Passage
     depths : ndarray

@@ -1,1 +1,0 @@
-"""Reading and checks of the loads and the case of a result file."""
