@@ -96,7 +96,7 @@ def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
     from ehlpetsc.life.driver import run_life
     from ehlpetsc.life.regimes import index_of, run_regimes
     from ehlpetsc.results.output_guard import inputs_of
-    from ehlpetsc.run.on_root import on_root
+    from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.stop import StopRequest
 
     comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)

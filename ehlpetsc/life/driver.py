@@ -40,7 +40,7 @@ def opening_line(case: Case, scales: Scales, scene: Scene, positions: int) -> st
     positions
         Of surface 2.
     """
-    from ehlpetsc.run.preview import forecast
+    from ehlpetsc.run import forecast
 
     seconds = forecast.work_time(case, scales, scene.roughness)
     rounds = f"rounds of {positions} passes" if positions > 1 else "rounds of one pass"
@@ -138,7 +138,7 @@ def run_life(
     from mpi4py import MPI
 
     from ehlpetsc.results.output_guard import Lock
-    from ehlpetsc.run.on_root import on_root
+    from ehlpetsc.run.ranks import on_root
 
     case = case if isinstance(case, Case) else load(case)
     check_case(case)
@@ -246,7 +246,7 @@ class _Life:
     def _jump(self, solved_round: Round, bodies: tuple[LifeBody, LifeBody]) -> None:
         """Jump with the rates of a solved round, and store the row."""
         from ehlpetsc.effects.effect import flat
-        from ehlpetsc.run.on_root import on_root
+        from ehlpetsc.run.ranks import on_root
 
         done = self.history.done
         after, jump, rates = self.jumps.jump(bodies, solved_round, done, self._smooth_since(solved_round))

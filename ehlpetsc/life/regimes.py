@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ehlpetsc.case.tables.case import Case
     from ehlpetsc.life.history import LifeHistory
-    from ehlpetsc.run.series.member import Member
+    from ehlpetsc.run.series import Member
     from ehlpetsc.run.stop import StopRequest
 
 
@@ -124,7 +124,7 @@ def run_regimes(
     from mpi4py import MPI
 
     from ehlpetsc.results.output_guard import Lock, check_index
-    from ehlpetsc.run.on_root import on_root
+    from ehlpetsc.run.ranks import on_root
 
     import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they split
     comm = comm or MPI.COMM_SELF
@@ -145,7 +145,7 @@ class _Lives:
         from ehlpetsc.case.combinations import keys_of, settings_of
         from ehlpetsc.case.loading import members
         from ehlpetsc.life.checks import check_case
-        from ehlpetsc.run.series.member import Member, named
+        from ehlpetsc.run.series import Member, named
 
         if case.life is None:
             raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
@@ -169,8 +169,7 @@ class _Lives:
         return member.output.with_name(f"{member.output.stem}.life.h5")
 
     def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: StopRequest | None) -> Path:
-        from ehlpetsc.run.on_root import on_root
-        from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
+        from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
 
         def record(report: Callable) -> None:
             number, row = report

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.life.jumps import Rates
-from ehlpetsc.run.series.work_queue import PollingStop, WorkQueue
+from ehlpetsc.run.ranks import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:

@@ -67,7 +67,7 @@ class Run:
     def worthwhile_ranks(self) -> int:
         """Default number of ranks; 1 for a faulty case."""
         from ehlpetsc.case.loading import load
-        from ehlpetsc.run.preview.banner import worthwhile_ranks
+        from ehlpetsc.run.forecast import worthwhile_ranks
 
         try:
             return worthwhile_ranks(load(self.case, self.overrides))
@@ -309,13 +309,13 @@ def _run(words: Run, comm, options) -> int:
         allowed = "one of them at a time; a member: --set KEY=VALUE -o NAME.h5"
         raise CaseError([f"{case.path}: [series] and time.passes: {allowed}"])
     if is_series:
-        from ehlpetsc.run.series.series import Series
+        from ehlpetsc.run.series import Series
 
         if restart:
             raise UsageError("--restart with a [series]: leave it out: unfinished members are continued")
         return Series(comm, case, output, stop, _ranks_per_member(options, comm.size), overwrite).run()
     if has_passes:
-        from ehlpetsc.run.series.passes import Passes
+        from ehlpetsc.run.passes import Passes
 
         return Passes(comm, case, output, stop).run(restart, overwrite)
     return _run_single(comm, case, stop, output, restart, overwrite)
@@ -339,10 +339,10 @@ def _read_case(comm, words: Run):
 
 def _run_single(comm, case, stop, output: Path, restart: str, overwrite: bool) -> int:
     """Run a case that is not a series."""
-    from ehlpetsc.run.preview.banner import banner
-    from ehlpetsc.run.preview.warnings import warnings
+    from ehlpetsc.run.forecast import banner
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import Run as Solution
+    from ehlpetsc.run.warnings import warnings
 
     simulation = Simulation(case, comm)
     if comm.rank == 0:

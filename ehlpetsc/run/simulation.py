@@ -19,8 +19,8 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_comm, check_pass, check_time_step, option_texts
-from ehlpetsc.run.preview.domain import domain_faults
 from ehlpetsc.run.scene import scene_of
+from ehlpetsc.run.warnings import domain_faults
 from ehlpetsc.stepping.convergence_check import check_ends
 from ehlpetsc.stepping.time_stepping import TimeStepping
 

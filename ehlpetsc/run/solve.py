@@ -9,9 +9,8 @@ from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.results.means import means
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
+from ehlpetsc.run.outputs.progress import ProgressOutput, SlowSteps, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
-from ehlpetsc.run.outputs.slow_steps import SlowSteps
 
 
 @dataclass(frozen=True)

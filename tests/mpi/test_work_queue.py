@@ -2,7 +2,7 @@
 
 import time
 
-from ehlpetsc.run.series.work_queue import WorkQueue
+from ehlpetsc.run.ranks import WorkQueue
 
 
 def deal(ranks, pieces, ending_after=None):

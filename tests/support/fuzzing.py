@@ -8,7 +8,7 @@ import pytest
 
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.preview.explain import explain
+from ehlpetsc.run.explain import explain
 from ehlpetsc.surfaces.roughness import Roughness
 
 SEED = int(os.environ.get("EHL_FUZZ_SEED", "1"))

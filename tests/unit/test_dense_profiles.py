@@ -12,7 +12,7 @@ from support import ROOT
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.preview.warnings import warnings
+from ehlpetsc.run.warnings import warnings
 from ehlpetsc.surfaces.measured import filters
 from ehlpetsc.surfaces.measured.thinning import MAX_POINTS_PER_CELL, MIN_THINNED_POINTS, thinned
 from ehlpetsc.surfaces.mesh_resolution import _running_median, spikes

@@ -12,11 +12,10 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run.preview import forecast
-from ehlpetsc.run.preview.banner import worthwhile_ranks
-from ehlpetsc.run.preview.explain import explain
-from ehlpetsc.run.preview.forecast import file_size, steps
-from ehlpetsc.run.preview.warnings import warnings
+from ehlpetsc.run import forecast
+from ehlpetsc.run.explain import explain
+from ehlpetsc.run.forecast import file_size, steps, worthwhile_ranks
+from ehlpetsc.run.warnings import warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")

@@ -8,7 +8,7 @@ from support import ROOT
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.preview.banner import banner
+from ehlpetsc.run.forecast import banner
 from ehlpetsc.surfaces.roughness import Roughness
 
 PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))

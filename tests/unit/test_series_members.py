@@ -13,8 +13,7 @@ from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.series.member import Member, named
-from ehlpetsc.run.series.series import PrefixedStream
+from ehlpetsc.run.series import Member, PrefixedStream, named
 from ehlpetsc.stepping.time_stepping import next_step, on_level
 
 

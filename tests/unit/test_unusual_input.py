@@ -7,7 +7,7 @@ from ehlpetsc.__main__ import main
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
-from ehlpetsc.run.preview.explain import explain
+from ehlpetsc.run.explain import explain
 
 STRIBECK = "cases/stribeck.toml"
 NO_TEXT = "a\udcffb"  # a byte that is no UTF-8, as the command line hands it on

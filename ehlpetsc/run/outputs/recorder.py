@@ -9,9 +9,9 @@ from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.arguments import check_file
-from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.outputs.restart_file import RestartFile
 from ehlpetsc.run.outputs.result_file import ResultFile
+from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.restart import checkpoint
 from ehlpetsc.run.restart.resume_advice import resume_advice
 

@@ -4,7 +4,7 @@ import contextlib
 import time as clock
 
 from ehlpetsc.errors import ExitStatus, OutputError
-from ehlpetsc.run.on_root import on_root
+from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.restart import checkpoint
 
 

@@ -10,9 +10,9 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.writer import ResultWriter
-from ehlpetsc.run.on_root import on_root
 from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.outputs.stored_surfaces import body_depths, profiles
+from ehlpetsc.run.ranks import on_root
 from ehlpetsc.stepping.time_stepping import on_level
 
 MESSAGE_BYTES = 2**30  # half of the largest count of MPI

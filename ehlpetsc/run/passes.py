@@ -14,7 +14,7 @@ from ehlpetsc.results.output_guard import Lock, check_index, check_output_path, 
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
-from ehlpetsc.run.on_root import on_root
+from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run

@@ -1,12 +1,27 @@
-"""Work queue for groups of ranks: a free group gets the next item.
+"""Ranks of a run: actions of rank 0 alone, and a queue of work for groups of ranks.
 
-The first rank distributes the items and computes at the same time: it answers requests between its own time
-steps (:meth:`WorkQueue.serve`), so that no rank only waits and no shared memory is needed.
+The first rank distributes the items of the queue and computes at the same time: it answers requests between
+its own time steps (:meth:`WorkQueue.serve`), so that no rank only waits and no shared memory is needed.
 """
 
 import time as clock
 
-from mpi4py import MPI
+from ehlpetsc.errors import OutputError
+
+
+def on_root(comm, action, *arguments):
+    """Result of `action` on rank 0, None on the others; its OutputError is raised on every rank."""
+    answer = fault = None
+    if comm.rank == 0:
+        try:
+            answer = action(*arguments)
+        except OutputError as error:
+            fault = str(error)
+    fault = comm.bcast(fault)
+    if fault:
+        raise OutputError(fault)
+    return answer
+
 
 REQUEST, ANSWER = 71, 72  # tags of messages
 POLL_SECONDS = 0.01  # between two polls of a waiting rank
@@ -67,6 +82,8 @@ class WorkQueue:
         """Answer pending requests on the first rank; to be called often."""
         if self.world.rank != 0:
             return
+        from mpi4py import MPI
+
         status = MPI.Status()
         while self._others and self.world.iprobe(MPI.ANY_SOURCE, REQUEST, status):
             report, ending = self.world.recv(source=status.source, tag=REQUEST)

@@ -1,4 +1,4 @@
-"""Text summary of a case."""
+"""The command ``ehlpetsc explain``: a case in words."""
 
 import math
 import tomllib
@@ -10,16 +10,17 @@ from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separa
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import operation_of
-from ehlpetsc.run.preview.domain import domain_faults
-from ehlpetsc.run.preview.forecast import (
+from ehlpetsc.run.forecast import (
     begin_time,
     file_size,
+    height_lines,
+    lambda_line,
     run_time,
     steps,
+    surface_lines,
     work_time,
 )
-from ehlpetsc.run.preview.surfaces import height_lines, lambda_line, surface_lines
-from ehlpetsc.run.preview.warnings import warnings
+from ehlpetsc.run.warnings import domain_faults, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 

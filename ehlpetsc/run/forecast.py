@@ -1,0 +1,236 @@
+"""Before a run: heading, both surfaces in words, forecast of run time and file size."""
+
+import math
+import os
+import time as clock
+from functools import cache
+
+import numpy as np
+
+from ehlpetsc import __version__
+from ehlpetsc.physics import film_formulas
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.results.hdf5.datasets import CHUNK_BYTES, CHUNK_STEPS
+from ehlpetsc.surfaces.entry_times import entry_times
+
+# time of a Newton iteration on one rank over that of `probe`: constant part and part for each node, measured
+# side by side on 141 to 2661 nodes; a step takes the time of its iterations and of one more
+ITERATION_PROBES, NODE_PROBES = 0.105, 6.7e-5
+# Newton iterations a step: before roughness enters, with roughness in full film, in mixed lubrication
+SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
+PROBE_OPERATIONS = 3000
+START_PROBES = 70.0  # time of imports and of loading compiled loops, over that of `probe`
+FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
+STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
+
+
+def lambda_ratio(case, s, rough):
+    """Expected smooth minimum film over the combined root mean square height."""
+    film = film_formulas.smooth_films(case.fluid, s.E, s.conditions)[1]
+    return film / rough.rq if rough.rq > 0 else math.inf
+
+
+def run_time(case, s, rough):
+    """Expected wall clock time of all passes on one rank of this machine at its current load [s]."""
+    return begin_time() + work_time(case, s, rough)
+
+
+def begin_time():
+    """Wall clock time before the first iteration, once for a series [s]."""
+    return START_PROBES * probe()
+
+
+def work_time(case, s, rough):
+    """Wall clock time of the iterations [s]."""
+    solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
+    each = (ITERATION_PROBES + NODE_PROBES * s.nx) * probe()
+    return passes * (iterations(case, s, rough) + solves) * each
+
+
+def iterations(case, s, rough):
+    """Expected Newton iterations of a run."""
+    fraction = _rough_fraction(case, s, rough)
+    mixed = rough and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
+    each = (1.0 - fraction) * SMOOTH_ITERATIONS + fraction * (MIXED_ITERATIONS if mixed else FILM_ITERATIONS)
+    return STEADY_ITERATIONS + (steps(s) if case.time else 0) * each
+
+
+def _rough_fraction(case, s, rough):
+    """Fraction of the steps after the first profile has reached the contact."""
+    if not rough or case.time is None:
+        return 0.0
+    entries = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
+    first = min(times[0] if times else 0.0 for times in entries)
+    return min(max(1.0 - first / case.time.travel, 0.0), 1.0)
+
+
+@cache
+def probe():
+    """Time of `PROBE_OPERATIONS` small array operations, as in a time step, on this machine [s]."""
+    return sorted(_timed_operations() for _ in range(3))[1]
+
+
+def _timed_operations():
+    small = np.linspace(0.0, 1.0, 400)
+    begun = clock.perf_counter()
+    for k in range(PROBE_OPERATIONS):
+        other = small * 0.5 + small
+        other[3:30] = other[2:29]
+        float(np.fft.rfft(other)[k % 200].real if k % 4 == 0 else other.max())
+    return clock.perf_counter() - begun
+
+
+def steps(s):
+    """Number of time steps of a transient case without halved steps."""
+    return math.ceil(s.duration / s.dt - 1e-9)
+
+
+def file_size(case, s):
+    """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed."""
+    value = 8 if case.output.precision == "float64" else 4
+    count = steps(s) if case.time else 0
+    frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.nx * value))
+    stored = set(case.output.fields) & set(of_case(FIELDS, case))
+    fields = sum(FIELDS[name].dtype == "f8" for name in stored)
+    scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
+    return fields * value * s.nx * rows * math.ceil(frames / rows) + scalars
+
+
+def surface_lines(case, s, rough):
+    """Both surfaces: size, roughness and travel, a line each.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    s : physics.scales.Scales
+    rough : surfaces.roughness.Roughness or None
+
+    Returns
+    -------
+    list of str
+    """
+    lines = []
+    for side in ("1", "2"):
+        profile = rough and rough.side(side)
+        described = _profile(case, s, profile) if profile else ["smooth"]
+        lines += [f"Surface {side}: {line}" for line in described]
+    return lines
+
+
+def lambda_line(case, s, rough):
+    """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
+    if case.fluid is None or not rough or rough.rq <= 0.0:
+        return []
+    ratio = lambda_ratio(case, s, rough)
+    return [
+        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rough.rq:.3g} um over the combined "
+        f"Rq {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
+    ]
+
+
+def _regime(ratio):
+    """Lubrication regime by the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
+    if ratio > FULL_FILM:
+        return "full film"
+    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
+
+
+def _profile(case, s, profile):
+    """Size, roughness and travel of one profile, a line each."""
+    samples = profile.given
+    lines = [
+        f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}",
+        *samples.notes,
+    ]
+    if samples.measured:
+        file = samples.source or samples
+        size = f"{1e3 * file.length:.4g} mm long, {file.X.size} points {1e6 * file.spacing:.4g} um apart"
+        lines.insert(1, size)
+        if profile.travelled > samples.length:
+            lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
+        if case.time is not None and profile.is_moving:
+            lines += _part_in_contact(case, s, profile)
+    times = entry_times(profile, s)
+    if times:
+        reaches, fills = times
+        end = "and fills it" if profile.repeats else "and has its middle at x = 0"
+        lines.append(f"reaches the contact at travel {reaches:.2f} a {end} at {fills:.2f} a")
+    return lines
+
+
+def _part_in_contact(case, s, profile):
+    """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
+    reaches, length = entry_times(profile, s)[0], profile.given.length
+    slower = s.u_max / abs(profile.speed)
+    through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower
+    if through >= length:
+        return []
+    needed = reaches + (2.0 + length / s.a) * slower
+    passing = (
+        f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
+    )
+    return [
+        f"of {1e3 * length:.4g} mm {passing}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"
+    ]
+
+
+def height_lines(rough, s):
+    """Height ranges of the profiles, and of their means over the cells of the mesh."""
+    for side in ("1", "2"):
+        profile = rough and rough.side(side)
+        if profile:
+            heights = profile.heights.min(), profile.heights.max()
+            heights, means = (
+                " to ".join(f"{1e6 * round(z, 12):.3g}" for z in pair)
+                for pair in (heights, profile.extremes_of_cells(s.dx))
+            )
+            note = "means over cells, as the mesh has them"
+            yield f"Surface {side}: heights from {heights} um; {note}, {means} um"
+
+
+MIN_NODES_OF_TWO_RANKS = 8000  # with fewer, two ranks gain little on a quiet machine and lose on a busy one
+
+
+def banner(case, scales, rough, ranks):
+    """Heading of a run in a few lines: title, size, surfaces.
+
+    Parameters
+    ----------
+    case : case.loading.Case
+    scales : scales.Scales
+    rough : roughness.Roughness or None
+    ranks : int
+
+    Returns
+    -------
+    list of str
+    """
+    length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
+    return [
+        f"ehlpetsc {__version__}: {case.title}",
+        f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
+        f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
+        *(surface_lines(case, scales, rough) if rough else []),
+        *lambda_line(case, scales, rough),
+        *_note_on_ranks(scales, ranks),
+    ]
+
+
+def worthwhile_ranks(case):
+    """Default number of ranks: two for a series, and for a large mesh if two cores are idle; else one."""
+    is_large = case.mesh.nodes >= MIN_NODES_OF_TWO_RANKS
+    return 2 if case.series or (is_large and idle_cores() >= 2) else 1
+
+
+def idle_cores():
+    """Idle cores of this process, mean over the last minute."""
+    return round(len(os.sched_getaffinity(0)) - os.getloadavg()[0])
+
+
+def _note_on_ranks(scales, ranks):
+    if ranks == 1 or scales.nx >= MIN_NODES_OF_TWO_RANKS:
+        return []
+    return [
+        f"note: at {scales.nx} nodes a second rank saves two fifths of the time at most, on idle cores; "
+        "the members of a series gain from ranks at any size"
+    ]
