@@ -6,7 +6,7 @@ these alone and passes on :class:`Values`. For example an effect with one key::
     COATING = KeyTable(
         "coating",
         "left out: none",
-        {"thickness": Key("of both surfaces", unit="m", gt=0, le=1e-4, required=True)},
+        {"thickness": Required("of both surfaces", "m", 1e-9, 1e-4)},
         needs=("[time]",),
     )
 """
@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 
@@ -34,10 +35,10 @@ class Key:
     ----------
     text
         Meaning, for the page of keys and for messages.
-    kind
-        float, int, bool or str; dict: a table with any keys; object: anything.
     unit
         SI unit of the stored value; "": a pure number.
+    kind
+        float, int, bool or str; dict: a table with any keys; object: anything. With choices always str.
     default
         Value where the key is left out; None: it is stored as None.
     required
@@ -55,21 +56,21 @@ class Key:
     below
         Key of the same table below which the value must be.
     equation
-        In which the key appears.
+        In which the key appears, where it is too long for messages.
     table, variants
         Keys of the table that is the value, or of the tables by the value of their key `kind`.
     """
 
     text: str
-    kind: type = float
     unit: str = ""
+    ge: float | None = None
+    le: float | None = None
+    gt: float | None = None
+    lt: float | None = None
+    kind: type = float
     default: Any = None
     required: bool = False
     replaced_by: tuple[str, ...] = ()
-    ge: float | None = None
-    gt: float | None = None
-    le: float | None = None
-    lt: float | None = None
     choices: tuple[str, ...] = ()
     many: str = ""
     min_items: int = 1
@@ -79,6 +80,13 @@ class Key:
     equation: str = ""
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
+
+    def __post_init__(self) -> None:
+        if self.choices:
+            object.__setattr__(self, "kind", str)
+
+
+Required = partial(Key, required=True)
 
 
 class Values:

@@ -13,7 +13,7 @@ from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
 from ehlpetsc.case.tables.oil import FLUID, HEAT
 from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
-from ehlpetsc.keys import Key, KeyTable, Refused, Values
+from ehlpetsc.keys import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.toml_file import is_plain, toml_text
 
 TABLES = (
@@ -77,12 +77,12 @@ def _is_text(value: object) -> bool:
 CASE = KeyTable(
     "",
     "keys at the top",
-    {"title": Key("one line for the result file and its pictures", str, required=True, max_items=1000)}
+    {"title": Required("one line for the result file and its pictures", kind=str, max_items=1000)}
     | {table.name: table.key for table in TABLES}
     | {
         "petsc": Key(
             "PETSc options without the dash: a text, a number, true (no value) or false (not set)",
-            dict,
+            kind=dict,
             default={},
         )
     },

@@ -6,8 +6,9 @@ from typing import Any
 
 from ehlpetsc.gears.geometry import MESH_STIFFNESS, GearPair
 from ehlpetsc.gears.load_sharing import RULES
-from ehlpetsc.keys import Key, KeyTable, Refused, Values
+from ehlpetsc.keys import Key, KeyTable, Refused, Required, Values
 
+CONDITIONS = ("[gears]", "[operation]")
 MAX_NODES = 200_000  # with more a time step would take hours; more likely a typing error
 COLUMNS = {  # allowed names of the columns of a file, by key
     "time": ("time", "t"),
@@ -17,32 +18,19 @@ COLUMNS = {  # allowed names of the columns of a file, by key
     "speed_2": ("speed 2", "u2"),
 }
 
-MOTION = KeyTable(
-    "motion",
-    "speeds; needed with [fluid] and with [time]",
-    {
-        "entrainment_speed": Key(
-            "mean of both speeds, not zero",
-            unit="m/s",
-            ge=1e-9,
-            le=1e3,
-            required=True,
-            replaced_by=("[gears]", "[operation]"),
-            equation="u = (u1 + u2)/2",
-        ),
-        "slide_roll_ratio": Key(
-            "sliding speed over entrainment speed",
-            ge=-100,
-            le=100,
-            default=0.0,
-            equation="xi = (u1 - u2)/u; u1 = u (1 + xi/2), u2 = u (1 - xi/2)",
-        ),
-    },
-)
+MOTION_KEYS = {
+    "entrainment_speed": Required(
+        "mean speed u = (u1 + u2)/2, not zero", "m/s", 1e-9, 1e3, replaced_by=CONDITIONS
+    ),
+    "slide_roll_ratio": Key(
+        "slide/roll ratio xi = (u1 - u2)/u; u1 = u (1 + xi/2), u2 = u (1 - xi/2)", "", -100, 100, default=0.0
+    ),
+}
+MOTION = KeyTable("motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS)
 
 
 def _column(text: str, unit: str) -> Key:
-    return Key(f"{text}, here instead of in a file", unit=unit, ge=-1e15, le=1e15, many="list", min_items=2)
+    return Key(f"{text}, here instead of in a file", unit, -1e15, 1e15, many="list", min_items=2)
 
 
 def _file_or_columns(operation: Values) -> dict[str, Any]:
@@ -51,23 +39,21 @@ def _file_or_columns(operation: Values) -> dict[str, Any]:
     return {}
 
 
+OPERATION_KEYS = {
+    "file": Key(
+        "CSV table beside the case file; its first line names columns, with units in brackets: time [s], "
+        "load [N/m], radius [m], speed 1 [m/s], speed 2 [m/s]; other conditions are constant",
+        kind=str,
+    ),
+    "repeat": Key("times that the table is run through", "", 1, 100_000, kind=int, default=1),
+    "time": _column("increasing", "s"),
+    "load": _column("above 0", "N/m"),
+    "radius": _column("above 0", "m"),
+    "speed_1": _column("of surface 1, signed", "m/s"),
+    "speed_2": _column("of surface 2, signed", "m/s"),
+}
 OPERATION = KeyTable(
-    "operation",
-    "conditions over time; left out: constant",
-    {
-        "file": Key(
-            "CSV table beside the case file; its first line names the columns, with units in brackets: "
-            "time [s], load [N/m], radius [m], speed 1 [m/s], speed 2 [m/s]; other conditions are constant",
-            str,
-        ),
-        "repeat": Key("times that the table is run through", int, ge=1, le=100_000, default=1),
-        "time": _column("increasing", "s"),
-        "load": _column("above 0", "N/m"),
-        "radius": _column("above 0", "m"),
-        "speed_1": _column("of surface 1, signed", "m/s"),
-        "speed_2": _column("of surface 2, signed", "m/s"),
-    },
-    complete=_file_or_columns,
+    "operation", "conditions over time; left out: constant", OPERATION_KEYS, complete=_file_or_columns
 )
 
 
@@ -86,30 +72,25 @@ def _check_geometry(gears: Gears) -> dict[str, Any]:
     return {}
 
 
+GEARS_KEYS = {
+    "module": Required("normal module", "m", 1e-5, 1),
+    "teeth": Required("of pinion and wheel", "", 5, 10_000, kind=int, many="two"),
+    "pressure_angle": Key("of the basic rack", "degrees", 5, 40, default=20.0),
+    "centre_distance": Required("above the sum of base radii", "m", 1e-4, 100),
+    "tip_diameter": Required("of pinion and wheel", "m", 1e-4, 100, many="two"),
+    "face_width": Required("common to both", "m", 1e-5, 10),
+    "torque": Required("on the pinion", "N m", 1e-6, 1e9),
+    "speed": Required("rotational speed of the pinion", "1/min", 1e-3, 1e6),
+    "tip_relief": Key("depth at both tips, linear from B and D on", "m", 0, 1e-3, default=0.0),
+    "load_sharing": Key("left out: tip-relief where there is one, else thirds", choices=tuple(RULES)),
+    "mesh_stiffness": Key(
+        "of one tooth pair per face width, c' of ISO 6336", "Pa", 1e6, 1e12, default=MESH_STIFFNESS
+    ),
+}
 GEARS = KeyTable(
     "gears",
     "spur gear pair through its mesh, surface 1 the flank of the pinion; left out: constant conditions",
-    {
-        "module": Key("normal module", unit="m", ge=1e-5, le=1, required=True),
-        "teeth": Key("of pinion and wheel", int, ge=5, le=10_000, many="two", required=True),
-        "pressure_angle": Key("of the basic rack", unit="degrees", ge=5, le=40, default=20.0),
-        "centre_distance": Key("above the sum of base radii", unit="m", ge=1e-4, le=100, required=True),
-        "tip_diameter": Key("of pinion and wheel", unit="m", ge=1e-4, le=100, many="two", required=True),
-        "face_width": Key("common to both", unit="m", ge=1e-5, le=10, required=True),
-        "torque": Key("on the pinion", unit="N m", ge=1e-6, le=1e9, required=True),
-        "speed": Key("rotational speed of the pinion", unit="1/min", ge=1e-3, le=1e6, required=True),
-        "tip_relief": Key("depth at both tips, linear from B and D on", unit="m", ge=0, le=1e-3, default=0.0),
-        "load_sharing": Key(
-            "rule; left out: tip-relief where there is one, else thirds", str, choices=tuple(RULES)
-        ),
-        "mesh_stiffness": Key(
-            "of one tooth pair per face width, c' of ISO 6336",
-            unit="Pa",
-            ge=1e6,
-            le=1e12,
-            default=MESH_STIFFNESS,
-        ),
-    },
+    GEARS_KEYS,
     values=Gears,
     complete=_check_geometry,
 )
@@ -130,52 +111,24 @@ def _check_node_count(mesh: Mesh) -> dict[str, Any]:
     return {}
 
 
-MESH = KeyTable(
-    "mesh",
-    "nodes",
-    {
-        "inlet": Key("first node", unit="half widths", ge=-100, lt=-1, required=True),
-        "outlet": Key("last node", unit="half widths", gt=1, le=100, required=True),
-        "points_per_half_width": Key(
-            "nodes per half width, at most 200000 in all",
-            int,
-            ge=4,
-            le=100_000,
-            required=True,
-            equation="dx = a/points_per_half_width",
-        ),
-        "near_field": Key("nodes of deflection in the matrix, each side", int, ge=2, le=1000, default=3),
-    },
-    required=True,
-    values=Mesh,
-    complete=_check_node_count,
-)
+MESH_KEYS = {
+    "inlet": Required("first node", "half widths", -100, lt=-1),
+    "outlet": Required("last node", "half widths", gt=1, le=100),
+    "points_per_half_width": Required("nodes a/dx, at most 200000 nodes in all", "", 4, 100_000, kind=int),
+    "near_field": Key("nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3),
+}
+MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_check_node_count)
 
-TIME = KeyTable(
-    "time",
-    "left out: steady",
-    {
-        "travel": Key(
-            "distance travelled by the faster surface",
-            unit="half widths",
-            ge=1e-6,
-            le=1e5,
-            required=True,
-            replaced_by=("[gears]", "[operation]"),
-            equation="the run lasts travel a/u_max",
-        ),
-        "courant": Key(
-            "Courant number of the faster surface",
-            ge=1e-3,
-            le=100,
-            default=0.5,
-            equation="dt = courant dx/u_max",
-        ),
-        "passes": Key(
-            "number of passes of the same stretches of both surfaces", int, ge=1, le=10_000, default=1
-        ),
-        "pass_shift": Key(
-            "shift of the profile of surface 2 from pass to pass", unit="m", ge=-1, le=1, default=0.0
-        ),
-    },
-)
+TIME_KEYS = {
+    "travel": Required(
+        "distance travelled by the faster surface, travel a = u_max t",
+        "half widths",
+        1e-6,
+        1e5,
+        replaced_by=CONDITIONS,
+    ),
+    "courant": Key("Courant number u_max dt/dx", "", 1e-3, 100, default=0.5),
+    "passes": Key("passes of the same stretches of both surfaces", "", 1, 10_000, kind=int, default=1),
+    "pass_shift": Key("shift of the profile of surface 2 from pass to pass", "m", -1, 1, default=0.0),
+}
+TIME = KeyTable("time", "left out: steady", TIME_KEYS)
