@@ -170,7 +170,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
     contact = contact | {"load": load, "radius": radius}
     motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
     if isinstance(tables.get("gears"), dict) and "pass_shift" not in time:
-        time = time | {"pass_shift": path_of_contact(tables["gears"]).pair.hunting_shift}
+        time = time | {"pass_shift": check(GEARS, tables["gears"])[0].pair.hunting_shift}
     if "travel" not in time:
         try:
             modulus = reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])

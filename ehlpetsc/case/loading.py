@@ -17,8 +17,9 @@ from ehlpetsc.case.derived import resolve_measured_layer, with_derived
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put
-from ehlpetsc.case.tables import CASE, Case
+from ehlpetsc.case.tables import CASE, GEARS, Case
 from ehlpetsc.errors import CaseError
+from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.toml_file import parse_toml, plain, read_text
 
 DICT_NAME = "case"  # name of a case without a file in messages
@@ -72,6 +73,18 @@ def stored_case(text: str, overrides: Overrides = None) -> Case:
     if faults + found:
         raise CaseError(_lines(DICT_NAME, faults + found))
     return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
+
+
+def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[GearPair, Tables]:
+    """Gear pair of a case file, and its tables, of which only `[gears]` is checked; raises `CaseError`."""
+    data = parse_toml(path, read_text(path))
+    faults = _override(data, overrides) + in_si(data)
+    if not isinstance(data.get("gears"), dict):
+        raise CaseError([f"{path}: no [gears] table; allowed: a case with one"])
+    gears, found = check(GEARS, data["gears"], "gears.", data, {fault.place for fault in faults})
+    if faults + found:
+        raise CaseError(_lines(path, faults + found))
+    return gears.pair, with_derived(data)
 
 
 def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Case]]:

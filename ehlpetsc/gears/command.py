@@ -9,10 +9,9 @@ RESULT.post.h5 exists, the damage along both flanks.
 from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import CaseError, OutputError
+from ehlpetsc.errors import OutputError
 from ehlpetsc.results.atomic_write import atomic_write, replacing
 from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
-from ehlpetsc.toml_file import parse_toml, read_text
 
 
 def arguments():
@@ -33,18 +32,14 @@ def main(words):
 
 def run(chosen):
     """Print the table, write picture and CSV file."""
+    from ehlpetsc.case.loading import gear_tables
     from ehlpetsc.gears.path import path_of_contact
     from ehlpetsc.gears.table import COLUMNS, csv, hertz, rows
 
     if Path(chosen.case).suffix == ".h5":
         return _run_of(chosen)
-    case = parse_toml(chosen.case, read_text(chosen.case))
-    if not isinstance(case.get("gears"), dict):
-        raise CaseError([f"{chosen.case}: no [gears] table; allowed: a case with one"])
-    try:
-        path = path_of_contact(case["gears"])
-    except CaseError as error:
-        raise CaseError([f"{chosen.case}: {fault}" for fault in error.faults]) from None
+    pair, case = gear_tables(chosen.case, chosen.set)
+    path = path_of_contact(pair)
     contact = case.get("contact")
     stresses = hertz(path, contact if isinstance(contact, dict) else {})
     target = _picture(chosen)

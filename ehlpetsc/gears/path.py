@@ -1,24 +1,18 @@
 """Path of contact of a spur gear pair: load, radius and speeds over time."""
 
-from dataclasses import dataclass, fields
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ehlpetsc.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
-from ehlpetsc.gears.load_sharing import RULES, kinks, relief_ratio, share
-from ehlpetsc.units import UnitFault, converted
+from ehlpetsc.gears.load_sharing import kinks, relief_ratio, share
 
 PATH_INTERVALS = 400  # equal intervals of the path, in addition to its points and kinks
-PAIRS = ("teeth", "tip_diameter")
-UNITS = {  # of the keys that are no lengths
-    "teeth": "",
-    "pressure_angle": "degrees",
-    "torque": "N m",
-    "speed": "1/min",
-    "mesh_stiffness": "Pa",
-}
-OPTIONAL = ("pressure_angle", "tip_relief", "load_sharing", "mesh_stiffness")
 
 
 @dataclass(frozen=True)
@@ -73,23 +67,8 @@ class Path:
         return int(np.argmin(np.abs(self.rho - self.pair.points[point])))
 
 
-def path_of_contact(gears):
-    """Path of contact of a spur gear pair.
-
-    Parameters
-    ----------
-    gears : dict or GearPair
-        Keys of the ``[gears]`` table: `module`, `teeth`, `pressure_angle`, `centre_distance`, `tip_diameter`,
-        `face_width`, `torque`, `speed`, and optionally `tip_relief`, `load_sharing`, `mesh_stiffness`.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    CaseError
-        Missing or unknown keys, values that are not numbers, or impossible geometry.
+def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
+    """Path of contact of a spur gear pair, or of its keys; raises `CaseError` for an impossible geometry.
 
     Examples
     --------
@@ -101,7 +80,7 @@ def path_of_contact(gears):
     >>> round(path.contact_ratio, 3), round(path.pressure_angle, 3)
     (1.443, 22.439)
     """
-    pair = gears if isinstance(gears, GearPair) else pair_of(gears)
+    pair = gears if isinstance(gears, GearPair) else GearPair(**gears)
     faults = pair.faults()
     if faults:
         raise CaseError(faults)
@@ -122,48 +101,6 @@ def path_of_contact(gears):
         pressure_angle=float(np.degrees(pair.working_angle)),
         pair=pair,
     )
-
-
-def pair_of(gears):
-    """Gear pair of a ``[gears]`` table.
-
-    Raises
-    ------
-    CaseError
-        Contains all faults of the keys, one message each; the geometry is not checked.
-    """
-    keys = [field.name for field in fields(GearPair)]
-    faults = [f"gears.{key}: unknown key; allowed: {', '.join(keys)}" for key in gears if key not in keys]
-    values = {}
-    for key in keys:
-        value = gears.get(key)
-        if value is None:
-            faults += [f"gears.{key} is missing"] if key not in OPTIONAL else []
-        elif key == "load_sharing":
-            values[key] = value
-            if value not in RULES:
-                faults.append(f"gears.{key} = {value!r}: allowed: {', '.join(RULES)}")
-        else:
-            count = 2 if key in PAIRS else 1
-            try:
-                value = converted(value, UNITS.get(key, "m"))
-            except UnitFault as fault:
-                faults.append(f"gears.{key} = {fault}")
-                continue
-            try:
-                values[key] = np.asarray(value, float).reshape(count).tolist()
-            except (TypeError, ValueError):
-                values[key] = [np.nan]
-            lowest = 0.0 if key == "tip_relief" else np.nextafter(0.0, 1.0)
-            is_whole = key != "teeth" or np.array_equal(values[key], np.round(values[key]))
-            if not (np.isfinite(values[key]).all() and min(values[key]) >= lowest and is_whole):
-                kind = ("two " if count == 2 else "a ") + ("whole number" if key == "teeth" else "number")
-                faults.append(f"gears.{key} = {value}: allowed: {kind}{'s' * (count == 2)} > 0")
-            values[key] = tuple(values[key]) if count == 2 else values[key][0]
-    if faults:
-        raise CaseError(faults)
-    values["teeth"] = tuple(map(int, values["teeth"]))
-    return GearPair(**values)
 
 
 def describe(path):

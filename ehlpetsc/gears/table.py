@@ -8,7 +8,6 @@ from ehlpetsc.gears.losses import gear_loss_factor, ohlendorf_loss_factor
 from ehlpetsc.gears.path import describe
 from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
-from ehlpetsc.units import converted
 
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 
@@ -23,8 +22,7 @@ def hertz(path, contact):
         `youngs_modulus` and `poisson_ratio` of the solids, or their `material`.
     """
     try:
-        moduli, ratios = elastic_constants(contact)
-        modulus = reduced_modulus(converted(moduli, "Pa"), ratios)
+        modulus = reduced_modulus(*elastic_constants(contact))
         pairs = zip(path.load, path.radius, strict=True)
         stresses = [hertz_line(w, r, modulus) if w > 0 else (0.0, 0.0) for w, r in pairs]
     except (KeyError, TypeError, ValueError, ZeroDivisionError):

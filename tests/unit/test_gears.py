@@ -46,7 +46,8 @@ def case(tmp_path):
     """A case file with a [gears] table, its keys changed."""
 
     def write(**changes):
-        table = "".join(f"{key} = {value!r}\n" for key, value in (FZG | changes).items())
+        given = {key: value for key, value in (FZG | changes).items() if value is not None}
+        table = "".join(f"{key} = {value!r}\n" for key, value in given.items())
         path = tmp_path / "pair.toml"
         path.write_text('title = "FZG C"\n' + CONTACT + "[gears]\n" + table)
         return path
@@ -217,28 +218,12 @@ def test_impossible_geometry_is_refused_in_one_line(change, parts, case, capsys)
     assert capsys.readouterr().err.count("\n") == 1
 
 
-@pytest.mark.parametrize(
-    ("change", "pattern"),
-    [
-        ({"teeth": [16]}, r"gears\.teeth = \[16\]: "),
-        ({"teeth": [16.5, 24]}, r"gears\.teeth = \[16\.5, 24\]: "),
-        ({"torque": "much"}, r"gears\.torque = much: .* > 0"),
-        ({"speed": -5.0}, r"gears\.speed = -5\.0: .* > 0"),
-        ({"modul": 1.0}, r"gears\.modul: "),
-        ({"load_sharing": "halves"}, r"gears\.load_sharing = 'halves': .*thirds, tip-relief"),
-        ({"module": None}, r"gears\.module .*missing"),
-        ({"torque": math.nan}, r"gears\.torque = nan: "),
-    ],
-)
-def test_bad_keys_are_named(change, pattern):
-    with pytest.raises(CaseError, match=pattern) as error:
-        path_of_contact(FZG | change)
-    assert len(error.value.faults) == 1
-
-
-def test_case_schema_has_the_same_pair(case):
-    gears = load(case(tip_relief=20e-6)).gears
-    assert gears.pair == path_of_contact(FZG | {"tip_relief": 20e-6}).pair
+def test_bad_keys_are_named(case, capsys):
+    assert main([str(case(teeth=[16.5, 24], torque="much", module=None))]) == 2
+    faults = capsys.readouterr().err.splitlines()
+    assert [fault.split(": ")[1].split()[0] for fault in faults] == [
+        f"gears.{key}" for key in ("module", "teeth", "torque")
+    ]
 
 
 def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsys, monkeypatch):
