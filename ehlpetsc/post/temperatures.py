@@ -3,7 +3,7 @@
 import numpy as np
 
 from ehlpetsc.post.stresses.body_points import passage
-from ehlpetsc.post.stresses.load_interpolation import limited_slopes
+from ehlpetsc.post.stresses.body_stress import limited_slopes
 from ehlpetsc.results.post_result import PointTemperatures
 
 FRAMES_PER_READ = 256

@@ -24,8 +24,7 @@ from support.made_loads import Scene, write
 
 from ehlpetsc.post import Material
 from ehlpetsc.post.fatigue.accumulate import Counter, Counting
-from ehlpetsc.post.stresses.half_plane import StressField
-from ehlpetsc.post.stresses.kernels import hat
+from ehlpetsc.post.stresses.half_plane import StressField, hat
 
 
 def best(call, repeats=5):

@@ -6,10 +6,8 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from ehlpetsc.post.stresses import body_stress
-from ehlpetsc.post.stresses.body_stress import BodyStress, offset_weights
-from ehlpetsc.post.stresses.half_plane import padded_length
-from ehlpetsc.post.stresses.kernels import point_kernels
-from ehlpetsc.post.stresses.load_interpolation import hermite_spectra, limited_slopes
+from ehlpetsc.post.stresses.body_stress import BodyStress, hermite_spectra, limited_slopes, offset_weights
+from ehlpetsc.post.stresses.half_plane import padded_length, point_kernels
 
 NODES = np.arange(64.0)
 BETWEEN = np.linspace(10, 54, 881)

@@ -7,9 +7,8 @@ import pytest
 
 from ehlpetsc import post
 from ehlpetsc.post import Criteria, Material, cycles_to_failure, dang_van, strain_range, stress
-from ehlpetsc.post.criteria.critical_plane import plane_damage
+from ehlpetsc.post.criteria.critical_plane import plane_damage, turning_samples
 from ehlpetsc.post.criteria.dang_van import smallest_ball
-from ehlpetsc.post.criteria.path_reduction import turning_samples
 from ehlpetsc.post.criteria.planes import (
     normal_weights,
     planes,

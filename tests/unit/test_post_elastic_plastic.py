@@ -7,9 +7,8 @@ from support.made_loads import Scene, write
 from ehlpetsc.case.loading import load
 from ehlpetsc.post import Material, cycles_to_failure, damage, rainflow, strain_range
 from ehlpetsc.post.command import main
-from ehlpetsc.post.fatigue.life_table import life_table, look_up
-from ehlpetsc.post.fatigue.loops import loop_of
-from ehlpetsc.post.fatigue.strain_life import local_range
+from ehlpetsc.post.fatigue.cycles import loop_of
+from ehlpetsc.post.fatigue.strain_life import life_table, local_range, look_up
 from ehlpetsc.results.post_result import PostResult
 
 STEEL = Material()

@@ -9,7 +9,7 @@ import pytest
 
 from ehlpetsc import post
 from ehlpetsc.post import Material, cycles_to_failure, equivalent_range, strain_range
-from ehlpetsc.post.fatigue.life_table import life_table, look_up
+from ehlpetsc.post.fatigue.strain_life import life_table, look_up
 
 STEEL = Material()
 damage = partial(post.damage, strain="direct")

@@ -5,8 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from ehlpetsc.post import out_of_plane, stress, von_mises
-from ehlpetsc.post.stresses.half_plane import StressField
-from ehlpetsc.post.stresses.kernels import hat, point_kernels
+from ehlpetsc.post.stresses.half_plane import StressField, hat, point_kernels
 
 
 def hertz(per_width, traction=0.0, z=0.5):

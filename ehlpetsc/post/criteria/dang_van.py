@@ -123,7 +123,7 @@ def smallest_ball(points):
 
 @compiled(error_model="python", nogil=True)
 def utilisation(stress, points, nu, residual, slope, limit):
-    """U of a history (3, samples) with its `points` of :mod:`ehlpetsc.post.fatigue.loops`; `slope` is a."""
+    """U of a history (3, samples) with its `points` of :mod:`ehlpetsc.post.fatigue.cycles`; `slope` is a."""
     centre, _ = smallest_ball(points)
     root, largest = sqrt(3.0), 0.0
     for k in range(stress.shape[1]):

@@ -27,9 +27,15 @@ stress.
 from dataclasses import dataclass
 from math import exp, inf, log, sqrt
 
-from ehlpetsc.post.fatigue.elastic_plastic import log_local_range
-from ehlpetsc.post.fatigue.life_table import MAX_RANGE, MIN_RANGE, curve_table
-from ehlpetsc.post.fatigue.strain_life import log_reversals, log_strain_amplitude, rule_of
+from ehlpetsc.post.fatigue.strain_life import (
+    MAX_RANGE,
+    MIN_RANGE,
+    curve_table,
+    log_local_range,
+    log_reversals,
+    log_strain_amplitude,
+    rule_of,
+)
 
 PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 

@@ -10,10 +10,9 @@ from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, redu
 from ehlpetsc.post.criteria.dang_van import utilisation
 from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
 from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
-from ehlpetsc.post.fatigue.cycles import RESIDUES, workspace
-from ehlpetsc.post.fatigue.elastic_plastic import DEFAULT_STRAIN
-from ehlpetsc.post.fatigue.evaluate import evaluate
-from ehlpetsc.post.fatigue.loops import equivalent_points
+from ehlpetsc.post.fatigue.accumulate import evaluate
+from ehlpetsc.post.fatigue.cycles import RESIDUES, equivalent_points, workspace
+from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN
 
 KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
 

@@ -8,10 +8,46 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
-from ehlpetsc.post.fatigue.elastic_plastic import DEFAULT_STRAIN, STRAINS
-from ehlpetsc.post.fatigue.evaluate import evaluate
-from ehlpetsc.post.fatigue.life_table import life_table, look_up
-from ehlpetsc.post.fatigue.strain_life import cycle_damage
+from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, STRAINS, cycle_damage, life_table, look_up
+
+
+def evaluate(sx, sz, txz, counter_of, residual_stress):
+    """Results of a counter for each history.
+
+    Parameters
+    ----------
+    sx, sz, txz : array_like, shape (..., samples)
+        Pa.
+    counter_of : callable(samples)
+        Returns a counter with `columns`, which is called with stress (points, 3, samples), lengths (points,),
+        out (points, columns) and the residual stress.
+    residual_stress : float
+        Pa.
+
+    Returns
+    -------
+    list of float or ndarray, shape (...)
+        One for each column.
+
+    Raises
+    ------
+    ValueError
+        Unequal shapes, nan.
+    """
+    stress = np.stack(
+        np.broadcast_arrays(*(np.asarray(component, float) for component in (sx, sz, txz))), axis=-2
+    )
+    if not np.isfinite(stress).all():
+        raise ValueError("stress histories must be finite")
+    if not np.isfinite(residual_stress):
+        raise ValueError("residual_stress must be a finite number")
+    shape, samples = stress.shape[:-2], stress.shape[-1]
+    counter = counter_of(samples)
+    blocks = np.ascontiguousarray(stress).reshape(-1, 3, samples)
+    out = np.empty((len(blocks), len(counter.columns)))
+    counter(blocks, np.full(len(blocks), samples), out, residual_stress)
+    return [column.reshape(shape)[()] for column in out.T]
+
 
 CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,), "von_mises": (3,)}
 MEAN_STRESSES = ("none", "morrow")
@@ -169,7 +205,7 @@ def damage(
         the contact pressure would increase lives by decades.
     strain : {"direct", "neuber", "glinka"}
         Use of the elastic range in the cyclic stress-strain curve (13): unchanged, as in the paper, or by
-        Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.elastic_plastic`).
+        Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.strain_life`).
     residual_stress : float
         Residual stress along the surface, equal in x and y, zero in z, Pa; enters twice in the mean of
         Morrow's term, and has no effect without this term.
