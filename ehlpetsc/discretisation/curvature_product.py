@@ -18,7 +18,10 @@ A rank has some of the blocks. The outer ones receive from other ranks what they
 the same rank: the sums over the neighbour's outer block, and moments.
 """
 
+from __future__ import annotations
+
 import itertools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -33,18 +36,20 @@ CUT_OFF = 2.7  # rates end where the integrand has fallen to exp(-CUT_OFF) times
 SAMPLES = 600  # distances in geometric progression at which the error is measured
 
 
-def exponentials(kernel, nearest, tolerance=TOLERANCE):
+def exponentials(
+    kernel: np.ndarray, nearest: int, tolerance: float = TOLERANCE
+) -> tuple[np.ndarray, np.ndarray]:
     r"""Kernel of the differential deflection as a sum of exponentials, from a distance on.
 
     Gauss-Legendre quadrature in :math:`v=\ln(1+t/a)`, in which the integrand is an entire function.
 
     Parameters
     ----------
-    kernel : ndarray, shape (n,)
+    kernel : shape (n,)
         :func:`.deflection.curvature_kernel`.
-    nearest : int
+    nearest
         First distance represented, at least 3.
-    tolerance : float
+    tolerance
         Relative error, at least 1e-11: the kernel itself is rounded.
 
     Returns
@@ -73,13 +78,12 @@ class Blocks(NamedTuple):
 
     Attributes
     ----------
-    rank : int
-    matrices : tuple of ndarray
+    matrices
         Sums at a block, its right and its left neighbour and moments to both sides, by its pressures, shape
         (BLOCK, 3 BLOCK + 2 terms); sums by the moments that arrive, (2 terms, BLOCK); factor of a moment a
         block further, (terms,); factors of every rank's moments (inner blocks, outer block) at the outer
         block of this rank, (ranks, 2, terms).
-    room : tuple of ndarray
+    room
         Pressures of the blocks; sums and moments by them; the others as of :func:`scan_moments`.
     """
 
@@ -88,17 +92,22 @@ class Blocks(NamedTuple):
     room: tuple
 
     @classmethod
-    def of(cls, kernel, cuts=None, rank=0, tolerance=TOLERANCE):
+    def of(
+        cls,
+        kernel: np.ndarray,
+        cuts: Sequence[int] | None = None,
+        rank: int = 0,
+        tolerance: float = TOLERANCE,
+    ) -> Blocks:
         """Blocks of a rank.
 
         Parameters
         ----------
-        kernel : ndarray, shape (n,)
+        kernel : shape (n,)
             f at distances of 0 .. n-1 nodes.
-        cuts : sequence of int, optional
+        cuts
             First nodes of all ranks, multiples of `BLOCK`, and n; by default one rank has the mesh.
-        rank : int
-        tolerance : float
+        tolerance
             Relative error of f beyond `BLOCK` nodes.
         """
         cuts = (0, len(kernel)) if cuts is None else cuts
@@ -118,7 +127,7 @@ class Blocks(NamedTuple):
         )
 
     @property
-    def message_size(self):
+    def message_size(self) -> int:
         """Numbers that a rank sends: one half for ranks on its right, one for those on its left.
 
         Each has the sums over the outer block at the block beyond, the moments of all other blocks, and those
@@ -127,7 +136,7 @@ class Blocks(NamedTuple):
         return 2 * (BLOCK + 2 * len(self.matrices[2]))
 
 
-def _near(kernel):
+def _near(kernel: np.ndarray) -> list[np.ndarray]:
     """Matrices of the sums over a block at itself, at the block on its right and at that on its left."""
     padded = np.zeros(2 * BLOCK)
     padded[: len(kernel)] = kernel[: 2 * BLOCK]
@@ -135,7 +144,7 @@ def _near(kernel):
     return [padded[np.abs(offset + shift)] for shift in (0, BLOCK, -BLOCK)]
 
 
-def _translation(cuts, rank, rates):
+def _translation(cuts: Sequence[int], rank: int, rates: np.ndarray) -> np.ndarray:
     factors = np.zeros((len(cuts) - 1, 2, len(rates)))
     for other in range(len(factors)):
         if abs(other - rank) == 1:  # its outer block reaches this one by the kernel
@@ -147,7 +156,7 @@ def _translation(cuts, rank, rates):
     return factors
 
 
-def product(blocks, pressure):
+def product(blocks: Blocks, pressure: np.ndarray) -> np.ndarray:
     """Sums on one rank, from the pressures (n,) of the mesh."""
     messages = np.empty((1, blocks.message_size))
     pack(*blocks, pressure, messages[0])
@@ -155,7 +164,7 @@ def product(blocks, pressure):
 
 
 @compiled
-def pack(rank, matrices, room, pressure, message):
+def pack(rank: int, matrices: tuple, room: tuple, pressure: np.ndarray, message: np.ndarray) -> None:
     """Begin the product with the pressures of this rank, and fill in its message to the others."""
     of_pressures, _, decay, _ = matrices
     pressures, near_and_moments, incoming, arriving = room
@@ -171,7 +180,7 @@ def pack(rank, matrices, room, pressure, message):
 
 
 @compiled
-def unpack(rank, matrices, room, messages):
+def unpack(rank: int, matrices: tuple, room: tuple, messages: np.ndarray) -> np.ndarray:
     """Sums at the nodes of all blocks of this rank, from the messages of all ranks, one in each row."""
     _, of_moments, decay, translation = matrices
     _, near_and_moments, incoming, arriving = room
@@ -196,7 +205,7 @@ def unpack(rank, matrices, room, messages):
 
 
 @compiled
-def receive_moments(messages, rank, translation, incoming):
+def receive_moments(messages: np.ndarray, rank: int, translation: np.ndarray, incoming: np.ndarray) -> None:
     """Sum up the moments that arrive from all other ranks."""
     terms = translation.shape[2]
     for other in range(len(messages)):
@@ -212,18 +221,18 @@ def receive_moments(messages, rank, translation, incoming):
 
 
 @compiled
-def scan_moments(sent, decay, incoming, arriving):
+def scan_moments(sent: np.ndarray, decay: float, incoming: np.ndarray, arriving: np.ndarray) -> None:
     """Fill in the moments that arrive at each block from blocks two and more away.
 
     Parameters
     ----------
-    sent : ndarray, shape (blocks, 3 BLOCK + 2 terms)
+    sent : shape (blocks, 3 BLOCK + 2 terms)
         Its last columns are the moments that each block sends to the right and to the left.
-    decay : ndarray, shape (terms,)
+    decay : shape (terms,)
         Factor of a moment a block further.
-    incoming : ndarray, shape (2, 2, terms)
+    incoming : shape (2, 2, terms)
         From left and from right: what arrives at the outer block, and what is added at the block behind it.
-    arriving : ndarray, shape (blocks + 2, 2 terms)
+    arriving : shape (blocks + 2, 2 terms)
         Of the blocks and of one beyond either end.
     """
     blocks, terms = len(sent), len(decay)

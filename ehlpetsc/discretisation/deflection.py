@@ -35,11 +35,11 @@ HALO = 8  # nodes on either side of a rank's own: the widest stencil of the prec
 ASYMPTOTIC_DISTANCE = 40  # nodes: from here on the asymptotic series are exact to 1e-14
 
 
-def deflection_kernel(n):
+def deflection_kernel(n: int) -> np.ndarray:
     r"""Hat-function kernel :math:`g_k+\ln\Delta x`, k = 0 .. n-1 (dimensionless)."""
     near = np.arange(min(n, ASYMPTOTIC_DISTANCE), dtype=np.longdouble)  # differences of the primitive cancel
 
-    def primitive(x):  # its second derivative is ln|x|
+    def primitive(x: np.ndarray) -> np.ndarray:  # its second derivative is ln|x|
         x = np.abs(x)
         return x**2 * np.log(np.where(x == 0.0, 1.0, x)) / 2 - 3 * x**2 / 4
 
@@ -49,7 +49,7 @@ def deflection_kernel(n):
     return np.concatenate([exact.astype(float), series])
 
 
-def curvature_kernel(n):
+def curvature_kernel(n: int) -> np.ndarray:
     r"""Second-difference kernel :math:`f_k`, k = 0 .. n-1: -4 ln 2, 0.601422, 0.366900, 0.126091 ..."""
     k = np.arange(n, dtype=float)
     g = deflection_kernel(min(n, ASYMPTOTIC_DISTANCE) + 1)
@@ -62,7 +62,7 @@ def curvature_kernel(n):
     return f
 
 
-def fast_length(n):
+def fast_length(n: int) -> int:
     """Smallest length from n on without a prime factor above 5, for fast Fourier transforms.
 
     `scipy.fft.next_fast_len` would load 4 MB more than `numpy.fft`, which is as quick.
@@ -82,18 +82,18 @@ class SymmetricToeplitz:
 
     Parameters
     ----------
-    kernel : ndarray, shape (n,)
+    kernel : shape (n,)
         Value at distance 0 .. n-1 nodes.
     """
 
-    def __init__(self, kernel):
+    def __init__(self, kernel: np.ndarray):
         self.count = n = len(kernel)
         self.length = fast_length(2 * n - 1)
         circulant = np.zeros(self.length)
         circulant[:n], circulant[self.length - n + 1 :] = kernel, kernel[:0:-1]
         self.spectrum = rfft(circulant)
 
-    def __call__(self, p):
+    def __call__(self, p: np.ndarray) -> np.ndarray:
         """Return the product with `p` (n,)."""
         return irfft(self.spectrum * rfft(p, self.length), self.length)[: self.count]
 
@@ -103,9 +103,9 @@ class PressureSums(NamedTuple):
 
     Attributes
     ----------
-    curvature : ndarray, shape (last - first,)
+    curvature : shape (last - first,)
         :math:`\sum_kf_kp_{i+k}` at the local nodes.
-    load : ndarray, shape (3,)
+    load : shape (3,)
         Pressure terms of the rows of the first and of the last node, and :math:`\sum p\,\Delta x`.
     """
 
@@ -118,11 +118,10 @@ class Deflection:
 
     Parameters
     ----------
-    n : int
+    n
         Number of nodes of the mesh.
-    dx : float
+    dx
         Spacing in half widths.
-    first, last : int
 
     Attributes
     ----------
@@ -142,7 +141,7 @@ class Deflection:
         Coefficients of the local pressures in `PressureSums.load`.
     """
 
-    def __init__(self, n, dx, first, last):
+    def __init__(self, n: int, dx: float, first: int, last: int):
         self.n, self.dx, self.first, self.last = n, dx, first, last
         self.window = slice(max(first - HALO, 0), min(last + HALO, n))
         self.owned = slice(first - self.window.start, last - self.window.start)
@@ -155,30 +154,28 @@ class Deflection:
         self.load_weights = np.stack([*end_rows, np.full(last - first, dx)])
 
     @cached_property
-    def _blocks(self):
+    def _blocks(self) -> Blocks:
         return Blocks.of(self.curvature)
 
-    def _logarithm(self):
+    def _logarithm(self) -> np.ndarray:
         return deflection_kernel(self.n) - np.log(self.dx)
 
-    def end_row(self, node, logarithm=None):
+    def end_row(self, node: int, logarithm: np.ndarray | None = None) -> np.ndarray:
         """Coefficients of all pressures in the row of an end node, shape (n,)."""
         kernel = self._logarithm() if logarithm is None else logarithm
         return (-self.end_row_coefficient * self.dx / np.pi) * (kernel if node == 0 else kernel[::-1])
 
-    def sums(self, pressure):
+    def sums(self, pressure: np.ndarray) -> PressureSums:
         """`PressureSums` of the pressures (n,) of the mesh, on one rank."""
         return PressureSums(product(self._blocks, pressure), self.load_weights @ pressure)
 
-    def residual(self, separation, approach, sums):
+    def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
         """Linear form in the local rows.
 
         Parameters
         ----------
-        separation : ndarray
+        separation
             At the nodes of `window`.
-        approach : float
-        sums : PressureSums
 
         Returns
         -------
@@ -188,29 +185,38 @@ class Deflection:
         deflection_rows(separation, approach, *sums, *self.form, rows)
         return rows
 
-    def integral(self, pressure):
+    def integral(self, pressure: np.ndarray) -> np.ndarray:
         r"""Elastic deflection :math:`-\frac1\pi\int p\ln|x-s|ds` at every node, in a^2/R."""
         return (self.dx / np.pi) * SymmetricToeplitz(self._logarithm())(pressure)
 
 
 @compiled
-def deflection_rows(g, approach, curvature, load, start, coefficient, end_coefficient, has_last, rows):
+def deflection_rows(
+    g: np.ndarray,
+    approach: float,
+    curvature: np.ndarray,
+    load: np.ndarray,
+    start: int,
+    coefficient: float,
+    end_coefficient: float,
+    has_last: bool,
+    rows: np.ndarray,
+) -> None:
     """Fill in the deflection rows.
 
     Parameters
     ----------
-    g : ndarray
+    g
         Separation.
-    approach : float
     curvature, load
         See `PressureSums`.
-    start : int
+    start
         Index in g of the first row's node; 0: the first node of the mesh.
-    coefficient, end_coefficient : float
+    coefficient, end_coefficient
         `curvature_coefficient` and `end_row_coefficient` of `Deflection`.
-    has_last : bool
+    has_last
         Whether the last row belongs to the last node of the mesh.
-    rows : ndarray, shape (rows,)
+    rows : shape (rows,)
     """
     inner = len(rows) - has_last
     if start == 0:

@@ -12,7 +12,9 @@ The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A ra
 the unknowns of its window, see :mod:`.deflection`.
 """
 
-from dataclasses import dataclass, replace
+from __future__ import annotations
+
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,62 +25,11 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads, directional_derivative
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums, deflection_rows
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
-from ehlpetsc.discretisation.reynolds import FilmHistory, NoOil, Reynolds
-from ehlpetsc.discretisation.unknowns import Unknowns, mirrored, n_dofs, q_of, w_of
+from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
+from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
+from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
-
-
-@dataclass(frozen=True)
-class StepInputs:
-    """Data of a solve, without its initial guess.
-
-    Attributes
-    ----------
-    phi : ndarray, shape (nx,)
-        Contribution of the roughness to the gap, in a^2/R.
-    history : reynolds.FilmHistory or None
-        Previous time levels; None: steady.
-    fluid : case.tables.fluid.Fluid or None
-        None: dry.
-    inlet_film : float or None
-        Oil film at the inlet in a^2/R; None: flooded.
-    conditions : physics.operation.Conditions
-        At the end of the step.
-    load_share : float
-        Applied fraction of the load of `conditions`.
-    dt : float or None
-        Length of the step [s]; None: steady.
-    contact : contact.model.ContactModel or None
-        Contact model of the solve; None: that of the problem.
-    heat : effects.heat.film.FilmHeat or None
-        Data of the film's temperature; None: isothermal.
-    boundary_friction : float or ndarray
-        Coefficient of friction between the solids.
-    """
-
-    phi: np.ndarray
-    history: FilmHistory | None
-    fluid: object
-    inlet_film: float | None
-    conditions: Conditions
-    load_share: float = 1.0
-    dt: float | None = None
-    contact: ContactModel | None = None
-    heat: object = None
-    boundary_friction: float | np.ndarray = 0.0
-
-    def mirrored(self):
-        """Mirrored step: x, the speeds and all arrays over nodes in reverse order."""
-        now = self.conditions
-        turned = {"conditions": now._replace(u1=-now.u1, u2=-now.u2)}
-        for name, value in vars(self).items():
-            if isinstance(value, np.ndarray) and value.shape == self.phi.shape:
-                turned[name] = mirrored(value)
-        if self.history is not None:
-            turned["history"] = self.history.mirrored()
-        if self.heat is not None:
-            turned["heat"] = self.heat.mirrored()
-        return replace(self, **turned)
+from ehlpetsc.physics.scales import Scales
 
 
 @dataclass(frozen=True)
@@ -87,11 +38,9 @@ class Evaluation:
 
     Attributes
     ----------
-    model : contact.model.ContactModel
-    state : contact.node_state.NodeState
-    residual : ndarray
+    residual
         Local rows, interleaved; shape of the local part of the vector.
-    reynolds_derivatives : ndarray, shape (local nodes, 8)
+    reynolds_derivatives : shape (local nodes, 8)
         Derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1.
     """
 
@@ -134,13 +83,11 @@ class EHLProblem:
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : scales.Scales
-    film_scale : float
+    film_scale
         Scale of the Reynolds rows, about the expected film, in a^2/R.
-    first, last : int
+    first, last
         Local nodes; the rank that owns the last one owns the load row.
-    bound_tolerance : float
+    bound_tolerance
         Tolerance of the active set in a^2/R: films this close to their bound count as on it.
 
     Attributes
@@ -149,7 +96,15 @@ class EHLProblem:
         Nodes on which the local rows depend; indices of the local nodes in the window.
     """
 
-    def __init__(self, case, scales, film_scale, first, last, bound_tolerance=0.0):
+    def __init__(
+        self,
+        case: Any,
+        scales: Scales,
+        film_scale: float,
+        first: int,
+        last: int,
+        bound_tolerance: float = 0.0,
+    ):
         self.n, self.x, self.scales = scales.nx, scales.x, scales
         self.dx = self.x[1] - self.x[0]
         self.first, self.last, self.local = first, last, last - first
@@ -169,11 +124,17 @@ class EHLProblem:
         self.reynolds_columns = self.reynolds.columns
 
     @property
-    def load_is_local(self):
+    def load_is_local(self) -> bool:
         """Whether this rank owns the load row."""
         return self.last == self.n
 
-    def inputs(self, phi=None, history=None, conditions=None, dt=None):
+    def inputs(
+        self,
+        phi: np.ndarray | None = None,
+        history: FilmHistory | None = None,
+        conditions: Conditions | None = None,
+        dt: float | None = None,
+    ) -> StepInputs:
         """Inputs of a step of this case; by default smooth, steady, under the reference conditions."""
         phi = np.zeros(self.n) if phi is None else phi
         conditions = conditions or self.scales.conditions
@@ -182,7 +143,7 @@ class EHLProblem:
             phi, history, self.fluid, self.inlet_film, conditions, dt=dt, boundary_friction=friction
         )
 
-    def film(self, pressure, h00, phi):
+    def film(self, pressure: np.ndarray, h00: float, phi: np.ndarray) -> np.ndarray:
         """Separation by the integral form, in a^2/R."""
         return h00 + 0.5 * self.x**2 + phi + self.deflection.integral(pressure)
 
@@ -233,37 +194,36 @@ class EHLProblem:
 
 @compiled
 def jacobian_rows(
-    by,
-    derivatives,
-    nodes,
-    v_h00,
-    curvature,
-    load,
-    start,
-    coefficient,
-    end_coefficient,
-    has_last,
-    change,
-    rows,
-):
+    by: np.ndarray,
+    derivatives: np.ndarray,
+    nodes: np.ndarray,
+    v_h00: float,
+    curvature: np.ndarray,
+    load: np.ndarray,
+    start: int,
+    coefficient: float,
+    end_coefficient: float,
+    has_last: bool,
+    change: np.ndarray,
+    rows: np.ndarray,
+) -> None:
     """Fill in the local rows of the Jacobian times a vector.
 
     Parameters
     ----------
-    by : ndarray, shape (4, 2, window)
+    by : shape (4, 2, window)
         :meth:`.contact.node_state.NodeState.derivatives`.
     derivatives
         As in :class:`Evaluation`.
-    nodes : ndarray, shape (window, 2)
+    nodes : shape (window, 2)
         q and w of the vector at the nodes of the window.
-    v_h00 : float
     curvature, load
         `PressureSums` of the change of pressure.
     start, coefficient, end_coefficient, has_last
         See :func:`.deflection.deflection_rows`.
-    change : ndarray, shape (3, window)
+    change : shape (3, window)
         Work array for the changes of Reynolds unknown, film and separation.
-    rows : ndarray
+    rows
         Result, interleaved; shape of the local part of the vector.
     """
     for k in range(3):

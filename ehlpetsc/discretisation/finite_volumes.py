@@ -39,16 +39,12 @@ HEATED_PROPERTIES = 13
 
 
 @compiled
-def positive_extrapolation(m, behind, k):
+def positive_extrapolation(m: float, behind: float, k: float) -> tuple[float, float, float]:
     r"""Extrapolate m from the values at `behind` and here, kept positive for m > 0.
 
     :math:`\max[m+k(m-m_b),\ m/2]`. Plain extrapolation of a film that goes to zero is negative, which empties
     the next cell and starts a cascade of false contacts. At m = 0 the slope is a half and not zero: a node
     that is to leave contact must feel its film, or Newton's method stalls there at any time step.
-
-    Returns
-    -------
-    value, d_m, d_behind : float
     """
     value = m + k * (m - behind)
     if value < 0.5 * m:
@@ -57,7 +53,7 @@ def positive_extrapolation(m, behind, k):
 
 
 @compiled
-def extrapolated(m, behind, k):
+def extrapolated(m: np.ndarray, behind: np.ndarray, k: float) -> np.ndarray:
     """Values of :func:`positive_extrapolation` for arrays m and behind."""
     out = np.empty_like(m)
     for i in range(len(m)):
@@ -66,7 +62,9 @@ def extrapolated(m, behind, k):
 
 
 @compiled
-def fill_mass(i, q, h, density, p0, film, unit, at):
+def fill_mass(
+    i: int, q: float, h: float, density: tuple, p0: float, film: float, unit: float, at: np.ndarray
+) -> float:
     """Fill in the properties of node i except its viscosity, as :func:`.reynolds.nodal`; return p [Pa]."""
     p, oil_fraction, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
     rho, rho_p = relative_density(density, p0 * p)
@@ -78,7 +76,7 @@ def fill_mass(i, q, h, density, p0, film, unit, at):
 
 
 @compiled
-def fluidities(at, left, right):
+def fluidities(at: np.ndarray, left: int, right: int) -> tuple:
     """1/eta [1/(Pa s)] of two neighbours at the mean of their temperatures."""
     if at.shape[0] == PROPERTIES:
         return at[FLUIDITY, left], at[FLUIDITY, right]
@@ -87,25 +85,28 @@ def fluidities(at, left, right):
 
 
 @compiled
-def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
+def flux_through(
+    at: np.ndarray,
+    left: int,
+    per_length: float,
+    per_film: float,
+    eyring: float,
+    slip: float,
+    entrainment: float,
+) -> tuple:
     """Mass flux through the face right of node `left`, and its derivatives.
 
     Derivatives are with respect to (q, h) of the nodes `left` - 1, `left` and `left` + 1.
 
     Parameters
     ----------
-    at : ndarray, shape (10 or 13, nodes)
-    left : int
-    per_length, per_film : float
+    at : shape (10 or 13, nodes)
+    per_length, per_film
         p0 over the spacing [Pa/m]; a^2/R [m].
-    eyring, slip : float
+    eyring, slip
         See :func:`ehlpetsc.physics.rheology.mobilities`.
-    entrainment : float
+    entrainment
         Entrainment speed over that of the scales.
-
-    Returns
-    -------
-    tuple of 7 floats
     """
     right, behind = left + ONE, left - ONE if left > 0 else left
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
@@ -141,23 +142,33 @@ def flux_through(at, left, per_length, per_film, eyring, slip, entrainment):
 
 
 @compiled
-def balance(at, first, law, m_old, extrapolated, k, rate, residual, derivatives):
+def balance(
+    at: np.ndarray,
+    first: int,
+    law: tuple,
+    m_old: np.ndarray,
+    extrapolated: np.ndarray,
+    k: float,
+    rate: float,
+    residual: np.ndarray,
+    derivatives: np.ndarray,
+) -> None:
     """Fill in the mass balance of the cells, outflow - inflow + rate of storage, and its derivatives.
 
     Parameters
     ----------
-    at : ndarray, shape (10 or 13, nodes)
+    at : shape (10 or 13, nodes)
         Nodal properties, with one node at least on either side of the cells.
-    first : int
+    first
         Index of the first cell's node.
-    law : tuple of 5 floats
+    law
         `per_length`, `per_film`, `eyring`, `slip` and `entrainment` of :func:`flux_through`.
-    m_old, extrapolated : ndarray, shape (cells,)
+    m_old, extrapolated : shape (cells,)
         `m` and `extrapolated` of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
-    k, rate : float
+    k, rate
         `k` of the same history; spacing / time step, 0: steady.
-    residual : ndarray, shape (cells,)
-    derivatives : ndarray, shape (cells, 8)
+    residual : shape (cells,)
+    derivatives : shape (cells, 8)
         With respect to q and h of the nodes i-2 .. i+1.
     """
     first = unsigned(first)  # numba takes longer over indices that may be negative
@@ -176,17 +187,19 @@ def balance(at, first, law, m_old, extrapolated, k, rate, residual, derivatives)
 
 
 @compiled
-def reynolds_product(derivatives, v_q, v_h, first, out):
+def reynolds_product(
+    derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int, out: np.ndarray
+) -> None:
     """Fill in the derivatives of the Reynolds rows times a vector.
 
     Parameters
     ----------
-    derivatives : ndarray, shape (rows, 8)
+    derivatives : shape (rows, 8)
         With respect to q and h of the nodes i-2 .. i+1; zero where there is no such node.
-    v_q, v_h : ndarray, shape (nx,)
-    first : int
+    v_q, v_h : shape (nx,)
+    first
         Node of the first row.
-    out : ndarray, shape (rows,)
+    out : shape (rows,)
     """
     first, last = unsigned(first), unsigned(len(v_q) - 1)
     for row in range(unsigned(len(derivatives))):
@@ -207,7 +220,7 @@ def reynolds_product(derivatives, v_q, v_h, first, out):
 
 
 @compiled
-def reynolds_rounding(derivatives, q, h, first):
+def reynolds_rounding(derivatives: np.ndarray, q: np.ndarray, h: np.ndarray, first: int) -> float:
     """Sum of squares of the errors of the Reynolds rows from rounding of all q and h.
 
     Parameters as in :func:`reynolds_product`.

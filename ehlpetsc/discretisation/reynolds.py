@@ -15,6 +15,10 @@ Without oil the Reynolds unknown vanishes: in direct contact q is then the press
 complementary to the gap; in mixed contact, whose solids have a pressure of their own, q = 0.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -27,40 +31,12 @@ from ehlpetsc.discretisation.finite_volumes import (
     STENCIL,
     M,
     balance,
-    extrapolated,
     fill_mass,
 )
-from ehlpetsc.discretisation.unknowns import dofs_of, mirrored, n_dofs
+from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 from ehlpetsc.physics.laws import density, density_law, ln_viscosity, viscosity_law
-
-
-class FilmHistory:
-    r"""Masses per area of the film at the previous time levels, for BDF2.
-
-    Parameters
-    ----------
-    m, m_older : ndarray, shape (nx,)
-        :math:`\rho h(1-\theta)` one and two steps ago.
-    dt, dt_older : float
-        Current and previous time step, in units of a/u; `dt_older` None starts with backward Euler.
-
-    Attributes
-    ----------
-    k : float
-        Factor of the extrapolation from the two levels of the current step.
-    extrapolated : ndarray, shape (nx,)
-        Extrapolation from the two older levels.
-    """
-
-    def __init__(self, m, m_older, dt, dt_older=None):
-        self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
-        self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
-        self.extrapolated = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
-
-    def mirrored(self):
-        """The same history with the nodes in reverse order."""
-        older = None if self.m_older is None else mirrored(self.m_older)
-        return FilmHistory(mirrored(self.m), older, self.dt, self.dt_older)
+from ehlpetsc.physics.scales import Scales
 
 
 class Reynolds:
@@ -68,12 +44,11 @@ class Reynolds:
 
     Parameters
     ----------
-    scales : scales.Scales
-    film_scale : float
+    film_scale
         Divisor of F, in a^2/R.
-    first, last : int
+    first, last
         Range of the evaluated rows.
-    start : int
+    start
         First node of the arrays that are passed in.
 
     Attributes
@@ -82,7 +57,7 @@ class Reynolds:
         Indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown.
     """
 
-    def __init__(self, scales, film_scale, first, last, start=0):
+    def __init__(self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0):
         self.scales, self.film_scale = scales, film_scale
         n = scales.nx
         self.local = slice(first, last)
@@ -94,18 +69,24 @@ class Reynolds:
         self.dx = scales.x[1] - scales.x[0]
         self.columns = self._columns(np.arange(first, last), n)
 
-    def _columns(self, rows, n):
+    def _columns(self, rows: np.ndarray, n: int) -> np.ndarray:
         node = rows[:, None] + np.arange(-2, 2)
         columns = dofs_of(node)
         columns[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
         return columns.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
 
-    def mass_per_area(self, q, h, fluid):
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
         rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
-    def properties(self, q, h, inputs, temperatures=None):
+    def properties(
+        self,
+        q: np.ndarray,
+        h: np.ndarray,
+        inputs: StepInputs,
+        temperatures: np.ndarray | None = None,
+    ) -> np.ndarray:
         """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
 
         `temperatures` of the whole mesh [K], with heat: those to start from, and then the solved ones.
@@ -120,20 +101,25 @@ class Reynolds:
         nodal(q, h, tuple(viscosity_law(fluid)), of_density, *units, 1.0 / fluid.viscosity, at)
         return at
 
-    def face_law(self, inputs):
+    def face_law(self, inputs: StepInputs) -> tuple:
         """Constants of :func:`.finite_volumes.flux_through`."""
         s, tau0, now = self.scales, inputs.fluid.eyring_stress, inputs.conditions
         eyring = np.inf if tau0 is None else tau0
         return s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
 
-    def evaluate(self, q, h, inputs, temperatures=None):
+    def evaluate(
+        self,
+        q: np.ndarray,
+        h: np.ndarray,
+        inputs: StepInputs,
+        temperatures: np.ndarray | None = None,
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows and its derivatives.
 
         Parameters
         ----------
-        q, h : ndarray
+        q, h
             Unknowns from the node `start` on.
-        inputs : ehl_problem.StepInputs
         temperatures
             See :meth:`properties`.
 
@@ -162,7 +148,7 @@ class Reynolds:
         return residual, derivatives
 
 
-def _inlet(q, h, oil_film):
+def _inlet(q: float, h: float, oil_film: float) -> tuple:
     """Row 0: ambient pressure where flooded, the given oil film where starved."""
     if oil_film is None or oil_film >= h:
         return q, (1.0, 0.0)
@@ -170,21 +156,31 @@ def _inlet(q, h, oil_film):
 
 
 @compiled
-def nodal(q, h, viscosity, density, p0, film, unit, fluidity, at):
+def nodal(
+    q: np.ndarray,
+    h: np.ndarray,
+    viscosity: tuple,
+    density: tuple,
+    p0: float,
+    film: float,
+    unit: float,
+    fluidity: float,
+    at: np.ndarray,
+) -> None:
     """Fill in the nodal properties, see :mod:`.finite_volumes`.
 
     Parameters
     ----------
-    q, h : ndarray, shape (nodes,)
-    viscosity, density : tuple
+    q, h : shape (nodes,)
+    viscosity, density
         :class:`ehlpetsc.physics.laws.OilLaw` of both, as tuples, which numba looks up faster.
-    p0, film : float
+    p0, film
         Scales of pressure [Pa] and film [m].
-    unit : float
+    unit
         1/(u film) [s/m^2].
-    fluidity : float
+    fluidity
         1/eta0 [1/(Pa s)].
-    at : ndarray, shape (10, nodes)
+    at : shape (10, nodes)
         An additional node is beyond the outlet, with the film of the last node and no pressure.
     """
     nodes = len(q)
@@ -200,22 +196,27 @@ class NoOil:
 
     Parameters
     ----------
-    first, last : int
-    start : int
+    start
         First node of the arrays that are passed in.
     """
 
-    def __init__(self, first, last, start=0):
+    def __init__(self, first: int, last: int, start: int = 0):
         self.owned, local = slice(first - start, last - start), last - first
         self.columns = np.full((local, n_dofs(STENCIL)), -1, dtype=np.int32)
         self.columns[:, OWN : OWN + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
         self._derivatives = np.zeros((local, n_dofs(STENCIL)))
         self._derivatives[:, OWN] = 1.0
 
-    def mass_per_area(self, q, h, fluid):
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
         """Return None: there is no oil."""
         return None
 
-    def evaluate(self, q, h, inputs, temperatures=None):
+    def evaluate(
+        self,
+        q: np.ndarray,
+        h: np.ndarray,
+        inputs: StepInputs,
+        temperatures: np.ndarray | None = None,
+    ) -> tuple[np.ndarray, np.ndarray]:
         """See :meth:`.reynolds.Reynolds.evaluate`."""
         return q[self.owned], self._derivatives

@@ -127,7 +127,7 @@ class Effect:
         ----------
         record : NamedTuple
             Record at the beginning of the step.
-        inputs : discretisation.ehl_problem.StepInputs
+        inputs : discretisation.step_inputs.StepInputs
         step : Step
 
         Returns

@@ -28,18 +28,22 @@ The nodes are visited in the direction of flow, as in the paper, in compiled loo
 distributed: every rank computes all nodes.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.deflection import SymmetricToeplitz
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
 from ehlpetsc.errors import SolveFailed
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
+from ehlpetsc.physics.scales import Scales
 
 # half widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
 STEP_SWEEPS_LENGTH, STEADY_SWEEPS_LENGTH = 0.6, 4.0
@@ -58,7 +62,7 @@ class GaussSeidelSolver:
     ----------
     case, scales, film_scale
         As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
-    tolerance : float
+    tolerance
         Tolerance of the residual, as ``-snes_atol``.
 
     Attributes
@@ -67,7 +71,7 @@ class GaussSeidelSolver:
         Number of sweeps of all solves so far.
     """
 
-    def __init__(self, case, scales, film_scale, tolerance):
+    def __init__(self, case: Any, scales: Scales, film_scale: float, tolerance: float):
         self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
         self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
         self.tolerance = tolerance
@@ -78,7 +82,7 @@ class GaussSeidelSolver:
         self.distant = SymmetricToeplitz(distant)
         self.sweeps = 0
 
-    def start_iterations(self, needed=None):
+    def start_iterations(self, needed: int | None = None) -> int:
         """Limit of the evaluations of a steady start."""
         return needed or MAX_EVALUATIONS
 
@@ -109,7 +113,7 @@ class GaussSeidelSolver:
             self._sweep(q, h, p, gap_is_open, inputs)
         raise SolveFailed("sweeps", "MAX_IT", max_sweeps)
 
-    def _correct(self, p, h, h00, phi):
+    def _correct(self, p: np.ndarray, h: np.ndarray, h00: float, phi: np.ndarray) -> tuple[float, np.ndarray]:
         """Balance the load by h00; set h of the open gap and of the ends to the integral of p, in place."""
         h00 += APPROACH_RELAXATION / HERTZ_STIFFNESS * (self.problem.dx * p.sum() - 0.5 * np.pi)
         gap_is_open = (h > OPEN_GAP_FILM_RATIO * self.problem.film_scale) & (p < OPEN_GAP_PRESSURE)
@@ -117,7 +121,7 @@ class GaussSeidelSolver:
         h[gap_is_open] = np.maximum(self.problem.film(p, h00, phi)[gap_is_open], self.bound)
         return h00, gap_is_open
 
-    def _evaluate(self, q, h, h00, inputs):
+    def _evaluate(self, q: np.ndarray, h: np.ndarray, h00: float, inputs: StepInputs) -> float:
         """Store residual and coefficients at a state; return the norm of the rows off the bound."""
         with np.errstate(over="ignore", invalid="ignore"):
             evaluation = self.problem.evaluate(Unknowns(q, h, h00), inputs)
@@ -127,7 +131,9 @@ class GaussSeidelSolver:
             reynolds[(h <= self.bound) & (reynolds > 0.0)] = 0.0
             return np.linalg.norm(rows)
 
-    def _sweep(self, q, h, p, gap_is_open, inputs):
+    def _sweep(
+        self, q: np.ndarray, h: np.ndarray, p: np.ndarray, gap_is_open: np.ndarray, inputs: StepInputs
+    ) -> None:
         problem, steady = self.problem, inputs.history is None
         curvature_coefficient = self.deflection.curvature_coefficient
         sweeps = max(1, round((STEADY_SWEEPS_LENGTH if steady else STEP_SWEEPS_LENGTH) / problem.dx))
@@ -150,9 +156,9 @@ class Linearised(NamedTuple):
 
     Attributes
     ----------
-    q, h : ndarray, shape (n,)
+    q, h : shape (n,)
         State of the last evaluation.
-    residual, derivatives : ndarray, shape (n,), (n, 8)
+    residual, derivatives : shape (n,), (n, 8)
         Rows, and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
     """
 
@@ -167,11 +173,11 @@ class DeflectionForm(NamedTuple):
 
     Attributes
     ----------
-    far_field : ndarray, shape (n,)
+    far_field : shape (n,)
         Contribution of the undeformed gap and of distant pressures to E.
-    kernel : ndarray, shape (2 near + 1,)
+    kernel : shape (2 near + 1,)
         Curvature kernel at -near .. near nodes.
-    curvature_coefficient : float
+    curvature_coefficient
         :math:`\pi/\Delta x`, coefficient of the second difference of h.
     """
 
@@ -181,18 +187,24 @@ class DeflectionForm(NamedTuple):
 
 
 @compiled(fastmath=True)
-def sweep(q, h, p, linearised, deflection, bound, relaxation):
+def sweep(
+    q: np.ndarray,
+    h: np.ndarray,
+    p: np.ndarray,
+    linearised: Linearised,
+    deflection: DeflectionForm,
+    bound: float,
+    relaxation: np.ndarray,
+) -> None:
     """Update every pair once, in the direction of flow, in place.
 
     Parameters
     ----------
-    q, h, p : ndarray, shape (n,)
+    q, h, p : shape (n,)
         Newest values; the first and the last h, and the first q, do not change.
-    linearised : Linearised
-    deflection : DeflectionForm
-    bound : float
+    bound
         Minimum of h.
-    relaxation : ndarray, shape (n,)
+    relaxation : shape (n,)
         Relaxation factor of each node.
     """
     q_old, h_old, residual, derivatives = linearised
@@ -233,7 +245,7 @@ def sweep(q, h, p, linearised, deflection, bound, relaxation):
 
 
 @compiled
-def limit_update(q, q_old):
+def limit_update(q: float, q_old: float) -> float:
     """New q, limited to the range in which the coefficients of the last evaluation, at `q_old`, hold."""
     if q_old > 0.0:
         return min(max(q, -PRESSURE_AFTER_REFILL, q_old - STEP_LIMIT), q_old + STEP_LIMIT)

@@ -15,6 +15,8 @@ Use: ``-ksp_type python -ksp_python_type ehlpetsc.nonlinear.gmres.FlexibleGMRES`
 and with the preconditioner of this program.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -34,10 +36,10 @@ class Basis(NamedTuple):
 
     Attributes
     ----------
-    vectors : tuple of ndarray
+    vectors
         v, shape (MAX_IT + 1, size); z, (MAX_IT, size); products of the vectors, local parts of each rank,
         (ranks, MAX_IT + 2); norms of the residuals, (MAX_IT + 1,).
-    numbers : tuple of ndarray
+    numbers
         Columns of the triangular matrix, shape (MAX_IT, MAX_IT + 1); cosines and sines, (MAX_IT, 2); rotated
         right-hand side, (MAX_IT + 1,), whose last number is the residual.
     """
@@ -46,7 +48,7 @@ class Basis(NamedTuple):
     numbers: tuple
 
     @classmethod
-    def of(cls, size, ranks):
+    def of(cls, size: int, ranks: int) -> Basis:
         """Room for vectors of a local size on so many ranks."""
         sums, norms = np.zeros((ranks, MAX_IT + 2)), np.zeros(MAX_IT + 1)
         vectors = np.empty((MAX_IT + 1, size)), np.empty((MAX_IT, size)), sums, norms
@@ -60,7 +62,7 @@ class FlexibleGMRES:
     def __init__(self):
         self._size = self._basis = None
 
-    def solve(self, ksp, b, x):
+    def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve from zero."""
         operator, (*tolerances, max_it) = ksp.getOperators()[0].getPythonContext(), ksp.getTolerances()
         factors, halo = operator.factors, operator.halo
@@ -87,44 +89,42 @@ class FlexibleGMRES:
 
 @compiled
 def iterations(
-    vectors,
-    numbers,
-    state,
-    changes,
-    collective,
-    load_weights,
-    messages,
-    window,
-    rank,
-    matrices,
-    pressures,
-    place,
-    lu,
-    cuts,
-    border,
-    room,
-    units,
-    max_it,
-    rtol,
-    atol,
-    divtol,
-):
+    vectors: tuple,
+    numbers: tuple,
+    state: tuple,
+    changes: tuple,
+    collective: tuple,
+    load_weights: np.ndarray,
+    messages: np.ndarray,
+    window: np.ndarray,
+    rank: int,
+    matrices: tuple,
+    pressures: tuple,
+    place: tuple,
+    lu: tuple,
+    cuts: tuple,
+    border: tuple,
+    room: tuple,
+    units: np.ndarray,
+    max_it: int,
+    rtol: float,
+    atol: float,
+    divtol: float,
+) -> int:
     """Replace the right-hand side, the first v, by the solution to PETSc's tolerances; collective.
 
     Parameters
     ----------
-    vectors, numbers : tuple
+    vectors, numbers
         Of a `Basis`.
-    state, changes : tuple
+    state, changes
         Of a `Linearisation`.
     collective, load_weights, messages, window, rank, matrices, pressures
         Of a `Halo`.
-    place, lu, cuts, border, room : tuple
+    place, lu, cuts, border, room
         Of `RankFactors`.
-    units : ndarray
+    units
         As of :func:`.distributed_lu.solve`.
-    max_it : int
-    rtol, atol, divtol : float
 
     Returns
     -------
@@ -147,7 +147,9 @@ def iterations(
 
 
 @compiled
-def orthonormalise(v, new, column, sums, rank, collective):
+def orthonormalise(
+    v: np.ndarray, new: int, column: np.ndarray, sums: np.ndarray, rank: int, collective: tuple
+) -> float:
     """Make the vector `new` orthonormal to those before, fill in their products with it, return its norm.
 
     The norm is a difference. Of a vector of which little is left it would be rounding, and so would be the
@@ -173,7 +175,7 @@ def orthonormalise(v, new, column, sums, rank, collective):
 
 
 @compiled
-def least_residual(numbers, new, norm):
+def least_residual(numbers: tuple, new: int, norm: float) -> float:
     """Norm of the residual with a vector more, of this norm before it was made one."""
     hessenberg, rotations, right = numbers
     column = hessenberg[max(new - 1, 0)]
@@ -194,7 +196,7 @@ def least_residual(numbers, new, norm):
 
 
 @compiled
-def combine(vectors, numbers, number):
+def combine(vectors: tuple, numbers: tuple, number: int) -> None:
     """Replace the first v by the sum of so many vectors z that leaves the least residual."""
     (v, z, _, _), (hessenberg, _, right) = vectors, numbers
     factors = right[:number].copy()

@@ -5,17 +5,20 @@ the default preconditioner reads its coefficients (``pc.getOperators()``). Other
 (``-pc_type lu`` ...) use :class:`NearFieldMatrix`.
 """
 
+from __future__ import annotations
+
 from copy import copy
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import directional_derivative
+from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
-from ehlpetsc.discretisation.ehl_problem import jacobian_rows
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation, jacobian_rows
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.unknowns import (
     n_dofs,
@@ -28,17 +31,17 @@ from ehlpetsc.discretisation.unknowns import (
     w_of,
 )
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.ranks import exchange_unknowns, global_sum
+from ehlpetsc.nonlinear.ranks import Halo, exchange_unknowns, global_sum
 
 PIVOT_REGULARISATION = 1e-3  # in place of dp/dq at cavitated nodes, in preconditioners alone
 
 
-def pivot_regularisation(*derivatives):
+def pivot_regularisation(*derivatives: np.ndarray) -> np.ndarray:
     """Addition to the diagonal of the deflection rows in preconditioners, where no entry depends on q.
 
     Parameters
     ----------
-    derivatives : ndarray
+    derivatives
         Derivatives of the quantities in the rows with respect to q of their own node.
     """
     has_entry = np.any([d != 0.0 for d in derivatives], axis=0)
@@ -50,10 +53,7 @@ class JacobianOperator:
 
     Parameters
     ----------
-    problem : ehl_problem.EHLProblem
-    halo : ranks.Halo
-    ranks : mpi4py communicator
-    factors : preconditioner.Factors or None
+    factors
         Factors of the default preconditioner, kept between solves.
 
     Attributes
@@ -68,14 +68,14 @@ class JacobianOperator:
         Local nodes whose second unknown is not in the system.
     """
 
-    def __init__(self, problem, halo, ranks, factors):
+    def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
         self.problem, self.halo, self.ranks, self.factors = problem, halo, ranks, factors
         self.active, self.inactive_nodes = slice(None), np.arange(0)
         self.model = self.state = self.reynolds_derivatives = None
         self.size = n_dofs(problem.local) + problem.load_is_local
         self._work = np.empty(problem.local), np.empty((3, len(halo.window)))
 
-    def linearise(self, evaluation):
+    def linearise(self, evaluation: Evaluation) -> None:
         """Set the point of linearisation."""
         self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
         self.state = self.model.linearised(
@@ -84,13 +84,13 @@ class JacobianOperator:
         self._derivatives = self.state.derivatives(), self.reynolds_derivatives
 
     @property
-    def linearisation(self):
+    def linearisation(self) -> Linearisation:
         """`Linearisation` of the unknowns in the system."""
         return Linearisation(
             (*self._derivatives, self.inactive_nodes, self.problem.deflection.form), self._work
         )
 
-    def mult(self, mat, v, out):
+    def mult(self, mat: PETSc.Mat, v: PETSc.Vec, out: PETSc.Vec) -> None:
         """PETSc's product."""
         full, rows = np.zeros(self.size), np.empty(self.size)
         full[self.active] = v.array_r
@@ -98,13 +98,15 @@ class JacobianOperator:
             jacobian_product(*self.linearisation, tuple(self.halo), full, rows)
         out.array[:] = rows[self.active]
 
-    def createSubMatrix(self, mat, rows, columns, out=None):
+    def createSubMatrix(
+        self, mat: PETSc.Mat, rows: PETSc.IS, columns: PETSc.IS, out: PETSc.Mat | None = None
+    ) -> PETSc.Mat:
         """Matrix of the active unknowns of SNESVI; rows and columns are the same."""
         restricted = copy(self)
         restricted.restrict(rows.indices - mat.getOwnershipRange()[0])
         return python_matrix(restricted, rows.getSizes(), mat.comm)
 
-    def restrict(self, active):
+    def restrict(self, active: np.ndarray) -> None:
         """Leave all unknowns out of the system but those of these local indices."""
         if len(active) < self.size:
             is_inactive = np.ones(self.size, dtype=bool)
@@ -117,13 +119,11 @@ class NearFieldMatrix:
 
     Parameters
     ----------
-    problem : ehl_problem.EHLProblem
-    near_field : int
-    matrix : petsc4py.PETSc.Mat
+    matrix
         AIJ matrix whose sizes are set.
     """
 
-    def __init__(self, problem, near_field, matrix):
+    def __init__(self, problem: EHLProblem, near_field: int, matrix: PETSc.Mat):
         self.problem, self.matrix, self.near_field = problem, matrix, min(near_field, problem.n - 1)
         self._deflection_columns()
         rows, columns = self._pattern()
@@ -131,7 +131,7 @@ class NearFieldMatrix:
         matrix.setOption(matrix.Option.NEW_NONZERO_LOCATION_ERR, True)
         matrix.setOption(matrix.Option.NO_OFF_PROC_ENTRIES, True)  # nothing to exchange at assembly
 
-    def _deflection_columns(self):
+    def _deflection_columns(self) -> None:
         """Columns of the local deflection rows; -1: no entry."""
         p, n = self.problem, self.problem.n
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-self.near_field, self.near_field + 1)
@@ -144,7 +144,7 @@ class NearFieldMatrix:
             approach[end - p.first] = n_dofs(n)
         self.columns = np.hstack([by_q, by_w, approach]).astype(np.int32)
 
-    def _pattern(self):
+    def _pattern(self) -> tuple[np.ndarray, np.ndarray]:
         p, rows = self.problem, []
         for deflection, reynolds in zip(self.columns, p.reynolds_columns, strict=True):
             rows += [deflection[deflection >= 0], reynolds[reynolds >= 0]]
@@ -152,7 +152,7 @@ class NearFieldMatrix:
             rows.append(np.arange(n_dofs(p.n) + 1))
         return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
-    def fill(self, state, derivatives):
+    def fill(self, state: NodeState, derivatives: np.ndarray) -> None:
         """Assemble the matrix at a state of the whole mesh, which every rank passes."""
         p, d, near_field = self.problem, self.problem.deflection, self.near_field
         by_pressure = np.tile(-d.curvature[np.abs(np.arange(-near_field, near_field + 1))], (p.local, 1))
@@ -177,7 +177,7 @@ class NearFieldMatrix:
             self.matrix.setValues([n_dofs(p.n)], np.arange(n_dofs(p.n), dtype=np.int32), load)
         self.matrix.assemble()
 
-    def _by_unknowns(self, state, derivatives):
+    def _by_unknowns(self, state: NodeState, derivatives: np.ndarray) -> np.ndarray:
         """Derivatives of the Reynolds rows with respect to q and w."""
         p, values = self.problem, derivatives.copy()
         nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
@@ -190,22 +190,21 @@ class NearFieldMatrix:
         return values
 
 
-def set_rows(matrix, rows, columns, values):
+def set_rows(matrix: PETSc.Mat, rows: np.ndarray, columns: np.ndarray, values: np.ndarray) -> None:
     """Insert rows of equal width; PETSc ignores negative columns."""
     for_row = np.arange(len(rows) + 1, dtype=np.int32) * columns.shape[1]
     matrix.setValuesIJV(for_row, columns.ravel(), np.ascontiguousarray(values).ravel(), rowmap=rows)
 
 
-def python_matrix(context, sizes, comm):
+def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> PETSc.Mat:
     """Square matrix with a Python context, ready for products.
 
     Parameters
     ----------
-    context : object
+    context
         With methods of PETSc's names: ``mult``, ``createSubMatrix``.
-    sizes : tuple of int
+    sizes
         Rows on this rank, and of all ranks.
-    comm : petsc4py.PETSc.Comm
     """
     matrix = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
     matrix.setUp()
@@ -217,11 +216,11 @@ class Linearisation(NamedTuple):
 
     Attributes
     ----------
-    state : tuple
+    state
         :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the Reynolds
         rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
         :func:`.deflection.deflection_rows`.
-    work : tuple of ndarray
+    work
         Work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3, window).
     """
 
@@ -230,16 +229,15 @@ class Linearisation(NamedTuple):
 
 
 @compiled
-def jacobian_product(state, work, halo, v, out):
+def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out: np.ndarray) -> None:
     """Fill in the local rows of the product with a vector, zero in inactive rows; collective.
 
     Parameters
     ----------
-    state, work : tuple
+    state, work
         Fields of a `Linearisation`.
-    halo : tuple
+    halo
         Fields of a `ranks.Halo`.
-    v, out : ndarray
     """
     (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
     directional_derivative(by[0], v[: 2 * len(pressure)].reshape(len(pressure), 2), form[0], pressure)

@@ -15,11 +15,12 @@ from collections.abc import Callable
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear.options import RunOptions, refusal
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
+from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 
 LINEAR_ATOL = 1e-2  # absolute tolerance of the linear residual over that of Newton's method
 LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton iteration allowed
@@ -37,8 +38,7 @@ class NewtonSolver:
 
     Parameters
     ----------
-    system : two_fields.TwoFields
-    options : options.RunOptions, optional
+    options
         Options, entered before because PETSc reads its table when its objects are created; default: none.
 
     Attributes
@@ -55,7 +55,7 @@ class NewtonSolver:
         An option is refused by PETSc or by the system.
     """
 
-    def __init__(self, system, options=None):
+    def __init__(self, system: TwoFields, options: RunOptions | None = None):
         self.system, self.problem = system, system.problem
         self._options = options or RunOptions()
         self._petsc_objects = owned(self)
@@ -69,11 +69,11 @@ class NewtonSolver:
         self._max_it, self._atol, self._linear_max_it = self.snes.max_it, self.snes.atol, self.snes.ksp.max_it
 
     @property
-    def bound(self):
+    def bound(self) -> float:
         """Minimum film of the contact model in a^2/R."""
         return self.system.model.minimum_film
 
-    def _create(self):
+    def _create(self) -> None:
         system, model = self.system, self.system.model
         self.snes = self._snes_of_type("newtonls" if model.lower_bound is None else "vinewtonrsls")
         if system.operator is None:
@@ -85,17 +85,17 @@ class NewtonSolver:
                 self._unconstrained_snes = self._snes_of_type("newtonls")
                 self._set_jacobian(self._unconstrained_snes)
 
-    def _snes_of_type(self, kind):
+    def _snes_of_type(self, kind: str) -> PETSc.SNES:
         system = self.system
         callbacks = self._function, self._before_step
         snes = create(system.comm, kind, system.f, *callbacks, self._options.given)
         self._petsc_objects.append(snes)
         return snes
 
-    def _set_jacobian(self, snes):
+    def _set_jacobian(self, snes: PETSc.SNES) -> None:
         snes.setJacobian(weakly(self._jacobian), self.system.operator, self.system.preconditioned)
 
-    def _function(self, snes, x, f):
+    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         # the first residual is that of the guess, already evaluated unless SNESVI projects it onto the bounds
         if self._is_first:
             f.array[:], self._is_first = self.system.evaluation(x).residual, False
@@ -104,13 +104,15 @@ class NewtonSolver:
         if self.system.bound_reached:
             set_function_domain_error(snes)  # rejects the step
 
-    def _jacobian(self, snes, x, operator, preconditioner):
+    def _jacobian(
+        self, snes: PETSc.SNES, x: PETSc.Vec, operator: PETSc.Mat, preconditioner: PETSc.Mat
+    ) -> None:
         self.system.linearise(x, self._accepts_last and self._is_solving)
         remaining = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
         snes.ksp.setTolerances(max_it=min(self._linear_max_it, max(remaining, 1)))
         operator.assemble()
 
-    def _before_step(self, x, y):
+    def _before_step(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         if self._watch:
             self._watch()
         self.system.limit_step(x, y)
@@ -118,7 +120,7 @@ class NewtonSolver:
             self._reaches_bound = self.system.reaches_bound(x, y)
         return True
 
-    def start_iterations(self, needed=None):
+    def start_iterations(self, needed: int | None = None) -> int:
         """Iteration limit of a steady start.
 
         Exponential residuals fall by a factor e an iteration, so it needs more than a time step; a limit set
@@ -193,7 +195,7 @@ class NewtonSolver:
             self._is_solving = False
         return self._solution(snes)
 
-    def _set_tolerances(self, snes, max_it):
+    def _set_tolerances(self, snes: PETSc.SNES, max_it: int) -> None:
         system = self.system
         if "ksp_atol" not in self._options.user_set:
             snes.ksp.setTolerances(atol=LINEAR_ATOL * self._atol)
@@ -230,27 +232,12 @@ class NewtonSolver:
         return self._unconstrained_snes if unconstrained else self.snes
 
 
-def is_ours(pc):
+def is_ours(pc: PETSc.PC) -> bool:
     """Whether a preconditioner is a :class:`.preconditioner.FarFieldBand`."""
     return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
 
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
-
-
-def owned(owner, *objects):
-    """List of PETSc's objects, destroyed with their owner or before Python ends, in reverse order.
-
-    Destroyed by PetscFinalize they would call Python objects that no longer exist.
-    """
-    petsc_objects = list(objects)
-    weakref.finalize(owner, _destroy, petsc_objects)
-    return petsc_objects
-
-
-def _destroy(petsc_objects):
-    while petsc_objects:
-        petsc_objects.pop().destroy()
 
 
 def release_frames(error: BaseException) -> None:
@@ -261,18 +248,18 @@ def release_frames(error: BaseException) -> None:
     traceback.clear_frames(error.__traceback__)
 
 
-def create(comm, kind, f, function, pre_check, user_options):
+def create(
+    comm: PETSc.Comm, kind: str, f: PETSc.Vec, function: Callable, pre_check: Callable, user_options: dict
+) -> PETSc.SNES:
     """Create a SNES of a type, or of the user's ``-snes_type``.
 
     Parameters
     ----------
-    comm : petsc4py.PETSc.Comm
-    kind : str
-    f : petsc4py.PETSc.Vec
+    f
         Vector of the residual.
-    function, pre_check : bound method
+    function, pre_check
         Residual function and pre-check of the line search; SNES does not keep their object alive.
-    user_options : dict of str to str
+    user_options
         Options of the user.
 
     Raises
@@ -299,7 +286,7 @@ def create(comm, kind, f, function, pre_check, user_options):
     return snes
 
 
-def raise_refusal(error, user_options):
+def raise_refusal(error: PETSc.Error, user_options: dict) -> None:
     """Raise an error of PETSc, as a `UsageError` where an option of the user can be its cause."""
     message = refusal(error, user_options)
     if message is None:
@@ -307,12 +294,12 @@ def raise_refusal(error, user_options):
     raise UsageError(message) from None
 
 
-def set_function_domain_error(snes):
+def set_function_domain_error(snes: PETSc.SNES) -> None:
     """Report x outside the domain of the function (SNESSetFunctionDomainError, which petsc4py lacks)."""
     ctypes.CDLL(PETSc.__file__).SNESSetFunctionDomainError(ctypes.c_void_p(snes.handle))
 
 
-def weakly(method):
+def weakly(method: Callable) -> Callable:
     """Function that calls a bound method without keeping its object alive."""
     method = weakref.WeakMethod(method)
     return lambda *arguments: method()(*arguments)

@@ -1,5 +1,7 @@
 """Options of a run in PETSc's global table: defaults, precedence, restoring."""
 
+from __future__ import annotations
+
 import ctypes
 import importlib
 import threading
@@ -49,7 +51,7 @@ class RunOptions:
     ----------
     law : {"direct", "mixed", "compliant"}
         Contact model.
-    of_case, given : dict of str to str
+    of_case, given
         `[petsc]` of the case; options of a call from Python.
 
     Attributes
@@ -63,7 +65,7 @@ class RunOptions:
         Names in `of_case` and `given` that have not been read.
     """
 
-    def __init__(self, law="direct", of_case=(), given=()):
+    def __init__(self, law: str = "direct", of_case: dict = (), given: dict = ()):
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
         self._of_case, self._of_call, self._depth = dict(of_case), dict(given), 0
         self._entered, self._saved = [], {}
@@ -71,18 +73,18 @@ class RunOptions:
         self.deferred_views, self.unused = [], set(self.given)
 
     @property
-    def user_set(self):
+    def user_set(self) -> set[str]:
         """Names of the options set by the user."""
         return set(self.given)
 
-    def value(self, name, default=None):
+    def value(self, name: str, default: object = None) -> object:
         """Value of an option, which counts as used."""
         if name in self.given:
             PETSc.Options().hasName(name)
             self.unused.discard(name)
         return (self._defaults | self.given).get(name, default)
 
-    def real(self, name, default=None):
+    def real(self, name: str, default: float | None = None) -> float:
         """Value of an option as a number.
 
         Raises
@@ -96,7 +98,7 @@ class RunOptions:
         except ValueError:
             raise UsageError(f"-{name} {value}: allowed: a number") from None
 
-    def __enter__(self):
+    def __enter__(self) -> RunOptions:
         TABLE_LOCK.acquire()
         try:
             if self._depth == 0:
@@ -107,7 +109,7 @@ class RunOptions:
         self._depth += 1
         return self
 
-    def __exit__(self, *exception):
+    def __exit__(self, *exception: object) -> None:
         self._depth -= 1
         try:
             if self._depth == 0:
@@ -115,17 +117,17 @@ class RunOptions:
         finally:
             TABLE_LOCK.release()
 
-    def loose_tolerances(self):
+    def loose_tolerances(self) -> list[str]:
         """One message for every tolerance of the user that is looser than the default."""
         return loose_tolerances(self.given, float(self._defaults["snes_atol"]))
 
-    def unused_so_far(self):
+    def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
         defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PETSC_FACTORISATION, "snes_atol"}
         of_run = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
-    def _enter(self, table):
+    def _enter(self, table: PETSc.Options) -> None:
         in_table = table.getAll()
         self.given = wanted = self._of_case | in_table | self._of_call
         check_options(wanted, len(self._defaults | PRECONDITIONER | KRYLOV))
@@ -146,7 +148,7 @@ class RunOptions:
                     table.delValue(earlier)
                 raise UsageError(f"PETSc refuses -{name} {wanted[name]}: {petsc_message(error)}") from None
 
-    def _leave(self, table):
+    def _leave(self, table: PETSc.Options) -> None:
         self.unused = {name for name in self.unused if not was_read(name)} - set(self.deferred_views)
         for name in self._entered:
             table.delValue(name)
@@ -155,7 +157,7 @@ class RunOptions:
             table.hasName(name)  # marks it as read, for -options_left
 
 
-def _linear_solver(wanted):
+def _linear_solver(wanted: dict) -> dict:
     """Defaults of KSP and PC: this program's types unless the options of the user exclude them."""
     if any(wanted.get(name, value) != value for name, value in PRECONDITIONER.items()):
         return PETSC_FACTORISATION
@@ -164,13 +166,13 @@ def _linear_solver(wanted):
     return PRECONDITIONER | KRYLOV
 
 
-def unused():
+def unused() -> list[str]:
     """Unused options in PETSc's table, without ``-ehl_*`` and the options read by PetscFinalize."""
     names = PETSc.Options().getAll()
     return sorted(n for n in names if not (n.startswith("ehl_") or n in READ_BY_FINALIZE or was_read(n)))
 
 
-def was_read(name):
+def was_read(name: str) -> bool:
     """Whether an option has been read (PetscOptionsUsed, which petsc4py lacks)."""
     answer = ctypes.c_int(1)
     ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(answer))
@@ -186,13 +188,12 @@ NUMERIC_PREFIXES, NOT_FINITE = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinit
 OUTPUT_OPTIONS = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
 
 
-def refusal(error, user_options):
+def refusal(error: PETSc.Error, user_options: dict) -> str | None:
     """Message of an error of PETSc with the options that can cause it; None if none can.
 
     Parameters
     ----------
-    error : petsc4py.PETSc.Error
-    user_options : dict of str to str
+    user_options
         Options of the user.
     """
     reason = petsc_message(error)
@@ -214,19 +215,19 @@ def refusal(error, user_options):
     return f"PETSc refuses {'one of ' if len(names) > 1 else ''}{', '.join(names)}: {reason}"
 
 
-def petsc_message(error):
+def petsc_message(error: PETSc.Error) -> str:
     """Last line of PETSc's error message."""
     return str(error).splitlines()[-1].split("] ")[-1]
 
 
-def check_options(options, program_count):
+def check_options(options: dict, program_count: int) -> None:
     """Refuse options that PETSc would accept although they fail later or end the process.
 
     Parameters
     ----------
-    options : dict of str to str
+    options
         Options of the user.
-    program_count : int
+    program_count
         Number of options that the program sets.
 
     Raises
@@ -247,7 +248,7 @@ def check_options(options, program_count):
         _check_class(options["pc_python_type"])
 
 
-def _check_class(path):
+def _check_class(path: str) -> None:
     """Refuse a class that is not a preconditioner, which PETSc would notice during the first solve."""
     module, _, name = path.rpartition(".")
     try:
@@ -258,14 +259,14 @@ def _check_class(path):
         raise UsageError(f"-pc_python_type {path}: has no method apply(pc, x, y), as a preconditioner has")
 
 
-def loose_tolerances(values, atol):
+def loose_tolerances(values: dict, atol: float) -> list[str]:
     """One message for every tolerance that is looser than the default.
 
     Parameters
     ----------
-    values : dict of str to str
+    values
         Options.
-    atol : float
+    atol
         Default of ``-snes_atol``.
     """
     lines = []
@@ -278,7 +279,7 @@ def loose_tolerances(values, atol):
     return lines
 
 
-def _number(text):
+def _number(text: object) -> float | None:
     try:
         return float(text)
     except (TypeError, ValueError):  # no value, or no number

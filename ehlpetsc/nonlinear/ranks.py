@@ -4,7 +4,10 @@ Every rank sends the unknowns of its outer nodes, which the stencils of its neig
 pressures what :mod:`ehlpetsc.discretisation.curvature_product` sends and the sums over its nodes.
 """
 
+from __future__ import annotations
+
 import ctypes
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +16,7 @@ from mpi4py import MPI
 from ehlpetsc.compiled import call_allgather, compiled
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import HALO
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import n_dofs
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
@@ -26,12 +30,12 @@ class Halo(NamedTuple):
 
     Attributes
     ----------
-    collective : tuple
+    collective
         As of :func:`collective`.
-    load_weights : ndarray, shape (3, local nodes)
+    load_weights : shape (3, local nodes)
         As of `deflection.Deflection`.
-    messages : ndarray, shape (ranks, size)
-    window : ndarray, shape (window, 2)
+    messages : shape (ranks, size)
+    window : shape (window, 2)
         Room for the unknowns of the window.
     rank, matrices, room
         Of a `curvature_product.Blocks`.
@@ -46,18 +50,20 @@ class Halo(NamedTuple):
     room: tuple
 
     @classmethod
-    def of(cls, problem, cuts, ranks, tolerance=TOLERANCE):
+    def of(
+        cls, problem: EHLProblem, cuts: Sequence[int], ranks: MPI.Comm, tolerance: float = TOLERANCE
+    ) -> Halo:
         """Halo of one scene on one communicator.
 
         Parameters
         ----------
-        problem : ehl_problem.EHLProblem
+        problem
             Of the nodes of this rank.
-        cuts : sequence of int
+        cuts
             First nodes of all ranks, and the number of nodes.
-        ranks : mpi4py communicator
+        ranks
             To outlive it.
-        tolerance : float
+        tolerance
             Of the far kernel in the pressure sums.
         """
         blocks = Blocks.of(problem.deflection.curvature, cuts, ranks.rank, tolerance)
@@ -68,19 +74,27 @@ class Halo(NamedTuple):
 
 @compiled
 def exchange_unknowns(
-    collective, load_weights, messages, window, rank, matrices, room, vector, pressure, flag
-):
+    collective: tuple,
+    load_weights: np.ndarray,
+    messages: np.ndarray,
+    window: np.ndarray,
+    rank: int,
+    matrices: tuple,
+    room: tuple,
+    vector: np.ndarray,
+    pressure: np.ndarray,
+    flag: bool,
+) -> tuple:
     """Unknowns at the nodes of the window, and sums over all pressures.
 
     Parameters
     ----------
     collective, load_weights, messages, window, rank, matrices, room
         Of a `Halo`.
-    vector : ndarray
+    vector
         Local unknowns, interleaved; h00 last on the last rank.
-    pressure : ndarray
+    pressure
         Of the local nodes.
-    flag : bool
 
     Returns
     -------
@@ -117,17 +131,17 @@ ALLGATHER = ctypes.cast(ctypes.CDLL(MPI.__file__).MPI_Allgather, ctypes.c_void_p
 HANDLES = {4: ctypes.c_int, 8: ctypes.c_size_t}  # numbers of MPICH, addresses of Open MPI
 
 
-def global_max(ranks, number):
+def global_max(ranks: MPI.Comm, number: float) -> float:
     """Largest of the numbers of all ranks."""
     return _reduced(ranks, number, MPI.MAX)
 
 
-def global_sum(ranks, number):
+def global_sum(ranks: MPI.Comm, number: float | tuple) -> float | np.ndarray:
     """Sum of the numbers of all ranks, also of each of several numbers."""
     return _reduced(ranks, number, MPI.SUM)
 
 
-def _reduced(ranks, number, operation):
+def _reduced(ranks: MPI.Comm, number: float | tuple, operation: MPI.Op) -> float | np.ndarray:
     if ranks.size == 1:
         return number
     received = np.array([number], dtype=float)
@@ -135,12 +149,12 @@ def _reduced(ranks, number, operation):
     return received[0]
 
 
-def all_ranks(ranks, condition):
+def all_ranks(ranks: MPI.Comm, condition: bool) -> bool:
     """Whether a condition holds on every rank."""
     return global_max(ranks, not condition) == 0.0
 
 
-def collective(ranks):
+def collective(ranks: MPI.Comm) -> tuple:
     """What :func:`exchange` takes of a communicator, which must outlive it: addresses and arguments for MPI.
 
     As all that compiled functions are called with, arrays and plain tuples of four arrays at most: numba asks
@@ -149,12 +163,12 @@ def collective(ranks):
     return ALLGATHER, int(MPI.IN_PLACE), _handle(MPI.DOUBLE), _handle(ranks)
 
 
-def _handle(of_mpi):
+def _handle(of_mpi: object) -> int:
     return HANDLES[MPI._sizeof(of_mpi)].from_address(MPI._addressof(of_mpi)).value
 
 
 @compiled
-def exchange(collective, everyone):
+def exchange(collective: tuple, everyone: np.ndarray) -> None:
     """Fill in what all other ranks have in their rows, the first axis; collective."""
     if len(everyone) > 1:
         function, in_place, number, communicator = collective
@@ -163,14 +177,14 @@ def exchange(collective, everyone):
             raise RuntimeError("MPI_Allgather failed")
 
 
-def gathered(ranks, record, owned):
+def gathered(ranks: MPI.Comm, record: NamedTuple, owned: slice) -> NamedTuple:
     """Named tuple of the arrays of all nodes, from one of arrays of which `owned` are those of the rank."""
     if ranks.size == 1:
         return record
     return record._make(_gathered(ranks, field, owned) for field in record)
 
 
-def _gathered(ranks, field, owned):
+def _gathered(ranks: MPI.Comm, field: object, owned: slice) -> object:
     if isinstance(field, np.ndarray):
         return np.concatenate(ranks.allgather(field[owned]))
     return gathered(ranks, field, owned) if isinstance(field, tuple) else field

@@ -1,30 +1,36 @@
 """Selection of the nonlinear iteration, ``-ehl_scheme``."""
 
+from __future__ import annotations
+
+from typing import Any
+
+from petsc4py import PETSc
+
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 from ehlpetsc.nonlinear.newton import NewtonSolver
+from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.physics.scales import Scales
 
 ALLOWED = ("newton", "sweep")
 
 
-def check_scheme(name):
+def check_scheme(name: str | None) -> None:
     """Raise a `UsageError` for an unknown scheme."""
     if name and name not in ALLOWED:
         raise UsageError(f"-ehl_scheme {name}: allowed: {', '.join(ALLOWED)}")
 
 
-def solver_of(case, scales, film_scale, comm, options):
+def solver_of(
+    case: Any, scales: Scales, film_scale: float, comm: PETSc.Comm, options: RunOptions
+) -> NewtonSolver | GaussSeidelSolver:
     """Solver of one scene on one communicator.
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    film_scale : float
+    film_scale
         Expected film in a^2/R.
-    comm : petsc4py.PETSc.Comm
-    options : options.RunOptions
 
     Raises
     ------

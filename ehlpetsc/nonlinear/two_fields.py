@@ -7,18 +7,24 @@ that Newton's method converges as with the full matrix; the default precondition
 it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of the near field.
 """
 
+from __future__ import annotations
+
+import weakref
+from typing import Any
+
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.deflection import PressureSums
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of, w_of
 from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.jacobian import JacobianOperator, NearFieldMatrix, python_matrix
-from ehlpetsc.nonlinear.newton import owned
 from ehlpetsc.nonlinear.preconditioner import Factors
 from ehlpetsc.nonlinear.ranks import (
     LINEAR_TOLERANCE,
@@ -29,6 +35,7 @@ from ehlpetsc.nonlinear.ranks import (
     global_max,
     global_sum,
 )
+from ehlpetsc.physics.scales import Scales
 
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
@@ -43,8 +50,7 @@ class TwoFields:
     ----------
     case, scales, film_scale
         As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
-    comm : petsc4py.PETSc.Comm
-    bound_tolerance : float
+    bound_tolerance
         Tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this close to their
         bound count as on it.
 
@@ -65,7 +71,14 @@ class TwoFields:
         More ranks than the mesh has blocks.
     """
 
-    def __init__(self, case, scales, film_scale, comm=PETSc.COMM_WORLD, bound_tolerance=ZERO_TOLERANCE):
+    def __init__(
+        self,
+        case: Any,
+        scales: Scales,
+        film_scale: float,
+        comm: PETSc.Comm = PETSc.COMM_WORLD,
+        bound_tolerance: float = ZERO_TOLERANCE,
+    ):
         n, rank = scales.nx, comm.rank
         cuts = first_nodes(n, comm.size)
         first, last = cuts[rank], cuts[rank + 1]
@@ -80,7 +93,7 @@ class TwoFields:
         self.inputs = self.x_evaluated = self.rows = self.operator = self.temperatures = None
         self.bound_reached = False
 
-    def _create_vectors(self):
+    def _create_vectors(self) -> None:
         sizes = (n_dofs(self.local) + self.problem.load_is_local, n_dofs(self.n) + 1)
         self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
         self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
@@ -91,12 +104,12 @@ class TwoFields:
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self._petsc_objects = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
 
-    def create_matrices(self, with_band):
+    def create_matrices(self, with_band: bool) -> None:
         """Create the Jacobian and the matrix for preconditioners.
 
         Parameters
         ----------
-        with_band : bool
+        with_band
             Whether preconditioners get the Jacobian itself, as :mod:`ehlpetsc.nonlinear.preconditioner` needs
             it; otherwise an assembled matrix with the deflection of the near field.
         """
@@ -136,13 +149,13 @@ class TwoFields:
             self.rows = Rows(*self._parts_of(self.f))
         return self.rows
 
-    def evaluation(self, x):
+    def evaluation(self, x: PETSc.Vec) -> Evaluation:
         """Residual and derivatives at x, evaluated unless x is the point evaluated last."""
         if not all_ranks(self.ranks, np.array_equal(x.array_r, self.x_evaluated)):
             self.evaluate(x)
         return self._evaluation
 
-    def evaluate(self, x, reaches_bound=False):
+    def evaluate(self, x: PETSc.Vec, reaches_bound: bool = False) -> Evaluation:
         """Residual and derivatives at x, an :class:`ehlpetsc.discretisation.ehl_problem.Evaluation`.
 
         :attr:`bound_reached` then holds whether `reaches_bound` is true on any rank.
@@ -159,7 +172,7 @@ class TwoFields:
             self.bound_reached = load[3] > 0.0
         return self._evaluation
 
-    def linearise(self, x, is_evaluated=False):
+    def linearise(self, x: PETSc.Vec, is_evaluated: bool = False) -> None:
         """Set the matrices for x; `is_evaluated` states that x is the point evaluated last, on every rank."""
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
@@ -168,11 +181,11 @@ class TwoFields:
                 self.assembled.fill(state, self.jacobian.reynolds_derivatives)
 
     @property
-    def contact(self):
+    def contact(self) -> ContactModel:
         """Contact model of the current solve."""
         return self.inputs.contact or self.model
 
-    def limit_step(self, x, y):
+    def limit_step(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Shorten a step y, to be subtracted from x, and limit single entries of it.
 
         All of y is scaled by one factor, so that linear rows remain satisfied, to `STEP_LIMIT` p0 in any
@@ -185,12 +198,12 @@ class TwoFields:
         step = pairs(y.array, self.local)
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
-    def reaches_bound(self, x, y):
+    def reaches_bound(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         """Whether the step y brings a film of this rank to its bound."""
         film = w_of(x.array_r, self.local) - w_of(y.array_r, self.local)
         return not film.min() > self.model.lower_bound + self.model.bound_tolerance
 
-    def rounding(self):
+    def rounding(self) -> float:
         """Residual at x from rounding of the unknowns, a lower limit of the tolerance.
 
         Slow surfaces with a long inlet reach it: a pressure's last digit drives more oil than they entrain.
@@ -201,7 +214,7 @@ class TwoFields:
         return RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, local))
 
 
-def first_nodes(n, ranks):
+def first_nodes(n: int, ranks: int) -> list[int]:
     """First nodes of all ranks, multiples of `BLOCK`, and n.
 
     Raises
@@ -213,3 +226,18 @@ def first_nodes(n, ranks):
     if ranks > max_ranks:
         raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {max_ranks}")
     return [n * k // ranks // BLOCK * BLOCK for k in range(ranks)] + [n]
+
+
+def owned(owner: object, *objects: object) -> list:
+    """List of PETSc's objects, destroyed with their owner or before Python ends, in reverse order.
+
+    Destroyed by PetscFinalize they would call Python objects that no longer exist.
+    """
+    petsc_objects = list(objects)
+    weakref.finalize(owner, _destroy, petsc_objects)
+    return petsc_objects
+
+
+def _destroy(petsc_objects: list) -> None:
+    while petsc_objects:
+        petsc_objects.pop().destroy()

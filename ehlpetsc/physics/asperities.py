@@ -51,16 +51,16 @@ KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, a
 
 
 @compiled
-def asperity_pressure(h, decay, prefactor):
+def asperity_pressure(h: float, decay: float, prefactor: float) -> tuple[float, float]:
     r"""Pressure of the asperities at a separation, and its derivative.
 
     Parameters
     ----------
-    h : float
+    h
         Mean separation, positive.
-    decay : float
+    decay
         :math:`\gamma\sigma` in the unit of h.
-    prefactor : float
+    prefactor
         :math:`\beta E^*`.
 
     Returns
@@ -76,41 +76,41 @@ def asperity_pressure(h, decay, prefactor):
 
 
 @compiled
-def asperity_separation(pressure, decay, prefactor):
+def asperity_separation(pressure: float, decay: float, prefactor: float) -> float:
     """Separation at which asperities carry a positive pressure: the inverse of :func:`asperity_pressure`."""
     if pressure <= prefactor * math.exp(-1.0):
         return decay * math.log(prefactor / pressure)
     return prefactor * math.exp(-1.0) * decay / pressure
 
 
-def asperity_pressures(h, decay, prefactor):
+def asperity_pressures(h: np.ndarray, decay: float, prefactor: float) -> tuple[np.ndarray, np.ndarray]:
     """Arrays of :func:`asperity_pressure`, of the shape of h."""
     pressure, derivative = _pressures(np.ravel(h), decay, prefactor)
     return pressure.reshape(np.shape(h)), derivative.reshape(np.shape(h))
 
 
 @compiled
-def _pressures(h, decay, prefactor):
+def _pressures(h: np.ndarray, decay: float, prefactor: float) -> tuple[np.ndarray, np.ndarray]:
     pressure, derivative = np.empty(len(h)), np.empty(len(h))
     for i in range(len(h)):
         pressure[i], derivative[i] = asperity_pressure(h[i], decay, prefactor)
     return pressure, derivative
 
 
-def asperity_separations(pressure, decay, prefactor):
+def asperity_separations(pressure: np.ndarray, decay: float, prefactor: float) -> np.ndarray:
     """Array of :func:`asperity_separation`, of the shape of the pressure."""
     return _separations(np.ravel(pressure), decay, prefactor).reshape(np.shape(pressure))
 
 
 @compiled
-def _separations(pressure, decay, prefactor):
+def _separations(pressure: np.ndarray, decay: float, prefactor: float) -> np.ndarray:
     h = np.empty(len(pressure))
     for i in range(len(h)):
         h[i] = asperity_separation(pressure[i], decay, prefactor)
     return h
 
 
-def real_area_fraction(pressure, slope_modulus):
+def real_area_fraction(pressure: np.ndarray, slope_modulus: float) -> np.ndarray:
     r"""Real over nominal area of contact, :math:`A/A_0=\mathrm{erf}\left(\frac{\sqrt\pi}{2}
     \frac{\kappa p}{E^*h'_{rms}}\right)`.
 
@@ -120,8 +120,7 @@ def real_area_fraction(pressure, slope_modulus):
 
     Parameters
     ----------
-    pressure : ndarray
-    slope_modulus : float
+    slope_modulus
         :math:`E^*h'_{rms}` in the unit of the pressure, h'_rms the rms slope of the roughness.
     """
     argument = 0.5 * math.sqrt(math.pi) * KAPPA / slope_modulus * np.asarray(pressure, dtype=float)

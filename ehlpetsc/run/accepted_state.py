@@ -1,6 +1,9 @@
 """Accepted state of a simulation: a time level in SI units."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
+from typing import Any
 
 from ehlpetsc.stepping.observables import diagnostics
 
@@ -11,12 +14,12 @@ class AcceptedState:
 
     Attributes
     ----------
-    scalars : dict of str to number
+    scalars
         Scalars of the step, as in ``steps/`` of a result file [SI units].
-    fields : dict of str to ndarray, shape (nx,)
+    fields : shape (nx,)
         Fields of the step [SI units].
-    in_contact : ndarray of bool, shape (nx,)
-    solution : stepping.state.State
+    in_contact : shape (nx,)
+    solution
         Unknowns, and the history for the next step.
     """
 
@@ -25,20 +28,19 @@ class AcceptedState:
     in_contact: object = field(repr=False)
     solution: object = field(repr=False)
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> object:
         for values in (vars(self).get("scalars", {}), vars(self).get("fields", {})):
             if name in values:
                 return values[name]
         raise AttributeError(name)
 
     @classmethod
-    def of(cls, simulation, started):
+    def of(cls, simulation: Any, started: float) -> AcceptedState:
         """Accepted state of the `solution` of a simulation.
 
         Parameters
         ----------
-        simulation : run.simulation.Simulation
-        started : float
+        started
             Monotonic clock at the beginning of the step [s].
         """
         stepper, solution = simulation.stepper, simulation.solution

@@ -1,20 +1,22 @@
 """Scene of one pass of a case, for its effects."""
 
-from dataclasses import replace
+from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
+from ehlpetsc.case.loading import Case
 from ehlpetsc.effects.effect import Scene
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
 
-def scene_of(case, scales, operation, pass_number):
+def scene_of(case: Case, scales: Scales, operation: Any, pass_number: int) -> Scene:
     """Scene at the beginning of a pass, `effects.effect.Scene`.
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    operation : physics.operation.ConstantOperation
-    pass_number : int
+    pass_number
         From 1; `time.pass_shift` shifts surface 2 from one pass to the next.
     """
     offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)

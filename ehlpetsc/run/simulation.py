@@ -1,9 +1,13 @@
 """Simulation of one case on the ranks of a communicator."""
 
+from __future__ import annotations
+
 import time as clock
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
@@ -21,8 +25,10 @@ from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_comm, check_pass, check_time_step, option_texts
 from ehlpetsc.run.scene import scene_of
 from ehlpetsc.run.warnings import domain_faults
-from ehlpetsc.stepping.convergence_check import check_ends
+from ehlpetsc.stepping.convergence_check import Watch, check_ends
+from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.time_stepping import TimeStepping
+from ehlpetsc.surfaces.roughness import SurfacePositions
 
 MONITOR_OPTIONS = (
     "snes_monitor",
@@ -41,18 +47,17 @@ class Simulation:
 
     Parameters
     ----------
-    case : case.loading.Case, or an argument of `load`
-    comm : mpi4py communicator, optional
+    comm
         Ranks of the simulation, all of which iterate. Default: this process alone.
-    options : dict, optional
+    options
         PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, which override all
         others; they are in PETSc's table only during solves.
-    after : Simulation, optional
+    after
         Previous pass of the same case, at its end, whose bodies meet again with their plastic deformation and
         wear.
-    pass_number : int, optional
+    pass_number
         Number of a pass that is continued from a restart file; by default it follows from `after`.
-    records : dict of str to NamedTuple, optional
+    records
         Records of effects by name with which the pass begins, instead of those of `after`.
 
     Attributes
@@ -91,7 +96,15 @@ class Simulation:
     (81,) True
     """
 
-    def __init__(self, case, comm=None, options=None, after=None, pass_number=None, records=None):
+    def __init__(
+        self,
+        case: Case | object,
+        comm: MPI.Comm | None = None,
+        options: dict | None = None,
+        after: Simulation | None = None,
+        pass_number: int | None = None,
+        records: dict | None = None,
+    ):
         self.case = case = case if isinstance(case, Case) else load(case)
         if case.series:
             raise CaseError(
@@ -117,33 +130,33 @@ class Simulation:
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
 
     @property
-    def finished(self):
+    def finished(self) -> bool:
         """Whether the last state is at the end of the travel; of a steady case, whether it is solved."""
         if self.solution is None:
             return False
         return self.case.time is None or self._time_left() == 0.0
 
     @property
-    def end(self):
+    def end(self) -> float:
         """Time of the end of the run [s]."""
         return self.solution.time + self._time_left()
 
-    def level(self, time):
+    def level(self, time: float) -> float:
         """Number of nominal time steps up to a time [s], with a fraction."""
         return self.operation.level(time, self.scales.dt)
 
-    def _time_left(self):
+    def _time_left(self) -> float:
         return self.operation.remaining(self.solution.time, self.solution.travelled)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[AcceptedState]:
         return self.states()
 
-    def states(self, stop=None):
+    def states(self, stop: Callable | None = None) -> Iterator[AcceptedState]:
         """Accepted states up to the end.
 
         Parameters
         ----------
-        stop : run.stop.StopRequest, optional
+        stop
             Called with the communicator: before every time step, whether to stop; in every iteration, whether
             to abandon the step in progress.
 
@@ -159,15 +172,16 @@ class Simulation:
             is_requested = stop and (stop.overdue if begun else stop)
             yield self.advance(watch=stop and partial(_raise_if_stopped, is_requested, self.comm))
 
-    def resume(self, solution, baseline, positions):
+    def resume(
+        self, solution: State, baseline: tuple[np.ndarray, np.ndarray], positions: SurfacePositions
+    ) -> None:
         """Continue from a time level instead of from the steady solution.
 
         Parameters
         ----------
-        solution : stepping.state.State
-        baseline : pair of ndarray, shape (nx,)
+        baseline : shape (nx,)
             Steady q and w, for the predictor.
-        positions : surfaces.roughness.SurfacePositions
+        positions
             Positions of both surfaces at this time level.
         """
         solver = self.stepper.solver
@@ -179,19 +193,15 @@ class Simulation:
         m = solver.problem.mass_per_area(solution.q, solution.w) if solution.m is None else solution.m
         self.solution = replace(solution, records=records, m=m)
 
-    def advance(self, dt=None, watch=None):
+    def advance(self, dt: float | None = None, watch: Watch | None = None) -> AcceptedState:
         """Solve the steady contact, at later calls one time step.
 
         Parameters
         ----------
-        dt : float, optional
+        dt
             Length of the step [s]; by default that of the case, shorter after halved steps.
-        watch : callable, optional
+        watch
             Called in every iteration on every rank; an exception from it ends the solve.
-
-        Returns
-        -------
-        AcceptedState
 
         Raises
         ------
@@ -212,7 +222,7 @@ class Simulation:
         self.state = AcceptedState.of(self, started)
         return self.state
 
-    def _start(self, watch):
+    def _start(self, watch: Watch) -> State:
         self._print_heading("steady start")
         with events.START:
             solution = self.stepper.start(self._records, watch)
@@ -222,17 +232,17 @@ class Simulation:
                 (snes if name == "snes_view" else snes.ksp).view()
         return solution
 
-    def _step(self, dt, watch):
+    def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
         with events.STEPS:
             return self.stepper.advance(self.solution, dt, watch)
 
-    def _print_heading(self, text):
+    def _print_heading(self, text: str) -> None:
         """Print a heading above the output of PETSc's monitors."""
         if self._is_monitored:
             PETSc.Sys.Print(text, comm=self.comm)
 
 
-def _raise_if_stopped(is_requested, comm):
+def _raise_if_stopped(is_requested: Callable, comm: MPI.Comm) -> None:
     if is_requested(comm):
         raise Stopped

@@ -20,7 +20,8 @@ from typing import Protocol
 
 import numpy as np
 
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 from ehlpetsc.errors import NotConverged, SolveFailed
 

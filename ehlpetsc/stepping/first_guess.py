@@ -12,7 +12,8 @@ where nearly all nodes in contact yield, Newton's method alone does not find the
 import numpy as np
 
 from ehlpetsc.discretisation.deflection import fast_length
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, StepInputs
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
 
 SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep

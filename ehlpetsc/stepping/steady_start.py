@@ -24,7 +24,7 @@ If the Hertz pressure exceeds the yield pressure, the guess is the dry contact o
 from collections.abc import Callable
 from dataclasses import replace
 
-from ehlpetsc.discretisation.ehl_problem import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked

@@ -9,8 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ehlpetsc.discretisation.ehl_problem import StepInputs
-from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, mirrored
 from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed

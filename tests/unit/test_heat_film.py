@@ -8,8 +8,8 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
-from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import FilmLaw, film_law, film_temperature
 from ehlpetsc.physics.laws import EXPONENTIAL, ROELANDS, padded

@@ -13,7 +13,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import BLOCK
-from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
 from ehlpetsc.nonlinear.jacobian import (
     PIVOT_REGULARISATION,

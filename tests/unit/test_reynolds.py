@@ -8,8 +8,8 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
-from ehlpetsc.discretisation.ehl_problem import StepInputs
-from ehlpetsc.discretisation.reynolds import FilmHistory, NoOil, Reynolds
+from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
+from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"

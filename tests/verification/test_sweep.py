@@ -16,7 +16,7 @@ from support import CASES
 petsc4py.init([])
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.reynolds import FilmHistory
+from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import gauss_seidel as sweep

@@ -1,40 +1,40 @@
 """Contact models: what oil and solids do at a node, one module a law, behind one interface."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
 from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
 from ehlpetsc.discretisation.contact.direct import DirectContact, DryContact
 from ehlpetsc.discretisation.contact.mixed import MixedContact
+from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.yielding import YieldingContact
 from ehlpetsc.physics.asperities import GAMMA
+from ehlpetsc.physics.scales import Scales
 
 
-def film_scale_of(case, scales, expected_film):
+def film_scale_of(case: Any, scales: Scales, expected_film: float) -> float:
     """Scale of the Reynolds rows, at least the film that passes between touching solids; in a^2/R."""
     return max(expected_film, smallest_film(case.contact, scales))
 
 
-def smallest_film(contact, scales):
+def smallest_film(contact: Any, scales: Scales) -> float:
     """Film in a^2/R that solids in contact leave: boundary film, or that of the layer under p0; 0: none."""
     if contact.asperity_height is not None:
         return CompliantContact(Layer.of(contact, scales, GAMMA)).minimum_film
     return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
 
 
-def contact_model(case, scales, film_scale, bound_tolerance=0.0):
+def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance: float = 0.0) -> ContactModel:
     """The contact model of a case.
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    film_scale : float
+    film_scale
         See :func:`film_scale_of`.
-    bound_tolerance : float
+    bound_tolerance
         Of the active set, in a^2/R.
-
-    Returns
-    -------
-    model.ContactModel
     """
     contact = case.contact
     if contact.model == "direct":

@@ -10,13 +10,22 @@ A Newton step may at most double p_c at a node, from `FREE_RISE` p0 on: the line
 the rise of an exponential.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
-from ehlpetsc.discretisation.contact.node_state import BandEntries, NodeState, full_of_oil, limit_cavitation
+from ehlpetsc.discretisation.contact.node_state import (
+    BandEntries,
+    NodeState,
+    SurfaceLoads,
+    full_of_oil,
+    limit_cavitation,
+)
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import (
     CONTACT_PRESSURE,
@@ -26,6 +35,7 @@ from ehlpetsc.physics.asperities import (
     asperity_separations,
     real_area_fraction,
 )
+from ehlpetsc.physics.scales import Scales
 
 HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
@@ -40,13 +50,13 @@ class Layer:
 
     Attributes
     ----------
-    decay : float
+    decay
         gamma sigma.
-    prefactor : float
+    prefactor
         beta E*.
-    slope_modulus : float
+    slope_modulus
         E* h'_rms.
-    contact_pressure, high_pressure : float
+    contact_pressure, high_pressure
         Thresholds of the lengths in contact.
     """
 
@@ -57,7 +67,7 @@ class Layer:
     high_pressure: float
 
     @classmethod
-    def of(cls, contact, scales, gamma):
+    def of(cls, contact: Any, scales: Scales, gamma: float) -> Layer:
         """Layer of the table [contact], its rms height `asperity_height` a number."""
         modulus = 0.5 * scales.E / scales.p0
         return cls(
@@ -70,73 +80,68 @@ class Layer:
 
 
 class CompliantContact(SeparatedContact):
-    """Oil and the asperities of a layer carry side by side.
+    """Oil and the asperities of a layer carry side by side."""
 
-    Parameters
-    ----------
-    layer : Layer
-    """
-
-    def __init__(self, layer):
+    def __init__(self, layer: Layer):
         self.layer = layer
         self.law = layer.decay, layer.prefactor
         self.minimum_film = asperity_separation(1.0, *self.law)
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         solids, slope = asperity_pressures(w, *self.law)
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
         mask = solids > self.layer.contact_pressure
         return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones, mask)
 
-    def contact_pressure(self, w):
+    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return asperity_pressures(w, *self.law)[0]
 
-    def contact_mask(self, w, reynolds_residual):
+    def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """Nodes whose asperities carry more than `CONTACT_PRESSURE`."""
         return self.contact_pressure(w) > self.layer.contact_pressure
 
-    def w_from_film(self, h):
+    def w_from_film(self, h: np.ndarray) -> np.ndarray:
         """The film itself."""
         return np.maximum(h, 1e-3 * self.layer.decay)
 
-    def w_from_state(self, h, contact_pressure):
+    def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
         """The film; without one that at which asperities carry the pressure."""
         closed = (h <= 0.0) & (contact_pressure > 0.0)
         return np.where(closed, self._separation(contact_pressure), self.w_from_film(h))
 
-    def _separation(self, pressure):
+    def _separation(self, pressure: np.ndarray) -> np.ndarray:
         return asperity_separations(np.maximum(pressure, DRY_START_EDGE_PRESSURE), *self.law)
 
-    def dry_start(self, pressure, gap):
+    def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`."""
         film = np.maximum(gap, asperity_separation(DRY_START_EDGE_PRESSURE, *self.law))
         return np.zeros_like(pressure), np.where(pressure > 0.0, self._separation(pressure), film)
 
-    def start_film(self, film):
+    def start_film(self, film: float) -> float:
         """See :class:`.model.ContactModel`; at least the film at which the asperities carry p0."""
         return max(film, self.minimum_film)
 
-    def oil_start(self, pressure, h):
+    def oil_start(self, pressure: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`; asperities carry as much of the pressure as they can."""
         h = np.maximum(h, self._separation(pressure))
         return pressure - self.contact_pressure(h), h
 
-    def advected(self, interpolated, shifted):
+    def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`; asperities that carry are moved by whole nodes."""
         carries = self.contact_pressure(shifted) > ADVECTED
         return np.where(carries, shifted, np.maximum(interpolated, asperity_separation(ADVECTED, *self.law)))
 
-    def pressure_change(self, now, step):
+    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`; linear in h."""
         return pressure_change(now, step, *self.law)
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
         limit_rise(now, step, *self.law)
 
-    def band_entries(self, state, derivatives, stencil):
+    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """Pairs (p, h) at nodes full of oil; (q, h) or, where asperities are stiff, (p, q) under a void."""
         full, stiff = self._kinds(state)
         h_p = np.where(stiff, 1.0 / np.where(stiff, state.p_w, 1.0), 0.0)
@@ -150,23 +155,23 @@ class CompliantContact(SeparatedContact):
         by_h[:] = np.where(stiff, old_q, old_h - old_q * slope)
         return BandEntries(p_first, h_p, separation_second, derivatives)
 
-    def _kinds(self, state):
+    def _kinds(self, state: NodeState) -> tuple[np.ndarray, np.ndarray]:
         """Masks of nodes full of oil, and of cavitated ones whose asperities are stiff."""
         full = state.p_q > 0.0
         return full, ~full & (state.p_w < -STIFF_SLOPE)
 
-    def from_band(self, state, local, solution):
+    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
         """See :class:`.model.ContactModel`."""
         full, stiff = (kind[local] for kind in self._kinds(state))
         first, second, slope = solution[:, 0].copy(), solution[:, 1].copy(), state.p_w[local]
         solution[:, 0] = np.where(stiff, second, first - np.where(full, slope * second, 0.0))
         solution[:, 1] = np.where(stiff, first / np.where(stiff, slope, 1.0), second)
 
-    def contact_length(self, loads, scales):
+    def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
         """Integral of the real area fraction [m]."""
         return scales.dx * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus).sum()
 
-    def diagnostics(self, loads, scales, thin_film):
+    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         """See :class:`.model.ContactModel`."""
         return super().diagnostics(loads, scales, thin_film) | {
             "contact_length_10mpa": scales.dx * loads.contact_mask.sum(),
@@ -175,7 +180,7 @@ class CompliantContact(SeparatedContact):
 
 
 @compiled
-def pressure_change(now, step, decay, prefactor):
+def pressure_change(now: np.ndarray, step: np.ndarray, decay: float, prefactor: float) -> float:
     """Largest change of total pressure, that of the asperities linearised."""
     largest = 0.0
     for i in range(len(now)):
@@ -186,7 +191,7 @@ def pressure_change(now, step, decay, prefactor):
 
 
 @compiled
-def limit_rise(now, step, decay, prefactor):
+def limit_rise(now: np.ndarray, step: np.ndarray, decay: float, prefactor: float) -> None:
     """Limit steps in place where a cavity fills or empties, or where p_c would more than double."""
     for i in range(len(now)):
         h = now[i, 1]

@@ -11,14 +11,18 @@ w = h. Of yielding ones
   separation, :math:`\delta=h_y-w`.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.compliant import FREE_RISE, CompliantContact
+from ehlpetsc.discretisation.contact.compliant import FREE_RISE, CompliantContact, Layer
+from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
     BandEntries,
+    NodeState,
     PlasticState,
     limit_cavitation,
 )
@@ -32,32 +36,31 @@ class CompliantYieldingContact(Yielding, CompliantContact):
 
     Parameters
     ----------
-    layer : compliant.Layer
-    yield_pressure : float
+    yield_pressure
         p_y in p0, of the softer surface.
-    compliance : float
+    compliance
         D, a^2/R per p0: a scale of the unknown that carries the depth, which no answer depends on.
     """
 
-    def __init__(self, layer, yield_pressure, compliance):
+    def __init__(self, layer: Layer, yield_pressure: float, compliance: float):
         super().__init__(layer)
         self.yield_pressure, self.compliance = yield_pressure, compliance
         self.smallest = asperity_separation(yield_pressure, *self.law)
         self.minimum_film = max(self.minimum_film, self.smallest)
 
-    def elastic(self):
+    def elastic(self) -> ContactModel | None:
         """See :class:`.model.ContactModel`."""
         return CompliantContact(self.layer)
 
-    def contact_pressure(self, w):
+    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Pressure of the asperities in p0, at most the yield pressure."""
         return super().contact_pressure(np.maximum(w, self.smallest))
 
-    def pressure(self, q, w):
+    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """Total pressure in p0, at most the yield pressure."""
         return np.minimum(np.maximum(q, 0.0) + self.contact_pressure(w), self.yield_pressure)
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         elastic = super().state(q, np.maximum(w, self.smallest))
         closed, excess = w < self.smallest, elastic.pressure - self.yield_pressure
@@ -73,26 +76,26 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         state = self.at_yield_pressure(elastic, plastic, elastic.pressure - np.maximum(q, 0.0))
         return state._replace(h_w=np.where(closed, 0.0, 1.0))
 
-    def reset_yielding(self, q, w):
+    def reset_yielding(self, q: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`."""
         w = np.maximum(w, self.smallest)
         return np.minimum(q, self.yield_pressure - self.contact_pressure(w)), w
 
-    def dry_start(self, pressure, gap):
+    def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`; what exceeds the yield pressure is the depth over D."""
         excess = np.maximum(pressure - self.yield_pressure, 0.0)
         q, w = super().dry_start(np.minimum(pressure, self.yield_pressure), gap)
         return q, np.where(excess > 0.0, self.smallest - self.compliance * excess, w)
 
-    def pressure_change(self, now, step):
+    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`."""
         return pressure_change(now, step, self.law, self.yield_pressure, self.smallest)
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
         limit_steps(now, step, self.law, self.yield_pressure, self.smallest, self.compliance)
 
-    def band_entries(self, state, derivatives, stencil):
+    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """Pairs of :class:`.compliant.CompliantContact`; where solids yield (e, h) or (e, q).
 
         e is the excess over p_y, which the depth follows.
@@ -115,12 +118,12 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         by_first[:] = np.where(by_oil | closed, 0.0, by_first)
         return BandEntries(p_first, separation_first, separation_second, entries.reynolds_derivatives)
 
-    def _plastic_kinds(self, state):
+    def _plastic_kinds(self, state: NodeState) -> tuple[np.ndarray, np.ndarray]:
         """Masks of yielding nodes with oil, and of those without."""
         by_oil = state.plastic.depth_q > 0.0
         return by_oil, state.plastic.yielding & ~by_oil
 
-    def from_band(self, state, local, solution):
+    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
         """See :class:`.model.ContactModel`."""
         first, second = solution[:, 0].copy(), solution[:, 1].copy()
         super().from_band(state, local, solution)
@@ -131,7 +134,7 @@ class CompliantYieldingContact(Yielding, CompliantContact):
 
 
 @compiled
-def pressure_change(now, step, law, limit, smallest):
+def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float, smallest: float) -> float:
     """Largest change of total pressure; where it stays at `limit`, of the pressure of the solids."""
     largest = 0.0
     for i in range(len(now)):
@@ -148,7 +151,9 @@ def pressure_change(now, step, law, limit, smallest):
 
 
 @compiled
-def limit_steps(now, step, law, limit, smallest, compliance):
+def limit_steps(
+    now: np.ndarray, step: np.ndarray, law: tuple, limit: float, smallest: float, compliance: float
+) -> None:
     """Limit steps in place as in elastic contact, and where solids begin or cease to yield.
 
     Both stop just beyond; the depth then changes as the linearised excess does.

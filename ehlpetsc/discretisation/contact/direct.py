@@ -4,6 +4,10 @@ At the bound the pressure of the oil is that of the solids too, and the Reynolds
 :math:`h\\ge h_b`, :math:`F\\ge0`, :math:`(h-h_b)F=0`.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -23,71 +27,73 @@ class DirectContact(ContactModel):
 
     Parameters
     ----------
-    bound, tolerance : float
+    bound, tolerance
         In a^2/R; films this close to the bound count as on it.
     """
 
     starts_unconstrained = True
     lowest_pressure = 0.0
 
-    def __init__(self, bound, tolerance=0.0):
+    def __init__(self, bound: float, tolerance: float = 0.0):
         self.lower_bound = self.minimum_film = bound
         self.bound_tolerance = tolerance
 
-    def pressure(self, q, w):
+    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return np.maximum(q, 0.0)
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         return self._state(q, w, full_of_oil(q) * 1.0)
 
-    def _state(self, q, w, p_q):
+    def _state(self, q: np.ndarray, w: np.ndarray, p_q: np.ndarray) -> NodeState:
         zeros, ones = np.zeros(len(w)), np.ones(len(w))
         return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones, w <= self.lower_bound)
 
-    def contact_pressure(self, w):
+    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Not separated from the oil's: zero."""
         return np.zeros_like(w)
 
-    def contact_mask(self, w, reynolds_residual):
+    def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """Nodes without a Reynolds equation: at the bound, or within its tolerance with F > 0."""
         at_bound = w <= self.lower_bound
         return at_bound | ((w <= self.lower_bound + self.bound_tolerance) & (reynolds_residual > 0.0))
 
-    def w_from_film(self, h):
+    def w_from_film(self, h: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return np.maximum(h, self.lower_bound)
 
-    def w_from_state(self, h, contact_pressure):
+    def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
         """The film, whatever pressure the solids have."""
         return self.w_from_film(h)
 
-    def dry_start(self, pressure, gap):
+    def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`."""
         return pressure, gap
 
-    def advected(self, interpolated, shifted):
+    def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return interpolated
 
-    def linearised(self, state, owned, ranks_sum):
+    def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """A node in contact and cavitated at once would leave its deflection row without an entry for q."""
         return state._replace(p_q=np.where(state.contact_mask, 1.0, state.p_q))
 
-    def pressure_change(self, now, step):
+    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`."""
         return pressure_change(now, step, self.lower_bound, self.lowest_pressure)
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
         clip_cavities(now, step, self.lower_bound)
 
-    def band_entries(self, state, derivatives, stencil):
+    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """The unknowns of the band are (q, h) themselves."""
         return BandEntries(state.p_q, np.zeros_like(state.film), state.h_w, derivatives)
 
-    def check(self, w, reynolds_residual, tolerance):
+    def check(
+        self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float
+    ) -> tuple[str | None, np.ndarray]:
         """See :class:`.model.ContactModel`."""
         bound, residual = self.lower_bound, reynolds_residual
         if w.min() < bound - self.bound_tolerance:
@@ -98,7 +104,9 @@ class DirectContact(ContactModel):
             return f"where solids touch a residual is -{worst:.2e}, allowed: {tolerance:.1e}", residual
         return None, np.where(mask, 0.0, residual)
 
-    def surface_loads(self, q, w, h, reynolds_residual):
+    def surface_loads(
+        self, q: np.ndarray, w: np.ndarray, h: np.ndarray, reynolds_residual: np.ndarray
+    ) -> SurfaceLoads:
         """See :class:`.model.ContactModel`.
 
         The shear of a film within the tolerance of the bound would be rounding: solids rub there.
@@ -123,21 +131,21 @@ class DryContact(DirectContact):
     starts_unconstrained = False
     lowest_pressure = -np.inf
 
-    def pressure(self, q, w):
+    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return q
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         return self._state(q, w, np.ones(len(q)))
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
         close_overlaps(now, step, self.lower_bound)
 
 
 @compiled
-def pressure_change(now, step, bound, lowest):
+def pressure_change(now: np.ndarray, step: np.ndarray, bound: float, lowest: float) -> float:
     """Largest change of pressure max(q, lowest), but at nodes that stay in contact: there is no viscosity."""
     largest = 0.0
     for i in range(len(now)):
@@ -148,7 +156,7 @@ def pressure_change(now, step, bound, lowest):
 
 
 @compiled
-def clip_cavities(now, step, bound):
+def clip_cavities(now: np.ndarray, step: np.ndarray, bound: float) -> None:
     """Limit steps in place where a cavity fills or empties; a void does not hold touching solids apart."""
     for i in range(len(now)):
         q, dq = now[i, 0], step[i, 0]
@@ -158,7 +166,7 @@ def clip_cavities(now, step, bound):
 
 
 @compiled
-def close_overlaps(now, step, bound):
+def close_overlaps(now: np.ndarray, step: np.ndarray, bound: float) -> None:
     """Give nodes of a dry contact a pressure, in place, where the step would make solids overlap.
 
     SNES puts h = 0 there and then goes by the sign of F = p, which would be rounding.

@@ -9,6 +9,8 @@ which the sign of w carries: :math:`h=h_b+\max(w,0)`, :math:`p_c=K\max(-w,0)`. A
 w, and the Reynolds equation holds at every node.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -22,23 +24,26 @@ from ehlpetsc.discretisation.contact.node_state import (
     limit_cavitation,
 )
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
+from ehlpetsc.physics.scales import Scales
 
 
 class SeparatedContact(ContactModel):
     """Models in which oil and solids have a pressure each: outputs that they share."""
 
-    def surface_loads(self, q, w, h, reynolds_residual):
+    def surface_loads(
+        self, q: np.ndarray, w: np.ndarray, h: np.ndarray, reynolds_residual: np.ndarray
+    ) -> SurfaceLoads:
         """See :class:`.model.ContactModel`."""
         mask, pressure = self.contact_mask(w, reynolds_residual), self.state(q, w).pressure
         solids, everywhere = self.contact_pressure(w), np.ones(len(w), dtype=bool)
         oil = pressure - solids
         return SurfaceLoads(mask, pressure, solids, h, oil, everywhere, solids, everywhere)
 
-    def contact_length(self, loads, scales):
+    def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
         """Length in contact [m]."""
         return scales.dx * loads.contact_mask.sum()
 
-    def diagnostics(self, loads, scales, thin_film):
+    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         """See :class:`.model.ContactModel`."""
         thin = loads.film < thin_film * self.minimum_film
         total = loads.pressure.sum()
@@ -55,62 +60,62 @@ class MixedContact(SeparatedContact):
 
     Parameters
     ----------
-    boundary_film : float
+    boundary_film
         h_b in a^2/R.
-    stiffness : float
+    stiffness
         K, p0 per a^2/R: a scale between the two meanings of w, which no answer depends on.
     """
 
-    def __init__(self, boundary_film, stiffness):
+    def __init__(self, boundary_film: float, stiffness: float):
         self.boundary_film = self.minimum_film = boundary_film
         self.stiffness = stiffness
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         mask, pressure = w < 0.0, np.maximum(q, 0.0) + self._carried(w)
         p_w, h_w = np.where(mask, -self.stiffness, 0.0), np.where(mask, 0.0, 1.0)
         film = self.boundary_film + np.maximum(w, 0.0)
         return NodeState(q, pressure, film, full_of_oil(q) * 1.0, p_w, h_w, mask)
 
-    def _carried(self, w):
+    def _carried(self, w: np.ndarray) -> np.ndarray:
         return self.stiffness * np.maximum(-w, 0.0)
 
-    def contact_pressure(self, w):
+    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return self._carried(w)
 
-    def contact_mask(self, w, reynolds_residual):
+    def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return w < 0.0
 
-    def w_from_film(self, h):
+    def w_from_film(self, h: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`; zero where the film is below the boundary film."""
         return np.maximum(h - self.boundary_film, 0.0)
 
-    def w_from_state(self, h, contact_pressure):
+    def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
         return np.where(contact_pressure > 0.0, -contact_pressure / self.stiffness, self.w_from_film(h))
 
-    def advected(self, interpolated, shifted):
+    def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`; solids that touch are moved by whole nodes."""
         return np.where(shifted < 0.0, shifted, interpolated)
 
-    def pressure_change(self, now, step):
+    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`."""
         return pressure_change(now, step, self.stiffness)
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
         limit_contact_switch(now, step, self.stiffness, film_after_release)
 
-    def band_entries(self, state, derivatives, stencil):
+    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """Pairs (q, h) at open nodes, (p, p_f) where solids touch, whose film does not change."""
         mask, none = state.contact_mask, np.zeros_like(state.film)
         p_first = np.where(mask, 1.0, state.p_q)
         derivatives = swap_pairs(derivatives, mask[stencil], mask[stencil])
         return BandEntries(p_first, none, state.h_w, derivatives)
 
-    def from_band(self, state, local, solution):
+    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
         """See :class:`.model.ContactModel`."""
         solid = np.flatnonzero(state.contact_mask[local])
         first, oil = solution[solid, 0], solution[solid, 1]
@@ -118,13 +123,13 @@ class MixedContact(SeparatedContact):
         solution[solid, 1] = -(first - state.p_q[local][solid] * oil) / self.stiffness
 
 
-def swap_pairs(derivatives, swapped, blind):
+def swap_pairs(derivatives: np.ndarray, swapped: np.ndarray, blind: np.ndarray) -> np.ndarray:
     """Reynolds derivatives with those by the first unknown moved to the second one.
 
     Parameters
     ----------
-    derivatives : ndarray, shape (local nodes, 8)
-    swapped, blind : ndarray of bool, shape (local nodes, 4)
+    derivatives : shape (local nodes, 8)
+    swapped, blind : shape (local nodes, 4)
         Nodes of the stencil whose second unknown is the oil pressure, and those whose first one is not felt.
     """
     if not blind.any():
@@ -137,7 +142,7 @@ def swap_pairs(derivatives, swapped, blind):
 
 
 @compiled
-def pressure_change(now, step, stiffness):
+def pressure_change(now: np.ndarray, step: np.ndarray, stiffness: float) -> float:
     """Largest change of total pressure; a node that crosses between gap and contact stops there."""
     largest = 0.0
     for i in range(len(now)):
@@ -148,7 +153,9 @@ def pressure_change(now, step, stiffness):
 
 
 @compiled
-def limit_contact_switch(now, step, stiffness, film_after_release):
+def limit_contact_switch(
+    now: np.ndarray, step: np.ndarray, stiffness: float, film_after_release: float
+) -> None:
     """Limit steps in place where solids come to touch or separate: both stop just beyond.
 
     Solids that touch begin with `PRESSURE_AFTER_REFILL`; those that separate with at most

@@ -7,7 +7,14 @@ subclass, and a line in :func:`ehlpetsc.discretisation.contact.contact_model`.
 Lengths in x are in half widths, films in a^2/R, pressures in p0.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import numpy as np
+
+from ehlpetsc.discretisation.contact.node_state import BandEntries, NodeState, SurfaceLoads
+from ehlpetsc.physics.scales import Scales
 
 
 class ContactModel:
@@ -35,102 +42,103 @@ class ContactModel:
 
     # --- unknowns -----------------------------------------------------------------------------------------
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """:class:`.node_state.NodeState` at the unknowns q, w, shape (nx,)."""
         raise NotImplementedError
 
-    def pressure(self, q, w):
+    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """Total pressure in p0."""
         return np.maximum(q, 0.0) + self.contact_pressure(w)
 
-    def contact_pressure(self, w):
+    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Pressure of the solids in p0."""
         raise NotImplementedError
 
-    def contact_mask(self, w, reynolds_residual):
+    def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """Nodes in contact, of a solution."""
         raise NotImplementedError
 
-    def w_from_film(self, h):
+    def w_from_film(self, h: np.ndarray) -> np.ndarray:
         """Second unknown of an open gap of the film h."""
         raise NotImplementedError
 
-    def w_from_state(self, h, contact_pressure):
+    def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
         """Second unknown of a film and of the pressure of the solids in p0."""
         raise NotImplementedError
 
     # --- first guesses ------------------------------------------------------------------------------------
 
-    def dry_start(self, pressure, gap):
+    def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Unknowns q, w of a dry contact with a pressure where solids touch and a gap elsewhere."""
         return np.zeros_like(pressure), self.w_from_state(gap, pressure)
 
-    def start_film(self, film):
+    def start_film(self, film: float) -> float:
         """Film of a first guess under oil, from the expected one."""
         return film
 
-    def oil_start(self, pressure, h):
+    def oil_start(self, pressure: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Oil pressure and second unknown of a first guess with a total pressure and a film."""
         return pressure, self.w_from_film(h)
 
-    def advected(self, interpolated, shifted):
+    def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
         """Second unknown of a new time level.
 
         Parameters
         ----------
-        interpolated : ndarray, shape (nx,)
+        interpolated : shape (nx,)
             Of the film of the last level, moved along by interpolation.
-        shifted : ndarray, shape (nx,)
+        shifted : shape (nx,)
             w of the last level, moved by the nearest whole number of nodes.
         """
         raise NotImplementedError
 
     # --- nonlinear solver ---------------------------------------------------------------------------------
 
-    def linearised(self, state, owned, ranks_sum):
+    def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """State with the derivatives that the Newton step takes.
 
         Parameters
         ----------
-        state : NodeState
-        owned : slice
+        owned
             Nodes of this rank.
-        ranks_sum : callable
+        ranks_sum
             Sum of a tuple of numbers over all ranks.
         """
         return state
 
-    def pressure_change(self, now, step):
+    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """Largest change of pressure of a Newton step, in p0; pairs (q, w), shape (nodes, 2)."""
         raise NotImplementedError
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """Limit single entries of a Newton step in place; the new values are ``now - step``.
 
         Parameters
         ----------
-        now, step : ndarray, shape (nodes, 2)
-        film_after_release : float
+        now, step : shape (nodes, 2)
+        film_after_release
             Largest film that a node gets in the iteration in which its solids separate, in a^2/R.
         """
         raise NotImplementedError
 
-    def band_entries(self, state, derivatives, stencil):
+    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """:class:`.band.BandEntries` of a state.
 
         Parameters
         ----------
         state, derivatives
             As in `ehl_problem.Evaluation`.
-        stencil : ndarray of int, shape (local nodes, 4)
+        stencil : shape (local nodes, 4)
             Nodes of each Reynolds row, by their index in the window.
         """
         raise NotImplementedError
 
-    def from_band(self, state, local, solution):
+    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
         """Translate the local solution, shape (local nodes, 2), from the unknowns of the band in place."""
 
-    def check(self, w, reynolds_residual, tolerance):
+    def check(
+        self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float
+    ) -> tuple[str | None, np.ndarray]:
         """Violation of the contact conditions by a solution.
 
         Returns
@@ -144,32 +152,28 @@ class ContactModel:
 
     # --- yielding -----------------------------------------------------------------------------------------
 
-    def elastic(self):
+    def elastic(self) -> ContactModel | None:
         """The same model for solids that do not yield; None where they never do."""
         return None
 
-    def reset_yielding(self, q, w):
+    def reset_yielding(self, q: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Unknowns of the same pressures and film without plastic deformation, for the next step."""
         return q, w
 
     # --- outputs ------------------------------------------------------------------------------------------
 
-    def surface_loads(self, q, w, h, reynolds_residual):
+    def surface_loads(
+        self, q: np.ndarray, w: np.ndarray, h: np.ndarray, reynolds_residual: np.ndarray
+    ) -> SurfaceLoads:
         """:class:`.node_state.SurfaceLoads` of a solution; h its film."""
         raise NotImplementedError
 
-    def diagnostics(self, loads, scales, thin_film):
+    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         """Scalars of the contact in SI units.
 
         Parameters
         ----------
-        loads : node_state.SurfaceLoads
-        scales : physics.scales.Scales
-        thin_film : float
+        thin_film
             Films count as thin below this multiple of `minimum_film`.
-
-        Returns
-        -------
-        dict of str to number
         """
         return {}

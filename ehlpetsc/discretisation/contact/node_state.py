@@ -11,7 +11,7 @@ PRESSURE_AFTER_REFILL = 1e-9  # p0: pressure of a cavity, or of a gap, in the it
 MIN_OIL_FRACTION = 0.2  # of the oil in a cavity that one iteration must leave
 
 
-def full_of_oil(q):
+def full_of_oil(q: np.ndarray) -> np.ndarray:
     """Mask of the nodes with pressure and no void; which side of zero rounding is on must not matter."""
     return q > -AMBIENT_TOLERANCE
 
@@ -53,7 +53,7 @@ class NodeState(NamedTuple):
         Derivatives of p with respect to q and w, of h with respect to w.
     contact_mask
         Nodes whose solids carry.
-    plastic : PlasticState or None
+    plastic
         None where solids are elastic.
     """
 
@@ -67,21 +67,21 @@ class NodeState(NamedTuple):
     plastic: PlasticState | None = None
 
     @property
-    def separation(self):
+    def separation(self) -> np.ndarray:
         """Film less the plastic deformation of the step: shape and elastic deflection."""
         return self.film if self.plastic is None else self.film - self.plastic.depth
 
     @property
-    def separation_q(self):
+    def separation_q(self) -> np.ndarray:
         """Derivative of the separation with respect to q."""
         return np.zeros_like(self.film) if self.plastic is None else -self.plastic.depth_q
 
     @property
-    def separation_w(self):
+    def separation_w(self) -> np.ndarray:
         """Derivative of the separation with respect to w."""
         return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
 
-    def derivatives(self):
+    def derivatives(self) -> np.ndarray:
         """Derivatives with respect to q and w, shape (4, 2, nodes).
 
         Of pressure, Reynolds unknown, film and separation.
@@ -95,24 +95,24 @@ class NodeState(NamedTuple):
 
 
 @compiled
-def directional_derivative(by, nodes, first, change):
+def directional_derivative(by: np.ndarray, nodes: np.ndarray, first: int, change: np.ndarray) -> None:
     """Fill in changes of one property with changes (nodes, 2) of q and w.
 
     Parameters
     ----------
-    by : ndarray, shape (2, all)
+    by : shape (2, all)
         One of :meth:`NodeState.derivatives`.
-    nodes : ndarray, shape (nodes, 2)
-    first : int
+    nodes : shape (nodes, 2)
+    first
         Index in `by` of the first node.
-    change : ndarray, shape (nodes,)
+    change : shape (nodes,)
     """
     for i in range(len(change)):
         change[i] = by[0, first + i] * nodes[i, 0] + by[1, first + i] * nodes[i, 1]
 
 
 @compiled
-def limit_cavitation(q, dq):
+def limit_cavitation(q: float, dq: float) -> float:
     """Newton step of q, to be subtracted: a cavity that fills or empties stops at the change of phase.
 
     A cavity that fills gets the pressure `PRESSURE_AFTER_REFILL`. A void leaves `MIN_OIL_FRACTION` of the
@@ -164,9 +164,9 @@ class BandEntries(NamedTuple):
 
     Attributes
     ----------
-    p_first, separation_first, separation_second : ndarray
+    p_first, separation_first, separation_second
         Of the pressure by the first, of the separation by both unknowns of each node of the window.
-    reynolds_derivatives : ndarray, shape (local nodes, 8)
+    reynolds_derivatives : shape (local nodes, 8)
         Of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1.
     """
 
@@ -177,7 +177,14 @@ class BandEntries(NamedTuple):
 
 
 @compiled
-def same_deflection(pressure, depth, film, old_pressure, old_depth, old_film):
+def same_deflection(
+    pressure: np.ndarray,
+    depth: np.ndarray,
+    film: np.ndarray,
+    old_pressure: np.ndarray,
+    old_depth: np.ndarray,
+    old_film: np.ndarray,
+) -> bool:
     """Whether the deflection rows of two states have the same entries."""
     for i in range(len(pressure)):
         if pressure[i] != old_pressure[i] or depth[i] != old_depth[i] or film[i] != old_film[i]:

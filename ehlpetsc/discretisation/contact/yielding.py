@@ -13,11 +13,21 @@ all of them hold exactly at any q and w. Where solids yield, P remains their pre
 :math:`\delta`; without oil, or under a void, q keeps its meaning and P carries :math:`\delta`.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch, swap_pairs
-from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL, BandEntries, PlasticState
+from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.contact.node_state import (
+    PRESSURE_AFTER_REFILL,
+    BandEntries,
+    NodeState,
+    PlasticState,
+)
 
 MIN_CARRYING_PRESSURE = 0.1  # of the yield pressure: nodes above it carry
 ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method loses the load
@@ -27,14 +37,12 @@ HARDENING = 1.0
 class Yielding:
     """State and linearisation of models whose nodes may yield, all at once too."""
 
-    def at_yield_pressure(self, elastic, plastic, solids):
+    def at_yield_pressure(self, elastic: NodeState, plastic: PlasticState, solids: np.ndarray) -> NodeState:
         """State of the nodes with the pressure of those that yield at its limit.
 
         Parameters
         ----------
-        elastic : node_state.NodeState
-        plastic : node_state.PlasticState
-        solids : ndarray
+        solids
             Pressure of the solids in p0.
         """
         by_oil = plastic.depth_q > 0.0
@@ -46,7 +54,7 @@ class Yielding:
             plastic=plastic,
         )
 
-    def linearised(self, state, owned, ranks_sum):
+    def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """See :class:`.model.ContactModel`.
 
         Where all nodes that carry yield, no pressure depends on any unknown: the solids are then taken to
@@ -62,12 +70,12 @@ class Yielding:
             plastic=y._replace(hardening=HARDENING),
         )
 
-    def yielding_and_elastic(self, state, nodes):
+    def yielding_and_elastic(self, state: NodeState, nodes: slice) -> tuple[int, int]:
         """Numbers of nodes that yield, and that carry without yielding."""
         yielding, pressure = state.plastic.yielding[nodes], state.pressure[nodes]
         return yielding.sum(), (~yielding & (pressure > MIN_CARRYING_PRESSURE * self.yield_pressure)).sum()
 
-    def is_all_yielding(self, yielding, elastic):
+    def is_all_yielding(self, yielding: int, elastic: int) -> bool:
         """Whether next to no node that carries is elastic, by the numbers of nodes."""
         return yielding > 0 and elastic < ELASTIC_NODES
 
@@ -77,25 +85,25 @@ class YieldingContact(Yielding, MixedContact):
 
     Parameters
     ----------
-    boundary_film, stiffness : float
+    boundary_film, stiffness
         As of :class:`.mixed.MixedContact`.
-    yield_pressure : float
+    yield_pressure
         p_y in p0, of the softer surface.
     """
 
-    def __init__(self, boundary_film, stiffness, yield_pressure):
+    def __init__(self, boundary_film: float, stiffness: float, yield_pressure: float):
         super().__init__(boundary_film, stiffness)
         self.yield_pressure, self.compliance = yield_pressure, 1.0 / stiffness
 
-    def elastic(self):
+    def elastic(self) -> ContactModel | None:
         """See :class:`.model.ContactModel`."""
         return MixedContact(self.boundary_film, self.stiffness)
 
-    def pressure(self, q, w):
+    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """Total pressure in p0, at most the yield pressure."""
         return np.minimum(np.maximum(q, 0.0) + self._carried(w), self.yield_pressure)
 
-    def state(self, q, w):
+    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         elastic = super().state(q, w)
         excess = elastic.pressure - self.yield_pressure
@@ -112,26 +120,26 @@ class YieldingContact(Yielding, MixedContact):
         )
         return self.at_yield_pressure(elastic, plastic, solids)
 
-    def contact_pressure(self, w):
+    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Pressure of the solids in p0, at most the yield pressure."""
         return np.minimum(self._carried(w), self.yield_pressure)
 
-    def reset_yielding(self, q, w):
+    def reset_yielding(self, q: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`."""
         solids = self.contact_pressure(w)
         q = np.minimum(q, self.yield_pressure - solids)
         return q, np.maximum(w, -self.compliance * self.yield_pressure)
 
-    def pressure_change(self, now, step):
+    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`."""
         return pressure_change(now, step, self.stiffness, self.yield_pressure)
 
-    def clip_step(self, now, step, film_after_release):
+    def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
         limit_contact_switch(now, step, self.stiffness, film_after_release)
         limit_yield_switch(now, step, self.stiffness, self.yield_pressure)
 
-    def band_entries(self, state, derivatives, stencil):
+    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """Where solids yield, the first unknown is the excess e over p_y, which the depth follows.
 
         The second one is h or p_f as in mixed contact, or under a void that touches q.
@@ -145,7 +153,7 @@ class YieldingContact(Yielding, MixedContact):
         derivatives = swap_pairs(derivatives, mask[stencil], (mask | plastic.yielding)[stencil])
         return BandEntries(p_first, separation_first, state.h_w, derivatives)
 
-    def from_band(self, state, local, solution):
+    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
         """See :class:`.model.ContactModel`."""
         solid = np.flatnonzero(state.contact_mask[local])
         first, oil = solution[solid, 0], solution[solid, 1]
@@ -157,7 +165,7 @@ class YieldingContact(Yielding, MixedContact):
 
 
 @compiled
-def pressure_change(now, step, stiffness, limit):
+def pressure_change(now: np.ndarray, step: np.ndarray, stiffness: float, limit: float) -> float:
     """As in mixed contact, the pressure bounded by `limit`; where it stays there, that of the solids."""
     largest = 0.0
     for i in range(len(now)):
@@ -175,7 +183,7 @@ def pressure_change(now, step, stiffness, limit):
 
 
 @compiled
-def limit_yield_switch(now, step, stiffness, limit):
+def limit_yield_switch(now: np.ndarray, step: np.ndarray, stiffness: float, limit: float) -> None:
     """Limit steps in place where solids begin or cease to yield: both stop just beyond.
 
     The excess is what oil and solids would carry over `limit`. Where they yield and there is oil, q carries

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
-from ehlpetsc.discretisation.ehl_problem import StepInputs
 from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces
 from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, W1, W2, G, film_law

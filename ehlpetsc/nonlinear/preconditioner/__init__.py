@@ -6,9 +6,15 @@ The band of :mod:`.banded_jacobian` includes the far deflection; :mod:`.distribu
 The error left to GMRES is that of three exponentials, the same on any number of ranks.
 """
 
-import numpy as np
+from __future__ import annotations
 
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.jacobian import JacobianOperator
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
 
@@ -19,23 +25,18 @@ class Factors:
     """Factors of one scene, kept from one matrix to the next.
 
     PETSc creates a new preconditioner whenever the contact set changes.
-
-    Parameters
-    ----------
-    problem : ehl_problem.EHLProblem
-    ranks : mpi4py communicator
     """
 
-    def __init__(self, problem, ranks):
+    def __init__(self, problem: EHLProblem, ranks: MPI.Comm):
         self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh, self._owned = False, problem.owned
         self.units = np.empty((2, problem.local, 2))
 
-    def invalidate(self):
+    def invalidate(self) -> None:
         """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
         self.fresh = False
 
-    def factor(self, operator):
+    def factor(self, operator: JacobianOperator) -> None:
         """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian`."""
         state, derivatives = operator.state, operator.reynolds_derivatives
         entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
@@ -49,13 +50,13 @@ class Factors:
 class FarFieldBand:
     """Context of PETSc's Python preconditioner."""
 
-    def setUp(self, pc):
+    def setUp(self, pc: PETSc.PC) -> None:
         """Factor for the state of the operator."""
         with events.FACTOR:
             self.operator = pc.getOperators()[0].getPythonContext()
             self.operator.factors.factor(self.operator)
 
-    def apply(self, pc, x, y):
+    def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve for one right-hand side."""
         operator = self.operator
         b, solution = np.zeros(operator.size), np.empty(operator.size)

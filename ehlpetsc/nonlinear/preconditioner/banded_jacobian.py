@@ -7,11 +7,14 @@ and the load, are stored separately. A rank has the groups of its nodes, the las
 left; the coefficients of other ranks' groups are stored as those of a group before or behind.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import same_deflection
+from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.nonlinear.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
@@ -27,7 +30,7 @@ class BandedJacobian:
 
     Parameters
     ----------
-    problem : ehl_problem.EHLProblem
+    problem
         Its first node must begin a group.
 
     Attributes
@@ -44,7 +47,7 @@ class BandedJacobian:
         Of the same state: deflection at both end nodes that the band lacks, and the load.
     """
 
-    def __init__(self, problem):
+    def __init__(self, problem: EHLProblem):
         self.problem = problem
         self.nodes = np.arange(problem.first, problem.last)
         self.rates, self.weights = exponentials(problem.deflection.curvature, 1.0 / problem.dx)
@@ -63,31 +66,31 @@ class BandedJacobian:
         self.under_pressure = self._dense_rows()
         self.entries = None
 
-    def _group(self, node):
+    def _group(self, node: np.ndarray) -> np.ndarray:
         return (node - self.problem.first) // GROUP
 
-    def _in_group(self, node):
+    def _in_group(self, node: np.ndarray) -> np.ndarray:
         return (node - self.problem.first) % GROUP
 
-    def _dof(self, group, k):
+    def _dof(self, group: np.ndarray, k: np.ndarray) -> np.ndarray:
         """Number of the k-th unknown of a group; from the right end of the mesh where mirrored."""
         if self.is_mirrored:
             group, k = self.groups - 1 - group, SIZE - 1 - k
         return group * LINE + k
 
-    def _sums(self, group):
+    def _sums(self, group: np.ndarray) -> np.ndarray:
         """Numbers of the sums of groups, one row each."""
         return self._dof(np.asarray(group)[:, None], FIRST_SUM + np.arange(TERMS))
 
-    def _pressure(self, node):
+    def _pressure(self, node: np.ndarray) -> np.ndarray:
         """Number of q of a node."""
         return self._dof(self._group(node), FIRST_PRESSURE + self._in_group(node))
 
-    def _film(self, node):
+    def _film(self, node: np.ndarray) -> np.ndarray:
         """Number of h of a node."""
         return self._dof(self._group(node), FILMS[self._in_group(node)])
 
-    def _index_of(self, row, column):
+    def _index_of(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
         """Index of an entry in `values`; the last one where it does not exist."""
         (group, r), (other, c) = np.divmod(row, LINE), np.divmod(column, LINE)
         coupled = np.abs(other - group) <= 1
@@ -96,7 +99,7 @@ class BandedJacobian:
         )
         return np.where(coupled, (group * WIDTH + starts + c) * LINE + r, self.values.size - 1)
 
-    def _recurrences(self):
+    def _recurrences(self) -> None:
         p, groups = self.problem, np.arange(self.groups)
         row = self._sums(groups)
         self.values[self._index_of(row, row)] = 2.0 * np.cosh(self.rates)
@@ -107,13 +110,13 @@ class BandedJacobian:
                 self.values[beyond[outer]] = 0.0
                 self.values[self._index_of(row[outer], row[outer])] -= np.exp(-self.rates)
 
-    def _padding(self):
+    def _padding(self) -> None:
         """Unknowns of a last group that is not full: zero."""
         none = np.arange(self.nodes[-1] + 1, self.problem.first + self.groups * GROUP)
         for spare in (self._pressure(none), self._film(none)):
             self.values[self._index_of(spare, spare)] = 1.0
 
-    def _under_films(self):
+    def _under_films(self) -> None:
         """Entries of the deflection rows: films (nodes of the window, values, indices), and sums."""
         d, inner = self.problem.deflection, self._inner()
         ends = np.array(d.ends, dtype=int)
@@ -129,7 +132,7 @@ class BandedJacobian:
         self.film_place = self._index_of(rows, self._film(nodes))
         self.values[self._index_of(row[:, None], self._sums(self._group(inner)))] = -self.weights
 
-    def _under_pressures(self):
+    def _under_pressures(self) -> None:
         """Entries of recurrences and deflection rows in the columns of first unknowns."""
         p, inner, d = self.problem, self._inner(), self.problem.deflection
         repeated = np.repeat(self.nodes, TERMS)
@@ -156,10 +159,10 @@ class BandedJacobian:
         pressures = self._pressure(self.nodes)
         self.diagonal = self._index_of(pressures, pressures)
 
-    def _inner(self):
+    def _inner(self) -> np.ndarray:
         return self.nodes[(self.nodes > 0) & (self.nodes < self.problem.n - 1)]
 
-    def _dense_rows(self):
+    def _dense_rows(self) -> np.ndarray:
         """Under the local pressures: what the band lacks of the end nodes' deflection, and the load."""
         p = self.problem
         rows = np.empty((3, len(self.nodes)))
@@ -170,11 +173,11 @@ class BandedJacobian:
         rows[2] = p.dx
         return rows
 
-    def _nodes_in_group_of(self, end):
+    def _nodes_in_group_of(self, end: int) -> np.ndarray:
         """Nodes of an end node's own group."""
         return self.nodes[self._group(self.nodes) == self._group(end)]
 
-    def _under_reynolds(self):
+    def _under_reynolds(self) -> None:
         """Indices of the Reynolds stencil, q and h of the nodes i-2 .. i+1 in each row."""
         p = self.problem
         node = self.nodes[:, None] + np.arange(-2, 2)
@@ -184,13 +187,12 @@ class BandedJacobian:
         place = self._index_of(self._film(self.nodes)[:, None], columns)
         self.reynolds_place = np.where(on_mesh, place, self.values.size - 1)
 
-    def fill(self, entries, inactive_nodes):
+    def fill(self, entries: BandEntries, inactive_nodes: np.ndarray) -> bool:
         """Entries at one state.
 
         Parameters
         ----------
-        entries : contact.node_state.BandEntries
-        inactive_nodes : ndarray of int
+        inactive_nodes
             Local nodes whose second unknown is not in the system.
 
         Returns
@@ -202,7 +204,7 @@ class BandedJacobian:
         put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
         return self.columns
 
-    def _fill_deflection(self, entries):
+    def _fill_deflection(self, entries: BandEntries) -> None:
         """Refill what a change of contact or cavity touches."""
         before, self.entries = self.entries, entries
         pressure, depth, film = entries[:3]
@@ -225,17 +227,21 @@ class BandedJacobian:
 
 
 @compiled
-def put(entries, places, inactive_nodes, diagonal, values):
+def put(
+    entries: np.ndarray,
+    places: np.ndarray,
+    inactive_nodes: np.ndarray,
+    diagonal: np.ndarray,
+    values: np.ndarray,
+) -> None:
     """Put rows of entries at their places among values; of a row inactive_nodes, a one on its diagonal alone.
 
     Parameters
     ----------
-    entries : ndarray, shape (rows, width)
-    places : ndarray of int, shape (rows, width)
-    inactive_nodes : ndarray of int
-    diagonal : int
+    entries : shape (rows, width)
+    places : shape (rows, width)
+    diagonal
         Column of the entry on the diagonal.
-    values : ndarray
     """
     for i in range(entries.shape[0]):
         for k in range(entries.shape[1]):

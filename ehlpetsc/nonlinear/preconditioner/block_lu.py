@@ -31,10 +31,6 @@ ONE, TWO, THREE, FOUR = (unsigned(k) for k in (1, 2, 3, 4))
 class BlockLU:
     """Factors of one matrix, and room for them.
 
-    Parameters
-    ----------
-    groups : int
-
     Attributes
     ----------
     inverses : ndarray, shape (groups, SIZE, LINE)
@@ -45,17 +41,17 @@ class BlockLU:
         For :func:`forward` and :func:`backward`: the matrix, both of these and room, in one dimension.
     """
 
-    def __init__(self, groups):
+    def __init__(self, groups: int):
         self.inverses, self.upper = np.zeros((groups, SIZE, LINE)), np.zeros((groups, RIGHT, LINE))
         self._work, self._column = np.empty((SIZE + RIGHT) * LINE), np.empty(LINE)
         self._free, self._pivots = np.empty(SIZE), np.empty(SIZE, dtype=unsigned)
 
-    def factor(self, columns):
+    def factor(self, columns: np.ndarray) -> None:
         """Factor.
 
         Parameters
         ----------
-        columns : ndarray, shape (groups, WIDTH, LINE)
+        columns : shape (groups, WIDTH, LINE)
             What the rows of each group have of the group before, of their own and of the group behind, by
             columns; to be left as it is while solves follow. What the first group has of one before is not
             looked at, and what the last one has of one behind enters W alone.
@@ -64,14 +60,16 @@ class BlockLU:
         self.factors = columns.ravel(), self.inverses.ravel(), self.upper.ravel(), self._column
         factor(*self.factors[:3], *room)
 
-    def solve(self, b, first=0):
+    def solve(self, b: np.ndarray, first: int = 0) -> None:
         """Solve in place for `b` (groups * LINE,), whose groups before `first` are zero."""
         forward(self.factors, b, first)
         backward(self.factors, b)
 
 
 @compiled(fastmath=FAST)
-def subtract_product(y, i, matrix, j, x, k, count):
+def subtract_product(
+    y: np.ndarray, i: int, matrix: np.ndarray, j: int, x: np.ndarray, k: int, count: int
+) -> None:
     """Subtract the product of columns of a matrix with `x[k : k + count]` from `y[i : i + LINE]`.
 
     The columns start at `matrix[j]`. Four sums at a time stay in a register of the processor.
@@ -87,7 +85,7 @@ def subtract_product(y, i, matrix, j, x, k, count):
 
 
 @compiled(fastmath=FAST)
-def subtract_column(y, i, column, factor):
+def subtract_column(y: np.ndarray, i: int, column: np.ndarray, factor: float) -> None:
     """Subtract a column times a factor from `y[i : i + LINE]`."""
     for chunk in range(THREE):
         k = chunk * FOUR
@@ -97,7 +95,15 @@ def subtract_column(y, i, column, factor):
 
 
 @compiled(fastmath=FAST)
-def factor(columns, inverses, upper, work, column, free, pivots):
+def factor(
+    columns: np.ndarray,
+    inverses: np.ndarray,
+    upper: np.ndarray,
+    work: np.ndarray,
+    column: int,
+    free: np.ndarray,
+    pivots: np.ndarray,
+) -> None:
     """Fill in the inverses of S and W; see :class:`BlockLU`."""
     line, size, right = unsigned(LINE), unsigned(SIZE), unsigned(RIGHT)
     for i in range(unsigned(len(inverses) // (SIZE * LINE))):
@@ -120,7 +126,7 @@ def factor(columns, inverses, upper, work, column, free, pivots):
 
 
 @compiled(fastmath=FAST)
-def eliminate(a, column, free, pivots):
+def eliminate(a: np.ndarray, column: int, free: np.ndarray, pivots: np.ndarray) -> None:
     """Gauss and Jordan on SIZE columns and RIGHT more, rows left where they are.
 
     The unknown k is eliminated by the row ``pivots[k]``. Then column c has, in that row, what the unknown k
@@ -150,7 +156,7 @@ def eliminate(a, column, free, pivots):
 
 
 @compiled(fastmath=FAST)
-def forward(factors, b, first):
+def forward(factors: tuple, b: np.ndarray, first: int) -> None:
     """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
     columns, inverses, _, minus_b = factors
     line = unsigned(LINE)
@@ -166,7 +172,7 @@ def forward(factors, b, first):
 
 
 @compiled(fastmath=FAST)
-def backward(factors, b):
+def backward(factors: tuple, b: np.ndarray) -> None:
     """Replace y by x, in place: the last group is left as it is."""
     upper, line = factors[2], unsigned(LINE)
     groups = unsigned(len(b) // LINE)
@@ -177,7 +183,7 @@ def backward(factors, b):
 
 
 @compiled(fastmath=FAST)
-def backward_transposed(upper, b):
+def backward_transposed(upper: np.ndarray, b: np.ndarray) -> None:
     """Replace the coefficients `b` of x (3, groups * LINE) by the equivalent ones of y, in place."""
     line, (first, second, third) = unsigned(LINE), (b[0], b[1], b[2])
     for i in range(unsigned(b.shape[1] // LINE) - ONE):

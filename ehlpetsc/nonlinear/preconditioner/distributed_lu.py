@@ -14,13 +14,17 @@ both rows, and h00. The products :math:`d\cdot x=U^{-T}d\cdot y` need no substit
 exchange them with the values at the cuts: once a solve.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 
 from ehlpetsc.compiled import compiled, unsigned
-from ehlpetsc.discretisation.contact.node_state import same_deflection
+from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
 from ehlpetsc.discretisation.finite_volumes import STENCIL
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.block_lu import (
     AT_LEFT,
     AT_RIGHT,
@@ -46,11 +50,10 @@ class DistributedLU:
 
     Parameters
     ----------
-    band : banded_jacobian.BandedJacobian
+    band
         Of the nodes of this rank.
-    approach_coefficient : float
+    approach_coefficient
         Of h00 in the deflection rows of the end nodes.
-    ranks : mpi4py communicator
 
     Attributes
     ----------
@@ -58,7 +61,7 @@ class DistributedLU:
         There from the first factorisation on.
     """
 
-    def __init__(self, band, approach_coefficient, ranks):
+    def __init__(self, band: BandedJacobian, approach_coefficient: float, ranks: MPI.Comm):
         self.band, self.ranks = band, ranks
         self._approach_coefficient = approach_coefficient
         self._lu = BlockLU(band.groups)
@@ -78,7 +81,7 @@ class DistributedLU:
         self._room = np.zeros(band.size), np.zeros((ranks.size, CUT + BORDER))
         self._inactive_nodes = None
 
-    def factor(self, entries, inactive_nodes, anew=True):
+    def factor(self, entries: BandEntries, inactive_nodes: np.ndarray, anew: bool = True) -> None:
         """Factor for one state; unless `anew`, not where the last factors are nearly its own; collective.
 
         Other arguments as of :meth:`.banded_jacobian.BandedJacobian.fill`.
@@ -100,7 +103,7 @@ class DistributedLU:
         finish_coupling(*coupled, cuts, self._ends, self._messages, coefficient, inverse)
         self.factors = RankFactors(*coupled, cuts, (self.band.dofs, self._ends, inverse), self._room)
 
-    def _columns_at_cuts(self, left, right):
+    def _columns_at_cuts(self, left: int, right: int) -> tuple:
         """G of an inner rank, W of the group at the cut of an outer one."""
         if self.ranks.size == 1:
             return np.zeros((0, LINE))
@@ -113,21 +116,21 @@ class DistributedLU:
             self._lu.solve(column, 0 if k < LEFT else self.band.groups - 1)
         return g
 
-    def _is_still_good(self, entries, inactive_nodes):
+    def _is_still_good(self, entries: BandEntries, inactive_nodes: np.ndarray) -> bool:
         """Whether the factors of this rank are nearly those of the given state."""
         is_same_system = np.array_equal(inactive_nodes, self._inactive_nodes)
         return is_same_system and are_close(tuple(entries), tuple(self.band.entries), CLOSE)
 
 
 @compiled
-def are_close(entries, before, tolerance):
+def are_close(entries: np.ndarray, before: np.ndarray, tolerance: float) -> bool:
     """Whether entries of the deflection rows are the same and those of Reynolds rows nearly so.
 
     Parameters
     ----------
-    entries, before : tuple of ndarray
+    entries, before
         Fields of a `contact.node_state.BandEntries`.
-    tolerance : float
+    tolerance
         Of each entry, as a fraction of the largest one of its row.
     """
     rows, old_rows = entries[3], before[3]
@@ -148,18 +151,18 @@ class RankFactors(NamedTuple):
 
     Attributes
     ----------
-    place : tuple
+    place
         :func:`.ranks.collective`, the rank, and whether it is the first or the last one of several.
-    lu : tuple
+    lu
         Factors of a `BlockLU`.
-    cuts : tuple of ndarray
+    cuts
         Numbers of the unknowns at the cuts that other ranks take; columns G, or of an outer rank W, shape
         (unknowns taken of others, width), under the last `width` unknowns; dense rows (BORDER, size);
         :meth:`.reduced_system.ReducedSystem.rows_of_inverse`.
-    border : tuple of ndarray
+    border
         Numbers of the unknowns of the local nodes; columns z, shape (2, size); inverse of the system of three
         unknowns, (BORDER, BORDER).
-    room : tuple of ndarray
+    room
         Shape (size,), and messages (ranks, CUT + BORDER).
     """
 
@@ -171,7 +174,15 @@ class RankFactors(NamedTuple):
 
 
 @compiled
-def begin(is_outer, lu, interface, dense, y, first, message):
+def begin(
+    is_outer: bool,
+    lu: tuple,
+    interface: np.ndarray,
+    dense: np.ndarray,
+    y: np.ndarray,
+    first: int,
+    message: np.ndarray,
+) -> None:
     """Begin to solve in place for y, zero before group `first`, and fill in the message to the others."""
     forward(lu, y, first)
     if not is_outer:
@@ -182,7 +193,7 @@ def begin(is_outer, lu, interface, dense, y, first, message):
 
 
 @compiled
-def finish(is_outer, lu, cuts, y, everyone):
+def finish(is_outer: bool, lu: tuple, cuts: tuple, y: np.ndarray, everyone: np.ndarray) -> np.ndarray:
     """Finish with the messages of all ranks.
 
     Returns
@@ -201,16 +212,25 @@ def finish(is_outer, lu, cuts, y, everyone):
 
 
 @compiled
-def begin_coupling(place, lu, interface, g, dense, ends, end_dofs, messages):
+def begin_coupling(
+    place: tuple,
+    lu: tuple,
+    interface: np.ndarray,
+    g: np.ndarray,
+    dense: np.ndarray,
+    ends: np.ndarray,
+    end_dofs: np.ndarray,
+    messages: np.ndarray,
+) -> None:
     """Begin to solve for the columns z and exchange the coefficients of the reduced system; collective.
 
     Parameters
     ----------
     place, lu, interface, g, dense, ends
         As of `RankFactors`, with the first `cuts` one by one, and the columns z.
-    end_dofs : ndarray, shape (2,)
+    end_dofs : shape (2,)
         Numbers of the unknowns at the end nodes of the mesh; -1: on another rank.
-    messages : ndarray, shape (ranks, CUT + 2, CUT + BORDER)
+    messages : shape (ranks, CUT + 2, CUT + BORDER)
     """
     (collective, rank, is_outer), (taken, width), (_, size) = place, g.shape, ends.shape
     mine = messages[rank]
@@ -231,16 +251,24 @@ def begin_coupling(place, lu, interface, g, dense, ends, end_dofs, messages):
 
 
 @compiled
-def finish_coupling(place, lu, cuts, ends, messages, coefficient, inverse):
+def finish_coupling(
+    place: tuple,
+    lu: tuple,
+    cuts: tuple,
+    ends: np.ndarray,
+    messages: np.ndarray,
+    coefficient: float,
+    inverse: np.ndarray,
+) -> None:
     """Finish the columns z, and fill in the inverse of the system of three unknowns.
 
     Parameters
     ----------
     place, lu, cuts, ends, messages
         As of :func:`begin_coupling`.
-    coefficient : float
+    coefficient
         Of h00 in the deflection rows of the end nodes.
-    inverse : ndarray, shape (BORDER, BORDER)
+    inverse : shape (BORDER, BORDER)
     """
     matrix = np.array([[1.0, 0.0, -coefficient], [0.0, 1.0, -coefficient], [0.0, 0.0, 0.0]])
     for k in range(2):
@@ -255,18 +283,26 @@ def finish_coupling(place, lu, cuts, ends, messages, coefficient, inverse):
 
 
 @compiled
-def solve(place, lu, cuts, border, room, b, units, solution):
+def solve(
+    place: tuple,
+    lu: tuple,
+    cuts: tuple,
+    border: tuple,
+    room: tuple,
+    b: np.ndarray,
+    units: np.ndarray,
+    solution: np.ndarray,
+) -> None:
     """Fill in the solution of the local (q, h, q, h, ...), and h00 on the last rank; collective.
 
     Parameters
     ----------
-    place, lu, cuts, border, room : tuple
+    place, lu, cuts, border, room
         Of `RankFactors`.
-    b : ndarray
+    b
         Right-hand side, zero in the rows that are not in the system.
-    units : ndarray, shape (2, nodes, 2)
+    units : shape (2, nodes, 2)
         Unknowns of the solution by each of both of the band, at each node.
-    solution : ndarray
     """
     (collective, rank, is_outer), (dofs, ends, inverse), (y, everyone) = place, border, room
     y[:] = 0.0
@@ -281,7 +317,14 @@ def solve(place, lu, cuts, border, room, b, units, solution):
 
 
 @compiled(fastmath=FAST)
-def combine(y, ends, border, dofs, units, solution):
+def combine(
+    y: np.ndarray,
+    ends: np.ndarray,
+    border: np.ndarray,
+    dofs: np.ndarray,
+    units: np.ndarray,
+    solution: np.ndarray,
+) -> None:
     """Fill in the solution from those of the band and of the border."""
     for i in range(units.shape[1]):
         k, m = dofs[2 * i], dofs[2 * i + 1]

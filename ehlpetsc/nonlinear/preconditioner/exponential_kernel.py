@@ -18,7 +18,7 @@ REACH = 0.1  # half widths within which the relative error counts; beyond it cou
 SLOWEST, FASTEST = 0.4, 1.4  # rates: over the reach, and over a group
 
 
-def grouped_kernel(kernel):
+def grouped_kernel(kernel: np.ndarray) -> np.ndarray:
     """Mean of a kernel (n,) over the nodes of two groups, at distances 0, 1, ... groups."""
     apart = np.arange(1 - GROUP, GROUP)
     weights = (GROUP - np.abs(apart)) / GROUP**2
@@ -26,14 +26,13 @@ def grouped_kernel(kernel):
     return kernel[np.abs(GROUP * distance[:, None] + apart)] @ weights
 
 
-def exponentials(kernel, nodes_per_half_width):
+def exponentials(kernel: np.ndarray, nodes_per_half_width: float) -> tuple[np.ndarray, np.ndarray]:
     """Rates and weights of the exponentials for a kernel, fitted from a distance of two groups on.
 
     Parameters
     ----------
-    kernel : ndarray, shape (n,)
+    kernel : shape (n,)
         :func:`ehlpetsc.discretisation.deflection.curvature_kernel`.
-    nodes_per_half_width : float
 
     Returns
     -------

@@ -16,12 +16,11 @@ class ReducedSystem:
 
     Parameters
     ----------
-    left, right : int
+    left, right
         Unknowns at a cut that the other side takes: of the last group before it, of the first one behind.
-    rank, ranks : int
     """
 
-    def __init__(self, left, right, rank, ranks):
+    def __init__(self, left: int, right: int, rank: int, ranks: int):
         cut = left + right
         places = [_indices(other, ranks, left, right) for other in range(ranks)]
         taken, size = places[rank][0], cut * (ranks - 1)
@@ -42,12 +41,12 @@ class ReducedSystem:
             self._rows[k, :, k] = ONE
         self._sums_alone = np.eye(BORDER, cut + BORDER, cut)
 
-    def rows_of_inverse(self, values):
+    def rows_of_inverse(self, values: np.ndarray) -> np.ndarray:
         """Coefficients of the unknowns that this rank takes, and of the sums over all ranks.
 
         Parameters
         ----------
-        values : ndarray, shape (ranks, left + right + 2, left + right + BORDER)
+        values : shape (ranks, left + right + 2, left + right + BORDER)
             Of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its sums;
             the last two rows are not used.
 
@@ -69,7 +68,7 @@ class ReducedSystem:
         return np.concatenate((solution.ravel(), CONSTANTS))[self._rows].reshape(len(self._rows), -1)
 
 
-def _indices(rank, ranks, left, right):
+def _indices(rank: int, ranks: int, left: int, right: int) -> tuple[np.ndarray, np.ndarray]:
     """Indices of the unknowns that a rank takes of others, and of its own at its cuts."""
     cut = (left + right) * rank  # the one behind the rank
     before, behind = np.arange(cut - left - right, cut), np.arange(cut, cut + left + right)
@@ -77,6 +76,6 @@ def _indices(rank, ranks, left, right):
     return np.append(before[:left], behind[left:]), np.append(before[left:], behind[:left])
 
 
-def regularise_pivots(diagonal):
+def regularise_pivots(diagonal: np.ndarray) -> None:
     """Replace zero pivots: a preconditioner may be off where the operator is singular, but not infinite."""
     diagonal[diagonal == 0.0] = np.abs(diagonal).max(initial=0.0) or 1.0

@@ -1,0 +1,95 @@
+"""Data of a solve without its initial guess: previous masses of the film, gap, conditions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.finite_volumes import extrapolated
+from ehlpetsc.discretisation.unknowns import mirrored
+from ehlpetsc.physics.operation import Conditions
+
+
+class FilmHistory:
+    r"""Masses per area of the film at the previous time levels, for BDF2.
+
+    Parameters
+    ----------
+    m, m_older : shape (nx,)
+        :math:`\rho h(1-\theta)` one and two steps ago.
+    dt, dt_older
+        Current and previous time step, in units of a/u; `dt_older` None starts with backward Euler.
+
+    Attributes
+    ----------
+    k : float
+        Factor of the extrapolation from the two levels of the current step.
+    extrapolated : ndarray, shape (nx,)
+        Extrapolation from the two older levels.
+    """
+
+    def __init__(self, m: np.ndarray, m_older: np.ndarray, dt: float, dt_older: float | None = None):
+        self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
+        self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
+        self.extrapolated = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
+
+    def mirrored(self) -> FilmHistory:
+        """The same history with the nodes in reverse order."""
+        older = None if self.m_older is None else mirrored(self.m_older)
+        return FilmHistory(mirrored(self.m), older, self.dt, self.dt_older)
+
+
+@dataclass(frozen=True)
+class StepInputs:
+    """Data of a solve, without its initial guess.
+
+    Attributes
+    ----------
+    phi : shape (nx,)
+        Contribution of the roughness to the gap, in a^2/R.
+    history
+        Previous time levels; None: steady.
+    fluid
+        None: dry.
+    inlet_film
+        Oil film at the inlet in a^2/R; None: flooded.
+    conditions
+        At the end of the step.
+    load_share
+        Applied fraction of the load of `conditions`.
+    dt
+        Length of the step [s]; None: steady.
+    contact
+        Contact model of the solve; None: that of the problem.
+    heat
+        Data of the film's temperature, :class:`ehlpetsc.effects.heat.film.FilmHeat`; None: isothermal.
+    boundary_friction
+        Coefficient of friction between the solids.
+    """
+
+    phi: np.ndarray
+    history: FilmHistory | None
+    fluid: Any
+    inlet_film: float | None
+    conditions: Conditions
+    load_share: float = 1.0
+    dt: float | None = None
+    contact: ContactModel | None = None
+    heat: Any = None
+    boundary_friction: float | np.ndarray = 0.0
+
+    def mirrored(self) -> StepInputs:
+        """Mirrored step: x, the speeds and all arrays over nodes in reverse order."""
+        now = self.conditions
+        turned = {"conditions": now._replace(u1=-now.u1, u2=-now.u2)}
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray) and value.shape == self.phi.shape:
+                turned[name] = mirrored(value)
+        if self.history is not None:
+            turned["history"] = self.history.mirrored()
+        if self.heat is not None:
+            turned["heat"] = self.heat.mirrored()
+        return replace(self, **turned)
