@@ -17,7 +17,7 @@ from ehlpetsc.surfaces.mesh_resolution import needed_points
 from ehlpetsc.surfaces.profile import WAVE_NODES
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.roughness import Roughness
 

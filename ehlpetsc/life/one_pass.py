@@ -22,7 +22,7 @@ from ehlpetsc.surfaces.body_field import BodyField
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.effects.wear import WearRecord
     from ehlpetsc.run.stop import StopRequest
 

@@ -20,7 +20,7 @@ from ehlpetsc.life.body import LifeBody
 from ehlpetsc.surfaces.roughness import directed_speeds
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.effects.plastic_deformation import PlasticRecord
     from ehlpetsc.life.one_pass import OfBody, Pass
     from ehlpetsc.physics.scales import Scales

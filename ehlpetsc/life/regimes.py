@@ -7,12 +7,11 @@ same case are continued.
 from __future__ import annotations
 
 import contextlib
-import json
 import tomllib
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,8 +20,9 @@ from ehlpetsc.errors import CaseError, NotConverged, OutputError, PostError, Sto
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from ehlpetsc.case.tables.case import Case
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.life.history import LifeHistory
+    from ehlpetsc.run.ranks import PollingStop
     from ehlpetsc.run.series import Member
     from ehlpetsc.run.stop import StopRequest
 
@@ -123,7 +123,6 @@ def run_regimes(
     need_solver()
     from mpi4py import MPI
 
-    from ehlpetsc.results.output_guard import Lock, check_index
     from ehlpetsc.run.ranks import on_root
 
     import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they split
@@ -131,35 +130,29 @@ def run_regimes(
     lives = _Lives(
         case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite, unresolved
     )
-    on_root(comm, check_index, lives.index, "members")
-    lock = Lock(lives.index, "wait for it, or give another -o")
-    on_root(comm, lock.acquire)
+    on_root(comm, lives.index.acquire, False)
     try:
         return lives.run(comm, show or (lambda text: None), stop)
     finally:
-        lock.release()
+        lives.index.release()
 
 
 class _Lives:
-    def __init__(self, case: Case, output: str | Path | None, overwrite: bool, unresolved: bool) -> None:
-        from ehlpetsc.case.combinations import keys_of, settings_of
-        from ehlpetsc.case.loading import members
+    def __init__(self, case: Case, output: Path, overwrite: bool, unresolved: bool) -> None:
+        from ehlpetsc.case.combinations import keys_of
         from ehlpetsc.life.checks import check_case
-        from ehlpetsc.run.series import Member, named
+        from ehlpetsc.results.index import Index
+        from ehlpetsc.run.series import members_of
 
         if case.life is None:
             raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
-        series = tomllib.loads(case.text)["series"]
-        self.case, self.keys = case, keys_of(series)
+        keys = keys_of(tomllib.loads(case.text)["series"])
         self.options = {"overwrite": overwrite, "unresolved": unresolved}
-        stem, self.index = _stem(output), index_of(output)
-        self.members = [
-            Member(name, value, member, stem)
-            for name, (value, member) in zip(named(settings_of(series)), members(case), strict=True)
-        ]
+        self.index = Index(index_of(output), case, "members", keys=keys)
+        self.members = members_of(case, _stem(output))
         for member in self.members:
             check_case(member.case)
-        self.rows = [
+        self.index.rows = [
             {"value": member.value, "file": self.file(member).name, "state": "waiting"}
             for member in self.members
         ]
@@ -169,40 +162,35 @@ class _Lives:
         return member.output.with_name(f"{member.output.stem}.life.h5")
 
     def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: StopRequest | None) -> Path:
-        from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
+        from ehlpetsc.run.ranks import WorkQueue, on_root
 
-        def record(report: Callable) -> None:
+        rows = self.index.rows
+
+        def record(report: tuple[int, dict]) -> None:
             number, row = report
-            self.rows[number] |= row
+            rows[number] |= row
             with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
-                self._write()
-            count = sum(row["state"] != "waiting" for row in self.rows)
-            show(f"{count} of {len(self.rows)}: {self.members[number].name}: {_words(self.rows[number])}")
+                self.index.write()
+            count = sum(row["state"] != "waiting" for row in rows)
+            show(f"{count} of {len(rows)}: {self.members[number].name}: {_words(rows[number])}")
 
-        on_root(comm, self._write)
-        queue = WorkQueue(comm, 1, list(range(len(self.members))), record)
-        serving, report = PollingStop(queue, stop), None
-        while (number := queue.next(report, serving(queue.group))) is not None:
-            report = number, self._run_life(self.members[number], queue.group, serving)
-        states = queue.finish(lambda: [row["state"] for row in self.rows])
-        on_root(comm, self._write)
-        if {"waiting", "stopped"} & set(states):
+        on_root(comm, self.index.write)
+        queue = WorkQueue(comm, 1, range(len(self.members)), record)
+        states = queue.compute(self._run_life, stop, lambda: {row["state"] for row in rows})
+        on_root(comm, self.index.write)
+        if {"waiting", "stopped"} & states:
             raise Stopped
-        return self.index
+        return self.index.path
 
-    def _run_life(
-        self,
-        member: Member,
-        group: MPI.Comm,
-        stop: StopRequest | None,
-    ) -> Any:
+    def _run_life(self, number: int, group: MPI.Comm, stop: PollingStop) -> dict:
         from ehlpetsc.life.driver import run_life
         from ehlpetsc.life.history import read_life
 
-        path, state = self.file(member), "done"
+        member = self.members[number]
+        path = self.file(member)
         try:
             life = run_life(member.case, path, **self.options, comm=group, stop=stop)
-            return {"state": state} | outcome(life)
+            return {"state": "done"} | outcome(life)
         except Stopped:
             return {"state": "stopped"}
         except NotConverged as error:
@@ -210,15 +198,6 @@ class _Lives:
             return state | (outcome(read_life(path)) if path.exists() else {})
         except (CaseError, OutputError, PostError, UsageError) as error:
             return {"state": "bad input", "reason": str(error)}
-
-    def _write(self) -> None:
-        from ehlpetsc.results.atomic_write import atomic_write
-
-        content = {"title": self.case.title, "keys": self.keys, "members": self.rows, "case": self.case.text}
-        try:
-            atomic_write(self.index, (json.dumps(content, indent=1, default=str) + "\n").encode())
-        except OSError as error:
-            raise OutputError(f"{self.index}: index not written, {error.strerror}") from error
 
 
 def _words(row: dict) -> str:

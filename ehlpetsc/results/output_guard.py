@@ -2,15 +2,11 @@
 
 import contextlib
 import fcntl
-import json
 import os
 import socket
 from pathlib import Path
 
-import h5py
-
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.hdf5.opening import open_for_reading
 
 WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
@@ -94,44 +90,6 @@ def exists(path):
         reason = getattr(error, "strerror", None) or error
         name = str(path) if str(path).isprintable() else repr(str(path))
         raise OutputError(f"{name}: cannot be read, {reason}") from error
-
-
-def check_index(path, rows, files=()):
-    """Refuse to replace a file that is not an index, or files at the paths of results that are not results.
-
-    Files named in the index and HDF5 files that cannot be opened may be replaced.
-
-    Parameters
-    ----------
-    path : Path
-        Index file.
-    rows : str
-        Name of the list in it: "members" or "passes".
-    files : iterable of Path
-        Paths of the results.
-
-    Raises
-    ------
-    OutputError
-    """
-    named = set()
-    if exists(path):
-        try:
-            named = {row["file"] for row in json.loads(path.read_text())[rows]}
-        except (OSError, ValueError, KeyError, TypeError):
-            raise OutputError(f"{path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}") from None
-    for file in files:
-        if file.is_file() and file.stat().st_size and file.name not in named and not _is_ours(file):
-            raise OutputError(f"{file}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}")
-
-
-def _is_ours(path):
-    """Whether a file is a result, or an HDF5 file too damaged to be recognised."""
-    try:
-        with open_for_reading(path) as file:
-            return "format_version" in file.attrs
-    except OutputError:
-        return h5py.is_hdf5(path)
 
 
 class Lock:

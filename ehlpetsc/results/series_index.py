@@ -1,6 +1,5 @@
 """Results of a series, opened and sorted by the varied value."""
 
-import json
 import tomllib
 from functools import reduce
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.index import read_index
 from ehlpetsc.results.reader import read_result
 
 MAX_NAME_LENGTH = 80  # characters
@@ -67,21 +67,6 @@ def files_of(path):
     if not existing:
         raise OutputError(f"{path}: no member of the series has a result file beside it")
     return existing
-
-
-def read_index(path):
-    """Content of an index file.
-
-    Raises
-    ------
-    OutputError
-    """
-    try:
-        return json.loads(path.read_text())
-    except OSError as error:
-        raise OutputError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise OutputError(f"{path}: not the index of a series ({error})") from error
 
 
 def series_values(results):

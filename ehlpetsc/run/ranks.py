@@ -4,12 +4,24 @@ The first rank distributes the items of the queue and computes at the same time:
 its own time steps (:meth:`WorkQueue.serve`), so that no rank only waits and no shared memory is needed.
 """
 
+from __future__ import annotations
+
 import time as clock
+from collections.abc import Callable, Hashable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.errors import OutputError
 
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
-def on_root(comm, action, *arguments):
+    from ehlpetsc.run.stop import StopRequest
+
+REQUEST, ANSWER = 71, 72  # tags of messages
+POLL_SECONDS = 0.01  # between two polls of a waiting rank
+
+
+def on_root(comm: MPI.Comm, action: Callable, *arguments: Any) -> Any:
     """Result of `action` on rank 0, None on the others; its OutputError is raised on every rank."""
     answer = fault = None
     if comm.rank == 0:
@@ -23,62 +35,51 @@ def on_root(comm, action, *arguments):
     return answer
 
 
-REQUEST, ANSWER = 71, 72  # tags of messages
-POLL_SECONDS = 0.01  # between two polls of a waiting rank
-
-
 class WorkQueue:
-    """Distributes the numbers in `order` to groups of `ranks` ranks each.
+    """Distributes the items in `order` to groups of `ranks` ranks each; the last has the remaining ranks.
 
-    Parameters
-    ----------
-    world : mpi4py communicator
-    ranks : int
-        Size of a group; the last group has the remaining ranks.
-    order : list of int
-        Items in the order of their distribution.
-    on_report : callable
-        Called on the first rank of the world with each report.
-    group : mpi4py communicator, optional
-        Group of this rank in an earlier queue; by default the ranks are split.
-
-    Attributes
-    ----------
-    group : mpi4py communicator
-        The group this rank is in.
+    `on_report` is called on the first rank of the world with each report. `group` is the group of this rank,
+    by default split from the world, or that of an earlier queue.
     """
 
-    def __init__(self, world, ranks, order, on_report, group=None):
+    def __init__(
+        self,
+        world: MPI.Comm,
+        ranks: int,
+        order: Sequence[Hashable],
+        on_report: Callable[[Any], None],
+        group: MPI.Comm | None = None,
+    ) -> None:
         self.world, self.on_report = world, on_report
         self.group = group or world.Split(world.rank // ranks, world.rank)
         self._waiting = list(order)
         self._others = -(-world.size // ranks) - 1  # groups that have not received the end of the queue
 
-    def next(self, report, ending):
-        """Report on the last item and get the next one; collective over the group.
+    def compute(self, solve: Callable, stop: StopRequest | None, result: Callable[[], Any]) -> Any:
+        """Compute items until the queue is empty or stopped; `result()` of the first rank, on every rank.
 
-        Parameters
-        ----------
-        report : object or None
-            Passed to `on_report`; the report of the group's first rank counts.
-        ending : bool
-            True: distribute no further item, to no group.
-
-        Returns
-        -------
-        int or None
-            None: the queue is empty.
+        `solve(item, group, stop)` returns the rest of the report, after the item.
         """
-        number = None
+        report, serving = None, PollingStop(self, stop)
+        while (item := self.next(report, serving(self.group))) is not None:
+            report = item, solve(item, self.group, serving)
+        return self.finish(result)
+
+    def next(self, report: Any, ending: bool) -> Any:
+        """Report on the last item and get the next one, None at the end; collective over the group.
+
+        With `ending` no group gets a further item.
+        """
+        item = None
         if self.world.rank == 0:
-            number = self._next(report, ending)
+            item = self._next(report, ending)
         elif self.group.rank == 0:
             self.world.send((report, ending), 0, REQUEST)
-            wait(lambda: self.world.iprobe(0, ANSWER))
-            number = self.world.recv(source=0, tag=ANSWER)
-        return self.group.bcast(number)
+            _wait(lambda: self.world.iprobe(0, ANSWER))
+            item = self.world.recv(source=0, tag=ANSWER)
+        return self.group.bcast(item)
 
-    def serve(self):
+    def serve(self) -> None:
         """Answer pending requests on the first rank; to be called often."""
         if self.world.rank != 0:
             return
@@ -87,19 +88,19 @@ class WorkQueue:
         status = MPI.Status()
         while self._others and self.world.iprobe(MPI.ANY_SOURCE, REQUEST, status):
             report, ending = self.world.recv(source=status.source, tag=REQUEST)
-            number = self._next(report, ending)
-            self._others -= number is None
-            self.world.send(number, status.source, ANSWER)
+            item = self._next(report, ending)
+            self._others -= item is None
+            self.world.send(item, status.source, ANSWER)
 
-    def finish(self, status):
-        """Wait until every group is done; return the first rank's `status()` on all ranks."""
+    def finish(self, result: Callable[[], Any]) -> Any:
+        """Wait until every group is done; `result()` of the first rank, on every rank."""
         if self.world.rank == 0:
-            wait(lambda: self.serve() or not self._others)
+            _wait(lambda: self.serve() or not self._others)
         done = self.world.Ibarrier()  # a rank in a blocking barrier would keep its core busy
-        wait(done.Test)
-        return self.world.bcast(status() if self.world.rank == 0 else None)
+        _wait(done.Test)
+        return self.world.bcast(result() if self.world.rank == 0 else None)
 
-    def _next(self, report, ending):
+    def _next(self, report: Any, ending: bool) -> Any:
         if report is not None:
             self.on_report(report)
         if ending:
@@ -108,28 +109,20 @@ class WorkQueue:
 
 
 class PollingStop:
-    """Stop request like `run.stop.StopRequest` that also serves the other groups at every query.
+    """Stop request that also serves the other groups at every query; `stop` None: no stop."""
 
-    Parameters
-    ----------
-    queue : WorkQueue
-    stop : run.stop.StopRequest or None
-        None: no stop.
-    """
-
-    def __init__(self, queue, stop):
+    def __init__(self, queue: WorkQueue, stop: StopRequest | None) -> None:
         self._queue, self._stop = queue, stop
 
-    def __call__(self, group):
+    def __call__(self, group: MPI.Comm) -> bool:
         self._queue.serve()
         return self._stop is not None and self._stop(group)
 
-    def overdue(self, group):
+    def overdue(self, group: MPI.Comm) -> bool:
         self._queue.serve()
         return self._stop is not None and self._stop.overdue(group)
 
 
-def wait(ready):
-    """Poll until `ready()`."""
+def _wait(ready: Callable[[], Any]) -> None:
     while not ready():
         clock.sleep(POLL_SECONDS)

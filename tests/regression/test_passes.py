@@ -72,7 +72,7 @@ def test_unwritable_pass_index_is_an_output_error(tmp_path, monkeypatch):
     def full(path, content):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("ehlpetsc.run.passes.atomic_write", full)
+    monkeypatch.setattr("ehlpetsc.results.index.atomic_write", full)
     case = load(CASE, [*SHORT, "time.travel=0.05"])
     message = r"r\.passes\.json: .*, No space left on device; r\.pass1\.h5 "
     with pytest.raises(OutputError, match=message):

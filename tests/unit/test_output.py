@@ -20,7 +20,7 @@ from ehlpetsc import quantities
 from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, of_every_case
 from ehlpetsc.results.hdf5.datasets import Layout
-from ehlpetsc.results.output_guard import check_index, check_output_path
+from ehlpetsc.results.output_guard import check_output_path
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import ResultWriter
@@ -404,7 +404,6 @@ def without_rows(path):
     "act",
     [
         lambda path: check_output_path(path, []),
-        lambda path: check_index(path, "members"),
         read_result,
         load_restart,
     ],
