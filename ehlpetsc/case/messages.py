@@ -121,7 +121,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 def slip(key: Key, value: object) -> str:
     """Hint to a missing power of ten, as in 206 for 206e9, or to degrees Celsius; "" otherwise."""
-    number = value[0] if isinstance(value, list | tuple) and value else value
+    number = value[0] if key.many and isinstance(value, list | tuple) and value else value
     if isinstance(number, bool) or not isinstance(number, int | float) or key.ge is None:
         return ""
     if not 0.0 < abs(number) < MAX_NUMBER:  # an integer of thousands of digits is no float

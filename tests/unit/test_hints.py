@@ -30,6 +30,7 @@ def fault(overrides):
         ("contact.youngs_modulus", 206, "; 206e9?"),
         ("contact.youngs_modulus", [206, 206], "; 206e9?"),
         ("fluid.pressure_viscosity", 18, "; 18e-9?"),
+        ("heat", {"bulk_temperature": 80}, '; "80 degC"?'),
         ("contact.yield_pressure", 3e9, 'needs contact.model = "mixed"'),
         ("contact.boundary_film", 1e-8, 'needs contact.model = "mixed"'),
         ("contact.radius", {"a": 1}, "contact.radius: a table here; allowed: a number"),

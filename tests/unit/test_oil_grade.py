@@ -33,6 +33,23 @@ def test_grade_sets_the_thermal_law():
     assert kind == WALTHER and reference == 373.15
 
 
+def test_faulty_temperature_of_a_grade_is_the_only_fault():
+    """The viscosity, which then does not follow, was reported as well."""
+    with pytest.raises(CaseError) as refused:
+        load(CASE, GRADE | LEFT_OUT | {"fluid.temperature": 80})
+    (fault,) = refused.value.faults
+    assert "fluid.temperature = 80: " in fault and fault.endswith('; "80 degC"?')
+
+
+def test_named_oil_has_the_viscosities_of_its_class():
+    named = {"fluid.grade": "ISO VG 220"} | LEFT_OUT | ROELANDS
+    for celsius, nu in ((40.0, 220e-6), (100.0, 19.4e-6)):
+        fluid = load(CASE, named | {"fluid.temperature": f"{celsius} degC"}).fluid
+        assert fluid.viscosity == pytest.approx(nu * 899.0 * (1 - 7e-4 * (celsius - 15.0)), rel=1e-9)
+    with pytest.raises(CaseError, match=r'fluid\.grade = "VG 220": .*ISO VG 220'):
+        load(CASE, named | {"fluid.grade": "VG 220", "fluid.temperature": 350.0})
+
+
 def test_faults():
     with pytest.raises(CaseError, match=r"fluid\.viscosity .*missing"):
         load(CASE, GRADE | LEFT_OUT)  # no temperature

@@ -55,9 +55,9 @@ def _check_source(profile: Values) -> dict[str, Any]:
     of_text = [key for key in ("columns", "decimal", "header_lines") if key in given]
     if profile.z is not None and of_text:
         raise Refused(f"{', '.join(of_text)}: for a file, not for heights z")
-    for_a_file = [key for key in values if key not in (*SOURCES, "scale")]
-    if profile.synthetic and given & set(for_a_file):
-        raise Refused(f"{', '.join(for_a_file)} are for a file, not for a synthetic profile")
+    for_a_file = [key for key in values if key in given and key not in (*SOURCES, "scale")]
+    if profile.synthetic and for_a_file:
+        raise Refused(f"{', '.join(for_a_file)}: for a file, not for a synthetic profile")
     return {}
 
 
