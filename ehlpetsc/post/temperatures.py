@@ -1,33 +1,23 @@
 """Surface temperatures of body points on their way through the contact."""
 
+from __future__ import annotations
+
 import numpy as np
 
-from ehlpetsc.post.stresses.body_points import passage
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.stresses.body_points import Passage, passage
 from ehlpetsc.post.stresses.body_stress import limited_slopes
 from ehlpetsc.results.post_result import PointTemperatures
 
 FRAMES_PER_READ = 256
 
 
-def point_temperatures(loads, surface, motion, points):
+def point_temperatures(loads: Loads, surface: str, motion: Passage, points: int) -> PointTemperatures:
     r"""Highest and mean surface temperature of body points and their flash temperature.
 
     The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
     over the stored frames; the flash temperature is the highest temperature minus that of the body.
-
-    Parameters
-    ----------
-    loads : ehlpetsc.post.loads.Loads
-    surface : {"1", "2"}
-        Surface with stored temperature.
-    motion : ehlpetsc.post.stresses.body_points.Passage
-    points : int
-        Number of body points.
-
-    Returns
-    -------
-    PointTemperatures
-        Arrays of shape (points,) [K]; nan for points that did not pass the whole contact.
+    nan for points that did not pass the whole contact.
     """
     highest, sums, times = np.full(points, -np.inf), np.zeros(points), np.zeros(points)
     lasts = _weights(loads.time)
@@ -49,7 +39,7 @@ def point_temperatures(loads, surface, motion, points):
     return PointTemperatures(highest, mean, highest - loads.bulk_temperature(surface))
 
 
-def temperature_history(loads, surface, s):
+def temperature_history(loads: Loads, surface: str, s: float) -> np.ndarray:
     """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
     motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
     frames = np.arange(int(motion.enter[0]), int(motion.leave[0]) + 1)
@@ -57,13 +47,15 @@ def temperature_history(loads, surface, s):
     return rows[np.arange(frames.size), motion.shift[frames]]
 
 
-def _weights(time):
+def _weights(time: np.ndarray) -> np.ndarray:
     """Time weight of each frame [s]."""
     step = np.diff(time)
     return 0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))
 
 
-def _temperatures_between_nodes(loads, surface, frames, offset):
+def _temperatures_between_nodes(
+    loads: Loads, surface: str, frames: np.ndarray, offset: np.ndarray
+) -> np.ndarray:
     """Temperatures (frames, nodes), `offset` (frames,) elements right of the nodes, by limited cubics.
 
     The last node has no following element; its temperature is returned.

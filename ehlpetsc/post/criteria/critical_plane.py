@@ -44,7 +44,9 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
 @compiled(error_model="python", nogil=True)
-def _mark_reversals(points, size, direction, tolerance, is_kept):
+def _mark_reversals(
+    points: np.ndarray, size: int, direction: np.ndarray, tolerance: float, is_kept: np.ndarray
+) -> None:
     """Mark the samples at which the path reverses along a direction by more than the tolerance."""
     high = low = direction[0] * points[0, 0] + direction[1] * points[1, 0] + direction[2] * points[2, 0]
     top = bottom = sign = 0
@@ -69,7 +71,7 @@ def _mark_reversals(points, size, direction, tolerance, is_kept):
 
 
 @compiled(error_model="python", nogil=True)
-def _off_line(points, first, last):
+def _off_line(points: np.ndarray, first: int, last: int) -> tuple[int, float]:
     """Sample with the maximum distance from the straight line between two samples, and this distance."""
     dx, dy = points[0, last] - points[0, first], points[1, last] - points[1, first]
     dz = points[2, last] - points[2, first]
@@ -86,7 +88,7 @@ def _off_line(points, first, last):
 
 
 @compiled(error_model="python", nogil=True)
-def turning_samples(points, size, indices):
+def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     """Write the indices of the samples of points (3, :size) to keep into `indices`; return their number."""
     extent = 0.0
     for k in range(3):
@@ -125,7 +127,7 @@ NEGLIGIBLE_RANGE = (
 
 
 @compiled(error_model="python", nogil=True)
-def _sum(weights, scale, offset, stress, size, out):
+def _sum(weights: tuple, scale: float, offset: float, stress: np.ndarray, size: int, out: np.ndarray) -> None:
     for k in range(size):
         out[k] = offset + scale * (
             weights[0] * float(stress[0, k])
@@ -135,7 +137,16 @@ def _sum(weights, scale, offset, stress, size, out):
 
 
 @compiled(error_model="python", nogil=True)
-def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
+def _on_plane(
+    kind: int,
+    angles: np.ndarray,
+    stress: np.ndarray,
+    size: int,
+    nu: float,
+    residual: float,
+    series: np.ndarray,
+    normal: np.ndarray,
+) -> None:
     """Fill in the counted series (as an equivalent stress) and, if required, the normal stress."""
     theta, phi, psi = angles
     if kind == SWT:
@@ -148,7 +159,9 @@ def _on_plane(kind, angles, stress, size, nu, residual, series, normal):
 
 
 @compiled(error_model="python", nogil=True)
-def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
+def _cycle_damage(
+    kind: int, width: float, normal: float, sensitivity: float, curve: np.ndarray, lives: np.ndarray
+) -> float:
     """1/N of a cycle with a range and a maximum normal stress."""
     if kind == SWT and normal <= 0 or width <= 0:
         return 0.0
@@ -161,7 +174,9 @@ def _cycle_damage(kind, width, normal, sensitivity, curve, lives):
 
 
 @compiled(error_model="python", nogil=True)
-def plane_damage(kind, angles, stress, size, law, threshold, work):
+def plane_damage(
+    kind: int, angles: np.ndarray, stress: np.ndarray, size: int, law: tuple, threshold: float, work: tuple
+) -> float:
     """Damage on one plane, without cycles below `threshold` of the widest range."""
     nu, residual, closed, sensitivity, curve, lives = law
     stack, first, second, weight, series, normal = work
@@ -185,7 +200,9 @@ def plane_damage(kind, angles, stress, size, law, threshold, work):
 
 
 @compiled(error_model="python", nogil=True)
-def _coarse(kind, grid, stress, size, law, work, bounds):
+def _coarse(
+    kind: int, grid: np.ndarray, stress: np.ndarray, size: int, law: tuple, work: tuple, bounds: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Angles (STARTS, 3) and damage of the best planes of the grid, in falling order."""
     nu, residual, _, sensitivity, curve, lives = law
     series, normal = work[4], work[5]
@@ -210,7 +227,9 @@ def _coarse(kind, grid, stress, size, law, work, bounds):
 
 
 @compiled(error_model="python", nogil=True)
-def _improve(kind, angles, damage, stress, size, law, work):
+def _improve(
+    kind: int, angles: np.ndarray, damage: float, stress: np.ndarray, size: int, law: tuple, work: tuple
+) -> float:
     """Pattern search over the angles, from half the coarse step down to `MIN_ANGLE_STEP`."""
     step = GRID_STEP * pi / 180 / 2
     trial = angles.copy()
@@ -231,7 +250,18 @@ def _improve(kind, angles, damage, stress, size, law, work):
 
 
 @compiled(error_model="python", nogil=True)
-def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out):
+def worst_plane(
+    kind: int,
+    grid: np.ndarray,
+    stress: np.ndarray,
+    size: int,
+    few: np.ndarray,
+    few_size: int,
+    law: tuple,
+    work: tuple,
+    bounds: np.ndarray,
+    out: np.ndarray,
+) -> None:
     """Set out (3,) to the damage on the worst plane of stress (3, :size), theta and phi of its normal [rad].
 
     `few` (3, :few_size) are the samples at which the path turns.
@@ -248,7 +278,9 @@ def worst_plane(kind, grid, stress, size, few, few_size, law, work, bounds, out)
 
 
 @compiled(error_model="python", nogil=True)
-def reduced(stress, size, nu, points, indices, few):
+def reduced(
+    stress: np.ndarray, size: int, nu: float, points: np.ndarray, indices: np.ndarray, few: np.ndarray
+) -> int:
     """Fill `points` of loops.equivalent_points and `few` (3, :returned) with the samples that turn."""
     equivalent_points(stress[:, :size], nu, points)
     count = turning_samples(points, size, indices)

@@ -27,7 +27,7 @@ BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 
 
 @compiled(error_model="python", nogil=True)
-def _centre(points, corners, count):
+def _centre(points: np.ndarray, corners: np.ndarray, count: int) -> tuple[bool, np.ndarray]:
     """Centre of the smallest sphere through 1 to 4 points; False if they are degenerate."""
     centre = points[:, corners[0]].copy()
     n = count - 1
@@ -61,7 +61,7 @@ def _centre(points, corners, count):
 
 
 @compiled(error_model="python", nogil=True)
-def _max_distance(points, corners, count, centre):
+def _max_distance(points: np.ndarray, corners: np.ndarray, count: int, centre: np.ndarray) -> float:
     reach = 0.0
     for k in range(count):
         reach = max(reach, np.sum((points[:, corners[k]] - centre) ** 2))
@@ -69,7 +69,9 @@ def _max_distance(points, corners, count, centre):
 
 
 @compiled(error_model="python", nogil=True)
-def _smallest_of_few(points, indices, count):
+def _smallest_of_few(
+    points: np.ndarray, indices: np.ndarray, count: int
+) -> tuple[float, np.ndarray, np.ndarray, int]:
     """Smallest ball about up to 5 points, and the subset of points that defines it."""
     best, best_centre = np.inf, points[:, indices[0]].copy()
     best_subset, best_count = indices.copy(), count
@@ -93,7 +95,7 @@ def _smallest_of_few(points, indices, count):
 
 
 @compiled(error_model="python", nogil=True)
-def smallest_ball(points):
+def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     """Centre (3,) and radius of the smallest ball about points (3, n).
 
     The farthest point outside is added to the points that define the ball until no point is outside; the
@@ -122,7 +124,9 @@ def smallest_ball(points):
 
 
 @compiled(error_model="python", nogil=True)
-def utilisation(stress, points, nu, residual, slope, limit):
+def utilisation(
+    stress: np.ndarray, points: np.ndarray, nu: float, residual: float, slope: float, limit: float
+) -> float:
     """U of a history (3, samples) with its `points` of :mod:`ehlpetsc.post.fatigue.cycles`; `slope` is a."""
     centre, _ = smallest_ball(points)
     root, largest = sqrt(3.0), 0.0

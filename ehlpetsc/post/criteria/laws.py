@@ -24,12 +24,17 @@ residual stress; compression counts as zero, so that its benefit is limited to a
 stress.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from math import exp, inf, log, sqrt
+
+import numpy as np
 
 from ehlpetsc.post.fatigue.strain_life import (
     MAX_RANGE,
     MIN_RANGE,
+    Material,
     curve_table,
     log_local_range,
     log_reversals,
@@ -44,26 +49,17 @@ PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 class Criteria:
     """Constants of the criteria in addition to those of the strain-life curves, SI units.
 
-    Attributes
-    ----------
-    normal_sensitivity : float
-        k of Fatemi and Socie; 1 is customary without tests.
-    yield_strength : float or None
-        sigma_y, Pa; None: the cyclic one at 0.2 % plastic strain, K' 0.002^n'.
-    torsion_limit : float
-        tau_w of Dang Van, Pa. Default: 375 MPa, the amplitude 0.25 p of the shear stress parallel to the
-        surface at the Hertz pressure of 1.5 GPa, the fatigue limit of bearing steel in ISO 281:2007 (in a
-        point contact a von Mises stress of 0.9 GPa).
-    bending_limit : float
-        sigma_w of Dang Van, Pa. Default: sqrt(3) tau_w (von Mises).
+    The limits by default: 375 MPa, the amplitude 0.25 p of the shear stress parallel to the surface at the
+    Hertz pressure of 1.5 GPa, the fatigue limit of bearing steel in ISO 281:2007 (in a point contact a von
+    Mises stress of 0.9 GPa), and sqrt(3) of it in bending.
     """
 
-    normal_sensitivity: float = 1.0
-    yield_strength: float | None = None
-    torsion_limit: float = 375e6
-    bending_limit: float = 375e6 * sqrt(3)
+    normal_sensitivity: float = 1.0  # k of Fatemi and Socie; 1 is customary without tests
+    yield_strength: float | None = None  # sigma_y; None: cyclic, at 0.2 % plastic strain, K' 0.002^n'
+    torsion_limit: float = 375e6  # tau_w of Dang Van
+    bending_limit: float = 375e6 * sqrt(3)  # sigma_w of Dang Van
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("normal_sensitivity", "yield_strength", "torsion_limit", "bending_limit"):
             value = getattr(self, name)
             is_allowed = 0 <= value if name == "normal_sensitivity" else value is None or value > 0
@@ -76,21 +72,21 @@ class Criteria:
             )
 
     @property
-    def hydrostatic_slope(self):
+    def hydrostatic_slope(self) -> float:
         """a of Dang Van's criterion."""
         return 3 * (self.torsion_limit / self.bending_limit - 0.5)
 
-    def sensitivity(self, material):
+    def sensitivity(self, material: Material) -> float:
         """k/sigma_y of Fatemi and Socie, 1/Pa."""
         cyclic = material.hardening_coefficient * PLASTIC_STRAIN**material.cyclic_hardening
         return self.normal_sensitivity / (self.yield_strength or cyclic)
 
 
-def _amplitude_table(modulus, material, rule):
+def _amplitude_table(modulus: float, material: Material, rule: int) -> np.ndarray:
     """ln of the strain amplitude over ln of the squared elastic range (Pa), with `modulus` for E."""
     _, hardening, exponent, strength, *_ = material.constants()
 
-    def log_amplitude(log_squared):
+    def log_amplitude(log_squared: float) -> tuple[float, float]:
         local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
         value = log_strain_amplitude(local, modulus, hardening, exponent)
         elastic = exp(local - log(2 * modulus) - value)
@@ -99,10 +95,12 @@ def _amplitude_table(modulus, material, rule):
     return curve_table(2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength), log_amplitude)
 
 
-def _life_table(curve, strength, modulus, ductility, b, c):
+def _life_table(
+    curve: tuple[float, float], strength: float, modulus: float, ductility: float, b: float, c: float
+) -> np.ndarray:
     """ln(1/N) over ln P of strength/modulus (2N)^b + ductility (2N)^c = P, in the range of the amplitudes."""
 
-    def log_damage(log_parameter):
+    def log_damage(log_parameter: float) -> tuple[float, float]:
         y = log_reversals(log_parameter, strength, modulus, ductility, b, c)
         elastic = exp(log(strength / modulus) + b * y - log_parameter)
         return log(2.0) - y, -1 / (b * elastic + c * (1 - elastic))
@@ -111,7 +109,7 @@ def _life_table(curve, strength, modulus, ductility, b, c):
     return curve_table(start, stop, log_damage)
 
 
-def shear_tables(material, strain="direct"):
+def shear_tables(material: Material, strain: str = "direct") -> tuple[np.ndarray, np.ndarray]:
     """Amplitude and life tables of both shear criteria, strains over sqrt(3): uniaxial with 3G for E."""
     modulus = 1.5 * material.youngs_modulus / (1 + material.poisson_ratio)
     amplitudes = _amplitude_table(modulus, material, rule_of(strain))
@@ -120,7 +118,7 @@ def shear_tables(material, strain="direct"):
     return amplitudes, _life_table(ends, strength, modulus, ductility, b, c)
 
 
-def swt_tables(material, strain="direct"):
+def swt_tables(material: Material, strain: str = "direct") -> tuple[np.ndarray, np.ndarray]:
     """Amplitude and life tables of Smith, Watson and Topper's criterion."""
     modulus, _, _, strength, ductility, b, c = material.constants()
     amplitudes = _amplitude_table(modulus, material, rule_of(strain))

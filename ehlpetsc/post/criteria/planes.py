@@ -23,12 +23,12 @@ GRID_STEP = 15.0  # degrees between the planes and directions of the coarse grid
 
 
 @compiled(error_model="python", nogil=True)
-def _normal(theta, phi):
+def _normal(theta: float, phi: float) -> tuple[float, float, float]:
     return cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
 
 
 @compiled(error_model="python", nogil=True)
-def shear_weights(theta, phi, psi, nu):
+def shear_weights(theta: float, phi: float, psi: float, nu: float) -> tuple[float, float, float]:
     """Weights (3,) of sx, sz, txz in the shear stress on a plane along a direction in it."""
     x, y, z = _normal(theta, phi)
     c, s = cos(psi), sin(psi)
@@ -39,27 +39,27 @@ def shear_weights(theta, phi, psi, nu):
 
 
 @compiled(error_model="python", nogil=True)
-def normal_weights(theta, phi, nu):
+def normal_weights(theta: float, phi: float, nu: float) -> tuple[float, float, float]:
     """Weights (3,) of sx, sz, txz in the normal stress on a plane."""
     x, y, z = _normal(theta, phi)
     return x * x + nu * y * y, z * z + nu * y * y, 2 * x * z
 
 
 @compiled(error_model="python", nogil=True)
-def strain_weights(theta, phi, nu):
+def strain_weights(theta: float, phi: float, nu: float) -> tuple[float, float, float]:
     """Weights (3,) of sx, sz, txz in E times the normal strain, the stress in uniaxial loading."""
     a, b, c = normal_weights(theta, phi, nu)
     return (1 + nu) * (a - nu), (1 + nu) * (b - nu), (1 + nu) * c
 
 
 @compiled(error_model="python", nogil=True)
-def residual_share(theta, phi):
+def residual_share(theta: float, phi: float) -> float:
     """Normal stress on a plane under a unit residual stress along the surface, in x and y."""
     x, y, _ = _normal(theta, phi)
     return x * x + y * y
 
 
-def planes(step=GRID_STEP):
+def planes(step: float = GRID_STEP) -> np.ndarray:
     """Angles (count, 3) in radians of planes about `step` degrees apart, direction 0."""
     rows = []
     for tilt in np.arange(0.0, 90.0, step):
@@ -69,7 +69,7 @@ def planes(step=GRID_STEP):
     return np.radians(rows)
 
 
-def planes_and_directions(step=GRID_STEP):
+def planes_and_directions(step: float = GRID_STEP) -> np.ndarray:
     """Angles (count, 3) in radians of planes and directions in them, both about `step` degrees apart.
 
     Planes without tilt have shear only in the direction of the section; the plane of the section has none.
@@ -82,7 +82,7 @@ def planes_and_directions(step=GRID_STEP):
     return np.array(rows)
 
 
-def described(theta, phi):
+def described(theta: np.ndarray, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Angles of a plane's normal [degrees]: 0 to 180 from x towards z in the section, 0 to 90 out of it."""
     x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
     tilt = np.degrees(np.arctan2(np.abs(y), np.hypot(x, z)))

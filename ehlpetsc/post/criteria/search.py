@@ -1,5 +1,7 @@
 """Criteria over many histories, of result files and of arrays: their counters and functions."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +14,7 @@ from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
 from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
 from ehlpetsc.post.fatigue.accumulate import evaluate
 from ehlpetsc.post.fatigue.cycles import RESIDUES, equivalent_points, workspace
-from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN
+from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material
 
 KINDS = {"fatemi-socie": FATEMI_SOCIE, "shear": SHEAR, "swt": SWT}
 
@@ -30,7 +32,16 @@ class PlaneDamage(NamedTuple):
 
 
 @compiled(error_model="python", nogil=True)
-def _worst_planes(kind, grid, stress, lengths, law, work, spare, out):
+def _worst_planes(
+    kind: int,
+    grid: np.ndarray,
+    stress: np.ndarray,
+    lengths: np.ndarray,
+    law: tuple,
+    work: tuple,
+    spare: tuple,
+    out: np.ndarray,
+) -> None:
     points, indices, few, bounds = spare
     for p in range(stress.shape[0]):
         history, size = stress[p], lengths[p]
@@ -39,7 +50,16 @@ def _worst_planes(kind, grid, stress, lengths, law, work, spare, out):
 
 
 @compiled(error_model="python", nogil=True)
-def _utilisations(stress, lengths, nu, residual, slope, limit, points, out):
+def _utilisations(
+    stress: np.ndarray,
+    lengths: np.ndarray,
+    nu: float,
+    residual: float,
+    slope: float,
+    limit: float,
+    points: np.ndarray,
+    out: np.ndarray,
+) -> None:
     for p in range(stress.shape[0]):
         history = stress[p, :, : lengths[p]]
         equivalent_points(history, nu, points)
@@ -51,7 +71,9 @@ class PlaneCounter:
 
     columns = ("damage", "inclination", "tilt")
 
-    def __init__(self, criterion, material, constants, residue, strain, samples):
+    def __init__(
+        self, criterion: str, material: Material, constants: Criteria, residue: str, strain: str, samples: int
+    ) -> None:
         self.kind = KINDS[criterion]
         self.grid = planes() if self.kind == SWT else planes_and_directions()
         self.tables = (swt_tables if self.kind == SWT else shear_tables)(material, strain)
@@ -64,7 +86,9 @@ class PlaneCounter:
             np.empty(len(self.grid)),
         )
 
-    def __call__(self, stress, lengths, out, residual=0.0):
+    def __call__(
+        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
+    ) -> None:
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): as in PlaneDamage."""
         nu, closed, sensitivity = self.head
         law = (nu, float(residual), closed, sensitivity, *self.tables)
@@ -80,23 +104,27 @@ class LimitCounter:
 
     columns = ("utilisation",)
 
-    def __init__(self, poisson_ratio, constants, samples):
+    def __init__(self, poisson_ratio: float, constants: Criteria, samples: int) -> None:
         self.nu = poisson_ratio
         self.limits = constants.hydrostatic_slope, constants.torsion_limit
         self.points = np.empty((3, samples))
 
-    def __call__(self, stress, lengths, out, residual=0.0):
+    def __call__(
+        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
+    ) -> None:
         """Stress (points, 3, samples), lengths (points,) -> out (points, 1)."""
         stress = np.ascontiguousarray(stress, float)
         _utilisations(stress, lengths, self.nu, float(residual), *self.limits, self.points, out)
 
 
-def columns_of(criterion):
+def columns_of(criterion: str) -> tuple[str, ...]:
     """Names of the results of a criterion for each history."""
     return (LimitCounter if criterion == "dang-van" else PlaneCounter).columns
 
 
-def counter_of(criterion, material, constants, residue, strain, samples):
+def counter_of(
+    criterion: str, material: Material, constants: Criteria, residue: str, strain: str, samples: int
+) -> PlaneCounter | LimitCounter:
     """Counter of a criterion; ValueError for an unknown name."""
     if criterion not in CRITERIA:
         raise ValueError(f"criterion = {criterion!r}: must be one of {', '.join(CRITERIA)}")
@@ -108,67 +136,57 @@ def counter_of(criterion, material, constants, residue, strain, samples):
 
 
 def critical_plane(
-    sx,
-    sz,
-    txz,
-    material,
-    criterion="fatemi-socie",
-    constants=None,
-    residue="closed",
-    strain=DEFAULT_STRAIN,
-    residual_stress=0.0,
-):
+    sx: np.ndarray,
+    sz: np.ndarray,
+    txz: np.ndarray,
+    material: Material,
+    criterion: str = "fatemi-socie",
+    constants: Criteria | None = None,
+    residue: str = "closed",
+    strain: str = DEFAULT_STRAIN,
+    residual_stress: float = 0.0,
+) -> PlaneDamage:
     """Damage of one pass of each history on its worst plane, planes in three dimensions.
 
     Parameters
     ----------
-    sx, sz, txz : array_like, shape (..., samples)
-        Stress histories, Pa; sigma_y follows by plane strain.
-    material : Material
-    criterion : {"fatemi-socie", "shear", "swt"}
-        Equations and sources: :mod:`ehlpetsc.post.criteria.laws`.
-    constants : Criteria, optional
+    sx, sz, txz
+        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    criterion
+        "fatemi-socie", "shear" or "swt"; equations and sources: :mod:`ehlpetsc.post.criteria.laws`.
     residue, strain
         See :func:`ehlpetsc.post.damage`.
-    residual_stress : float
-        Residual stress along the surface, equal in x and y, zero in z, Pa; adds to the normal stress of a
+    residual_stress
+        Residual stress along the surface, equal in x and y, zero in z [Pa]; adds to the normal stress of a
         plane.
-
-    Returns
-    -------
-    PlaneDamage
-        Arrays of shape (...).
-
-    Raises
-    ------
-    ValueError
-        Unknown choice, unequal shapes, nan.
     """
     if criterion not in KINDS:
         raise ValueError(f"criterion = {criterion!r}: must be one of {', '.join(KINDS)}")
 
-    def make(samples):
+    def make(samples: int) -> PlaneCounter | LimitCounter:
         return counter_of(criterion, material, constants or Criteria(), residue, strain, samples)
 
     return PlaneDamage(*evaluate(sx, sz, txz, make, residual_stress))
 
 
-def dang_van(sx, sz, txz, poisson_ratio, constants=None, residual_stress=0.0):
+def dang_van(
+    sx: np.ndarray,
+    sz: np.ndarray,
+    txz: np.ndarray,
+    poisson_ratio: float,
+    constants: Criteria | None = None,
+    residual_stress: float = 0.0,
+) -> float | np.ndarray:
     """Dang Van's utilisation U of the fatigue limit by each history; no crack for U <= 1, safety 1/U.
 
     Parameters
     ----------
-    sx, sz, txz : array_like, shape (..., samples)
-        Stress histories, Pa; sigma_y follows by plane strain.
-    poisson_ratio : float
-    constants : Criteria, optional
-        Contains the two fatigue limits.
-    residual_stress : float
-        Residual stress along the surface, equal in x and y, Pa; adds to the hydrostatic stress.
-
-    Returns
-    -------
-    float or ndarray, shape (...)
+    sx, sz, txz
+        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    constants
+        With the two fatigue limits.
+    residual_stress
+        Residual stress along the surface, equal in x and y [Pa]; adds to the hydrostatic stress.
     """
     constants = constants or Criteria()
     return evaluate(sx, sz, txz, lambda n: LimitCounter(poisson_ratio, constants, n), residual_stress)[0]

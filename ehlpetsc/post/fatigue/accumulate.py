@@ -1,5 +1,8 @@
 r"""Palmgren-Miner damage of stress histories, :math:`D=\sum1/N_i` (Holmes et al. 2005, eq. (15))."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from math import sqrt
 from typing import NamedTuple
 
@@ -8,31 +11,28 @@ import numpy as np
 from ehlpetsc.compiled import compiled
 from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
-from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, STRAINS, cycle_damage, life_table, look_up
+from ehlpetsc.post.fatigue.strain_life import (
+    DEFAULT_STRAIN,
+    STRAINS,
+    Material,
+    cycle_damage,
+    life_table,
+    look_up,
+)
 
 
-def evaluate(sx, sz, txz, counter_of, residual_stress):
-    """Results of a counter for each history.
+def evaluate(
+    sx: np.ndarray, sz: np.ndarray, txz: np.ndarray, counter_of: Callable, residual_stress: float
+) -> list:
+    """Columns of results of a counter for each history, shape (...).
 
     Parameters
     ----------
-    sx, sz, txz : array_like, shape (..., samples)
-        Pa.
-    counter_of : callable(samples)
-        Returns a counter with `columns`, which is called with stress (points, 3, samples), lengths (points,),
-        out (points, columns) and the residual stress.
-    residual_stress : float
-        Pa.
-
-    Returns
-    -------
-    list of float or ndarray, shape (...)
-        One for each column.
-
-    Raises
-    ------
-    ValueError
-        Unequal shapes, nan.
+    sx, sz, txz
+        [Pa], shape (..., samples).
+    counter_of
+        From the number of samples to a counter with `columns`, which is called with stress
+        (points, 3, samples), lengths (points,), out (points, columns) and the residual stress.
     """
     stress = np.stack(
         np.broadcast_arrays(*(np.asarray(component, float) for component in (sx, sz, txz))), axis=-2
@@ -69,7 +69,7 @@ class Counting(NamedTuple):
     mean_stress: str = "none"
     strain: str = DEFAULT_STRAIN
 
-    def check(self):
+    def check(self) -> Counting:
         """Raise ValueError for an unknown option."""
         choices = (CHANNELS, RESIDUES, MEAN_STRESSES, STRAINS)
         for name, value, allowed in zip(self._fields, self, choices, strict=True):
@@ -82,15 +82,24 @@ _squared = compiled(von_mises_squared, error_model="python", nogil=True)
 
 
 @compiled(error_model="python", nogil=True)
-def _squared_range(dsx, dsz, dtxz, nu):
+def _squared_range(dsx: float, dsz: float, dtxz: float, nu: float) -> float:
     return _squared(dsx, nu * (dsx + dsz), dsz, dtxz)
 
 
 @compiled(error_model="python", nogil=True)
-def _sum_cycles(stress, nu, n, first, second, weight, options, constants, table):
+def _sum_cycles(
+    stress: np.ndarray,
+    nu: float,
+    n: int,
+    first: np.ndarray,
+    second: np.ndarray,
+    weight: np.ndarray,
+    options: tuple,
+    constants: tuple,
+    table: np.ndarray,
+) -> tuple[float, float, float]:
     """Damage, number and largest squared range of n cycles in one history (3, samples)."""
     _, morrow, rule, residual = options
-    modulus, hardening, exponent, strength, ductility, b, c = constants
     total = number = largest = 0.0
     for k in range(n):
         i, j = first[k], second[k]
@@ -101,7 +110,7 @@ def _sum_cycles(stress, nu, n, first, second, weight, options, constants, table)
         if morrow:
             dsv = sqrt(squared)
             mean = max((1 + nu) * (xi + xj + zi + zj) / 2 + 2 * residual, -dsv / 2)
-            damage = cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c)
+            damage = cycle_damage(dsv, mean, rule, constants)
         else:
             damage = look_up(squared, table)
         total += weight[k] * damage
@@ -111,13 +120,23 @@ def _sum_cycles(stress, nu, n, first, second, weight, options, constants, table)
 
 
 @compiled(error_model="python", nogil=True)
-def _fill_von_mises(stress, nu, scalar):
+def _fill_von_mises(stress: np.ndarray, nu: float, scalar: np.ndarray) -> None:
     for k in range(stress.shape[1]):
         scalar[k] = sqrt(_squared_range(float(stress[0, k]), float(stress[1, k]), float(stress[2, k]), nu))
 
 
 @compiled(error_model="python", nogil=True)
-def damage_of_points(stress, lengths, nu, channels, options, constants, table, work, out):
+def damage_of_points(
+    stress: np.ndarray,
+    lengths: np.ndarray,
+    nu: float,
+    channels: np.ndarray,
+    options: tuple,
+    constants: tuple,
+    table: np.ndarray,
+    work: tuple,
+    out: np.ndarray,
+) -> None:
     """Set out (points, 3) from stress (points, 3, samples) with lengths[point] samples each."""
     stack, first, second, weight, scalar = work
     for point in range(stress.shape[0]):
@@ -142,7 +161,7 @@ class Counter:
 
     columns = Damage._fields
 
-    def __init__(self, material, counting, samples):
+    def __init__(self, material: Material, counting: Counting, samples: int) -> None:
         counting.check()
         self.material = material
         self.channels = np.array(CHANNELS[counting.count])
@@ -154,7 +173,9 @@ class Counter:
         self.table = life_table(material, counting.strain)
         self.work = (*workspace(samples), np.empty(samples))
 
-    def __call__(self, stress, lengths, out, residual=0.0):
+    def __call__(
+        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
+    ) -> None:
         """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range.
 
         `residual` (Pa) acts in both directions along the surface; it enters only the mean-stress term.
@@ -173,52 +194,41 @@ class Counter:
 
 
 def damage(
-    sx,
-    sz,
-    txz,
-    material,
-    count="max3",
-    residue="closed",
-    mean_stress="none",
-    strain=DEFAULT_STRAIN,
-    residual_stress=0.0,
-):
-    """Damage of one pass of each history.
+    sx: np.ndarray,
+    sz: np.ndarray,
+    txz: np.ndarray,
+    material: Material,
+    count: str = "max3",
+    residue: str = "closed",
+    mean_stress: str = "none",
+    strain: str = DEFAULT_STRAIN,
+    residual_stress: float = 0.0,
+) -> Damage:
+    """Damage of one pass of each history, cycles of the scalar with the largest damage, shape (...).
 
     Parameters
     ----------
-    sx, sz, txz : array_like, shape (..., samples)
-        Stress histories, Pa; sigma_y follows by plane strain.
-    material : Material
-    count : {"max3", "sx", "sz", "txz", "von_mises"}
+    sx, sz, txz
+        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    count
         Scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and txz
         separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
         sz change together, under a passing asperity txz reverses while sz peaks), and the von Mises stress,
         which has no sign, misses a reversal through zero. A von Mises stress with the sign of the shear is
         not available, because its jumps pair nearly equal stress states.
-    residue : {"closed", "half"}
+    residue
         See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
-    mean_stress : {"none", "morrow"}
+    mean_stress
         Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading
         the mean stress) from the fatigue strength. The benefit of compression is limited to that of a
         uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this limit
         the contact pressure would increase lives by decades.
-    strain : {"direct", "neuber", "glinka"}
+    strain
         Use of the elastic range in the cyclic stress-strain curve (13): unchanged, as in the paper, or by
         Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.strain_life`).
-    residual_stress : float
-        Residual stress along the surface, equal in x and y, zero in z, Pa; enters twice in the mean of
+    residual_stress
+        Residual stress along the surface, equal in x and y, zero in z [Pa]; enters twice in the mean of
         Morrow's term, and has no effect without this term.
-
-    Returns
-    -------
-    Damage
-        Arrays of shape (...): damage, cycles (of the scalar with the largest damage), peak_range in Pa.
-
-    Raises
-    ------
-    ValueError
-        Unknown choice, unequal shapes, nan.
     """
     counting = Counting(count, residue, mean_stress, strain)
     return Damage(*evaluate(sx, sz, txz, lambda n: Counter(material, counting, n), residual_stress))

@@ -30,7 +30,16 @@ RESIDUES = ("closed", "half")
 
 
 @compiled(error_model="python", nogil=True)
-def _close(series, stack, bottom, top, first, second, weight, n):
+def _close(
+    series: np.ndarray,
+    stack: np.ndarray,
+    bottom: int,
+    top: int,
+    first: np.ndarray,
+    second: np.ndarray,
+    weight: np.ndarray,
+    n: int,
+) -> tuple[int, int]:
     """Count and remove closed cycles, whose range is within both neighbouring ranges of four reversals."""
     while top - bottom >= 4:
         b, c = series[stack[top - 3]], series[stack[top - 2]]
@@ -45,7 +54,15 @@ def _close(series, stack, bottom, top, first, second, weight, n):
 
 
 @compiled(error_model="python", nogil=True)
-def _close_residue(series, stack, top, first, second, weight, n):
+def _close_residue(
+    series: np.ndarray,
+    stack: np.ndarray,
+    top: int,
+    first: np.ndarray,
+    second: np.ndarray,
+    weight: np.ndarray,
+    n: int,
+) -> int:
     """Count the residue stack[:top] as one period of a repeated history."""
     start = 0
     for i in range(1, top):
@@ -74,7 +91,14 @@ def _close_residue(series, stack, top, first, second, weight, n):
 
 
 @compiled(error_model="python", nogil=True)
-def find_cycles(series, closed, stack, first, second, weight):
+def find_cycles(
+    series: np.ndarray,
+    closed: bool,
+    stack: np.ndarray,
+    first: np.ndarray,
+    second: np.ndarray,
+    weight: np.ndarray,
+) -> int:
     """Write the two reversals and the weight of each cycle; return the number of cycles.
 
     `series` must be finite. Work arrays: `stack` with 2 len + 4 integers, the others with len + 2. The first
@@ -114,7 +138,7 @@ def find_cycles(series, closed, stack, first, second, weight):
     return n
 
 
-def workspace(size):
+def workspace(size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Work arrays (stack, first, second, weight) of :func:`find_cycles` for histories up to `size`."""
     return (
         np.empty(2 * size + 4, np.int64),
@@ -124,27 +148,12 @@ def workspace(size):
     )
 
 
-def rainflow(series, residue="closed"):
-    """Rainflow cycles of one history.
+def rainflow(series: np.ndarray, residue: str = "closed") -> np.ndarray:
+    """Rainflow cycles of one history: range, mean, count (1 or 0.5), indices of the two reversals.
 
-    Parameters
-    ----------
-    series : array_like, shape (n,)
-        Finite values.
-    residue : {"closed", "half"}
-        "closed": the history repeats, all cycles are full. "half": ranges that do not close count as half
-        cycles, as in ASTM E1049, 5.4.4.
-
-    Returns
-    -------
-    ndarray, shape (cycles, 5)
-        Rows of range, mean, count (1 or 0.5), index of the first and of the second reversal. In a closed
-        residue the second reversal may come before the first: the cycle then spans the repetition.
-
-    Raises
-    ------
-    ValueError
-        Not one-dimensional, nan or inf, unknown residue.
+    "closed": the history repeats, all cycles are full, and a cycle whose second reversal comes before the
+    first spans the repetition. "half": ranges that do not close count as half cycles, as in ASTM E1049,
+    5.4.4.
     """
     series = np.ascontiguousarray(series, dtype=float)
     if residue not in RESIDUES:
@@ -160,7 +169,7 @@ def rainflow(series, residue="closed"):
 
 
 @compiled(error_model="python", nogil=True)
-def loop_of(series, size, i, j, closed):
+def loop_of(series: np.ndarray, size: int, i: int, j: int, closed: bool) -> tuple[int, int]:
     """First sample and number of samples of the loop of the cycle between samples i and j of series[:size].
 
     `closed`: the history repeats, so that a loop may extend across its end, as from i to j < i.
@@ -193,7 +202,7 @@ def loop_of(series, size, i, j, closed):
 
 
 @compiled(error_model="python", nogil=True)
-def equivalent_points(stress, nu, points):
+def equivalent_points(stress: np.ndarray, nu: float, points: np.ndarray) -> None:
     """Set points (3, samples), whose distances are von Mises stresses, from stress (3, samples)."""
     root = sqrt(3.0)
     for k in range(stress.shape[1]):

@@ -21,13 +21,12 @@ Elastic-plastic range from an elastic range: unchanged, by Neuber's or by Glinka
     \text{Glinka:}\quad \frac{\Delta\sigma^2}{4E}
         +\frac{\Delta\sigma}{n'+1}\Big(\frac{\Delta\sigma}{2K'}\Big)^{1/n'} = \frac{\Delta\sigma_e^2}{4E}
 
-with the cyclic stress-strain curve :math:`\Delta\varepsilon(\Delta\sigma)` of
-:mod:`ehlpetsc.post.fatigue.strain_life`, eq. (13). "direct" is the method of Holmes et al. (2005): the
-elastic range enters (13) as the true range, so that above yield both stress and strain are too large.
-Neuber (1961), J. Appl. Mech. 28, preserves the product of stress and strain (derived for prisms in shear);
-Molski & Glinka (1981), Mater. Sci. Eng. 50, preserve the strain energy of a notch: Neuber's strains tend to
-be too large, Glinka's too small. Both hold for a small yielding zone in an elastic body, as under an
-asperity; ranges are on the doubled curve (Masing).
+with the cyclic stress-strain curve :math:`\Delta\varepsilon(\Delta\sigma)` of eq. (13). "direct" is the
+method of Holmes et al. (2005): the elastic range enters (13) as the true range, so that above yield both
+stress and strain are too large. Neuber (1961), J. Appl. Mech. 28, preserves the product of stress and strain
+(derived for prisms in shear); Molski & Glinka (1981), Mater. Sci. Eng. 50, preserve the strain energy of a
+notch: Neuber's strains tend to be too large, Glinka's too small. Both hold for a small yielding zone in an
+elastic body, as under an asperity; ranges are on the doubled curve (Masing).
 
 Table of 1/N over the stress range, for the inner loop of the damage sum.
 
@@ -35,6 +34,9 @@ ln(1/N) over ln(dsv^2) by cubic Hermite interpolation between 4,096 values with 
 in logarithms (the power laws of the two curves' ends) outside. Relative error of 1/N below 1e-9, as tested.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, inf, log
@@ -49,7 +51,9 @@ DEFAULT_STRAIN = "neuber"
 
 
 @compiled(error_model="python", nogil=True)
-def _sum_of_powers(first, first_slope, second, second_slope, target):
+def _sum_of_powers(
+    first: float, first_slope: float, second: float, second_slope: float, target: float
+) -> tuple[float, float]:
     """y at which exp(first + first_slope y) + exp(second + second_slope y) = exp(wanted), and d wanted/dy.
 
     The logarithm of the sum is convex and increasing in y; from the smaller of the one-term solutions,
@@ -71,7 +75,9 @@ def _sum_of_powers(first, first_slope, second, second_slope, target):
 
 
 @compiled(error_model="python", nogil=True)
-def log_local_range(log_elastic, modulus, hardening, exponent, rule):
+def log_local_range(
+    log_elastic: float, modulus: float, hardening: float, exponent: float, rule: int
+) -> tuple[float, float]:
     """ln of the elastic-plastic stress range from ln of the elastic one, and its slope d ln/d ln.
 
     `rule` is the index of the rule in `STRAINS`.
@@ -103,7 +109,7 @@ class Material:
     fatigue_ductility: float = 0.48
     cyclic_strength: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in (
             "youngs_modulus",
             "cyclic_hardening",
@@ -121,11 +127,11 @@ class Material:
             raise ValueError(f"poisson_ratio = {self.poisson_ratio}: must lie between -1 and 0.5")
 
     @property
-    def hardening_coefficient(self):
+    def hardening_coefficient(self) -> float:
         """K' in Pa."""
         return self.cyclic_strength or self.fatigue_strength / self.fatigue_ductility**self.cyclic_hardening
 
-    def constants(self):
+    def constants(self) -> tuple[float, ...]:
         """Constants (E, K', n', sigma_f', eps_f', b, c) of the compiled functions."""
         return (
             self.youngs_modulus,
@@ -138,22 +144,22 @@ class Material:
         )
 
 
-def equivalent_range(dsx, dsy, dsz, dtxz):
+def equivalent_range(dsx: np.ndarray, dsy: np.ndarray, dsz: np.ndarray, dtxz: np.ndarray) -> np.ndarray:
     """Equivalent stress range from component ranges with their signs, Pa (Holmes et al. 2005, eq. (12))."""
     return np.sqrt(von_mises_squared(dsx, dsy, dsz, dtxz))
 
 
-def rule_of(strain):
+def rule_of(strain: str) -> int:
     """Index of a rule in `STRAINS`; ValueError for an unknown rule."""
     if strain not in STRAINS:
         raise ValueError(f"strain = {strain!r}: must be one of {', '.join(STRAINS)}")
     return STRAINS.index(strain)
 
 
-def strain_range(dsv, material, strain="direct"):
+def strain_range(dsv: np.ndarray, material: Material, strain: str = "direct") -> np.ndarray:
     """Strain range of an elastic stress range dsv in Pa (Holmes et al. 2005, eq. (13)).
 
-    `strain`: rule applied to the elastic range first (:mod:`ehlpetsc.post.fatigue.strain_life`).
+    `strain`: rule applied to the elastic range first.
     """
     dsv = np.asarray(dsv, float)
     if rule_of(strain):
@@ -163,8 +169,8 @@ def strain_range(dsv, material, strain="direct"):
     )
 
 
-def local_range(dsv, material, strain):
-    """Elastic-plastic stress range from an elastic range, Pa (:mod:`.elastic_plastic`)."""
+def local_range(dsv: np.ndarray, material: Material, strain: str) -> np.ndarray:
+    """Elastic-plastic stress range from an elastic range, Pa."""
     dsv, rule = np.asarray(dsv, float), rule_of(strain)
     curve = material.constants()[:3]
     logs = [log_local_range(log(value), *curve, rule)[0] if value > 0 else -inf for value in dsv.ravel()]
@@ -172,7 +178,7 @@ def local_range(dsv, material, strain):
 
 
 @compiled(error_model="python", nogil=True)
-def log_strain_amplitude(log_dsv, modulus, hardening, exponent):
+def log_strain_amplitude(log_dsv: float, modulus: float, hardening: float, exponent: float) -> float:
     """ln of half the strain range of eq. (13) from ln of the stress range: no overflow."""
     elastic = log_dsv - log(2 * modulus)
     plastic = (log_dsv - log(2 * hardening)) / exponent
@@ -181,7 +187,9 @@ def log_strain_amplitude(log_dsv, modulus, hardening, exponent):
 
 
 @compiled(error_model="python", nogil=True)
-def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
+def log_reversals(
+    log_amplitude: float, strength: float, modulus: float, ductility: float, b: float, c: float
+) -> float:
     """ln(2N) from ln of the strain amplitude, eq. (14).
 
     The logarithm of the right-hand side is convex and decreasing in ln(2N); from the larger of the one-term
@@ -206,10 +214,13 @@ def log_reversals(log_amplitude, strength, modulus, ductility, b, c):
 
 
 @compiled(error_model="python", nogil=True)
-def cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductility, b, c):
-    """1/N of one cycle, directly from the equations."""
+def cycle_damage(dsv: float, mean: float, rule: int, constants: tuple) -> float:
+    """1/N of one cycle, directly from the equations; `constants` of a Material."""
+    modulus, hardening, exponent, strength, ductility, b, c = constants
     if dsv <= 0:
         return 0.0
+    if dsv == inf:
+        return inf
     local, _ = log_local_range(log(dsv), modulus, hardening, exponent, rule)
     amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
     y = log_reversals(amplitude, strength - mean, modulus, ductility, b, c)
@@ -217,42 +228,25 @@ def cycle_damage(dsv, mean, rule, modulus, hardening, exponent, strength, ductil
 
 
 @compiled(error_model="python", nogil=True)
-def _lives(dsv, mean, rule, constants, out):
-    modulus, hardening, exponent, strength, ductility, b, c = constants
+def _lives(dsv: np.ndarray, mean: np.ndarray, rule: int, constants: tuple, out: np.ndarray) -> None:
     for i in range(dsv.size):
-        if dsv[i] <= 0:
-            out[i] = inf
-        elif dsv[i] == inf:
-            out[i] = 0.0
-        else:
-            local, _ = log_local_range(log(dsv[i]), modulus, hardening, exponent, rule)
-            amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
-            y = log_reversals(amplitude, strength - mean[i], modulus, ductility, b, c)
-            out[i] = inf if y > MAX_EXPONENT else exp(max(y, -MAX_EXPONENT)) / 2
+        damage = cycle_damage(dsv[i], mean[i], rule, constants)
+        out[i] = 1 / damage if damage > 0 else inf
 
 
-def cycles_to_failure(dsv, material, mean_stress=0.0, strain="direct"):
+def cycles_to_failure(
+    dsv: np.ndarray, material: Material, mean_stress: np.ndarray = 0.0, strain: str = "direct"
+) -> float | np.ndarray:
     """Cycles to failure N under a constant equivalent stress range, eqs. (13) and (14) inverted to rounding.
 
     Parameters
     ----------
-    dsv : array_like
-        Equivalent stress range, Pa, >= 0.
-    material : Material
-    mean_stress : array_like
-        Subtracted from the fatigue strength in the elastic term of (14) (Morrow), Pa.
-    strain : {"direct", "neuber", "glinka"}
-        Rule applied to the elastic range before (13): :mod:`ehlpetsc.post.fatigue.strain_life`.
-
-    Returns
-    -------
-    float or ndarray
-        N; infinite at zero range.
-
-    Raises
-    ------
-    ValueError
-        A negative range or nan, an unknown rule.
+    dsv
+        Equivalent stress range [Pa]; N is infinite at 0.
+    mean_stress
+        Subtracted from the fatigue strength in the elastic term of (14) (Morrow) [Pa].
+    strain
+        Rule applied to the elastic range before (13): "direct", "neuber" or "glinka".
     """
     rule = rule_of(strain)
     dsv, mean = (np.array(array, float) for array in np.broadcast_arrays(dsv, mean_stress))
@@ -267,7 +261,9 @@ ENTRIES = 4096
 MIN_RANGE, MAX_RANGE = 1e-6, 1e2  # of the fatigue strength
 
 
-def curve_table(start, stop, value_and_slope):
+def curve_table(
+    start: float, stop: float, value_and_slope: Callable[[float], tuple[float, float]]
+) -> np.ndarray:
     """Table (ENTRIES + 1, 2) of a function of a logarithm and its slope per step between start and stop.
 
     `value_and_slope` takes the logarithm; the last row holds start and step.
@@ -282,7 +278,7 @@ def curve_table(start, stop, value_and_slope):
 
 
 @lru_cache(maxsize=8)
-def life_table(material, strain="direct"):
+def life_table(material: Material, strain: str = "direct") -> np.ndarray:
     """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: rule applied before eq. (13).
 
     Cached: all histories of one material use the same table.
@@ -290,7 +286,7 @@ def life_table(material, strain="direct"):
     modulus, hardening, exponent, strength, ductility, b, c = material.constants()
     rule = rule_of(strain)
 
-    def log_damage(log_squared):
+    def log_damage(log_squared: float) -> tuple[float, float]:
         local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
         amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
         y = log_reversals(amplitude, strength, modulus, ductility, b, c)
@@ -303,7 +299,7 @@ def life_table(material, strain="direct"):
 
 
 @compiled(error_model="python", nogil=True)
-def interpolate(logarithm, table):
+def interpolate(logarithm: float, table: np.ndarray) -> float:
     """Value of a :func:`curve_table` at a logarithm, extrapolated linearly beyond its ends."""
     last = table.shape[0] - 2
     position = (logarithm - table[last + 1, 0]) / table[last + 1, 1]
@@ -320,6 +316,6 @@ def interpolate(logarithm, table):
 
 
 @compiled(error_model="python", nogil=True)
-def look_up(squared, table):
+def look_up(squared: float, table: np.ndarray) -> float:
     """1/N at the square of a stress range > 0."""
     return exp(min(interpolate(log(squared), table), 700.0))

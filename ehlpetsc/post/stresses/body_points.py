@@ -1,5 +1,8 @@
 """Points fixed in a moving body: positions over time, and those that passed the whole contact."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -22,21 +25,15 @@ class Passage(NamedTuple):
     leave: np.ndarray
     complete: np.ndarray
 
-    def samples(self):
+    def samples(self) -> int:
         """Maximum number of frames of a complete point inside the nodes."""
         return int((self.leave - self.enter + 1)[self.complete].max(initial=0))
 
 
-def body_points(x, dx, travelled):
-    """Body coordinates s, with the spacing dx, of all points that were ever among the nodes x.
+def body_points(x: np.ndarray, dx: float, travelled: Iterable[np.ndarray]) -> np.ndarray:
+    """Body coordinates s, with the spacing dx, of all points that were ever among the nodes x [m].
 
-    Parameters
-    ----------
-    x : ndarray (nx,)
-        m.
-    dx : float
-    travelled : iterable of ndarray (nt,)
-        Distance travelled by each body at each frame, m.
+    `travelled` are the distances of each body at each frame [m].
     """
     ends = np.array([[distance[0], distance[-1]] for distance in travelled])
     before = max(int(np.ceil(ends.max() / dx - GRID_ROUNDING)), 0)
@@ -44,22 +41,13 @@ def body_points(x, dx, travelled):
     return x[0] + dx * np.arange(-before, x.size + after)
 
 
-def passage(s, x, dx, travelled, flank=NO_FLANK):
+def passage(
+    s: np.ndarray, x: np.ndarray, dx: float, travelled: np.ndarray, flank: tuple[float, float] = NO_FLANK
+) -> Passage:
     """Passage of the points s = s[0] + j dx of a body with x = s + travelled (nt,).
 
-    Parameters
-    ----------
-    s, x : ndarray
-    dx : float
-    travelled : ndarray, shape (nt,)
-    flank : (float, float)
-        Points s at x = 0 at the end and at the beginning of the contact of two teeth; points between them
-        need not enter or leave the nodes.
-
-    Raises
-    ------
-    ValueError
-        The body turns back.
+    `flank` are the points s at x = 0 at the end and at the beginning of the contact of two teeth; points
+    between them need not enter or leave the nodes. ValueError if the body turns back.
     """
     base = np.round((s[0] - x[0] + travelled) / dx, 9)
     shift = np.floor(base).astype(np.int64)

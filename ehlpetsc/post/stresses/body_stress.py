@@ -17,7 +17,10 @@ order, limited to three times the smaller adjacent secant, which preserves monot
 same sign: ripples of ten nodes are accurate to 5e-4 of their amplitude, and steep flanks do not overshoot.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import fft
@@ -26,20 +29,23 @@ from ehlpetsc.compiled import compiled
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
 
+if TYPE_CHECKING:
+    from ehlpetsc.post.loads import Loads
+
 NEAR_ELEMENTS = 24  # beyond, a kernel is smooth over an element and quadrature is exact
 HATS_PER_ELEMENT = 64  # approximate the cubics of near elements to 2e-4 of a one-node peak
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 @compiled(error_model="python", nogil=True)
-def _smaller(a, b):
+def _smaller(a: float, b: float) -> float:
     """Number nearer to zero, or zero if the signs differ."""
     nearer = a if abs(a) < abs(b) else b
     return nearer if a * b > 0.0 else 0.0
 
 
 @compiled(error_model="python", nogil=True)
-def _slopes_between(y, slopes):
+def _slopes_between(y: np.ndarray, slopes: np.ndarray) -> None:
     """Slopes of one row of values at all nodes but three at each end; without branches, for vectorisation."""
     y1, y2, y3, y4, y5, y6 = y[1:], y[2:], y[3:], y[4:], y[5:], y[6:]
     for i in range(y.size - 6):
@@ -56,7 +62,7 @@ def _slopes_between(y, slopes):
 
 
 @compiled(error_model="python", nogil=True)
-def limited_slopes(loads, out):
+def limited_slopes(loads: np.ndarray, out: np.ndarray) -> None:
     """Set out to the slopes per element of loads (rows, nodes); zero at the three nodes of each end."""
     nodes = loads.shape[1]
     for row in range(loads.shape[0]):
@@ -64,26 +70,26 @@ def limited_slopes(loads, out):
         _slopes_between(loads[row], out[row, 3:])
 
 
-def _shapes(t):
+def _shapes(t: np.ndarray) -> np.ndarray:
     """Hermite shape functions of value and slope of a node, (2, n), at t in -1 .. 1 elements from it."""
     r = np.abs(t)
     return np.stack([(1 - r) ** 2 * (1 + 2 * r), t * (1 - r) ** 2])
 
 
-def _near(u, z):
+def _near(u: np.ndarray, z: float) -> np.ndarray:
     t = np.arange(1 - HATS_PER_ELEMENT, HATS_PER_ELEMENT) / HATS_PER_ELEMENT
     distances = HATS_PER_ELEMENT * (u[:, None] - t).ravel()
     kernels = hat(distances, HATS_PER_ELEMENT * z).reshape(4, u.size, t.size)
     return kernels @ _shapes(t).T
 
 
-def _far(u, z):
+def _far(u: np.ndarray, z: float) -> np.ndarray:
     half = (GAUSS_NODES + 1) / 2
     t = np.concatenate([-half, half])
     return point_kernels(u[:, None] - t, z) @ (np.tile(GAUSS_WEIGHTS / 2, 2) * _shapes(t)).T
 
 
-def hermite_spectra(nx, z, offset):
+def hermite_spectra(nx: int, z: float, offset: float) -> np.ndarray:
     """Spectra of the kernels of the shape functions, -2/pi included, `offset` elements right of the nodes.
 
     z in elements. Shape (8, padded_length // 2 + 1): A, B, C, E of :mod:`ehlpetsc.post.stresses.half_plane`
@@ -108,13 +114,13 @@ TAPER_WIDTH = 0.45  # 1/element: wave numbers beyond the cut-off over which the 
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
 
 
-def half_element(nx):
+def half_element(nx: int) -> np.ndarray:
     """Spectrum of a shift by half an element."""
     n = padded_length(nx)
     return np.exp(1j * np.pi * np.arange(n // 2 + 1) / n)
 
 
-def offset_weights(offset):
+def offset_weights(offset: np.ndarray) -> np.ndarray:
     """Weights (2, frames, 3) of the two parts of :func:`kernel_table` at offsets (frames,) from the nodes.
 
     Sums and differences of the Lagrange weights of `OFFSETS` that are symmetric about one half.
@@ -127,7 +133,7 @@ def offset_weights(offset):
     return np.stack([left + right, left - right])
 
 
-def low_pass(nx, depth):
+def low_pass(nx: int, depth: float) -> np.ndarray:
     """Factor of each frequency (f,): 1, then falling smoothly to 0. Depth in elements.
 
     Stresses of load ripples decay with the depth as exp(-k z). The spectra of the kernels at larger wave
@@ -142,7 +148,7 @@ def low_pass(nx, depth):
 
 
 @lru_cache(maxsize=8)  # for both surfaces, and the passes of a life
-def kernel_table(nx, depth):
+def kernel_table(nx: int, depth: float) -> np.ndarray:
     r"""Kernel spectra at the three lower OFFSETS, as real numbers (f, 2, 3, 8); depth in elements.
 
     Under values kernels A, C are even, B, E odd, under slopes the other way round. The spectrum of an even
@@ -159,7 +165,7 @@ def kernel_table(nx, depth):
 
 
 @compiled(error_model="python", nogil=True, fastmath={"contract"})
-def _multiply(table, weights, loads, out):
+def _multiply(table: np.ndarray, weights: np.ndarray, loads: np.ndarray, out: np.ndarray) -> None:
     """Spectra out (frames, 3, :f) of sx, sz, txz from a kernel_table, weights and loads (frames, 4, >= f).
 
     `FREQUENCIES_PER_BLOCK` frequencies of all frames at once, so that their part of the table fits in the
@@ -186,20 +192,13 @@ def _multiply(table, weights, loads, out):
 
 
 class BodyStress:
-    """Stresses at body points in a batch of frames, one depth at a time.
+    """Stresses at body points in a batch of frames, one depth at a time; depths (nz,) in elements."""
 
-    Parameters
-    ----------
-    nx : int
-    depths : ndarray, shape (nz,)
-        In elements.
-    """
-
-    def __init__(self, nx, depths):
+    def __init__(self, nx: int, depths: np.ndarray) -> None:
         self.n, self._half = padded_length(nx), half_element(nx)
         self.tables = [kernel_table(nx, depth) for depth in depths]
 
-    def transform(self, pressure, shear):
+    def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
         """Spectra (frames, 4, n/2 + 1) of the loads (frames, nx) and their slopes.
 
         Shifted by half an element. Beyond the end nodes a load falls to zero over one element.
@@ -212,14 +211,16 @@ class BodyStress:
         spectra *= self._half
         return spectra
 
-    def __call__(self, depth, spectra, weights):
+    def __call__(self, depth: int, spectra: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """Stresses (frames, 3, n) of depth number `depth` at offsets with these :func:`offset_weights`."""
         out = np.zeros((len(spectra), 3, self.n // 2 + 1), complex)
         _multiply(self.tables[depth], weights, spectra, out)
         return fft.irfft(out, self.n, overwrite_x=True)
 
 
-def history_at(loads, surface, s, depth, quantum=0.0):
+def history_at(
+    loads: Loads, surface: str, s: float, depth: float, quantum: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
     motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
     enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1

@@ -15,6 +15,9 @@ With u = x - s, D = u^2 + z^2 the plane-strain half plane under pressure p and t
 (Holmes et al. 2005, section 2.3). All lengths here are in element lengths, so the integrals are numbers.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -26,13 +29,13 @@ GAUSS_DISTANCE = 8.0  # elements: beyond, quadrature is exact to rounding and th
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(10)
 
 
-def point_kernels(u, z):
+def point_kernels(u: np.ndarray, z: float) -> np.ndarray:
     """Kernels A, B, C, E at distance u and depth z > 0 or u != 0; shape (4,) + shape of u."""
     d2 = (u * u + z * z) ** 2
     return np.stack([z**3 / d2, z * z * u / d2, z * u * u / d2, u**3 / d2])
 
 
-def _primitives(u, z):
+def _primitives(u: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
     """First and second antiderivatives in u of A, B, C, E, with their limits at z = 0."""
     theta = np.arctan2(u, z)
     d = u * u + z * z
@@ -52,28 +55,28 @@ def _primitives(u, z):
     return first, second
 
 
-def _half_closed(u, z):
+def _half_closed(u: np.ndarray, z: float) -> np.ndarray:
     """Closed form of the left half hat, load 1 + s on -1 <= s <= 0."""
     first, second = _primitives(u, z)
     return _primitives(u + 1, z)[1] - second - first
 
 
-def _hat_closed(u, z):
+def _hat_closed(u: np.ndarray, z: float) -> np.ndarray:
     return _primitives(u + 1, z)[1] - 2 * _primitives(u, z)[1] + _primitives(u - 1, z)[1]
 
 
-def _half_quadrature(u, z):
+def _half_quadrature(u: np.ndarray, z: float) -> np.ndarray:
     s = (GAUSS_NODES - 1) / 2
     values = point_kernels(u[:, None] - s, z)
     return values @ (GAUSS_WEIGHTS / 2 * (1 + s))
 
 
-def _hat_quadrature(u, z):
+def _hat_quadrature(u: np.ndarray, z: float) -> np.ndarray:
     mirrored = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * _half_quadrature(-u, z)
     return _half_quadrature(u, z) + mirrored
 
 
-def _blend(u, z, closed, quadrature):
+def _blend(u: np.ndarray, z: float, closed: Callable, quadrature: Callable) -> np.ndarray:
     u = np.asarray(u, float)
     near = np.hypot(u, z) < GAUSS_DISTANCE
     out = np.empty((4, u.size))
@@ -82,24 +85,16 @@ def _blend(u, z, closed, quadrature):
     return out
 
 
-def hat(u, z):
-    """Kernels A, B, C, E integrated over a hat of unit height and base -1..1.
+def hat(u: np.ndarray, z: float) -> np.ndarray:
+    """Kernels A, B, C, E (4, n) integrated over a hat of unit height and base -1..1.
 
-    Parameters
-    ----------
-    u : ndarray, shape (n,)
-        Distance from the centre of the hat, in elements.
-    z : float
-        Depth in elements, >= 0; at z = 0 the limits from inside the body.
-
-    Returns
-    -------
-    ndarray, shape (4, n)
+    `u` (n,) is the distance from the centre of the hat, `z` the depth, both in elements; at z = 0 the limits
+    from inside the body.
     """
     return _blend(u, z, _hat_closed, _hat_quadrature)
 
 
-def half_hat(u, z):
+def half_hat(u: np.ndarray, z: float) -> np.ndarray:
     """Kernels integrated over the left half of a hat: contribution of an end node outside the load.
 
     At u = z = 0 the stress of a jump of the traction is infinite; the finite part is returned.
@@ -111,7 +106,7 @@ SPACING_TOLERANCE = 1e-6  # relative, of stored positions
 DEPTHS_AT_ONCE = 5  # so that their spectra fit in the cache
 
 
-def spacing(x):
+def spacing(x: np.ndarray) -> float:
     """Spacing of nodes; ValueError for fewer than two nodes or if they are not uniform and increasing."""
     x = np.asarray(x, float)
     if x.ndim != 1 or x.size < 2:
@@ -124,7 +119,7 @@ def spacing(x):
     return dx
 
 
-def padded_length(nx):
+def padded_length(nx: int) -> int:
     """FFT length of the linear convolution of nx nodes with nx offsets in both directions.
 
     2 nx - 1 would suffice; with 2 nx the kernels between two nodes are symmetric.
@@ -132,7 +127,7 @@ def padded_length(nx):
     return fft.next_fast_len(2 * nx, real=True)
 
 
-def kernel_spectra(nx, z):
+def kernel_spectra(nx: int, z: float) -> np.ndarray:
     """Spectra of the hat kernels, -2/pi included; z in elements.
 
     Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.stresses.half_plane`.
@@ -145,19 +140,9 @@ def kernel_spectra(nx, z):
 
 
 class StressField:
-    """Stress operator for one mesh and a set of depths.
+    """Stress operator for nx nodes with the spacing dx [m] and a set of depths z (nz,) [m]."""
 
-    Parameters
-    ----------
-    nx : int
-        Nodes.
-    dx : float
-        Their spacing, m.
-    z : array_like, shape (nz,)
-        Depths >= 0, m.
-    """
-
-    def __init__(self, nx, dx, z):
+    def __init__(self, nx: int, dx: float, z: np.ndarray) -> None:
         z = np.atleast_1d(np.asarray(z, float))
         if not (np.isfinite(z).all() and (z >= 0).all()):
             raise ValueError("depths must be finite and not negative")
@@ -168,7 +153,9 @@ class StressField:
         )
         self._ends = None
 
-    def __call__(self, pressure, shear=None):
+    def __call__(
+        self, pressure: np.ndarray, shear: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Stresses (sx, sz, txz), each (..., nz, nx), under pressure and traction (..., nx), all in Pa."""
         p = fft.rfft(pressure, self.n)[..., None, :]
         q = None if shear is None else fft.rfft(shear, self.n)[..., None, :]
@@ -181,7 +168,7 @@ class StressField:
         self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
         return fields[0], fields[1], fields[2]
 
-    def _spectra(self, block, p, q):
+    def _spectra(self, block: slice, p: np.ndarray, q: np.ndarray | None) -> np.ndarray:
         """Spectra (3, ..., depths, f) of the stresses at some depths."""
         normal, cross, along = self.normal[block], self.cross[block], self.along[block]
         out = np.stack([along * p, normal * p, cross * p])
@@ -191,7 +178,7 @@ class StressField:
             out[2] += along * q
         return out
 
-    def _cut_ends(self, fields, pressure, shear):
+    def _cut_ends(self, fields: np.ndarray, pressure: np.ndarray, shear: np.ndarray | None) -> None:
         """Subtract the outer halves of the end nodes' hats if the load is not zero there."""
         for node, kernels in ((0, 0), (-1, 1)):
             p, q = pressure[..., node], 0.0 if shear is None else shear[..., node]
@@ -203,7 +190,7 @@ class StressField:
             fields[1] -= normal * p + cross * q
             fields[2] -= cross * p + along * q
 
-    def _end_kernels(self):
+    def _end_kernels(self) -> tuple[np.ndarray, np.ndarray]:
         if self._ends is None:
             nodes = np.arange(self.nx)
             left = -2 / np.pi * np.stack([half_hat(nodes, z) for z in self.depths], axis=1)
@@ -213,11 +200,13 @@ class StressField:
 
 
 @lru_cache(maxsize=4)
-def _field(nx, dx, depths):
+def _field(nx: int, dx: float, depths: tuple[float, ...]) -> StressField:
     return StressField(nx, dx, np.array(depths))
 
 
-def stress(x, z, pressure, shear, poisson_ratio):
+def stress(
+    x: np.ndarray, z: float | np.ndarray, pressure: np.ndarray, shear: np.ndarray | None, poisson_ratio: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     r"""Plane-strain stresses under a load that is linear between nodes, to rounding.
 
     .. math::
@@ -233,26 +222,19 @@ def stress(x, z, pressure, shear, poisson_ratio):
 
     Parameters
     ----------
-    x : array_like, shape (nx,)
-        Uniform nodes, m.
-    z : float or array_like, shape (nz,)
-        Depths >= 0, m.
-    pressure : array_like, shape (..., nx)
-        Pa.
-    shear : array_like, shape (..., nx), or None
-        Traction in +x on this solid, Pa.
-    poisson_ratio : float
+    x
+        Uniform nodes [m], shape (nx,).
+    z
+        Depth, or depths (nz,) [m].
+    pressure, shear
+        Pressure and traction in +x on this solid [Pa], shape (..., nx).
+    poisson_ratio
         Checked, but the three in-plane stresses do not depend on it; see :func:`out_of_plane` for the fourth.
 
     Returns
     -------
-    sx, sz, txz : ndarray
-        Pa, (..., nz, nx), without the axis nz if z is a number.
-
-    Raises
-    ------
-    ValueError
-        Nodes not uniform, negative depth, shapes that do not fit, Poisson's ratio outside (-1, 0.5].
+    tuple
+        sx, sz, txz [Pa], shape (..., nz, nx), without the axis nz if z is a number.
     """
     x, pressure = np.asarray(x, float), np.asarray(pressure, float)
     shear = None if shear is None else np.asarray(shear, float)
@@ -266,12 +248,12 @@ def stress(x, z, pressure, shear, poisson_ratio):
     return tuple(component[..., 0, :] for component in result) if np.ndim(z) == 0 else result
 
 
-def out_of_plane(sx, sz, poisson_ratio):
+def out_of_plane(sx: np.ndarray, sz: np.ndarray, poisson_ratio: float) -> np.ndarray:
     """sigma_y = nu (sigma_x + sigma_z), plane strain."""
     return poisson_ratio * (sx + sz)
 
 
-def von_mises(sx, sz, txz, poisson_ratio):
+def von_mises(sx: np.ndarray, sz: np.ndarray, txz: np.ndarray, poisson_ratio: float) -> np.ndarray:
     """Von Mises stress under plane strain, Pa."""
     sy = out_of_plane(sx, sz, poisson_ratio)
     return np.sqrt(von_mises_squared(sx, sy, sz, txz))

@@ -3,21 +3,38 @@
 A point is unstressed before it enters and after it leaves: each history begins and ends with zero.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
+from ehlpetsc.post.stresses.body_points import Passage
 from ehlpetsc.post.stresses.body_stress import FRAMES_PER_BATCH, BodyStress, offset_weights
+
+if TYPE_CHECKING:
+    from ehlpetsc.post.loads import Loads
 
 FRAMES_PER_READ = 144  # by each thread
 SAMPLE_BYTES = 12  # three stresses in single precision
 
 
 @compiled(error_model="python", nogil=True)
-def _collect(stress, begin, first, shift, enter, leave, quantum, histories):
+def _collect(
+    stress: np.ndarray,
+    begin: int,
+    first: int,
+    shift: np.ndarray,
+    enter: np.ndarray,
+    leave: np.ndarray,
+    quantum: float,
+    histories: np.ndarray,
+) -> None:
     """Copy stresses (frames, 3, n) of frames from `begin` on into histories (points, 3, samples).
 
     Point by point from `first` on, rounded to a multiple of the quantum.
@@ -32,7 +49,7 @@ def _collect(stress, begin, first, shift, enter, leave, quantum, histories):
                 histories[row, component, sample] = np.rint(value * inverse) * quantum
 
 
-def runs_of_points(motion, memory, depths):
+def runs_of_points(motion: Passage, memory: float, depths: int) -> list[np.ndarray]:
     """Split the complete points into ranges of consecutive points whose histories fit in `memory` bytes."""
     points = np.flatnonzero(motion.complete)
     room = max(1, int(memory / (SAMPLE_BYTES * depths * (motion.samples() + 2))))
@@ -43,7 +60,7 @@ def runs_of_points(motion, memory, depths):
 
 
 @contextmanager
-def workers(count):
+def workers(count: int) -> Iterator[Callable]:
     """Context manager of a map function on `count` threads."""
     if count == 1:
         yield map
@@ -55,37 +72,30 @@ def workers(count):
 class HistoryCollector:
     """Collector of the histories of consecutive points, which distributes them to the workers.
 
-    A worker is a thread; the expensive parts release the GIL.
-
-    Parameters
-    ----------
-    loads : ehlpetsc.post.loads.Loads
-    surface : str
-    motion : ehlpetsc.post.stresses.body_points.Passage
-    depths : ndarray
-        In elements.
-    quantum : float
-        Pa.
-    map_ : callable
-        Map function of :func:`workers`.
-    advance : callable(frames), optional
+    A worker is a thread; the expensive parts release the GIL. Depths are in elements, `quantum` in Pa, `map_`
+    is a function of :func:`workers`, `advance` is called with the number of frames.
     """
 
-    def __init__(self, loads, surface, motion, depths, quantum, map_=map, advance=None):
+    def __init__(
+        self,
+        loads: Loads,
+        surface: str,
+        motion: Passage,
+        depths: np.ndarray,
+        quantum: float,
+        map_: Callable = map,
+        advance: Callable[[int], None] | None = None,
+    ) -> None:
         self.loads, self.surface, self.motion, self.quantum = loads, surface, motion, quantum
         self.map, self.advance = map_, advance
         self.stress, self.depths = BodyStress(loads.x.size, depths), len(depths)
         self.weights = offset_weights(motion.offset)
 
-    def __call__(self, points, finish):
+    def __call__(self, points: np.ndarray, finish: Sequence[Callable]) -> None:
         """Process the frames of consecutive complete `points`.
 
-        Parameters
-        ----------
-        points : ndarray of int
-        finish : list of callable(depth, first, last, histories)
-            One for each worker, called with the histories (points, 3, samples) of points first .. last-1, of
-            which the first leave - enter + 3 samples count.
+        `finish` has a function for each worker, called with depth, first, last and the histories
+        (points, 3, samples) of points first .. last-1, of which the first leave - enter + 3 samples count.
         """
         motion = self.motion
         histories = np.zeros((self.depths, points.size, 3, motion.samples() + 2), np.float32)
@@ -100,7 +110,9 @@ class HistoryCollector:
         tasks = zip(np.array_split(np.arange(points.size), len(finish)), finish, strict=True)
         list(self.map(partial(self._hand_over, points[0], histories), tasks))
 
-    def _add_frames(self, loads, begin, point, histories, first):
+    def _add_frames(
+        self, loads: tuple[np.ndarray, np.ndarray], begin: int, point: int, histories: np.ndarray, first: int
+    ) -> None:
         """Add the stresses of a batch of frames from `first` on, of loads from frame `begin` on."""
         m, batch = self.motion, slice(first - begin, first - begin + FRAMES_PER_BATCH)
         spectra = self.stress.transform(*(load[batch] for load in loads))
@@ -109,7 +121,7 @@ class HistoryCollector:
             fields = self.stress(depth, spectra, weights)
             _collect(fields, first, point, m.shift, m.enter, m.leave, self.quantum, histories[depth])
 
-    def _hand_over(self, point, histories, task):
+    def _hand_over(self, point: int, histories: np.ndarray, task: tuple[np.ndarray, Callable]) -> None:
         rows, finish = task
         if rows.size:
             first, last = rows[0], rows[-1] + 1
