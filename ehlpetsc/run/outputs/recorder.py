@@ -8,7 +8,6 @@ from ehlpetsc.results.atomic_write import remove_stale
 from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.arguments import check_file
 from ehlpetsc.run.outputs.restart_file import RestartFile
 from ehlpetsc.run.outputs.result_file import ResultFile
 from ehlpetsc.run.ranks import on_root
@@ -35,7 +34,6 @@ class Recorder:
 
     def __init__(self, simulation, output):
         self.simulation, self.comm = simulation, simulation.comm
-        check_file("output", output)
         self.output = None if output is None else Path(output)
         self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
         self._lock = None
@@ -76,7 +74,6 @@ class Recorder:
         ------
         OutputError
         """
-        check_file("restart", restart)
         if self.output is None:
             return restart
         return self.comm.bcast(on_root(self.comm, self._lock_files, restart, overwrite))
