@@ -7,6 +7,7 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,15 +15,14 @@ import numpy as np
 from ehlpetsc.case.checking import Tables, check, is_number
 from ehlpetsc.case.conditions_file import TableFault, read_table
 from ehlpetsc.case.tables import Case
-from ehlpetsc.case.tables.motion import COLUMNS, GEARS
+from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION
 from ehlpetsc.gears.path import Path as ContactPath
 from ehlpetsc.gears.path import path_of_contact
 from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
 MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
-PLACEHOLDER = {"radius": 1.0, "load": 1.0}
-MOTION = {"entrainment_speed": 1.0}
+RATES = ("load", "radius", "speed_1", "speed_2")
 
 
 def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
@@ -36,15 +36,15 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
     if isinstance(gears, dict):
         values, _ = check(GEARS, gears)
         return of_gears(path_of_contact(values.pair)) if values else None
-    if not isinstance(operation, dict):
+    values = check(OPERATION, operation)[0] if isinstance(operation, dict) else None
+    if values is None:
         return None
-    file = operation.get("file")
-    if isinstance(file, str) and file:
-        columns, lines = read_table(folder / file)
+    if values.file is not None:
+        columns, lines = read_table(folder / values.file)
     else:
-        columns = {key: operation[key] for key in COLUMNS if key in operation}
-        lines = None
-    return _checked(columns, lines, tables, operation.get("repeat", 1))
+        columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
+        lines = range(1, len(columns.get("time", ())) + 1)
+    return _table(columns, "line" if values.file else "entry", lines, tables, values.repeat)
 
 
 def with_columns(tables: Tables, folder: Path) -> Tables:
@@ -81,54 +81,37 @@ def of_gears(path: ContactPath) -> ConditionsTable:
     )
 
 
-def _checked(
-    columns: Tables, lines: list[int] | None, tables: Tables, repeat: object
-) -> ConditionsTable | None:
-    """Conditions of the columns; for missing columns the constants of the case."""
+def _table(
+    columns: dict[str, list[float]], row: str, numbers: Sequence[int], tables: Tables, repeat: int
+) -> ConditionsTable:
+    """Conditions of the columns, for missing ones the constants of the case; raises `TableFault`."""
     if "time" not in columns:
         raise TableFault("no column time; allowed: one, increasing")
     if len(columns) == 1:
         raise TableFault("no column but time; allowed: load, radius, speed 1, speed 2, one at least")
-    try:
-        values = {key: np.array(column, float) for key, column in columns.items()}
-    except (TypeError, ValueError):
-        return None
-    if any(column.ndim == 0 for column in values.values()):  # a number: reported by the check of the keys
-        return None
+    values = {key: np.array(column) for key, column in columns.items()}
     count = len(values["time"])
-    if count < 2 or any(v.ndim != 1 or len(v) != count for v in values.values()):
+    if count < 2 or any(len(column) != count for column in values.values()):
         raise TableFault("allowed: columns of the same length, two times at least")
 
-    def where(k: int) -> str:
-        return f"line {lines[k]}" if lines else f"entry {k + 1}"
+    def refuse(key: str, wrong: np.ndarray, allowed: str) -> None:
+        for k in np.flatnonzero(wrong)[:1]:
+            unit = OPERATION.keys[key].unit
+            raise TableFault(f"{row} {numbers[k]}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
 
     for key, column in values.items():
-        if not np.isfinite(column).all():
-            k = int(np.flatnonzero(~np.isfinite(column))[0])
-            raise TableFault(f"{where(k)}: {key} = {column[k]}: allowed: a finite number")
-    time = values["time"]
-    if (np.diff(time) <= 0.0).any():
-        k = int(np.flatnonzero(np.diff(time) <= 0.0)[0]) + 1
-        raise TableFault(
-            f"{where(k)}: time {time[k]:g} s is not after {time[k - 1]:g} s; allowed: increasing times"
-        )
-    for key, unit in (("load", "N/m"), ("radius", "m")):
-        column = values.get(key, np.ones(count))
-        if (column <= 0.0).any():
-            k = int(np.flatnonzero(column <= 0.0)[0])
-            raise TableFault(f"{where(k)}: {key} {column[k]:g} {unit}; allowed: above 0")
+        refuse(key, ~np.isfinite(column), "a finite number")
+    refuse("time", np.append(False, np.diff(values["time"]) <= 0.0), "increasing times")
+    for key in {"load", "radius"} & set(values):
+        refuse(key, values[key] <= 0.0, "above 0")
     constants = _constants(tables)
     missing = [key for key in COLUMNS if key not in values and key not in constants]
     if missing:
         raise TableFault(f"{_sources(missing)}; allowed: a column of the table, or the key")
     values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
     if not (values["speed_1"].any() or values["speed_2"].any()):
-        last = f"up to {where(count - 1)}" if lines else "all the time"
-        raise TableFault(f"{last}: both speeds are zero; allowed: a speed at some time")
-    repeat = repeat if isinstance(repeat, int) and repeat > 0 else 1
-    return ConditionsTable(
-        time - time[0], values["load"], values["radius"], values["speed_1"], values["speed_2"], repeat
-    )
+        raise TableFault(f"up to {row} {numbers[-1]}: both speeds are zero; allowed: a speed at some time")
+    return ConditionsTable(values["time"] - values["time"][0], *(values[key] for key in RATES), repeat)
 
 
 def _constants(tables: Tables) -> dict[str, float]:
@@ -153,19 +136,11 @@ def _sources(missing: list[str]) -> str:
 
 
 def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Tables:
-    """Tables of a case with the reference state of its conditions filled in.
-
-    Without a table, as it is faulty, placeholders prevent reports of keys that follow from it.
-    """
+    """Tables of a case with the reference state of its conditions filled in."""
     named = ("contact", "motion", "time")
-    if not ("gears" in tables or "operation" in tables):
-        return tables
-    if any(not isinstance(tables.get(name, {}), dict) for name in named):  # reported by the check of the keys
-        return tables
+    if table is None or any(not isinstance(tables.get(name, {}), dict) for name in named):
+        return tables  # constant conditions, or faults that the check of the keys reports
     contact, motion, time = (tables.get(name, {}) for name in named)
-    if table is None:
-        filled = {"contact": PLACEHOLDER | contact, "motion": MOTION | motion, "time": {"travel": 1.0} | time}
-        return tables | filled
     load, radius, u, xi = table.reference()
     contact = contact | {"load": load, "radius": radius}
     motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
@@ -173,7 +148,8 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         time = time | {"pass_shift": check(GEARS, tables["gears"])[0].pair.hunting_shift}
     if "travel" not in time:
         try:
-            modulus = reduced_modulus(contact["youngs_modulus"], contact["poisson_ratio"])
+            given = (contact[key] for key in ("youngs_modulus", "poisson_ratio"))
+            modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in given))
             time = time | {"travel": table.swept_length() / hertz_line(load, radius, modulus)[0]}
         except (KeyError, TypeError, ValueError, ZeroDivisionError):
             time = time | {"travel": 1.0}

@@ -132,7 +132,7 @@ def _checked(
         faults = [] if is_stored else [Fault("operation", f"{place}: {error}")]
     data = with_reference_state(data, conditions)
     if "motion" not in data and ("fluid" in data or "time" in data):
-        faults.append(Fault("motion", SPEEDS))
+        faults.append(Fault("motion", SPEEDS, "gears" in data or "operation" in data))
     case, found = check(CASE, data, known=known)
     if case:
         case = case.copy({"_conditions": conditions})

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.checking import check
 from ehlpetsc.case.messages import show
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
-from ehlpetsc.errors import CaseError, ProfileError
+from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
@@ -36,30 +36,15 @@ def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
 
 
 def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> None:
-    try:
-        spec = values_of(PROFILE, table)
-    except CaseError:  # reported with its keys; only the existence of the file can be checked
-        spec = None
-    if spec is None:
-        if "file" not in table:
-            return None
-        return _check_file(folder / table["file"])
+    spec, faults = check(PROFILE, table)
+    if faults:  # reported with its keys
+        return
     scales = case and Scales.of(case)
     profile_samples = samples(folder, spec, scales and scales.dx)
     if case is None:
-        return None
+        return
     film = scales.h * expected_film(case, scales) if case.fluid else 0.0
     fault = absurd(profile_samples, scales.a, scales.dx, scales.h, film)
     if fault:
         likely = likely_unit(profile_samples.source or profile_samples, layout_of(spec), spec.scale)
         raise ProfileError(f"{fault}" + (f"; is it in another unit? write {likely}" if likely else ""))
-    return None
-
-
-def _check_file(path: Path) -> None:
-    try:
-        if path.is_file():
-            return
-    except (OSError, ValueError):  # an impossible file name
-        pass
-    raise ProfileError(f"no such file: {path}")

@@ -226,6 +226,12 @@ def test_bad_keys_are_named(case, capsys):
     ]
 
 
+def test_one_modulus_for_both_flanks_gives_the_whole_path(case):
+    """The run was one half width long."""
+    alike = {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.3}
+    assert load(case(), alike).time.travel == load(case()).time.travel > 10.0
+
+
 def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = case(tip_relief=20e-6)

@@ -72,11 +72,11 @@ def test_units_of_a_heading_are_read(with_table):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        (TABLE.replace("3e-4", "0.5e-4"), "line 4: time 5e-05 s "),
-        (TABLE.replace("3e-4", "1e-4"), "line 4: time 0.0001 s "),
-        (TABLE.replace("300e3", "-300e3"), "line 4: load -300000 N/m"),
-        (TABLE.replace("527e3", "0"), "line 3: load 0 N/m"),
-        (TABLE.replace("0.018", "-1"), "line 4: radius -1 m"),
+        (TABLE.replace("3e-4", "0.5e-4"), "line 4: time = 5e-05 s: "),
+        (TABLE.replace("3e-4", "1e-4"), "line 4: time = 0.0001 s: "),
+        (TABLE.replace("300e3", "-300e3"), "line 4: load = -300000 N/m: "),
+        (TABLE.replace("527e3", "0"), "line 3: load = 0 N/m: "),
+        (TABLE.replace("0.018", "-1"), "line 4: radius = -1 m: "),
         ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "line 3: both speeds"),
         (TABLE.replace("4.0, 4.5", "4.0"), "line 4: "),
         (TABLE.replace("527e3", "lots"), "line 3: "),
