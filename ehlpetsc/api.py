@@ -14,7 +14,7 @@ from ehlpetsc import environment
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError, ExitStatus, UsageError
 from ehlpetsc.results import reader
-from ehlpetsc.results.hdf5.opening import open_result
+from ehlpetsc.results.reader import open_result
 
 __all__ = ["Result", "load", "members", "read_result", "solve"]
 
@@ -167,7 +167,7 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     if status is ExitStatus.STOPPED:
         raise KeyboardInterrupt(_place_of_stop(simulation, recorder))
     if output is None:
-        return Result(h5py.File(io.BytesIO(recorder.result.to_bytes()), "r"), Path("memory.h5"))
+        return Result(h5py.File(io.BytesIO(recorder.to_bytes()), "r"), Path("memory.h5"))
     return read_result(output)
 
 

@@ -4,7 +4,6 @@ import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.names import SIDES, stored_name
 
 FLANKS = ("pinion", "wheel")  # surfaces 1 and 2
 MAX_DEPTHS = 4  # in the picture
@@ -40,12 +39,11 @@ class FlankDamage:
             with h5py.File(file) as stored:
                 group = stored["damage"]
                 self.depths = group["z_over_a"][:].astype(float) * float(stored.attrs["a"])
-                names = [stored_name(group, side) for side in SIDES]
                 s = group["s"][:].astype(float)
                 shape = self.depths.size, s.size
                 self.damage = [
                     group[name][:].astype(float).reshape(shape)[:, ::-1] if name in group else None
-                    for name in names
+                    for name in ("1", "2")
                 ]
                 self.arcs = [begin - s[::-1] for begin in profile_offsets]
         except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:

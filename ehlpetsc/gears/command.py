@@ -11,7 +11,7 @@ from pathlib import Path
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.atomic_write import atomic_write, replacing
-from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
+from ehlpetsc.results.output_guard import PICTURES, check_derived
 
 
 def arguments():
@@ -70,7 +70,7 @@ def _run_of(chosen):
     target = _picture(chosen)
     flanks = target and target.with_suffix(".flanks.png")
     if flanks and post.exists():
-        check_derived(flanks, [Path(chosen.case), post], PICTURE_SIGNATURES)
+        check_derived(flanks, [Path(chosen.case), post], PICTURES)
     print("\n".join(gear_run.lines()))
     if target:
         with replacing(target, keep_ending=True) as temporary:
@@ -90,5 +90,5 @@ def _picture(chosen):
     if chosen.no_picture:
         return None
     target = Path(f"{Path(chosen.case).stem}.gears.png" if chosen.output is None else chosen.output)
-    check_derived(target, [Path(chosen.case)], PICTURE_SIGNATURES)
+    check_derived(target, [Path(chosen.case)], PICTURES)
     return target

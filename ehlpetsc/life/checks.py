@@ -11,8 +11,7 @@ import h5py
 from ehlpetsc.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.results.hdf5.attributes import plain
-from ehlpetsc.results.hdf5.opening import open_for_reading
+from ehlpetsc.results.hdf5_file import open_for_reading, plain
 from ehlpetsc.surfaces.mesh_resolution import needed_points
 from ehlpetsc.surfaces.profile import WAVE_NODES
 

@@ -76,11 +76,11 @@ def _draw_regimes(chosen: Namespace, path: Path) -> None:
 
 def _pictures(chosen: Namespace, path: Path, inputs: list[Path]) -> None:
     """Check the paths of the pictures of a life or an index."""
-    from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PICTURE_SIGNATURES, check_derived
+    from ehlpetsc.results.output_guard import MOVIES, PICTURES, check_derived
 
-    check_derived(path.with_suffix(".png"), inputs, PICTURE_SIGNATURES)
+    check_derived(path.with_suffix(".png"), inputs, PICTURES)
     if chosen.movie:
-        check_derived(Path(chosen.movie), inputs, MOVIE_SIGNATURES, "--movie")
+        check_derived(Path(chosen.movie), inputs, MOVIES, "--movie")
         if path.suffix == ".json":
             raise UsageError(f"--movie {chosen.movie}: of a life; allowed with a series: left out")
 

@@ -17,9 +17,15 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.results.atomic_write import os_reason, replacing
-from ehlpetsc.results.hdf5.attributes import plain, put
-from ehlpetsc.results.hdf5.datasets import close, create, extend, room
-from ehlpetsc.results.hdf5.opening import open_for_reading
+from ehlpetsc.results.hdf5_file import (
+    change,
+    check_space,
+    create,
+    extend,
+    open_for_reading,
+    plain,
+    put_fixed,
+)
 
 if TYPE_CHECKING:
     import h5py
@@ -71,16 +77,17 @@ class LifeFile:
         """
         if self._file:
             with contextlib.suppress(OSError, RuntimeError):  # its rows are complete
-                close(self._file, status)
+                change(self._file, "status", status)
+                self._file.close()
         self._file = None
 
     def _create(self, history: LifeHistory) -> None:
         with replacing(self.path) as temporary:
             file = self._file = create(temporary)
-            with room(file, 0):
-                attributes = {"kind": KIND, "case": history.case, "title": history.title}
-                put(file, attributes | {"format_version": FORMAT, "status": "running", "limits": " "})
-                _lay_out(file, history)
+            attributes = {"kind": KIND, "case": history.case, "title": history.title}
+            file.attrs.update(attributes | {"format_version": FORMAT})
+            put_fixed(file, "status", "running", 16)
+            _lay_out(file, history)
             self._append(history, range(len(history.rows)))
             file.swmr_mode = True
             file.flush()
@@ -89,11 +96,12 @@ class LifeFile:
         for number in numbers:
             values = dict(_values_of(history, number))
             commit = values.pop(f"figures/{COMMIT_DATASET}")
-            with room(self._file, sum(value.nbytes for value in values.values())):
-                for name, value in values.items():
-                    extend(self._file[name], value)
-            with room(self._file, commit.nbytes):
-                extend(self._file[f"figures/{COMMIT_DATASET}"], commit)
+            check_space(self.path, sum(value.nbytes for value in values.values()))
+            for name, value in values.items():
+                extend(self._file[name], value)
+            self._file.flush()
+            extend(self._file[f"figures/{COMMIT_DATASET}"], commit)
+            self._file.flush()
 
 
 def _values_of(history: LifeHistory, number: int) -> Iterator:
@@ -119,11 +127,11 @@ def _lay_out(file: h5py.File, history: LifeHistory) -> None:
     for k, body in enumerate(history.bodies[0], 1):
         for name, unit in BODY_DATASETS.items():
             file[f"surface/{k}/{name}"] = getattr(body, name)
-            put(file[f"surface/{k}/{name}"], {"units": unit})
+            file[f"surface/{k}/{name}"].attrs["units"] = unit
         for name, unit in ROW_DATASETS.items():
-            put(file[f"surface/{k}/{name}"], {"units": unit})
+            file[f"surface/{k}/{name}"].attrs["units"] = unit
     for name, value in history.plastic[0].items():
-        put(file[f"records/{name}"], {"is_number": int(not np.ndim(value))})
+        file[f"records/{name}"].attrs["is_number"] = int(not np.ndim(value))
 
 
 class LifeHistory:

@@ -20,12 +20,12 @@ from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.figures import AROUND_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.atomic_write import replacing
-from ehlpetsc.results.output_guard import MOVIE_SIGNATURES, PAGE_SIGNATURES, PICTURE_SIGNATURES, check_derived
+from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
 from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160  # of pictures
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of outputs that are not pictures
-SIGNATURES = {"movie": MOVIE_SIGNATURES, "report": PAGE_SIGNATURES}
+SIGNATURES = {"movie": MOVIES, "report": PAGES}
 WITHOUT_FRAMES = ("stribeck", "traction", "ensemble")  # kinds that need the scalars of the steps alone
 
 
@@ -93,7 +93,7 @@ def _draw_case(options, cases):
     if len(options.results) > 1:
         raise OutputError(f"{cases[0]}: a case is drawn alone, without results")
     output = options.output or Path(Path(cases[0]).stem + ".case.png")
-    check_derived(output, [Path(cases[0])], PICTURE_SIGNATURES)
+    check_derived(output, [Path(cases[0])], PICTURES)
     figure = draw_case(cases[0], options.set)
     with replacing(output, keep_ending=True) as temporary:
         figure.savefig(temporary, dpi=DPI)
@@ -125,6 +125,6 @@ def _run(options, kind, output):
     with contextlib.ExitStack() as stack:
         results = in_order(open_all(options.results, stack))
         inputs = [*map(Path, options.results), *(r.path for r in results)]
-        check_derived(output, inputs, SIGNATURES.get(kind, PICTURE_SIGNATURES))
+        check_derived(output, inputs, SIGNATURES.get(kind, PICTURES))
         draw(results, kind, options, output)
     print(output)

@@ -18,7 +18,7 @@ from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 from ehlpetsc.post.temperatures import temperature_history
 from ehlpetsc.results.atomic_write import replacing
-from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
+from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.post_result import PostResult
 
 STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # the salt makes SVG files reproducible
@@ -37,7 +37,7 @@ def _save(figure, stem):
     around = figure.get_tightbbox().padded(matplotlib.rcParams["savefig.pad_inches"])
     names = [f"{stem}.{kind}" for kind in FORMATS]
     for name in names:
-        check_derived(Path(name), (), PICTURE_SIGNATURES, "--pictures")
+        check_derived(Path(name), (), PICTURES, "--pictures")
     for kind, name in zip(FORMATS, names, strict=True):
         metadata = {"Date": None} if kind == "svg" else None
         with replacing(name, keep_ending=True) as temporary:

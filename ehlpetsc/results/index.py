@@ -11,7 +11,7 @@ import h5py
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.atomic_write import atomic_write, remove_stale
-from ehlpetsc.results.hdf5.opening import open_for_reading
+from ehlpetsc.results.hdf5_file import open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, check_output_path, exists, inputs_of
 
 

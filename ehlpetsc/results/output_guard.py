@@ -1,122 +1,83 @@
 """Checks of an output path before a run, and the lock against a second run."""
 
+from __future__ import annotations
+
 import contextlib
 import fcntl
 import os
 import socket
+from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
 
 from ehlpetsc.errors import OutputError
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.loading import Case
 
 WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 SIGNATURE_BYTES = 512  # at the beginning of a file, in which its signature is searched
-PICTURE_SIGNATURES = {
-    ".png": b"\x89PNG",
-    ".svg": b"<svg",
-    ".pdf": b"%PDF",
-    ".eps": b"%!PS",
-    ".ps": b"%!PS",
-    ".jpg": b"\xff\xd8",
-    ".jpeg": b"\xff\xd8",
-    ".tif": b"II*",
-    ".tiff": b"II*",
-    ".webp": b"WEBP",
-}
-MOVIE_SIGNATURES = {".gif": b"GIF8", ".mp4": b"ftyp", ".webm": b"webm"}
-PAGE_SIGNATURES = {".html": b"<!DOCTYPE html>", ".htm": b"<!DOCTYPE html>"}
+FORMATS = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
+PICTURES = dict.fromkeys(FORMATS, b"")
+MOVIES = dict.fromkeys((".gif", ".mp4", ".webm"), b"")
+PAGES = dict.fromkeys((".html", ".htm"), b"")
 
 
-def check_output_path(path, inputs, option="-o"):
-    """Refuse an output path that is an input or not a regular file.
-
-    Parameters
-    ----------
-    path : Path
-    inputs : iterable of Path
-        Files that the run reads.
-    option : str
-        Option that names the output, for messages.
-
-    Raises
-    ------
-    OutputError
-    """
+def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") -> None:
+    """Refuse an output path, that of `option`, that is an input or not a regular file: OutputError."""
     if exists(path) and not path.is_file():
         kind = "a folder" if path.is_dir() else "a device or pipe"
         raise OutputError(f"{path}: {kind}, not a file to write a result to; give another {option}")
     for read in inputs:
-        with contextlib.suppress(OSError):
-            if path.exists() and read.exists() and path.samefile(read):
-                raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
+        if path.exists() and read.exists() and path.samefile(read):
+            raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
 
 
-def check_derived(path, inputs, kinds, option="-o"):
+def check_derived(path: Path, inputs: Iterable[Path], kinds: dict[str, bytes], option: str = "-o") -> None:
     """Refuse a derived output path that is an input, has a wrong suffix, or is a file of another kind.
 
-    Parameters
-    ----------
-    path : Path
-    inputs : iterable of Path
-        Files that the command reads.
-    kinds : dict of str to bytes
-        Allowed suffixes, each with the signature of its files: an existing file without it is not replaced.
-    option : str
-        Option that names the output, for messages.
-
-    Raises
-    ------
-    OutputError
+    `kinds` are the allowed suffixes, each with the signature of its files: an existing file without it is not
+    replaced. Pictures have none.
     """
     check_output_path(path, inputs, option)
     signature = kinds.get(path.suffix.lower())
     if signature is None:
         raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(kinds)}")
-    if exists(path):
-        try:
-            with open(path, "rb") as file:
-                head = file.read(SIGNATURE_BYTES)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be read, {error.strerror}") from error
+    if signature and path.exists():
+        with open(path, "rb") as file:
+            head = file.read(SIGNATURE_BYTES)
         if head and signature not in head:
             raise OutputError(f"{path}: exists and is not of that kind; remove it or give another {option}")
 
 
-def exists(path):
+def exists(path: Path) -> bool:
     """Whether a path exists; OutputError if that is not permitted, as in a folder of another user."""
     try:
-        return path.exists() or "\0" in str(path) and path.stat() is None  # stat raises, exists does not
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        name = str(path) if str(path).isprintable() else repr(str(path))
-        raise OutputError(f"{name}: cannot be read, {reason}") from error
+        return path.exists()
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read, {error.strerror}") from error
 
 
 class Lock:
     """Lock on an output, a context manager, or by :meth:`acquire` and :meth:`release`.
 
-    The lock is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process.
-
-    Parameters
-    ----------
-    path : Path
-        Output file.
-    advice : str
-        Advice if another process has the lock.
+    The lock is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process. If
+    another process has it, the message ends in `advice`.
     """
 
-    def __init__(self, path, advice=WAIT_ADVICE):
+    def __init__(self, path: Path, advice: str = WAIT_ADVICE) -> None:
         self._output, self._path, self._file = path, path.with_name(path.name + ".lock"), None
         self._advice = advice
 
-    def __enter__(self):
+    def __enter__(self) -> Lock:
         self.acquire()
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.release()
 
-    def acquire(self):
+    def acquire(self) -> None:
         """Acquire the lock; an OutputError names the process that has it."""
         file = self._locked()
         while not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
@@ -127,7 +88,7 @@ class Lock:
         file.flush()
         self._file = file
 
-    def _locked(self):
+    def _locked(self) -> TextIO:
         try:
             file = open(self._path, "a+")
         except OSError as error:
@@ -143,7 +104,7 @@ class Lock:
             pass  # a file system without locks
         return file
 
-    def release(self):
+    def release(self) -> None:
         """Release the lock; further calls have no effect."""
         if self._file:
             with contextlib.suppress(OSError):
@@ -152,13 +113,8 @@ class Lock:
             self._file = None
 
 
-def inputs_of(case):
-    """Files from which a case is read.
-
-    Parameters
-    ----------
-    case : ehlpetsc.case.loading.Case
-    """
+def inputs_of(case: Case) -> list[Path]:
+    """Files from which a case is read."""
     sides = (case.surface.body_1, case.surface.body_2)
     folder = Path(case.path).parent
     files = [*sides, case.operation]

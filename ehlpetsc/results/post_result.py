@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.hdf5.attributes import Attributes
-from ehlpetsc.results.hdf5.lazy_dataset import reading
-from ehlpetsc.results.hdf5.opening import open_for_reading
+from ehlpetsc.results.hdf5_file import Attributes, open_for_reading, reading
 
 if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result

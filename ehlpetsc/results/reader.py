@@ -1,64 +1,86 @@
 """Reading of result files, complete or left by a killed run: fields and scalars by name."""
 
+from __future__ import annotations
+
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
-from ehlpetsc.case.loading import Case, stored_case
 from ehlpetsc.errors import CaseError, OutputError
-from ehlpetsc.names import current_name, stored_name
-from ehlpetsc.results.hdf5.attributes import Attributes
-from ehlpetsc.results.hdf5.lazy_dataset import LazyDataset, reading
-from ehlpetsc.results.hdf5.opening import open_result
+from ehlpetsc.results.hdf5_file import Attributes, LazyDataset, open_for_reading, reading
 
-FRAMES_PER_BLOCK = 1024  # read at once
-NODE_DATASETS = ("x", "contact_count")  # without a time axis
+if TYPE_CHECKING:
+    from xarray import Dataset, Variable
+
+    from ehlpetsc.case.loading import Case
+
+FORMAT_VERSION = 1  # of the layout
 
 
-def read_result(path, **options):
+def read_result(path: Path, **options: Any) -> Result:
     """Open a result file as `Result`, to be closed or used in a ``with`` statement.
 
-    Options are those of `h5py.File`, errors those of `open_result`.
+    Options are those of `h5py.File`. An OutputError if the file is missing, damaged or not a result.
     """
     return Result(open_result(path, **options), path)
 
 
-def _complete_rows(group, path):
-    """Number of complete rows of a group, whose ``time`` is written last."""
-    rows = [d for n, d in group.items() if isinstance(d, h5py.Dataset) and n not in NODE_DATASETS]
-    for dataset in rows:
-        if not dataset.shape:
-            raise OutputError(f"{path}: {dataset.name.lstrip('/')}: damaged, it has no rows")
-    return min((dataset.shape[0] for dataset in rows), default=0)
+def open_result(path: Path, **options: Any) -> h5py.File:
+    """Open a result file for `Result`; options and errors as for :func:`read_result`."""
+    if not isinstance(path, str | Path):
+        raise OutputError(f"{path!r}: allowed: the name of a result file")
+    file = open_for_reading(path, **options)
+    fault = _fault(file)
+    if fault:
+        file.close()
+        raise OutputError(f"{path}: {fault}")
+    return file
+
+
+def _fault(file: h5py.File) -> str | None:
+    """Reason why an HDF5 file is not a result; None if it is one."""
+    version = file.attrs.get("format_version")
+    if version is not None and "damage/s" in file:
+        return "a result of post-processing; give the file it was made from"
+    if version is None or "x" not in file or "steps" not in file:
+        return "an HDF5 file, but not a result of ehlpetsc"
+    if version != FORMAT_VERSION:
+        return f"format version {version}, this ehlpetsc reads {FORMAT_VERSION}"
+    return None
 
 
 class Steps:
     """Scalars of every step by name: ``steps.h_min``, ``steps("h_min")``; arrays of shape (nsteps,).
 
-    Attributes
-    ----------
-    names : list of str
+    ``print(result.steps)`` lists their names, units and meanings.
     """
 
-    def __init__(self, group, count, path):
-        self._group, self._count, self._path = group, count, path
-        self.names = [current_name(name) for name in group]
+    def __init__(self, group: h5py.Group, path: Path) -> None:
+        self._group, self._path, self.names = group, path, list(group)
+        # time is written last: a killed writer may have extended only some of the others
+        self._count = len(group["time"])
 
-    def __call__(self, name):
-        if current_name(name) not in self.names:
+    def __call__(self, name: str) -> np.ndarray:
+        if name not in self.names:
             raise OutputError(f"{self._path}: has no scalar {name} of its steps")
         with reading(self._path, f"steps/{name}"):
-            return self._group[stored_name(self._group, name)][: self._count]
+            return self._group[name][: self._count]
 
-    def __getattr__(self, name):
-        if current_name(name) in self.__dict__.get("names", ()):
+    def __getattr__(self, name: str) -> np.ndarray:
+        if name in self.__dict__.get("names", ()):
             return self(name)
         raise AttributeError(f"{name}: no scalar of the steps; there are {', '.join(self.names)}")
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.names]
+
+    def __repr__(self) -> str:
+        attributes = {name: Attributes(self._group[name], self._path) for name in self.names}
+        lines = [f"{name:22} {own['units']:6} {own['long_name']}" for name, own in attributes.items()]
+        return "\n".join([f"<Steps: {len(self.names)} scalars of shape ({self._count},)>", *lines])
 
 
 class Result:
@@ -66,7 +88,6 @@ class Result:
 
     Attributes
     ----------
-    path : Path
     attrs : dict
         Root attributes: case text, provenance, a, p0, speeds, status.
     x : ndarray, shape (nx,)
@@ -81,71 +102,67 @@ class Result:
         Time steps in contact over the whole run.
     """
 
-    def __init__(self, file, path):
-        self._file, self._read = file, {}
-        self.path = Path(path)
+    def __init__(self, file: h5py.File, path: Path) -> None:
+        self._file, self._read, self.path = file, {}, Path(path)
         self.attrs = Attributes(file, path)
         with reading(path):
-            # a killed writer may have extended only some datasets
-            self._frames = _complete_rows(file, path)
-            self.steps = Steps(file["steps"], _complete_rows(file["steps"], path), path)
-            datasets = {n: d for n, d in file.items() if isinstance(d, h5py.Dataset)}
-            self.fields = [current_name(name) for name, dataset in datasets.items() if dataset.ndim == 2]
-        self.scalars = self.steps.names
-        self.x, self.contact_count = self["x"][:], self["contact_count"][:]
-        self.time, self.step = self["time"][: self._frames], self["step"][: self._frames]
-        for times in (self.time, self.steps("time")):
-            if not (np.isfinite(times).all() and (np.diff(times) >= 0.0).all()):
-                raise OutputError(f"{path}: damaged, its times do not increase")
-        for steps in (self.step, self.steps("step")) if "step" in self.scalars else ():
-            if not (np.diff(steps) > 0).all():
-                raise OutputError(f"{path}: damaged, its numbers of steps do not increase")
-        if "step" in self.scalars and not np.isin(self.step, self.steps("step")).all():
-            raise OutputError(f"{path}: damaged, a frame is of a step that it does not have")
+            self.time = file["time"][:]  # written last, as in Steps
+            self._frames = len(self.time)
+            self.step = file["step"][: self._frames]
+            self.steps = Steps(file["steps"], path)
+            self.scalars = self.steps.names
+            self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+            self.x, self.contact_count = file["x"][:], file["contact_count"][:]
 
-    def __enter__(self):
+    def __enter__(self) -> Result:
         return self
 
-    def __exit__(self, *exception):
+    def __exit__(self, *exception: object) -> None:
         self.close()
 
-    def close(self):
+    def close(self) -> None:
         """Close the file."""
         self._file.close()
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> LazyDataset:
         """Dataset `name`, read on demand; after a killed run it may have rows beyond `time`."""
         with reading(self.path, name):
-            dataset = self._file.get(stored_name(self._file, name))
+            dataset = self._file.get(name)
             if not isinstance(dataset, h5py.Dataset):
                 raise OutputError(f"{self.path}: does not store {name}")
             return LazyDataset(dataset, self.path)
 
-    def __contains__(self, name):
-        return stored_name(self._file, name) in self._file
+    def __contains__(self, name: str) -> bool:
+        return name in self._file
 
-    def __getattr__(self, name):
-        name = current_name(name)
+    def __getattr__(self, name: str) -> np.ndarray:
         if name not in self.__dict__.get("fields", ()):
             raise AttributeError(f"{name}: no field of this result")
         if name not in self._read:
             self._read[name] = self[name][: self._frames]
         return self._read[name]
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.fields]
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         size = f"{len(self.x)} nodes, {len(self.time)} frames"
         return f"<Result {self.attrs['title']!r}: {size}, {self.attrs['status']}; {', '.join(self.fields)}>"
 
-    def to_xarray(self):
+    @cached_property
+    def case(self) -> Case:
+        """Case as run, without its profile files."""
+        from ehlpetsc.case.loading import stored_case
+
+        try:
+            return stored_case(self.attrs["case"])
+        except CaseError as error:
+            raise OutputError(f"{self.path}: {error.faults[0]}") from None
+
+    def to_xarray(self) -> Dataset:
         """Fields over (time, x) and scalars over (step), with units, long names and the root attributes.
 
-        Returns
-        -------
-        xarray.Dataset
-            The time at the end of each step is ``step_time``, the step of each frame ``frame_step``.
+        The time at the end of each step is ``step_time``, the step of each frame ``frame_step``.
 
         Examples
         --------
@@ -157,7 +174,7 @@ class Result:
         """
         import xarray
 
-        def variable(dims, name, values):
+        def variable(dims: str | tuple, name: str, values: np.ndarray) -> Variable:
             attributes = {key: self[name].attrs[key] for key in ("units", "long_name")}
             return xarray.Variable(dims, values, attributes)
 
@@ -176,54 +193,33 @@ class Result:
             dict(self.attrs),
         )
 
-    @cached_property
-    def case(self) -> Case:
-        """Case as run, without its profile files."""
-        try:
-            return stored_case(self.attrs["case"])
-        except CaseError as error:
-            raise OutputError(f"{self.path}: {error.faults[0]}") from None
-
-    def check(self):
-        """Read all data once; OutputError if any is damaged."""
-        for name in ["step", *self.fields]:
-            for begin in range(0, self._frames, FRAMES_PER_BLOCK):
-                self[name][begin : min(begin + FRAMES_PER_BLOCK, self._frames)]
-        for name in self.scalars:
-            self.steps(name)
-
-    def frame(self, name, index):
+    def frame(self, name: str, index: int) -> np.ndarray:
         """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""
         return self[name][range(len(self.time))[index]].astype(float)
 
-    def nearest_frame(self, *, time=None, step=None):
+    def nearest_frame(self, *, time: float | None = None, step: int | None = None) -> int:
         """Index of the stored frame nearest to a time [s] or to a step number."""
         if (time is None) == (step is None):
             raise OutputError(f"{self.path}: nearest_frame needs either time or step")
         value, stored = (time, self.time) if step is None else (step, self.step)
         return int(np.argmin(np.abs(stored - value)))
 
-    def contact_rate(self):
+    def contact_rate(self) -> np.ndarray:
         """Contacts per millisecond at each node, Q of Holmes et al. 2005, figure 7; shape (nx,).
 
-        Every time step in contact counts as one contact, so that Q increases as the time step decreases.
-
-        Raises
-        ------
-        OutputError
-            The run is steady.
+        Every time step in contact counts as one contact, so that Q increases as the time step decreases. An
+        OutputError if the run is steady.
         """
         duration = np.nansum(self.steps("dt"))
         if not duration > 0.0:
             raise OutputError(f"{self.path}: a steady solution has no contacts per millisecond")
         return self.contact_count / (1e3 * duration)
 
-    def profile(self, surface):
+    def profile(self, surface: str) -> tuple[np.ndarray, np.ndarray, float] | None:
         """Roughness of surface "1" or "2" as ``(s, z, speed)``; None if the surface is smooth."""
         name = f"surface/{surface}"
+        if name not in self:
+            return None
         with reading(self.path, name):
-            name = stored_name(self._file, name)
-            if name not in self._file:
-                return None
             speed = float(self._file[name].attrs["speed"])
         return self[f"{name}/s"][:], self[f"{name}/z"][:], speed

@@ -10,7 +10,7 @@ import numpy as np
 from ehlpetsc import __version__
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.results.hdf5.datasets import CHUNK_BYTES, CHUNK_STEPS
+from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
 from ehlpetsc.surfaces.entry_times import entry_times
 
 # time of a Newton iteration on one rank over that of `probe`: constant part and part for each node, measured

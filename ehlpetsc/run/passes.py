@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.restart_file import load_restart
+from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.restart.checkpoint import pass_of
@@ -79,18 +79,13 @@ class Passes:
         noted, passes = {row["pass"] for row in self.index.stored_rows()}, range(1, self.case.time.passes + 1)
         begun = next((n for n in passes if n not in noted or not self._is_done(n)), None)
         for number in range(begun or 0, 0, -1):
-            if self.file(number).exists() and self._is_of_case(self.restart(number)):
+            if self.file(number).exists() and is_restart_of(self.restart(number), self.case.text):
                 return self.restart(number)
         return None
 
     def _is_done(self, number: int) -> bool:
         with contextlib.suppress(OutputError), read_result(self.file(number)) as result:
             return result.attrs["case"] == self.case.text and result.attrs["status"] == "done"
-        return False
-
-    def _is_of_case(self, path: Path) -> bool:
-        with contextlib.suppress(OutputError, KeyError):
-            return load_restart(path)[1]["case"] == self.case.text
         return False
 
     def _rows_before(self, first: int) -> list[dict]:

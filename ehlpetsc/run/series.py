@@ -23,7 +23,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.restart_file import load_restart
+from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.results.series_index import flat_keys
 from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.forecast import steps
@@ -88,10 +88,9 @@ class Member:
             with read_result(self.output) as result:
                 if result.attrs["case"] != self.case.text:
                     return "waiting"
-                result.check()
                 if result.attrs["status"] == "done":
                     return "done"
-            if load_restart(self.restart)[1]["case"] == self.case.text:
+            if is_restart_of(self.restart, self.case.text):
                 return "begun"
         return "waiting"
 

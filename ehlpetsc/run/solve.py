@@ -159,7 +159,7 @@ class Run:
         elif outcome.status is ExitStatus.STOPPED:
             advice = f"continue with --restart {recorder.restart} or the same command"
             self._print(f"ehlpetsc: stopped at step {state.step}; {advice}")
-        for line in recorder.result.limits:
+        for line in recorder.limits:
             self._print(f"limit: {line}")
         for note in self._notes:
             self._print(f"note: {note}")

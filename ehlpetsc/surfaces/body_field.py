@@ -34,12 +34,6 @@ class BodyField(NamedTuple):
         """Depth zero, for a mesh with cells of the width `cell` [m]."""
         return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros(0))
 
-    def fault(self):
-        """Reason why the values cannot be a depth; None if they can."""
-        if not 0.0 < self.spacing < 1.0 or self.depth.ndim != 1:
-            return "has no cells of a positive width"
-        return None if (self.depth >= 0.0).all() else "has a negative depth"
-
     @property
     def edges(self):
         """Edges of the cells [m], shape (cells + 1,)."""

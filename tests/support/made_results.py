@@ -11,8 +11,7 @@ import numpy as np
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.quantities import FIELDS, of_every_case
-from ehlpetsc.results.hdf5.datasets import Layout
-from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
 TABLE_1 = """title = "made up"

@@ -11,9 +11,8 @@ from support.made_results import TABLE_1, A, make_result
 
 from ehlpetsc.pictures.over_time import space_time_map
 from ehlpetsc.results.contacts import film_at_contact, in_contact
-from ehlpetsc.results.hdf5.datasets import Layout
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter
 
 sys.path.append(str(ROOT / "cases" / "paper"))
 import collisions

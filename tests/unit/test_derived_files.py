@@ -14,7 +14,7 @@ from ehlpetsc.analysis import ensemble
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.atomic_write import replacing
-from ehlpetsc.results.output_guard import PICTURE_SIGNATURES, check_derived
+from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
 
 CASE = ROOT / "cases" / "dry_hertz.toml"
@@ -59,16 +59,13 @@ def test_ensemble_table_is_replaced(tmp_path, ending):
 @pytest.mark.parametrize(
     "words, name",
     [
-        ([], "other.png"),
         ([], "other.h5"),
         ([], "case.toml"),
-        (["--report"], "other.html"),
         (["--report"], "case.toml"),
-        (["--movie"], "other.gif"),
         (["--movie"], "other.restart.h5"),
     ],
 )
-def test_picture_overwrites_pictures_only(tmp_path, capsys, words, name):
+def test_picture_of_another_ending_is_refused(tmp_path, capsys, words, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
     assert plot([str(result), *words, "-o", str(other)]) == 2
@@ -85,7 +82,7 @@ def test_picture_is_replaced(tmp_path):
 
 def test_picture_name_without_a_format_is_refused(tmp_path):
     with pytest.raises(OutputError, match=r"x\.xyz: .*-o: .* \.png, "):
-        check_derived(tmp_path / "x.xyz", (), PICTURE_SIGNATURES)
+        check_derived(tmp_path / "x.xyz", (), PICTURES)
 
 
 @pytest.mark.parametrize(

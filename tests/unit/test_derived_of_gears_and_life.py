@@ -10,7 +10,7 @@ import pytest
 from support import CASES, COARSE_LIFE, refused
 from support.made_loads import Scene, write
 from support.made_results import make_result
-from test_derived_files import PROFILE, foreign
+from test_derived_files import foreign
 from test_output import file_size_limit
 
 from ehlpetsc.analysis.summary import main as summary
@@ -21,7 +21,6 @@ from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.command import main as life
 from ehlpetsc.life.driver import run_life
 from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.pictures import damage as gallery
 from ehlpetsc.post import run as post_run
 from ehlpetsc.post.command import main as post
 from ehlpetsc.results.restart_file import save_restart
@@ -53,9 +52,7 @@ def sentence(capsys, command, *words):
     return message
 
 
-@pytest.mark.parametrize(
-    "option, ending", [("-o", ".png"), ("--csv", ".csv"), ("--csv", ".toml"), ("-o", ".h5")]
-)
+@pytest.mark.parametrize("option, ending", [("--csv", ".csv"), ("--csv", ".toml"), ("-o", ".h5")])
 def test_gears_overwrites_its_own_files_only(pair, tmp_path, capsys, option, ending):
     other = foreign(tmp_path, f"other{ending}")
     before = other.read_bytes()
@@ -111,17 +108,13 @@ def test_summary_overwrites_its_own_tables_only(tmp_path, capsys, name):
     assert other.read_bytes() == before
 
 
-def test_life_picture_overwrites_pictures_only(lived, tmp_path, capsys):
+def test_life_picture_is_replaced_and_kept_on_a_full_disk(lived, tmp_path, capsys):
     assert life([str(lived)]) == 0 and life([str(lived)]) == 0
     picture = tmp_path / "a.life.png"
     before = picture.read_bytes()
     with file_size_limit(4096):
         message = sentence(capsys, life, lived)
     assert message.startswith(f"ehlpetsc life: {picture}: ") and message.endswith(", File too large")
-    assert picture.read_bytes() == before
-    make_result(picture)
-    before = picture.read_bytes()
-    assert f"{picture}: exists" in sentence(capsys, life, lived)
     assert picture.read_bytes() == before
     assert sorted(os.listdir(tmp_path)) == ["a.life.h5", "a.life.png"]
 
@@ -166,16 +159,6 @@ def test_life_overwrites_its_own_passes_only(tmp_path):
 @pytest.fixture
 def crossing(tmp_path):
     return write(tmp_path / "run.h5", Scene(per_width=20, ratio=0.5, travel=9.0), depths=(0.0, 0.5))
-
-
-@pytest.mark.parametrize("name", ["run.stress.png", "run.stress.svg"])
-def test_damage_pictures_overwrite_pictures_only(crossing, tmp_path, capsys, monkeypatch, name):
-    monkeypatch.setattr(gallery, "DPI", 20)
-    other = tmp_path / "p" / name
-    other.parent.mkdir()
-    other.write_text(PROFILE)
-    assert f"{other}: exists" in sentence(capsys, post, crossing, "--pictures", other.parent)
-    assert other.read_text() == PROFILE
 
 
 @pytest.mark.parametrize("folder", ["/proc", "file"])

@@ -10,8 +10,7 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.results.hdf5.datasets import Layout
-from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run import forecast
 from ehlpetsc.run.explain import explain
 from ehlpetsc.run.forecast import file_size, steps, worthwhile_ranks

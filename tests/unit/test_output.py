@@ -1,7 +1,6 @@
 """Result and restart files: their content, and that faults leave them readable."""
 
 import contextlib
-import errno
 import json
 import os
 import re
@@ -10,7 +9,7 @@ import signal
 import subprocess
 import sys
 import textwrap
-from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -19,11 +18,9 @@ import pytest
 from ehlpetsc import quantities
 from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, of_every_case
-from ehlpetsc.results.hdf5.datasets import Layout
-from ehlpetsc.results.output_guard import check_output_path
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.results.writer import ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter
 
 STORED = [*of_every_case(FIELDS), "void_fraction"]
 STEP_SCALARS = of_every_case(quantities.STEP_SCALARS)
@@ -98,18 +95,17 @@ def test_headers_describe_stored_data(tmp_path):
         assert f"{field.long_name} [{field.units}] ({', '.join(field.dims)})".encode() in raw, name
 
 
-def test_texts_are_of_fixed_length_and_fields_have_checksums(tmp_path):
-    """Texts of variable length lie in a heap that has no checksum; HDF5 crashes where it is damaged."""
-    attributes = []
-    with h5py.File(written(tmp_path / "r.h5", range(3), attributes={"case": "c" * 100_000}), "r") as file:
-        file.visititems(lambda _, item: attributes.extend((item, name) for name in item.attrs))
-        attributes += [(file, name) for name in file.attrs]
-        kinds = [h5py.check_string_dtype(item.attrs.get_id(name).dtype) for item, name in attributes]
-        assert sum(kind is not None for kind in kinds) > 2 * len(STEP_SCALARS)
-        assert all(kind is None or kind.length is not None for kind in kinds)
-        assert all(file[name].fletcher32 for name in STORED)
-    with read_result(tmp_path / "r.h5") as result:
-        assert result.attrs["case"] == "c" * 100_000
+@pytest.mark.parametrize("in_memory", [True, False])
+def test_case_text_of_any_length_is_stored(tmp_path, in_memory):
+    """Profiles of a case from Python are in its text; the header of an HDF5 object has 64 KB at most."""
+    path = tmp_path / "r.h5"
+    writer = make_writer(None if in_memory else path, attributes=SCALES | {"case": "c" * 500_000})
+    put(writer, range(3))
+    writer.close("done")
+    if in_memory:
+        path.write_bytes(writer.to_bytes())
+    with read_result(path) as result:
+        assert result.attrs["case"] == "c" * 500_000 and result.attrs["status"] == "done"
 
 
 def test_damaged_field_is_named_and_not_read(tmp_path):
@@ -121,22 +117,6 @@ def test_damaged_field_is_named_and_not_read(tmp_path):
         with pytest.raises(OutputError, match=r"r\.h5: /?pressure: .*damaged"):
             result.frame("pressure", 1)
         assert result.frame("film_thickness", 1)[3] == 1.03
-
-
-@pytest.mark.parametrize(
-    "name, values, fault",
-    [
-        ("steps/step", [0, 1, 5], "frame"),
-        ("steps/step", [0, 2, 1], "numbers of steps"),
-        ("time", [0.0, 2.0, 1.0], "times"),
-    ],
-)
-def test_contradictory_numbers_are_refused(tmp_path, name, values, fault):
-    path = written(tmp_path / "r.h5", range(3))
-    with h5py.File(path, "r+") as file:
-        file[name][:] = values
-    with pytest.raises(OutputError, match=rf"r\.h5: damaged, .*\b{fault}\b"):
-        read_result(path)
 
 
 def test_provenance_is_complete(tmp_path):
@@ -208,20 +188,21 @@ def file_size_limit(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_older_result_is_kept_if_the_start_fails(tmp_path):
-    path = written(tmp_path / "r.h5", range(3))
-    with file_size_limit(100_000), pytest.raises(OutputError, match=r"r\.h5: .*created, File too large$"):
-        make_writer(path)
-    with read_result(path) as result:
-        assert len(result.time) == 3
-    assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
+@pytest.fixture
+def disk(monkeypatch):
+    """Free bytes of the disk, to be changed."""
+    free = [2**40]
+    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=free[0]))
+    return free
 
 
-def test_resuming_on_a_full_disk_keeps_the_original(tmp_path):
+@pytest.mark.parametrize("resumed", [{}, {"resume_step": 1999, "contact_count": np.zeros(NX, int)}])
+def test_older_result_is_kept_if_the_start_fails(tmp_path, disk, resumed):
     path = written(tmp_path / "r.h5", range(2000))
-    with file_size_limit(3_000_000), pytest.raises(OutputError, match=r"r\.h5: .*created, File too large$"):
-        make_writer(path, resume_step=1999)
-    assert_same_content(path, written(tmp_path / "whole.h5", range(2000)))
+    before, disk[0] = path.read_bytes(), 100_000
+    with pytest.raises(OutputError, match=r"r\.h5: .*created, No space left on device$"):
+        make_writer(path, **resumed)
+    assert path.read_bytes() == before and [p.name for p in tmp_path.iterdir()] == ["r.h5"]
 
 
 def test_reader_follows_a_growing_file(tmp_path):
@@ -285,10 +266,14 @@ def test_kill_loses_two_seconds_of_steps_at_most(tmp_path, monkeypatch, pace, st
         assert pace * (step + 1 - kept) <= 2.0
 
 
+def count_after(steps):
+    return [sum(step % (k + 1) == 0 for step in range(steps)) for k in range(NX)]
+
+
 @pytest.mark.parametrize("every", [1, 3])
 def test_resumed_run_equals_an_uninterrupted_one(tmp_path, every):
     first = written(tmp_path / "first.h5", range(60), every=every)
-    writer = make_writer(first, every=every, resume_step=59)
+    writer = make_writer(first, every=every, resume_step=59, contact_count=count_after(60))
     put(writer, range(60, 130))
     writer.close("done")
     assert_same_content(first, written(tmp_path / "whole.h5", range(130), every=every))
@@ -302,8 +287,7 @@ def test_resumed_run_equals_an_uninterrupted_one(tmp_path, every):
 
 def test_killed_run_is_resumed_from_an_earlier_step(tmp_path):
     path = killed(tmp_path / "r.h5", 50, 900)
-    count = [sum(step % (k + 1) == 0 for step in range(41)) for k in range(NX)]
-    writer = make_writer(path, resume_step=40, contact_count=count)
+    writer = make_writer(path, resume_step=40, contact_count=count_after(41))
     put(writer, range(41, 70))
     writer.close("done")
     assert_same_content(path, written(tmp_path / "whole.h5", range(70)))
@@ -313,7 +297,7 @@ def test_killed_run_is_resumed_from_an_earlier_step(tmp_path):
 def test_resuming_twice_keeps_the_history(tmp_path):
     path = written(tmp_path / "r.h5", range(10))
     for begin in (10, 20):
-        writer = make_writer(path, resume_step=begin - 1)
+        writer = make_writer(path, resume_step=begin - 1, contact_count=count_after(begin))
         put(writer, range(begin, begin + 10))
         writer.close("stopped")
     with read_result(path) as result:
@@ -328,7 +312,6 @@ def test_resuming_twice_keeps_the_history(tmp_path):
         ({"fields": ["pressure"], "resume_step": 9}, r"fields \(film_thickness, in_contact, "),
         ({"resume_step": 12}, "at step 9, before step 12 "),
         ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, r"speed \(u1 = 5\.6\)"),
-        ({"resume_step": 5}, "step 9 .*contacts .* step 5 "),
     ],
 )
 def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
@@ -340,16 +323,15 @@ def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
     assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
 
 
-@pytest.mark.parametrize("limit", [6_000_000, 6_543_210, 8_000_000])
-def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, limit):
+def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, disk):
     writer = make_writer(tmp_path / "r.h5")
-    with file_size_limit(limit):
-        with pytest.raises(OutputError, match=r"r\.h5: .* File too large; .* step \d") as fault:
-            put(writer, range(20_000))
-        writer.close("stopped")
-    last, time = re.search(r" step (\d+) \((\S+) us\)$", str(fault.value)).groups()
-    last = int(last)
-    assert float(time) == pytest.approx(0.1 * last)
+    put(writer, range(1100))  # one batch of 1024 is in the file
+    disk[0] = 1_000_000
+    with pytest.raises(
+        OutputError, match=r"r\.h5: .* No space left .* step 10\d\d \(10\d\.\d+ us\)$"
+    ) as fault:
+        put(writer, range(1100, 20_000))
+    last = int(re.search(r" step (\d+) ", str(fault.value))[1])
     with h5py.File(tmp_path / "r.h5", "r"):
         pass  # closed cleanly
     with read_result(tmp_path / "r.h5") as result:
@@ -359,16 +341,6 @@ def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, limit):
         assert result.frame("pressure", -1)[1] == pytest.approx(last + 0.01)
 
 
-def test_disk_full_before_the_first_flush_leaves_no_steps(tmp_path):
-    writer = make_writer(tmp_path / "r.h5")
-    put(writer, range(3))
-    message = r"r\.h5: .* File too large; no step "
-    with file_size_limit(100_000), pytest.raises(OutputError, match=message):
-        writer.flush()
-    with read_result(tmp_path / "r.h5") as result:
-        assert len(result.time) == len(result.steps("step")) == 0
-
-
 @pytest.mark.parametrize(
     "make, message",
     [
@@ -376,8 +348,7 @@ def test_disk_full_before_the_first_flush_leaves_no_steps(tmp_path):
         (lambda path: path.write_text("x" * 3000), "r.h5: not an HDF5"),
         (lambda path: h5py.File(path, "w").close(), "r.h5: an HDF5 .*not a result"),
         (lambda path: save_restart(path, {"p": X}, {}), "r.h5: an HDF5 .*not a result"),
-        (lambda path: later_version(path), r"version 2, .* 1: "),
-        (lambda path: without_rows(path), "pressure: damaged, .* rows"),
+        (lambda path: later_version(path), r"version 2, .* 1$"),
     ],
 )
 def test_foreign_result_files_are_refused(tmp_path, make, message):
@@ -393,30 +364,6 @@ def later_version(path):
         file.attrs["format_version"] = 2
 
 
-def without_rows(path):
-    written(path, range(2))
-    with h5py.File(path, "r+") as file:
-        del file["pressure"]
-        file["pressure"] = 1.0
-
-
-@pytest.mark.parametrize(
-    "act",
-    [
-        lambda path: check_output_path(path, []),
-        read_result,
-        load_restart,
-    ],
-)
-def test_inaccessible_folder_is_reported(tmp_path, monkeypatch, act):
-    def forbidden(self, **_):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self))
-
-    monkeypatch.setattr(Path, "stat", forbidden)
-    with pytest.raises(OutputError, match=r"r\.h5: .*, Permission denied$"):
-        act(tmp_path / "r.h5")
-
-
 def test_restart_content_round_trip(tmp_path):
     path = tmp_path / "r.restart.h5"
     for step in (4, 5):  # the second replaces the first
@@ -430,7 +377,7 @@ def test_restart_content_round_trip(tmp_path):
 
 def test_restart_faults_are_reported(tmp_path):
     result = written(tmp_path / "r.h5", range(2))
-    with pytest.raises(OutputError, match=r"r\.h5: not a restart .* a result"):
+    with pytest.raises(OutputError, match=r"r\.h5: not a restart "):
         load_restart(result)
     with pytest.raises(OutputError, match=r"r\.h5: .*, No such file or directory$"):
         save_restart(tmp_path / "no" / "r.h5", {"p": X}, {})
@@ -439,13 +386,3 @@ def test_restart_faults_are_reported(tmp_path):
     with file_size_limit(10_000), pytest.raises(OutputError, match=r"s\.h5: .*, File too large$"):
         save_restart(path, {"p": np.zeros(100_000)}, {"step": 2})
     assert load_restart(path)[1]["step"] == 1
-
-
-def test_truncated_restart_is_refused(tmp_path):
-    path = tmp_path / "s.h5"
-    save_restart(path, {"p": np.arange(10_000.0)}, {"step": 1})
-    whole = path.read_bytes()
-    for size in (0, 100, len(whole) // 2, len(whole) - 1):
-        path.write_bytes(whole[:size])
-        with pytest.raises(OutputError, match="damaged"):
-            load_restart(path)

@@ -1,84 +1,91 @@
 """Recorder of a run: result and restart file, the lock on these files, advice after a failed write."""
 
+from __future__ import annotations
+
 import contextlib
+import time as clock
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mpi4py
+import numpy as np
+import petsc4py
+from mpi4py import MPI
+from petsc4py import PETSc
 
 from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.nonlinear import events
+from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.atomic_write import remove_stale
 from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.totals import Totals
-from ehlpetsc.run.outputs.restart_file import RestartFile
-from ehlpetsc.run.outputs.result_file import ResultFile
+from ehlpetsc.results.writer import Layout, ResultWriter
+from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.restart import checkpoint
-from ehlpetsc.run.restart.resume_advice import resume_advice
+from ehlpetsc.stepping.time_stepping import on_level
+
+if TYPE_CHECKING:
+    from ehlpetsc.run.accepted_state import AcceptedState
+    from ehlpetsc.run.simulation import Simulation
+
+MESSAGE_BYTES = 2**30  # half of the largest count of MPI
+OFFSET_TOLERANCE = 1e-6  # mesh spacings: smaller offsets are rounding
 
 
 class Recorder:
     """Output that stores the accepted states of a simulation.
 
+    The restart file is written every few minutes, at a stop and after a failed write, only for states that
+    are in the result file.
+
     Parameters
     ----------
-    simulation : run.simulation.Simulation
-    output : path-like or None
+    output
         Result file; the restart file is named after it. None: in memory, without a restart file.
 
     Attributes
     ----------
-    totals : results.totals.Totals
-    result : .outputs.result_file.ResultFile
-    restart : Path
+    totals : Totals
+        Totals of all steps so far.
+    limits : list of str
+        Messages of :func:`.limits.limits`, on rank 0, set by :meth:`close`.
+    restart : Path or None
         Restart file.
     """
 
-    def __init__(self, simulation, output):
+    def __init__(self, simulation: Simulation, output: Path | None) -> None:
         self.simulation, self.comm = simulation, simulation.comm
         self.output = None if output is None else Path(output)
         self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
-        self._lock = None
-        self._observe(Totals())
+        self.totals, self.limits = Totals(), []
+        self._lock = self._writer = self._stored = None
+        self._is_open, self._saved = False, clock.monotonic()
 
-    def _observe(self, totals):
-        self.totals = totals
-        self.result = ResultFile(self.simulation, self.output, totals)
-        self._restart_file = RestartFile(self.simulation, self.restart, self.result, totals)
-
-    def __enter__(self):
+    def __enter__(self) -> Recorder:
         return self
 
-    def __exit__(self, kind, *_):
+    def __exit__(self, kind: type | None, *_: object) -> None:
         try:
-            if kind:
-                self.result.abandon(ExitStatus.STOPPED)
+            if kind and self._writer:  # without communication: only this rank may have failed
+                self._writer.close(ExitStatus.STOPPED.words)
         finally:
             if self._lock:
                 self._lock.release()
 
-    def lock_output(self, restart=None, overwrite=False):
+    def lock_output(self, restart: Path | None = None, overwrite: bool = False) -> Path | None:
         """Check before the run that the result can be written, and lock it until the end.
 
-        Parameters
-        ----------
-        restart : path-like, optional
-            Restart file from which the run and the result are continued.
-        overwrite : bool
-            Whether existing files may be replaced.
-
-        Returns
-        -------
-        path-like or None
-            Restart file to resume from: `restart`, otherwise that of an unfinished run of the same case.
-
-        Raises
-        ------
-        OutputError
+        Returns the restart file to resume from: `restart`, otherwise that of an unfinished run of the same
+        case. An OutputError if existing files may not be replaced and not `overwrite`.
         """
         if self.output is None:
             return restart
         return self.comm.bcast(on_root(self.comm, self._lock_files, restart, overwrite))
 
-    def _lock_files(self, restart, overwrite):
+    def _lock_files(self, restart: Path | None, overwrite: bool) -> Path | None:
         case = self.simulation.case
         inputs = inputs_of(case)
         check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
@@ -91,61 +98,195 @@ class Recorder:
             return restart
         return restart_of_same(self.output, self.restart, case.text)
 
-    def resume(self, path):
-        """Set the simulation to the state of a restart file, and continue its result.
-
-        Returns
-        -------
-        list of str
-            Notes for the user.
-        """
+    def resume(self, path: Path) -> list[str]:
+        """Set the simulation to the state of a restart file and continue its result; notes for the user."""
         simulation, model = self.simulation, self.simulation.stepper.problem.model
         stored, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
         solution = stored.state
         simulation.resume(solution, stored.baseline, stored.positions)
-        self._observe(Totals(stored.totals))
-        self.result.open(solution.step, stored.contact_count)
-        self._restart_file.note_stored()
+        self.totals = Totals(stored.totals)
+        self._open(solution.step, stored.contact_count)
+        self._note_stored()
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
 
-    def write(self, state):
-        """Store an accepted state.
-
-        Parameters
-        ----------
-        state : run.accepted_state.AcceptedState
-        """
-        with self._guard_write():
-            self.result.write(state)
+    def write(self, state: AcceptedState) -> None:
+        """Store an accepted state; write the restart file if it is due."""
+        with self._advice_on_failure():
+            if not self._is_open:
+                self._open()
+            with events.OUTPUT:
+                on_root(self.comm, self._append, state)
             self.totals.add(state.scalars)
-            self._restart_file.write(state)
+            self._note_stored()
+            due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
+            if state.step and self.comm.bcast(due):
+                self._save()
+                self._saved = clock.monotonic()
 
-    def checkpoint(self):
-        """Write the restart file, if any."""
-        with self._guard_write():
-            self._restart_file.save()
+    def checkpoint(self) -> None:
+        """Write the restart file, if any, for the last state."""
+        with self._advice_on_failure():
+            self._save()
 
-    def close(self, status):
-        """Write the remaining data and the status of the run.
+    def close(self, status: ExitStatus) -> None:
+        """Write the remaining data and the status of the run, and the restart file of an unfinished run.
 
-        Parameters
-        ----------
-        status : errors.ExitStatus
+        A pass that is continued by the next one also leaves a restart file.
         """
-        with self._guard_write():
-            self._restart_file.close(status)
-            self.result.close(status)
+        time = self.simulation.case.time
+        needed = status is not ExitStatus.DONE or time is not None and time.passes > 1
+        with self._advice_on_failure():
+            if needed and self.simulation.solution is not None and self._is_open:
+                self._save()
+            if self._is_open:
+                on_root(self.comm, self._close, status)
+
+    def to_bytes(self) -> bytes:
+        """The bytes of a result in memory, on every rank."""
+        content = self._writer.to_bytes() if self.comm.rank == 0 else None
+        if self.comm.size == 1:
+            return content
+        size = self.comm.bcast(content and len(content))
+        buffer = np.frombuffer(content, "u1") if content else np.empty(size, "u1")
+        for begin in range(0, size, MESSAGE_BYTES):
+            self.comm.Bcast(buffer[begin : begin + MESSAGE_BYTES])
+        return buffer.tobytes()
+
+    def _open(self, step: int | None = None, contact_count: np.ndarray | None = None) -> None:
+        """Create the result; after a restart, continue it after `step` with its contact counts."""
+        on_root(self.comm, self._create, step, contact_count)
+        self._is_open = True
+
+    def _create(self, step: int | None, count: np.ndarray | None) -> None:
+        case, scales = self.simulation.case, self.simulation.scales
+        stored = of_case(FIELDS, case)
+        attributes = {name: getattr(scales, name) for name in ("a", "p0", "u1", "u2")}
+        attributes |= {
+            "title": case.title,
+            "case": case.text,
+            "h_scale": scales.h,
+            "ranks": self.comm.size,
+            "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
+            "versions": libraries(),
+        }
+        layout = Layout(
+            x=scales.x * scales.a,
+            fields=[name for name in case.output.fields if name in stored],
+            scalars=of_case(STEP_SCALARS, case),
+            precision=case.output.precision,
+            profiles=stored_profiles(self.simulation),
+        )
+        resumed = {"resume_step": step, "contact_count": count}
+        self._writer = ResultWriter(self.output, layout, attributes, case.output.every, **resumed)
+
+    def _append(self, state: AcceptedState) -> None:
+        every, steady = self.simulation.case.output.every, self.simulation.case.time is None
+        frame = every == 1 or steady or on_level(self.simulation.level(state.time), every)
+        self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
+
+    def _close(self, status: ExitStatus) -> None:
+        simulation = self.simulation
+        for side, name, depth in stored_depths(simulation):
+            self._writer.put_depth(side, name, depth)
+        self.limits = limits(simulation.case, simulation.scales, simulation.roughness, self.totals.values)
+        self._writer.close(status.words, self.limits)
+
+    def _save(self) -> None:
+        if self.restart is not None:
+            on_root(self.comm, self._flush_and_save)
+
+    def _flush_and_save(self) -> None:
+        self._writer.flush()
+        self._note_stored()
+        self._write_restart(self._checkpoint())
+
+    def _note_stored(self) -> None:
+        """Remember the state up to which the result file on rank 0 is complete."""
+        state = self.simulation.solution
+        if self.restart and self.simulation.case.time and self._writer:
+            if self._writer.written == (state.step, state.time):
+                self._stored = self._checkpoint()
+
+    def _checkpoint(self) -> checkpoint.Checkpoint:
+        count, totals = self._writer.contact_count.copy(), dict(self.totals.values)
+        return checkpoint.Checkpoint.of(self.simulation, count, totals)
+
+    def _write_restart(self, state: checkpoint.Checkpoint) -> None:
+        simulation = self.simulation
+        model = simulation.stepper.problem.model
+        checkpoint.save(self.restart, state, simulation.case, simulation.scales, model)
 
     @contextlib.contextmanager
-    def _guard_write(self):
-        """Save the last stored state after a failed write, and add advice on resuming to the error."""
+    def _advice_on_failure(self) -> Iterator[None]:
+        """After a failed write save the last stored state, and add advice on resuming to the error."""
         try:
             yield
         except OutputError as error:
             if self.restart is None:
                 raise
-            step = self._restart_file.stored_step
+            advice = None
             if self.comm.rank == 0:
-                self._restart_file.save_stored()
-            advice = resume_advice(self.restart, self.simulation.case, step) if self.comm.rank == 0 else None
+                if self._stored:
+                    with contextlib.suppress(OutputError):
+                        self._write_restart(self._stored)
+                step = self._stored and self._stored.state.step
+                advice = checkpoint.advice(self.restart, self.simulation.case, step)
             raise OutputError(f"{error}; {self.comm.bcast(advice)}") from error
+
+
+def libraries() -> dict[str, str]:
+    """Versions of the numerical libraries by name, for the result file."""
+    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
+    mpi = MPI.Get_library_version().split(",")[0].rstrip("\0")
+    return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}
+
+
+def stored_profiles(simulation: Simulation) -> dict[str, tuple | None]:
+    """Profiles of both surfaces for `Layout`; None for a smooth surface without depths of effects.
+
+    A body point s is at x = s + speed time; if a result begins after a change of speed, s includes an offset.
+    """
+    depths = [name for effect in simulation.stepper.effects for name in effect.surface]
+    rough, speeds = simulation.roughness, (simulation.scales.u1, simulation.scales.u2)
+    sides = {}
+    for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
+        profile = rough and rough.side(side)
+        if profile:
+            scalars = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
+            sides[side] = profile.s + offset, profile.z, speeds[k], scalars, depths
+        else:
+            sides[side] = _smooth_side(simulation, k, offset, depths) if depths else None
+    return sides
+
+
+def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
+    """Surface, quantity and depths [m] of effects at the body points of :func:`stored_profiles`."""
+    offsets, solution, sides = _offsets(simulation), simulation.solution, stored_profiles(simulation)
+    points = [side and side[0] - offset for side, offset in zip(sides.values(), offsets, strict=True)]
+    depths = []
+    for effect in simulation.stepper.effects:
+        for name, pair in effect.on_surfaces(solution.records[effect.name], points).items():
+            stored = [(side, name, depth) for side, depth in zip(sides, pair, strict=True)]
+            depths += [entry for entry in stored if entry[2] is not None]
+    return depths
+
+
+def _offsets(simulation: Simulation) -> tuple[float, float]:
+    """Offsets of s = x - speed time + offset for both surfaces [m]."""
+    if simulation.solution is None:
+        return 0.0, 0.0
+    now = simulation.solution.travelled
+    constant = simulation.operation.travelled(simulation.solution.time)
+    tolerance = OFFSET_TOLERANCE * simulation.scales.dx
+    first, second = (distance - steady for distance, steady in zip(now, constant, strict=True))
+    return first if abs(first) > tolerance else 0.0, second if abs(second) > tolerance else 0.0
+
+
+def _smooth_side(simulation: Simulation, side: int, offset: float, depths: list[str]) -> tuple:
+    """Body points of a smooth surface that pass the mesh, for its depths; `side` 0: surface 1."""
+    scales = simulation.scales
+    smallest, largest = simulation.operation.extent()[side]
+    ends = scales.x[[0, -1]] * scales.a
+    s = np.arange(ends[0] - largest, ends[1] - smallest, scales.dx)
+    flat = {"ra": 0.0, "rq": 0.0, "rsk": 0.0}
+    return s + offset, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths

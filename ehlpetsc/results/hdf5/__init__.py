@@ -1,1 +1,0 @@
-"""HDF5 files: attributes, datasets, buffered rows, continuation of results."""

@@ -1,0 +1,121 @@
+"""HDF5 files of the program: opening, attributes, datasets read on demand, appended rows."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ehlpetsc.errors import OutputError
+
+RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
+BEING_WRITTEN = "open for write"  # in the message of HDF5 on a file of a live or killed writer
+
+
+def create(path: Path) -> h5py.File:
+    """New HDF5 file, in the format that can be read while it is written."""
+    return h5py.File(path, "w", libver="latest")
+
+
+def open_for_reading(path: Path, **options: Any) -> h5py.File:
+    """Open an HDF5 file, also one that is being written or that a killed writer left open.
+
+    Further options are those of `h5py.File`; an OutputError if there is no readable HDF5 file.
+    """
+    try:
+        if not Path(path).is_file():
+            raise OutputError(f"{path}: no such file")
+        try:
+            return h5py.File(path, "r", **options)
+        except OSError as fault:
+            if BEING_WRITTEN not in str(fault):
+                raise
+            return h5py.File(path, "r", swmr=True, **options)
+    except PermissionError as fault:
+        raise OutputError(f"{path}: not read, {fault.strerror}") from fault
+    except (OSError, ValueError, RuntimeError) as fault:
+        raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
+
+
+@contextlib.contextmanager
+def reading(path: Path, name: str = "") -> Iterator[None]:
+    """Convert exceptions of h5py on a damaged file to an OutputError that names file and dataset."""
+    try:
+        yield
+    except (OSError, RuntimeError, KeyError, AttributeError, ValueError, TypeError, MemoryError) as fault:
+        place = f"{path}: {name}" if name else f"{path}"
+        words = str(fault).strip().partition("\n")[0]
+        raise OutputError(f"{place}: cannot be read, the file is damaged ({words})") from None
+
+
+def plain(value: Any) -> Any:
+    """Value of an attribute, text as str."""
+    return value.decode(errors="replace") if isinstance(value, bytes) else value
+
+
+class Attributes(dict):
+    """Attributes of a file, group or dataset by name; a missing attribute raises an OutputError."""
+
+    def __init__(self, item: h5py.HLObject, path: Path) -> None:
+        with reading(path):
+            super().__init__({name: plain(value) for name, value in item.attrs.items()})
+        self._path = path
+
+    def __missing__(self, name: str) -> None:
+        raise OutputError(f"{self._path}: damaged, or of another program: it has no attribute {name}")
+
+
+class LazyDataset:
+    """Dataset of a file; slices of it are arrays."""
+
+    def __init__(self, dataset: h5py.Dataset, path: Path) -> None:
+        self._dataset, self._path = dataset, path
+        self.name, self.shape, self.dtype = dataset.name, dataset.shape, dataset.dtype
+        self.ndim, self.chunks = dataset.ndim, dataset.chunks
+
+    def __getitem__(self, index: Any) -> np.ndarray:
+        with reading(self._path, self.name):
+            return self._dataset[index]
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.asarray(self[()], dtype=dtype)
+
+    @property
+    def attrs(self) -> Attributes:
+        """Attributes, text as str."""
+        return Attributes(self._dataset, self._path)
+
+
+def put_fixed(file: h5py.File, name: str, text: str, length: int) -> None:
+    """Store a text of at most `length` bytes that :func:`change` may overwrite while the file is read."""
+    file.attrs.create(name, np.array(text.encode(), f"S{length}"))
+
+
+def change(file: h5py.File, name: str, text: str) -> None:
+    """Overwrite a text of :func:`put_fixed`."""
+    kind = file.attrs.get_id(name).dtype
+    file.attrs.modify(name, np.array(text.encode(), kind))
+
+
+def extend(dataset: h5py.Dataset, rows: np.ndarray) -> None:
+    """Append rows to a dataset."""
+    if len(rows):
+        begin = dataset.shape[0]
+        dataset.resize(begin + len(rows), axis=0)
+        dataset[begin:] = rows
+
+
+def check_space(path: Path, data_bytes: int) -> None:
+    """Refuse to write to a full disk, on which HDF5 may crash: OSError."""
+    if shutil.disk_usage(Path(path).parent).free < data_bytes + RESERVE_BYTES:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
