@@ -285,7 +285,7 @@ def profile(drop: float) -> tuple[float, float, float, float, float, float]:
     mean, by_drop
         Mean temperature above :math:`T_0` over that of the middle: from 2/3 to 1/2.
     """
-    drop = max(drop, MIN_DROP)
+    given, drop = drop, max(drop, MIN_DROP)
     less = -np.expm1(-drop)
     tanh = np.sqrt(less)
     ln_sum = np.log1p(tanh)
@@ -295,7 +295,7 @@ def profile(drop: float) -> tuple[float, float, float, float, float, float]:
     rise = _mean_of(s, 0.6931471805599453 - ln_sum)
     mean = rise * over
     return (
-        drop + np.log(tanh / s),
+        (drop + np.log(tanh / s)) * min(given * over, 1.0),
         ((1.0 + less) / tanh - 1.0 / s) * s_d,
         flux,
         (heating_s * s_d - flux) * over,

@@ -115,3 +115,10 @@ def test_node_that_is_not_sheared():
     assert heat == 0.0 and np.isfinite([by_p, by_h]).all()
     assert (q1, q2) == pytest.approx((0.5e6, 0.5e6))
     assert t == pytest.approx(345.0 + 1e6 * 1e-6 / (12.0 * CONDUCTIVITY)) and middle == pytest.approx(t)
+
+
+def test_viscosity_without_temperature_dependence_has_the_isothermal_stress():
+    law = film_law((laws.EXPONENTIAL, 0.0, 0.0, REFERENCE), 5.0)._replace(is_linear=True)
+    *_, heat, _, _, shear_ln_eta = at_node(340.0, 0.6e9, 0.5e-6, 1.0, 1e5, 3.4e7, 0.0, 0.0, INSIDE, law)
+    assert shear_ln_eta == laws.power_law(0.6e9, 345.0, *law.viscosity[1][:7])[0]
+    assert heat > 0.0
