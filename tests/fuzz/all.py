@@ -3,7 +3,6 @@
 options   a small case run with one to four PETSc and own options drawn from a list of good and bad ones
 restarts  damaged restart files: bytes changed or cut off; or content changed under a right checksum, run on
 results   damaged result files: a bit changed, or datasets and attributes replaced; read, compared, drawn
-layouts   shipped cases laid out otherwise in TOML, keys set, stored, loaded again: the same case
 cases     case files with one to three mutations, loaded, explained, used up to the first solve
 ensembles results, damaged ones among them, given to every command that reads several
 passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
@@ -38,13 +37,12 @@ KINDS = (
     "results",
     "options",
     "restarts",
-    "layouts",
     "ensembles",
     "passes",
     "python",
     "gears",
 )
-LATE = ("restarts", "layouts", "python")
+LATE = ("restarts", "python")
 
 
 def fuzz(seed, show=False, keep=None, **numbers):

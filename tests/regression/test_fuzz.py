@@ -10,7 +10,7 @@ pytestmark = pytest.mark.slow
 
 
 def test_invalid_input_ends_with_a_documented_status(tmp_path):
-    numbers = ["--cases", "20", "--results", "5", "--restarts", "8", "--options", "2", "--layouts", "10"]
+    numbers = ["--cases", "20", "--results", "5", "--restarts", "8", "--options", "2"]
     numbers += ["--ensembles", "8", "--python", "3", "--passes", "1", "--gears", "8"]
     words = [PYTHON, ROOT / "tests" / "fuzz" / "all.py", "--seed", "3", *numbers]
     done = subprocess.run(words, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=300)
@@ -19,6 +19,6 @@ def test_invalid_input_ends_with_a_documented_status(tmp_path):
         kind: outcomes for kind, _, outcomes in (line.partition(": ") for line in done.stdout.splitlines())
     }
     assert list(counted)[:6] == ["cases", "results", "options", "ensembles", "passes", "gears"]
-    assert list(counted)[6:] == ["restarts", "layouts", "python"]
+    assert list(counted)[6:] == ["restarts", "python"]
     assert all("refused " in counted[kind] for kind in ("cases", "results", "restarts"))
     assert list(tmp_path.iterdir()) == []

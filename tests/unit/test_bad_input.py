@@ -1,11 +1,7 @@
-"""Bad input: messages, exit status, and no files left.
-
-Messages of the command equal those of `load`, which is faster to call.
-"""
+"""Bad input: the messages of the command equal those of `load`, exit status, and no files left."""
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from support import CASES, ROOT
@@ -42,11 +38,6 @@ def run(tmp_path, monkeypatch):
     return go
 
 
-def replaced(old, new):
-    assert SMOOTH.count(old) == 1, old
-    return SMOOTH.replace(old, new)
-
-
 def refused(run, text, profile=None):
     """Error output of a run that must be refused and leave nothing."""
     done, left = run(text, profile=profile)
@@ -57,73 +48,7 @@ def refused(run, text, profile=None):
     return done.stderr.splitlines()
 
 
-@pytest.fixture
-def faults(tmp_path, monkeypatch):
-    """Fault messages of a case text on loading."""
-    monkeypatch.chdir(tmp_path)
-
-    def of(text, profile=None):
-        Path("my.toml").write_text(text)
-        if profile is not None:
-            Path("p.csv").write_text(profile)
-        with pytest.raises(CaseError) as refusal:
-            load("my.toml", ())
-        return refusal.value.faults
-
-    return of
-
-
-@pytest.mark.parametrize(
-    "text, words",
-    [
-        (
-            replaced("radius = 0.0191", "radios = 0.0191"),
-            ["contact.radius ", "missing", "contact.radios = 0.0191", '"radius"?'],
-        ),
-        (replaced("load = 527e3", "# "), ["contact.load ", "missing", ">= 0.001 and <= 1e+10 [N/m]"]),
-        (
-            replaced("radius = 0.0191", "radius = 'big'"),
-            ['contact.radius = "big"', ">= 1e-09 and <= 100 [m]"],
-        ),
-        (
-            replaced("viscosity = 0.005", "viscosity = nan"),
-            ["fluid.viscosity = nan", ">= 1e-06 and <= 10000 [Pa s]"],
-        ),
-        (
-            replaced("radius = 0.0191", "radius = -0.0191"),
-            ["contact.radius = -0.0191", ">= 1e-09 and <= 100 [m]"],
-        ),
-        (
-            replaced("entrainment_speed = 5.0", "entrainment_speed = 0.0"),
-            ["motion.entrainment_speed = 0.0", ">= 1e-09 and <= 1000 [m/s]"],
-        ),
-    ],
-    ids=["unknown key", "missing key", "wrong type", "nan", "negative radius", "zero entrainment"],
-)
-def test_bad_key_names_key_value_and_range(faults, text, words):
-    message = "\n".join(faults(text))
-    assert message.startswith("my.toml: ")
-    for word in words:
-        assert word in message
-
-
-@pytest.mark.parametrize(
-    "profile, words",
-    [
-        (None, "file: p.csv"),
-        (LEVEL + "8e-6,high\n", "line 9: '8e-6,high'"),
-        (LEVEL + "6.5e-6,0\n", "falls after x = 7e-06"),
-        (LEVEL + "7e-6,1e-7\n", "x = 7e-06 appears twice"),
-    ],
-    ids=["missing", "text", "unsorted", "duplicate"],
-)
-def test_bad_profile_file_is_one_fault(faults, profile, words):
-    message = faults(SMOOTH + SURFACE, profile)
-    assert len(message) == 1
-    assert message[0].startswith('my.toml: surface.1.file = "p.csv": ') and words in message[0]
-
-
-def test_all_faults_are_listed_together(run, faults):
+def test_all_faults_are_listed_together(run, tmp_path, monkeypatch):
     text = SMOOTH + SURFACE + "[surface.2]\nfile = 'nowhere.csv'\n"
     for old, new in (
         ("radius = 0.0191", "radius = -1"),
@@ -135,7 +60,10 @@ def test_all_faults_are_listed_together(run, faults):
         assert text.count(old) == 1
         text = text.replace(old, new)
     message = refused(run, text, LEVEL + "7e-6,0\n")
-    assert message == faults(text)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(CaseError) as refusal:
+        load("my.toml")
+    assert message == refusal.value.faults
     for key in (
         "contact.radius =",
         "fluid.viscosity =",
