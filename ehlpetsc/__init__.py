@@ -9,8 +9,8 @@ import importlib
 __version__ = "0.1.0"
 
 _HOMES = {
-    "load": "ehlpetsc.api",
-    "members": "ehlpetsc.api",
+    "load": "ehlpetsc.case.loading",
+    "members": "ehlpetsc.case.loading",
     "solve": "ehlpetsc.api",
     "Simulation": "ehlpetsc.run.simulation",
     "read_result": "ehlpetsc.api",
@@ -25,7 +25,7 @@ _HOMES = {
 _PACKAGES = ("gears",)
 
 
-def __getattr__(name):
+def __getattr__(name: str) -> object:
     if name in _PACKAGES:
         return importlib.import_module(f"ehlpetsc.{name}")
     if name not in _HOMES:
@@ -35,5 +35,5 @@ def __getattr__(name):
     return getattr(importlib.import_module(_HOMES[name]), name)
 
 
-def __dir__():
+def __dir__() -> list[str]:
     return [*globals(), *_HOMES, *_PACKAGES]

@@ -1,41 +1,42 @@
-"""The Python interface: ``ehlpetsc.load``, ``solve``, ``Simulation`` and ``read_result``.
+"""The Python interface: ``ehlpetsc.solve`` and ``read_result``.
 
 Nothing heavy is imported before it is needed: a result is read and drawn without PETSc and MPI.
 """
 
+from __future__ import annotations
+
 import io
 import sys
+from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
 
 from ehlpetsc import environment
-from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError, ExitStatus, UsageError
 from ehlpetsc.results import reader
 from ehlpetsc.results.reader import open_result
 
-__all__ = ["Result", "load", "members", "read_result", "solve"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from mpi4py import MPI
+
+    from ehlpetsc.case.tables import Case
+
+__all__ = ["Result", "read_result", "solve"]
 
 
 class Result(reader.Result):
     """Result from a file or in memory, see :class:`ehlpetsc.results.reader.Result`."""
 
-    def plot(self, step=None, time=None, window=None):
-        """Pressure and film over x/a at one stored frame, contacts marked.
+    def plot(
+        self, step: int | None = None, time: float | None = None, window: tuple[float, float] | None = None
+    ) -> Figure:
+        """Pressure and film over x/a at the frame nearest to a step or a time [s], contacts marked.
 
-        Parameters
-        ----------
-        step : int, optional
-        time : float, optional
-            [s]; the nearest frame is drawn, by default that of :func:`.plot.panels.frames.frame_to_show`.
-        window : (float, float), optional
-            Limits of x/a.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
+        By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`; `window` limits x/a.
 
         Examples
         --------
@@ -57,73 +58,55 @@ class Result(reader.Result):
         axes[0].set_title(title, fontsize="medium")
         return figure
 
-    def _window(self, window):
+    def _window(self, window: tuple[float, float] | None) -> tuple[float, float] | None:
         """Limits of x/a that contain nodes."""
         if window is None:
             return None
         ends = self.x[[0, -1]] / self.attrs["a"]
-        try:
-            low, high = map(float, window)
-            inside = np.count_nonzero((self.x >= low * self.attrs["a"]) & (self.x <= high * self.attrs["a"]))
-        except (TypeError, ValueError):
-            inside = 0
+        low, high = window
+        inside = np.count_nonzero((self.x >= low * self.attrs["a"]) & (self.x <= high * self.attrs["a"]))
         if inside < 2:
             allowed = f"two limits of x/a with nodes between them, from {ends[0]:g} to {ends[1]:g}"
             raise UsageError(f"window = {window!r}: allowed: {allowed}")
         return low, high
 
 
-def refuse_passes(case):
-    """Refuse a case of several passes, which has several results."""
-    if case.time is not None and case.time.passes > 1:
-        passes = f"{case.path}: time.passes = {case.time.passes}: solve one after the other"
-        raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
-
-
-def read_result(path):
-    """Open a result file, also one that is being written.
-
-    Parameters
-    ----------
-    path : str or path-like
-
-    Returns
-    -------
-    Result
-
-    Raises
-    ------
-    OutputError
-        Missing, damaged, not a result file, or of a later format version.
-    """
+def read_result(path: str | PathLike) -> Result:
+    """Open a result file, also one that is being written; OutputError if it cannot be read as one."""
     return Result(open_result(path), path)
 
 
-def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite=False, progress=None):
+def solve(
+    case: Case | dict | str | PathLike,
+    output: str | PathLike | None = None,
+    options: dict | None = None,
+    comm: MPI.Comm | None = None,
+    *,
+    restart: str | PathLike | None = None,
+    overwrite: bool = False,
+    progress: bool | None = None,
+) -> Result:
     """Solve a case.
 
     Parameters
     ----------
-    case : case.loading.Case, or an argument of `load`
-    output : path-like, optional
+    case
+        Case, or an argument of `ehlpetsc.load`.
+    output
         Result file; by default the result is only in memory.
-    options : dict, optional
+    options
         PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, for this call; they
         override those of the case and of PETSC_OPTIONS.
-    comm : mpi4py communicator, optional
+    comm
         Ranks of the solution, each of which calls this function and gets the result; by default this process
         alone.
-    restart : path-like, optional
+    restart
         Restart file to continue from.
-    overwrite : bool
+    overwrite
         Whether to replace any existing file `output`; otherwise only a complete result of the same case is
         replaced, and an unfinished run of it is continued from its restart file.
-    progress : bool, optional
+    progress
         Whether to show progress; by default on a terminal and in a notebook.
-
-    Returns
-    -------
-    Result
 
     Raises
     ------
@@ -147,11 +130,15 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
     from ehlpetsc.run.outputs.progress import ProgressOutput, in_notebook, on_terminal
     from ehlpetsc.run.outputs.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
-    from ehlpetsc.run.solve import solve as hand_to
+    from ehlpetsc.run.solve import place_of_stop
+    from ehlpetsc.run.solve import solve as write_states
     from ehlpetsc.run.stop import StopRequest
 
     simulation = Simulation(case, comm, options)
-    refuse_passes(simulation.case)
+    time = simulation.case.time
+    if time is not None and time.passes > 1:
+        passes = f"{simulation.case.path}: time.passes = {time.passes}: solve one after the other"
+        raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
     if progress is None:
         progress = on_terminal(sys.stdout) or in_notebook()
     recorder = Recorder(simulation, output)
@@ -161,24 +148,17 @@ def solve(case, output=None, options=None, comm=None, *, restart=None, overwrite
             recorder.resume(restart)
         shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []
         with StopRequest.on_interrupt() as stop:
-            status, failure = hand_to(simulation, [recorder, *shown], stop)
+            status, failure = write_states(simulation, [recorder, *shown], stop)
     if failure:
         raise failure
     if status is ExitStatus.STOPPED:
-        raise KeyboardInterrupt(_place_of_stop(simulation, recorder))
+        raise KeyboardInterrupt(place_of_stop(simulation, recorder))
     if output is None:
         return Result(h5py.File(io.BytesIO(recorder.to_bytes()), "r"), Path("memory.h5"))
     return read_result(output)
 
 
-def _place_of_stop(simulation, recorder):
-    if simulation.solution is None:
-        return "stopped during the steady start; nothing to continue from"
-    advice = f"; the same call continues from {recorder.restart}" if recorder.output else ""
-    return f"stopped at step {simulation.solution.step}{advice}"
-
-
-def need_solver():
+def need_solver() -> None:
     """Find Debian's PETSc; ImportError with advice if a package is missing."""
     missing = environment.prepare()
     if missing:

@@ -1,50 +1,47 @@
 """Run of a simulation from time 0 or a restart file to its end, with outputs and messages."""
 
+from __future__ import annotations
+
 import contextlib
 import sys
 import time as clock
-from dataclasses import dataclass
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
-from ehlpetsc.results.means import means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import Totals
+from ehlpetsc.results.totals import Totals, means
 from ehlpetsc.run.outputs.progress import ProgressOutput, SlowSteps, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 
+if TYPE_CHECKING:
+    from ehlpetsc.nonlinear.options import RunOptions
+    from ehlpetsc.run.accepted_state import AcceptedState
+    from ehlpetsc.run.simulation import Simulation
+    from ehlpetsc.run.stop import StopRequest
 
-@dataclass(frozen=True)
-class Outcome:
-    """Outcome of a run.
 
-    Attributes
-    ----------
-    status : errors.ExitStatus
-    failure : errors.NotConverged, errors.OutputError or None
-    wall : float
-        Wall clock time [s].
-    """
+class Output(Protocol):
+    """Observer of a run on every rank, see :mod:`ehlpetsc.run.outputs`."""
+
+    def write(self, state: AcceptedState) -> None: ...
+
+    def close(self, status: ExitStatus) -> None: ...
+
+
+class Outcome(NamedTuple):
+    """Outcome of a run; `wall` is its wall clock time [s]."""
 
     status: ExitStatus
-    failure: NotConverged | None
+    failure: NotConverged | OutputError | None
     wall: float
 
 
-def solve(simulation, outputs, stop=None):
-    """Write the states of a simulation to outputs until its end, a stop or a step that does not converge.
-
-    Parameters
-    ----------
-    simulation : run.simulation.Simulation
-    outputs : list
-        See :mod:`ehlpetsc.run.outputs`.
-    stop : run.stop.StopRequest, optional
-
-    Returns
-    -------
-    status : errors.ExitStatus
-    failure : errors.NotConverged or None
-    """
+def solve(
+    simulation: Simulation, outputs: list[Output], stop: StopRequest | None = None
+) -> tuple[ExitStatus, NotConverged | None]:
+    """Write the states of a simulation to outputs until its end, a stop or a step that does not converge."""
     status, failure = ExitStatus.DONE, None
     try:
         for state in simulation.states(stop):
@@ -60,27 +57,21 @@ def solve(simulation, outputs, stop=None):
 
 
 class UnusedOptions:
-    """Output that prints the unused, probably misspelt options after the first time step.
+    """Output that prints the unused, probably misspelt options after the first time step."""
 
-    Parameters
-    ----------
-    options : nonlinear.options.RunOptions
-    show : callable
-        Prints a line.
-    """
+    def __init__(self, options: RunOptions, show: Callable[[str], None]) -> None:
+        self._options, self._show = options, show
+        self._noted: set[str] | None = None
 
-    def __init__(self, options, show):
-        self._options, self._show, self._noted = options, show, None
-
-    def write(self, state):
+    def write(self, state: AcceptedState) -> None:
         """Print the note after the first step, when PETSc has read the options of the solver."""
         if state.step >= 1 and self._noted is None:
             self.note()
 
-    def close(self, status):
+    def close(self, status: ExitStatus) -> None:
         """Do nothing: at the end of a run its report prints the note."""
 
-    def note(self):
+    def note(self) -> None:
         """Print the unused options that have not been printed yet."""
         noted = self._noted or set()
         new = self._options.unused_so_far() - noted
@@ -90,37 +81,23 @@ class UnusedOptions:
 
 
 class Run:
-    """Run of a simulation by the command, with outputs and messages.
+    """Run of a simulation by the command, with outputs and messages of rank 0 on `out` and `err`."""
 
-    Parameters
-    ----------
-    simulation : run.simulation.Simulation
-    output : path-like
-    stop : run.stop.StopRequest, optional
-    out, err : file, optional
-        Streams of rank 0; default: standard output and error.
-    """
-
-    def __init__(self, simulation, output, stop=None, out=None, err=None):
+    def __init__(
+        self,
+        simulation: Simulation,
+        output: Path,
+        stop: StopRequest | None = None,
+        out: TextIO | None = None,
+        err: TextIO | None = None,
+    ) -> None:
         self.simulation, self.recorder = simulation, Recorder(simulation, output)
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
         self._unused = UnusedOptions(simulation.options, self._print)
 
-    def run(self, restart=None, overwrite=False):
-        """Run to the end and print a report.
-
-        Parameters
-        ----------
-        restart : path-like, optional
-            Restart file to resume from.
-        overwrite : bool
-            See `Recorder.lock_output`.
-
-        Returns
-        -------
-        Outcome
-        """
+    def run(self, restart: str | Path | None = None, overwrite: bool = False) -> Outcome:
+        """Run to the end, or from a restart file, and print a report; see `Recorder.lock_output`."""
         begun = clock.monotonic()
         try:
             status, failure = self._solve(restart, overwrite)
@@ -137,7 +114,7 @@ class Run:
             self._report(outcome)
         return outcome
 
-    def _solve(self, restart, overwrite):
+    def _solve(self, restart: str | Path | None, overwrite: bool) -> tuple[ExitStatus, NotConverged | None]:
         with self.simulation.options, self.recorder:
             restart = self.recorder.lock_output(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
@@ -149,16 +126,13 @@ class Run:
                 printed = [self._unused, ProgressOutput(self.simulation, self.out), slow]
             return solve(self.simulation, [self.recorder, *printed], self.stop)
 
-    def _report(self, outcome):
+    def _report(self, outcome: Outcome) -> None:
         recorder, state = self.recorder, self.simulation.solution
         if outcome.failure:
             saved = f". Last good state: {recorder.restart}" if state else ""
             print(f"ehlpetsc: not converged: {outcome.failure}{saved}", file=self.err, flush=True)
-        elif outcome.status is ExitStatus.STOPPED and state is None:
-            self._print("ehlpetsc: stopped during the steady start; nothing to continue from")
         elif outcome.status is ExitStatus.STOPPED:
-            advice = f"continue with --restart {recorder.restart} or the same command"
-            self._print(f"ehlpetsc: stopped at step {state.step}; {advice}")
+            self._print(f"ehlpetsc: {place_of_stop(self.simulation, recorder)}")
         for line in recorder.limits:
             self._print(f"limit: {line}")
         for note in self._notes:
@@ -168,7 +142,7 @@ class Run:
             self._print(f"result: {recorder.output}")
         self._print(self._summary(outcome))
 
-    def _summary(self, outcome):
+    def _summary(self, outcome: Outcome) -> str:
         """Last line of the output, with means from the result file."""
         totals = self.recorder.totals
         if self.root and totals.values and outcome.status is not ExitStatus.BAD_INPUT:
@@ -176,7 +150,15 @@ class Run:
                 totals = Totals(totals.values, means(result))
         return summary_line(outcome.status, totals, outcome.wall)
 
-    def _print(self, *lines):
+    def _print(self, *lines: str) -> None:
         if self.root:
             for line in lines:
                 print(line, file=self.out, flush=True)
+
+
+def place_of_stop(simulation: Simulation, recorder: Recorder) -> str:
+    """Step at which a run was stopped, and how it is continued."""
+    if simulation.solution is None:
+        return "stopped during the steady start; nothing to continue from"
+    advice = f"; continue by the same, or with --restart {recorder.restart}" if recorder.output else ""
+    return f"stopped at step {simulation.solution.step}{advice}"

@@ -147,7 +147,7 @@ def test_members_need_a_series(case):
     assert len(ehlpetsc.members("cases/stribeck.toml")) > 2
 
 
-@pytest.mark.parametrize("window", [(1,), (1, 2, 3), "ab", 5, (2, -2), (float("nan"), 1.0), (5, 6)])
+@pytest.mark.parametrize("window", [(2, -2), (float("nan"), 1.0), (5, 6)])
 def test_window_must_contain_nodes(result, window):
     with pytest.raises(UsageError, match=rf"^window = {re.escape(repr(window))}: .* from -2\.5 to 1\.5$"):
         result.plot(window=window)
