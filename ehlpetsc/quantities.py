@@ -6,10 +6,16 @@ writer and reader, progress, the summary line, totals of runs and series, the fo
 `ehlpetsc.analysis.compare` use this table.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.quantity import Column, Field, StepScalar
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.loading import Case
 
 REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
 """From the values of the steps, in their order, to the one of a run."""
@@ -176,11 +182,11 @@ GROUPS = {
 """Purpose of each group."""
 
 
-def of_case(table, case):
+def of_case(table: dict[str, Field], case: Case) -> list[str]:
     """Names of the quantities of a table in a case."""
     return [name for name, field in table.items() if SCENES[field.only](case)]
 
 
-def of_every_case(table):
+def of_every_case(table: dict[str, Field]) -> list[str]:
     """Names of the quantities of a table in all cases."""
     return [name for name, field in table.items() if not field.only]

@@ -23,7 +23,7 @@ from scipy.ndimage import binary_dilation, label
 
 from ehlpetsc.api import Result
 from ehlpetsc.results.contacts import in_contact
-from ehlpetsc.results.series_index import in_order, open_all, series_values
+from ehlpetsc.results.index import in_order, open_all, series_values
 
 THINNING = ("fluid.viscosity", "motion.entrainment_speed")  # keys of which a smaller value is a thinner film
 MAX_INTERRUPTION = 2  # cells of the map between two contacts of one collision

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result
-from ehlpetsc.results.series_index import distinguishing_names, in_order, open_all
+from ehlpetsc.results.index import distinguishing_names, in_order, open_all
 
 ORDER = 8  # of the polynomial
 

@@ -24,8 +24,8 @@ from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
+from ehlpetsc.results.index import differences, open_all
 from ehlpetsc.results.output_guard import check_derived
-from ehlpetsc.results.series_index import differences, open_all
 
 RESAMPLES = 2000  # default of the bootstrap
 MAX_RESAMPLES = 100_000

@@ -16,9 +16,9 @@ import numpy as np
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
+from ehlpetsc.results.index import distinguishing_names, in_order, open_all, series_values
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import check_derived
-from ehlpetsc.results.series_index import distinguishing_names, in_order, open_all, series_values
 
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)

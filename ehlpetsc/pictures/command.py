@@ -20,8 +20,8 @@ from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.figures import AROUND_WIDTH, FIGURES, draw_frame, window
 from ehlpetsc.results.atomic_write import replacing
+from ehlpetsc.results.index import in_order, open_all
 from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
-from ehlpetsc.results.series_index import in_order, open_all
 
 DPI = 160  # of pictures
 ENDINGS = {"movie": ".gif", "report": ".html"}  # of outputs that are not pictures

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ehlpetsc.results.series_index import distinguishing_names, series_values
+from ehlpetsc.results.index import distinguishing_names, series_values
 
 SINGLE_COLOUR = "#1f4e79"
 SECOND_COLOUR = "#b35806"

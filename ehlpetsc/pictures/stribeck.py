@@ -18,7 +18,7 @@ from ehlpetsc.pictures.labels import (
     new_figure,
 )
 from ehlpetsc.pictures.operating_points import BAND, QUANTITIES, operating_point
-from ehlpetsc.results.series_index import series_values
+from ehlpetsc.results.index import series_values
 
 SPEED = "motion.entrainment_speed"
 SIZE = (8.5, 7.5)  # inches

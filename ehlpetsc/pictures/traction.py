@@ -5,7 +5,7 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.labels import UNITS, conditions, legend_beside, new_figure
 from ehlpetsc.pictures.operating_points import operating_point
-from ehlpetsc.results.series_index import distinguishing_names
+from ehlpetsc.results.index import distinguishing_names
 
 RATIO = "motion.slide_roll_ratio"
 SIZE = (8.5, 4.6)  # inches

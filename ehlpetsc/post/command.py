@@ -21,9 +21,9 @@ from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, Counting
 from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.passes import note_damage, store_passes
 from ehlpetsc.post.run import ASPERITY_HALF_WIDTH, Job, run
+from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import check_output_path
 from ehlpetsc.results.post_result import SURFACES, PointTemperatures, PostResult, WeibullFit, post_path
-from ehlpetsc.results.series_index import files_of
 
 DESCRIPTION = (
     "Stress histories of body points, rainflow cycles, fatigue damage and its statistics from result files. "

@@ -1,30 +1,21 @@
 """Atomic writes: a reader finds the complete old file or the complete new one."""
 
+from __future__ import annotations
+
 import contextlib
 import glob
 import os
 import secrets
+from collections.abc import Iterator
 from pathlib import Path
 
 
 @contextlib.contextmanager
-def replacing(path, keep_ending=False):
-    """Context manager of a temporary file next to `path`: renamed at the end, removed after an error.
+def replacing(path: Path, keep_ending: bool = False) -> Iterator[Path]:
+    """Context manager of an empty temporary file next to `path`: renamed at the end, removed after an error.
 
-    Of a symbolic link the target is replaced, and the link stays.
-
-    An OSError of the temporary file names `path` as its file.
-
-    Parameters
-    ----------
-    path : path-like
-    keep_ending : bool
-        Whether the temporary file has the suffix of `path`, for writers that derive the format from it.
-
-    Yields
-    ------
-    Path
-        Empty file with the default permissions.
+    An OSError of the temporary file names `path` as its file. With `keep_ending` the temporary file has the
+    suffix of `path`, for writers that derive the format from it.
     """
     path = Path(path)
     ending = f".tmp{path.suffix}" if keep_ending else ".tmp"
@@ -43,7 +34,7 @@ def replacing(path, keep_ending=False):
         raise
 
 
-def atomic_write(path, content):
+def atomic_write(path: Path, content: bytes) -> None:
     """Replace `path` by a file with these bytes, synchronised to disk; errors leave no temporary file."""
     with replacing(path) as temporary, open(temporary, "wb") as file:
         file.write(content)
@@ -51,7 +42,7 @@ def atomic_write(path, content):
         os.fsync(file.fileno())
 
 
-def remove_stale(path):
+def remove_stale(path: Path) -> None:
     """Remove the temporary files that killed runs left next to `path`; the caller must have its lock."""
     target = Path(os.path.realpath(path))
     for temporary in target.parent.glob(f".{glob.escape(target.name)}.*.tmp*"):
@@ -59,7 +50,7 @@ def remove_stale(path):
             temporary.unlink()
 
 
-def os_reason(error):
+def os_reason(error: Exception) -> str:
     """Message of the operating system without HDF5's text."""
     if error.args and "errno = " in str(error):
         code = int(str(error).split("errno = ")[1].split(",")[0])

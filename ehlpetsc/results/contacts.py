@@ -1,24 +1,28 @@
 """Contact nodes of a result file, as stored or from the films."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.scales import reduced_modulus
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Contact
+    from ehlpetsc.results.reader import Result
+
 BOUND_TOLERANCE = 1e-6  # of the bound: films may be stored in single precision
 
 
-def film_at_contact(result):
+def film_at_contact(result: Result) -> float:
     """Film [m] at contact nodes; -inf without contact.
 
     Minimum film of the steps with contacts: in direct contact ``contact.minimum_film``, in mixed contact
     ``contact.boundary_film``, also if the case has their defaults; with a compliant layer, the film at which
     its asperities carry the pressure above which nodes count as in contact.
-
-    Parameters
-    ----------
-    result : ehlpetsc.results.reader.Result
     """
     contact = result.case.contact
     if contact.asperity_height is not None:
@@ -27,32 +31,17 @@ def film_at_contact(result):
     return float(result.steps("h_min")[touching].min()) if touching.any() else -np.inf
 
 
-def layer_film(contact):
+def layer_film(contact: Contact) -> float:
     """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; `contact`: table of a case."""
     modulus = 0.5 * reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
     prefactor = (contact.asperity_stiffness or 1.0) * modulus
     return asperity_separation(CONTACT_PRESSURE, GAMMA * contact.asperity_height, prefactor)
 
 
-def in_contact(result, frames, nodes=slice(None)):
-    """Whether nodes are in contact, as stored, or from films at their bound.
+def in_contact(result: Result, frames: int | slice, nodes: int | slice = slice(None)) -> np.ndarray:
+    """Whether nodes are in contact, as stored, or from films at their bound; shape of the frames and nodes.
 
-    Parameters
-    ----------
-    result : ehlpetsc.results.reader.Result
-    frames : int or slice
-        Stored frames.
-    nodes : int or slice, optional
-
-    Returns
-    -------
-    ndarray of bool
-        Shape of the frames and nodes.
-
-    Raises
-    ------
-    OutputError
-        The result has neither contacts nor films.
+    An OutputError if the result has neither contacts nor films.
     """
     if "in_contact" in result:
         return np.asarray(result["in_contact"][frames, nodes], dtype=bool)

@@ -1,18 +1,29 @@
-"""Index of several results beside them: of a series, of passes or of lives, a JSON file."""
+"""Several results: their index, a JSON file beside those of a series, of passes or of lives; their cases."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import tomllib
+from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
+from functools import reduce
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
+import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.atomic_write import atomic_write, remove_stale
 from ehlpetsc.results.hdf5_file import open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, check_output_path, exists, inputs_of
+from ehlpetsc.results.reader import Result, read_result
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.loading import Case
+
+MAX_NAME_LENGTH = 80  # characters
+OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that match the same shell pattern
 
 
 def read_index(path: Path) -> dict:
@@ -85,3 +96,104 @@ def _is_ours(path: Path) -> bool:
             return "format_version" in file.attrs
     except OutputError:
         return h5py.is_hdf5(path)
+
+
+def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:
+    """Results of files, closed by `stack`; for an index (.series.json) the existing results of its members.
+
+    Post-processing and restart files among results are ignored. An OutputError if a file cannot be read, or
+    if no member of a series has a result.
+    """
+    result_paths = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
+    if not result_paths:
+        kinds = {".post.h5": "of post-processing", ".restart.h5": "of a restart"}
+        refused = ", ".join(
+            f"{path}: a file {kinds[OTHER_ENDINGS[str(path).endswith(OTHER_ENDINGS[1])]]}" for path in paths
+        )
+        raise OutputError(f"{refused}; give the result, {_result_of(paths[0])}")
+    return [stack.enter_context(read_result(file)) for path in result_paths for file in files_of(path)]
+
+
+def _result_of(path: Path) -> str:
+    for ending in OTHER_ENDINGS:
+        path = str(path).removesuffix(ending)
+    return f"{path}.h5"
+
+
+def files_of(path: Path) -> list[Path]:
+    """Result file of a path, or the existing result files of an index; errors as of :func:`open_all`."""
+    path = Path(path)
+    if path.suffix != ".json":
+        return [path]
+    index = read_index(path)
+    try:
+        members = index["passes"] if "passes" in index else index["members"]
+        files = [path.with_name(member["file"]) for member in members]
+    except (ValueError, KeyError, TypeError) as error:
+        raise OutputError(f"{path}: not the index of a series ({error})") from error
+    existing = [file for file in files if file.exists()]
+    if not existing:
+        raise OutputError(f"{path}: no member of the series has a result file beside it")
+    return existing
+
+
+def series_values(results: list[Result]) -> tuple[str | None, list[float]]:
+    """Dotted key and values of the single number in which the case files of a series differ.
+
+    None and [] if no or several keys differ, or if the values are not numbers.
+    """
+    differing = differences(results)
+    if len(differing) == 1:
+        ((key, values),) = differing.items()
+        if all(isinstance(value, int | float) for value in values):
+            return key, [float(value) for value in values]
+    return None, []
+
+
+def differences(results: list[Result]) -> dict[str, list]:
+    """Values of each result, None for a missing key, by the dotted keys in which their case files differ."""
+    tables = [flat_keys(tomllib.loads(result.attrs["case"])) for result in results]
+    keys = sorted(key for key in set().union(*tables) - {"title"} if not key.startswith("series."))
+    values = {key: [table.get(key) for table in tables] for key in keys}
+    return {key: column for key, column in values.items() if any(value != column[0] for value in column)}
+
+
+def distinguishing_names(results: list[Result]) -> list[str] | None:
+    """Names of results from the values in which their cases differ; None if these are not unique.
+
+    For example ``viscosity = 0.002, entrainment_speed = 5``.
+    """
+    differing = differences(results)
+    if not differing:
+        return None
+    last = [key.rpartition(".")[2] for key in differing]
+    labels = [key if last.count(name) > 1 else name for key, name in zip(differing, last, strict=True)]
+    names = [
+        ", ".join(_setting(result.case, *entry) for entry in zip(differing, labels, values, strict=True))
+        for result, *values in zip(results, *differing.values(), strict=True)
+    ]
+    if len(set(names)) < len(results) or max(map(len, names)) > MAX_NAME_LENGTH:
+        return None
+    return names
+
+
+def _setting(case: Case, key: str, label: str, value: Any) -> str:
+    if value is None:  # left out: its default
+        value = reduce(lambda table, name: getattr(table, name, None), key.split("."), case)
+    if value is None:
+        return f"no {label}"
+    return f"{label} = {value:g}" if isinstance(value, int | float) else f"{label} = {value}"
+
+
+def flat_keys(table: dict, prefix: str = "") -> dict[str, Any]:
+    """Values of nested tables by dotted key."""
+    values = {}
+    for key, value in table.items():
+        values |= flat_keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
+    return values
+
+
+def in_order(results: list[Result]) -> list[Result]:
+    """Results of a series sorted by the varied value; other results in their order."""
+    key, values = series_values(results)
+    return [results[i] for i in np.argsort(values, kind="stable")] if key else results

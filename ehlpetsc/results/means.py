@@ -1,21 +1,25 @@
-"""Means over a run: over the time in which the roughness of both surfaces fills the contact.
+"""Totals of the scalars of all steps, and their means over the time in which roughness fills the contact.
 
-One convention for all: the steps are weighted by their length, those before both surfaces fill the contact
-by 0; a steady run is its own mean.
+One convention for all means: the steps are weighted by their length, those before the roughness of both
+surfaces fills the contact by 0; a steady run is its own mean.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.quantities import MEANS
+from ehlpetsc.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH
 from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
 
 if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result
+
+SERIES_REDUCTIONS = ("sum", "min", "max")  # reductions that are meaningful over several runs
+REDUCED = {name: scalar for name, scalar in STEP_SCALARS.items() if scalar.over_run}
 
 
 def filled_from(result: Result) -> float:
@@ -97,3 +101,46 @@ def _filled_by(result: Result, side: str) -> float:
         return distance / abs(speed)
     furthest = np.maximum.accumulate(np.abs(result.steps(f"displacement_{side}")))
     return float(np.interp(distance, furthest, result.steps("time"), right=np.inf))
+
+
+class Totals:
+    """Totals `values` of the steps so far, keys of `REDUCED`, and `means` of the run, see :func:`means`."""
+
+    def __init__(self, values: dict[str, float] = (), means: dict[str, float] = ()) -> None:
+        self.values, self.means = dict(values), dict(means)
+
+    @classmethod
+    def of_result(cls, result: Result) -> Totals:
+        """Totals and means of a stored run."""
+        names = [name for name in REDUCED if name in result.scalars]
+        steps = {name: result.steps(name).tolist() for name in names}
+        return cls({n: REDUCTIONS[REDUCED[n].over_run](v) for n, v in steps.items() if v}, means(result))
+
+    @classmethod
+    def of_series(cls, runs: Iterable[Totals]) -> Totals:
+        """Sums and extremes of several runs."""
+        totals = [run.values for run in runs]
+        kinds = {name: scalar.over_series or scalar.over_run for name, scalar in REDUCED.items()}
+        columns = {
+            name: [values[name] for values in totals if name in values]
+            for name, kind in kinds.items()
+            if kind in SERIES_REDUCTIONS
+        }
+        return cls({name: REDUCTIONS[kinds[name]](values) for name, values in columns.items() if values})
+
+    def add(self, scalars: dict[str, float]) -> None:
+        """Add the scalars of the next step."""
+        for name in REDUCED.keys() & scalars.keys():
+            values = [self.values[name]] if name in self.values else []
+            self.values[name] = REDUCTIONS[REDUCED[name].over_run]([*values, scalars[name]])
+
+    def __str__(self) -> str:
+        """``name=value`` of the last line of a run, then the means; 0 before the first step."""
+        entries = [
+            (scalar.label or name, self.values.get(name, 0), scalar.summary)
+            for name, scalar in REDUCED.items()
+            if scalar.summary and (name in self.values or not scalar.only)
+            if not (name in MEANS and scalar.over_run == "last")
+        ]
+        entries += [(name, value, ".4g") for name, value in self.means.items()]
+        return " ".join(f"{label}={value:{form}}" for label, value, form in entries)

@@ -1,10 +1,13 @@
 """Provenance of a result: versions and the commit of the code."""
 
+from __future__ import annotations
+
 import json
 import platform
 import subprocess
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -12,7 +15,7 @@ import numpy as np
 from ehlpetsc import __version__
 
 
-def versions(other_versions):
+def versions(other_versions: dict[str, str]) -> str:
     """Names and versions in one line: of Python and its libraries, then of `other_versions` (by name)."""
     common = {
         "ehlpetsc": __version__,
@@ -25,7 +28,7 @@ def versions(other_versions):
 
 
 @cache
-def git_commit():
+def git_commit() -> str:
     """Commit of the checkout of the package, ``-dirty`` if changed; "" outside a checkout."""
     top = Path(__file__).resolve().parents[2]
     if not (top / ".git").exists():
@@ -38,7 +41,7 @@ def git_commit():
     return answer.stdout.strip()
 
 
-def earlier_runs(attrs, last_step):
+def earlier_runs(attrs: dict[str, Any], last_step: int) -> str:
     """JSON list of the configurations of all runs before a restart; `attrs` describes the last one."""
     runs = json.loads(attrs.get("history", "[]"))
     keys = ("case", "petsc_options", "ranks", "versions", "git_commit")

@@ -1,9 +1,16 @@
 """Running-in: surfaces and contact after each pass."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ehlpetsc.quantities import OTHERS, STEP_SCALARS
 from ehlpetsc.results.means import filled_weights, mean
+
+if TYPE_CHECKING:
+    from ehlpetsc.results.reader import Result
 
 DEPTHS = [name.removeprefix("surface/") for name in OTHERS if name.startswith("surface/")][2:]
 SHIFTED_IN_A_ROW = 10  # consecutive run-in passes required with shifted surfaces
@@ -11,17 +18,10 @@ RUN_IN = 0.01  # of the volume added by the first pass: surfaces are run in if a
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
 
-def pass_summary(result):
+def pass_summary(result: Result) -> dict[str, Any]:
     """Roughness and depths at the end of a pass, and means over the time that both surfaces fill the contact.
 
-    Parameters
-    ----------
-    result : results.reader.Result
-
-    Returns
-    -------
-    dict
-        SI units; a surface that is not stored is None.
+    In SI units; a surface that is not stored is None.
     """
     steps = result.steps
     weights = filled_weights(result)
@@ -34,7 +34,7 @@ def pass_summary(result):
     return summary | {side: statistics(result, side) for side in ("1", "2")}
 
 
-def heights(result, side):
+def heights(result: Result, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Body points, original heights and heights after the pass [m]; None: not stored."""
     name = f"surface/{side}"
     if f"{name}/s" not in result:
@@ -44,7 +44,7 @@ def heights(result, side):
     return s, z, z - sum(depths)
 
 
-def statistics(result, side):
+def statistics(result: Result, side: str) -> dict[str, float] | None:
     """Ra, Rq [m], Rsk, maximum slope and maximum indentation [m] of a surface after a pass."""
     surface = heights(result, side)
     if surface is None:
@@ -61,15 +61,11 @@ def statistics(result, side):
     }
 
 
-def passes_to_run_in(rows, in_a_row=1):
+def passes_to_run_in(rows: list[dict], in_a_row: int = 1) -> int | None:
     """First of the passes that all add less than `RUN_IN` of the first pass's volume; None: not run in.
 
-    Parameters
-    ----------
-    rows : list of dict
-        Index entries of the passes from the first on, with the number "pass" and the volume "added".
-    in_a_row : int
-        Required number of such passes: with shifted surfaces, a pass that adds little may be an exception.
+    `rows` are the entries of the index from the first pass on, with the number "pass" and the volume "added".
+    `in_a_row` such passes are required: with shifted surfaces, a pass that adds little may be an exception.
     """
     if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
         return None

@@ -20,12 +20,11 @@ from ehlpetsc.case.loading import members
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.index import Index
+from ehlpetsc.results.index import Index, flat_keys
+from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import is_restart_of
-from ehlpetsc.results.series_index import flat_keys
-from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.forecast import steps
 from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.results.means import Totals, means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import Totals, means
 from ehlpetsc.run.outputs.progress import ProgressOutput, SlowSteps, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 

@@ -13,8 +13,8 @@ import pytest
 from support import ROOT
 from support.running import run, settings
 
+from ehlpetsc.results.index import in_order, open_all
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.series_index import in_order, open_all
 
 sys.path.append(str(ROOT / "cases" / "paper"))
 import collisions

@@ -13,9 +13,9 @@ from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.run_scalars import run_scalars
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.pictures.ensemble import draw_ensemble
+from ehlpetsc.results.index import distinguishing_names
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.series_index import distinguishing_names
 
 GROUND = {"kind": "ground", "ra": 1e-7, "correlation": 1e-5}
 SHARES = (0.20, 0.26, 0.31, 0.22, 0.29, 0.24)

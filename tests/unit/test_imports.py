@@ -12,7 +12,6 @@ PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {
     "errors",
     "quantity",
-    "names",
     "toml_file",
     "compiled",
     "environment",

@@ -18,7 +18,7 @@ from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import figures, labels, movies, over_time, stribeck
 from ehlpetsc.pictures import frames as drawing
 from ehlpetsc.pictures.operating_points import time_statistics
-from ehlpetsc.results import series_index as swept
+from ehlpetsc.results import index as swept
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter

@@ -11,7 +11,7 @@ from support.made_results import change_case, make_result
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.figures import FIGURES
 from ehlpetsc.pictures.stribeck import curves_by_contact
-from ehlpetsc.results.series_index import open_all
+from ehlpetsc.results.index import open_all
 
 HEAT = {"heat.bulk_temperature": 350.0}
 RATIOS = (0.1, 0.5, 1.0, 2.0)

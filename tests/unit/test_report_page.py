@@ -13,8 +13,8 @@ from support.made_results import make_result, with_solids
 
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures.page import report, report_data
+from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import Totals
 
 
 def unpacked(text, kind="<f4"):

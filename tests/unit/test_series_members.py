@@ -10,9 +10,8 @@ from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
-from ehlpetsc.results.means import filled_from
+from ehlpetsc.results.means import Totals, filled_from
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.totals import Totals
 from ehlpetsc.run.series import Member, PrefixedStream, named
 from ehlpetsc.stepping.time_stepping import next_step, on_level
 

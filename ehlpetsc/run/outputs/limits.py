@@ -27,7 +27,7 @@ def limits(case, scales, rough, totals):
     scales : physics.scales.Scales
     rough : surfaces.roughness.Roughness or None
     totals : dict of str to number
-        Scalars over the run, see `ehlpetsc.results.totals.Totals`.
+        Scalars over the run, see `ehlpetsc.results.means.Totals`.
 
     Returns
     -------

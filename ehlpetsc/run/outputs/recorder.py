@@ -18,9 +18,9 @@ from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.atomic_write import remove_stale
+from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
-from ehlpetsc.results.totals import Totals
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.ranks import on_root

@@ -13,8 +13,8 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
+from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.results.series_index import flat_keys
 from ehlpetsc.run.restart.rescaling import rescale
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.roughness import SurfacePositions

@@ -12,9 +12,16 @@ Earlier masses per area do not apply to the new contact: the next step is a step
 mass of the converted state, without earlier levels.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ehlpetsc.physics.exact_solutions import hertz_gap
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.scales import Scales
 
 SCALE_TOLERANCE = 1e-12  # relative
 CORE_HALF_WIDTH = 0.5  # in a: the approach changes by the mean change of the film between -0.5 and 0.5
@@ -22,21 +29,8 @@ STATE_PREFIXES = ("", "smooth_")  # of the names of the converted states
 HISTORY = ("m", "m_older", "earlier_travelled", "earlier_q", "earlier_h", "earlier_contact_pressure")
 
 
-def rescale(arrays, attributes, scales):
-    """Convert the content of a restart file to the scales of a case, in place.
-
-    Parameters
-    ----------
-    arrays, attributes : dict
-        See :mod:`ehlpetsc.run.restart.contents`.
-    scales : physics.scales.Scales
-        Scales of the case.
-
-    Returns
-    -------
-    bool
-        Whether the scales differ.
-    """
+def rescale(arrays: dict[str, np.ndarray], attributes: dict[str, Any], scales: Scales) -> bool:
+    """Convert the content of a restart file to the scales of a case, in place; whether they differ."""
     old = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
     new = np.array([scales.a, scales.p0, scales.h])
     if (np.abs(old - new) <= SCALE_TOLERANCE * new).all():
@@ -55,7 +49,7 @@ def rescale(arrays, attributes, scales):
     return True
 
 
-def _fields(q, h, gap, ratio):
+def _fields(q: np.ndarray, h: np.ndarray, gap: np.ndarray, ratio: float) -> tuple[np.ndarray, np.ndarray]:
     film = np.maximum(gap + ratio * (h - gap), 0.0)
     oil = ratio * (1.0 + q) * h
     void = np.clip(oil / np.where(film > 0.0, film, np.inf) - 1.0, -1.0, 0.0)
