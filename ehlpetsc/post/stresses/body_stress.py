@@ -112,25 +112,16 @@ QUANTUM = 2.0**-24
 MAX_KZ = 21.0  # wave number times depth; exp(-21) is 1e-9
 TAPER_WIDTH = 0.45  # 1/element: wave numbers beyond the cut-off over which the spectrum falls to zero
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
-
-
-def half_element(nx: int) -> np.ndarray:
-    """Spectrum of a shift by half an element."""
-    n = padded_length(nx)
-    return np.exp(1j * np.pi * np.arange(n // 2 + 1) / n)
+PARITY = np.array([1, -1, 1, -1, -1, 1, -1, 1])[:, None]  # of the kernels under values, then slopes
 
 
 def offset_weights(offset: np.ndarray) -> np.ndarray:
-    """Weights (2, frames, 3) of the two parts of :func:`kernel_table` at offsets (frames,) from the nodes.
-
-    Sums and differences of the Lagrange weights of `OFFSETS` that are symmetric about one half.
-    """
+    """Lagrange weights (frames, 6) of `OFFSETS` at offsets (frames,) from the nodes."""
     weights = np.ones((offset.size, OFFSETS.size))
     for k, node in enumerate(OFFSETS):
         for other in np.delete(OFFSETS, k):
             weights[:, k] *= (offset - other) / (node - other)
-    left, right = weights[:, :3], weights[:, :2:-1]
-    return np.stack([left + right, left - right])
+    return weights
 
 
 def low_pass(nx: int, depth: float) -> np.ndarray:
@@ -149,19 +140,14 @@ def low_pass(nx: int, depth: float) -> np.ndarray:
 
 @lru_cache(maxsize=8)  # for both surfaces, and the passes of a life
 def kernel_table(nx: int, depth: float) -> np.ndarray:
-    r"""Kernel spectra at the three lower OFFSETS, as real numbers (f, 2, 3, 8); depth in elements.
-
-    Under values kernels A, C are even, B, E odd, under slopes the other way round. The spectrum of an even
-    kernel at offset 1/2 + e, or 1/i of that of an odd one, times :math:`e^{-i\omega/2}`, has a real part even
-    in e (first) and an imaginary part odd in e (second), so that three offsets give all six. f ends with the
-    last frequency that matters.
-    """
+    """Kernel spectra (f, 6, 8) at the OFFSETS, up to the last frequency that matters; depth in elements."""
     factor = low_pass(nx, depth)
-    count = np.count_nonzero(factor)
-    spectra = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
-    spectra *= half_element(nx).conj() * factor
-    spectra[:, [1, 3, 4, 6]] *= -1j
-    return np.ascontiguousarray(np.moveaxis(np.stack([spectra.real, spectra.imag])[..., :count], -1, 0))
+    left = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
+    shift = np.exp(
+        2j * np.pi / padded_length(nx) * np.arange(factor.size)
+    )  # by an element, to mirrored offsets
+    spectra = np.concatenate([left, PARITY * shift * left[::-1].conj()]) * factor
+    return np.ascontiguousarray(np.moveaxis(spectra[..., : np.count_nonzero(factor)], -1, 0))
 
 
 @compiled(error_model="python", nogil=True, fastmath={"contract"})
@@ -171,45 +157,46 @@ def _multiply(table: np.ndarray, weights: np.ndarray, loads: np.ndarray, out: np
     `FREQUENCIES_PER_BLOCK` frequencies of all frames at once, so that their part of the table fits in the
     cache.
     """
-    real, imaginary = np.empty(8), np.empty(8)
+    kernel = np.empty(8, np.complex128)
     for start in range(0, table.shape[0], FREQUENCIES_PER_BLOCK):
-        for frame in range(weights.shape[1]):
-            u0, u1, u2 = weights[0, frame, 0], weights[0, frame, 1], weights[0, frame, 2]
-            v0, v1, v2 = weights[1, frame, 0], weights[1, frame, 1], weights[1, frame, 2]
+        for frame in range(weights.shape[0]):
+            w = weights[frame]
             for k in range(start, min(start + FREQUENCIES_PER_BLOCK, table.shape[0])):
-                x, y = table[k, 0], table[k, 1]
+                row = table[k]
                 for m in range(8):
-                    real[m] = u0 * x[0, m] + u1 * x[1, m] + u2 * x[2, m]
-                    imaginary[m] = v0 * y[0, m] + v1 * y[1, m] + v2 * y[2, m]
-                a, b = complex(real[0], imaginary[0]), complex(real[1], imaginary[1])
-                c, e = complex(real[2], imaginary[2]), complex(real[3], imaginary[3])
-                da, db = complex(real[4], imaginary[4]), complex(real[5], imaginary[5])
-                dc, de = complex(real[6], imaginary[6]), complex(real[7], imaginary[7])
+                    kernel[m] = (
+                        w[0] * row[0, m]
+                        + w[1] * row[1, m]
+                        + w[2] * row[2, m]
+                        + w[3] * row[3, m]
+                        + w[4] * row[4, m]
+                        + w[5] * row[5, m]
+                    )
                 p, q, dp, dq = loads[frame, 0, k], loads[frame, 1, k], loads[frame, 2, k], loads[frame, 3, k]
-                out[frame, 0, k] = c * p + de * dq + 1j * (e * q + dc * dp)
-                out[frame, 1, k] = a * p + db * dq + 1j * (b * q + da * dp)
-                out[frame, 2, k] = c * q + db * dp + 1j * (b * p + dc * dq)
+                a, b, c, e = kernel[0], kernel[1], kernel[2], kernel[3]
+                da, db, dc, de = kernel[4], kernel[5], kernel[6], kernel[7]
+                out[frame, 0, k] = c * p + e * q + dc * dp + de * dq
+                out[frame, 1, k] = a * p + b * q + da * dp + db * dq
+                out[frame, 2, k] = b * p + c * q + db * dp + dc * dq
 
 
 class BodyStress:
     """Stresses at body points in a batch of frames, one depth at a time; depths (nz,) in elements."""
 
     def __init__(self, nx: int, depths: np.ndarray) -> None:
-        self.n, self._half = padded_length(nx), half_element(nx)
+        self.n = padded_length(nx)
         self.tables = [kernel_table(nx, depth) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
         """Spectra (frames, 4, n/2 + 1) of the loads (frames, nx) and their slopes.
 
-        Shifted by half an element. Beyond the end nodes a load falls to zero over one element.
+        Beyond the end nodes a load falls to zero over one element.
         """
         loads = np.empty((len(pressure), 4, pressure.shape[1]))
         loads[:, 0], loads[:, 1] = pressure, shear
         limited_slopes(loads[:, 0], loads[:, 2])
         limited_slopes(loads[:, 1], loads[:, 3])
-        spectra = fft.rfft(loads, self.n)
-        spectra *= self._half
-        return spectra
+        return fft.rfft(loads, self.n)
 
     def __call__(self, depth: int, spectra: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """Stresses (frames, 3, n) of depth number `depth` at offsets with these :func:`offset_weights`."""

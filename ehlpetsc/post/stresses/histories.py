@@ -116,7 +116,7 @@ class HistoryCollector:
         """Add the stresses of a batch of frames from `first` on, of loads from frame `begin` on."""
         m, batch = self.motion, slice(first - begin, first - begin + FRAMES_PER_BATCH)
         spectra = self.stress.transform(*(load[batch] for load in loads))
-        weights = self.weights[:, first : first + len(spectra)]
+        weights = self.weights[first : first + len(spectra)]
         for depth in range(self.depths):
             fields = self.stress(depth, spectra, weights)
             _collect(fields, first, point, m.shift, m.enter, m.leave, self.quantum, histories[depth])
