@@ -1,42 +1,40 @@
-"""Means, percentiles and extremes of every scalar of runs, as CSV.
+"""Results as CSV: means, percentiles and extremes of every scalar; all steps of a run; one frame.
 
 ``ehlpetsc summary RESULT.h5 [...]``, or the index of a series or of passes
 
 One line for each result and scalar, over the time in which both surfaces fill the contact, or over the whole
 run if it ends before (column ``from_s``). SI units. Means and percentiles are weighted by the time step.
+``--steps`` prints the scalars of every step of one result, ``--frame STEP`` its fields at a stored step.
 """
 
+from __future__ import annotations
+
+import argparse
 import contextlib
 import csv
 import io
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.errors import ExitStatus, UsageError
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all, series_values
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import check_derived
+from ehlpetsc.results.reader import Result
 
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")
+SIGNATURE_LENGTH = 20  # of the first line, by which a table of the same kind is known
 PERCENTILES = (5.0, 50.0, 95.0)
 COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
 
 
-def statistics(result):
-    """Statistics of each scalar of a result.
-
-    Parameters
-    ----------
-    result : ehlpetsc.results.reader.Result
-
-    Returns
-    -------
-    list of tuple
-        Values of `COLUMNS` from "scalar" on.
-    """
+def statistics(result: Result) -> list[tuple]:
+    """Statistics of each scalar of a result: values of `COLUMNS` from "scalar" on."""
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
     weights = filled_weights(result, or_whole_run=True)
     rows = []
@@ -53,36 +51,73 @@ def statistics(result):
     return rows
 
 
-def table(results):
+def table(results: list[Result]) -> list[tuple]:
     """Names of the columns, then the rows of all results."""
     key, values = series_values(results)
     cases = [f"{key} = {v:g}" for v in values] if key else distinguishing_names(results)
     cases = cases or [str(result.attrs["title"]) for result in results]
     rows = [COLUMNS]
     for result, case in zip(results, cases, strict=True):
-        rows += [(result.path.name, case, *row) for row in statistics(result)]
+        rows += [(_as_text(result.path.name), _as_text(case), *row) for row in statistics(result)]
     return rows
 
 
-def main(words):
+def steps_table(result: Result) -> list[Sequence]:
+    """Names with units of the scalars of the steps, in the order of progress, then a row for every step."""
+    names = [name for name in STEP_SCALARS if name in result.scalars]
+    return _columns({f"{name} [{STEP_SCALARS[name].units}]": result.steps(name) for name in names})
+
+
+def frame_table(result: Result, step: int) -> list[Sequence]:
+    """Names with units of x and the fields of the frame of a step, then a row for every node."""
+    frame = result.nearest_frame(step=step)
+    if result.step[frame] != step:
+        stored = f"{result.step[0]} to {result.step[-1]}, next to it {result.step[frame]}"
+        raise UsageError(f"--frame {step}: {result.path} stores no such step; allowed: one of {stored}")
+    fields = {f"{name} [{result[name].attrs['units']}]": result[name][frame] for name in result.fields}
+    return _columns({"x [m]": result.x} | fields)
+
+
+def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return [list(columns), *([f"{value:.9g}" for value in row] for row in rows)]
+
+
+def _as_text(cell: str) -> str:
+    """A cell that no spreadsheet takes for a formula."""
+    return f"'{cell}" if cell.startswith(("=", "+", "-", "@")) else cell
+
+
+def main(words: Sequence[str]) -> ExitStatus:
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    description = "Means, percentiles and extremes of every scalar of runs, as CSV."
+    description = "Means, percentiles and extremes of every scalar of runs, all steps or one frame, as CSV."
     parser = CommandParser("summary", description)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
     parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument("--steps", action="store_true", help="scalars of every step of one result, over time")
+    kinds.add_argument("--frame", type=int, metavar="STEP", help="fields of one result at a stored step")
     chosen = parser.parse_args(words)
     return exit_status("summary", lambda: _run(chosen), output=chosen.output)
 
 
-def _run(chosen):
+def _run(chosen: argparse.Namespace) -> None:
     with contextlib.ExitStack() as stack:
         results = in_order(open_all(chosen.results, stack))
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(table(results))
+        csv.writer(text, lineterminator="\n").writerows(_rows(results, chosen))
         if not chosen.output:
             print(text.getvalue(), end="")
             return
         read = [*map(Path, chosen.results), *(result.path for result in results)]
-        check_derived(chosen.output, read, {".csv": ",".join(COLUMNS[:4]).encode()})
+        check_derived(chosen.output, read, {".csv": text.getvalue()[:SIGNATURE_LENGTH].encode()})
         atomic_write(chosen.output, text.getvalue().encode())
         print(chosen.output)
+
+
+def _rows(results: list[Result], chosen: argparse.Namespace) -> Iterable[Sequence]:
+    if not chosen.steps and chosen.frame is None:
+        return table(results)
+    if len(results) > 1:
+        raise UsageError(f"{len(results)} results; allowed with --steps and --frame: one")
+    return steps_table(results[0]) if chosen.steps else frame_table(results[0], chosen.frame)

@@ -57,6 +57,17 @@ def test_profiles_may_be_arrays():
         assert profile.ra == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-9)
 
 
+def test_profile_of_many_points_is_solved_in_memory():
+    """The text of the case, with all heights in it, is longer than the header of an HDF5 object."""
+    x = np.linspace(0.0, 2e-3, 20_000)
+    surface = {"2": {"x": x, "z": 1e-8 * np.cos(x / 1e-5)}}
+    case = ehlpetsc.load(
+        ROOT / "cases" / "dry_hertz.toml", {"mesh.points_per_half_width": 20, "surface": surface}
+    )
+    with ehlpetsc.solve(case, options={}) as result:
+        assert result.attrs["case"] == case.text and len(case.text) > 500_000
+
+
 @pytest.mark.parametrize(
     "surface, fault",
     [

@@ -1,0 +1,64 @@
+"""Tables of results as CSV: statistics, all steps, one frame."""
+
+import csv
+
+import h5py
+import numpy as np
+import pytest
+from support.made_results import make_result
+
+from ehlpetsc.analysis.summary import main
+from ehlpetsc.results.reader import read_result
+
+
+@pytest.fixture
+def path(tmp_path):
+    return make_result(tmp_path / "r.h5", nodes=41, steps=11)
+
+
+def rows_of(capsys, *words):
+    assert main([str(word) for word in words]) == 0
+    return list(csv.DictReader(capsys.readouterr().out.splitlines()))
+
+
+def test_statistics_are_weighted_by_the_time_step(path, capsys):
+    with h5py.File(path, "r+") as file:
+        dt = file["steps/dt"][:] = np.linspace(0.0, 1.0, 11)
+        load = file["steps/load"][:] = np.arange(11.0) ** 2
+    row = next(row for row in rows_of(capsys, path) if row["scalar"] == "load")
+    assert float(row["mean"]) == pytest.approx(np.average(load, weights=dt), rel=1e-5)
+    assert (row["unit"], row["min"], row["max"], row["steps"]) == ("N/m", "1", "100", "10")
+
+
+def test_steps_are_listed_over_time(path, capsys):
+    rows = rows_of(capsys, path, "--steps")
+    with read_result(path) as result:
+        for name, unit in (("time", "s"), ("p_max", "Pa"), ("h_min", "m")):
+            found = [float(row[f"{name} [{unit}]"]) for row in rows]
+            np.testing.assert_allclose(found, result.steps(name), rtol=1e-8)
+
+
+def test_one_frame_is_listed_over_the_nodes(path, capsys):
+    rows = rows_of(capsys, path, "--frame", 7)
+    with read_result(path) as result:
+        assert set(rows[0]) == {"x [m]"} | {f"{n} [{result[n].attrs['units']}]" for n in result.fields}
+        found = [float(row["pressure [Pa]"]) for row in rows]
+        np.testing.assert_allclose(found, result.frame("pressure", 7), rtol=1e-8)
+
+
+def test_step_without_a_frame_and_several_results_are_refused(path, tmp_path, capsys):
+    assert main([str(path), "--frame", "99"]) == 2
+    assert "--frame 99: " in (message := capsys.readouterr().err) and " 0 to 10" in message
+    assert main([str(path), str(make_result(tmp_path / "s.h5")), "--steps"]) == 2
+    assert "2 results" in capsys.readouterr().err
+
+
+def test_no_cell_is_a_formula(tmp_path, capsys):
+    (row, *_) = rows_of(capsys, make_result(tmp_path / "r.h5", title="=1+1"))
+    assert row["case"] == "'=1+1"
+
+
+def test_scalars_of_the_steps_are_listed_in_python(path):
+    with read_result(path) as result:
+        lines = str(result.steps).splitlines()
+    assert "(11,)" in lines[0] and any(line.split()[:2] == ["h_min", "m"] for line in lines)
