@@ -40,13 +40,18 @@ MIN_RISE = 1e-12  # K
 
 
 @inlined
-def _state(p: float, t0: float, rise: float, ln_rate: float, law: FilmLaw) -> tuple:
-    """Viscosity at T_0 and in the middle, profile and shear stress."""
-    cold = ln_viscosity(law.viscosity, p, t0)
+def _viscosity(p: float, t: float, start: tuple[float, tuple[float, float, float]], law: FilmLaw) -> tuple:
+    """Of :func:`.laws.ln_viscosity`; linear in T by temperature and viscosity of `start`, without a power."""
     if law.is_linear:
-        hot = cold[0] + cold[2] * rise, cold[1], cold[2]
-    else:
-        hot = ln_viscosity(law.viscosity, p, t0 + rise)
+        ln_eta, by_p, by_t = start[1]
+        return ln_eta + by_t * (t - start[0]), by_p, by_t
+    return ln_viscosity(law.viscosity, p, t)
+
+
+@inlined
+def _state(p: float, t0: float, rise: float, ln_rate: float, start: tuple, law: FilmLaw) -> tuple:
+    """Viscosity at T_0 and in the middle, profile and shear stress."""
+    cold, hot = _viscosity(p, t0, start, law), _viscosity(p, t0 + rise, start, law)
     shape = profile(cold[0] - hot[0])
     return cold, hot, shape, shear_stress(ln_rate - shape[0], cold[0], p, law.eyring, law.limit)
 
@@ -80,11 +85,12 @@ def resolved_temperature(
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
     ln_rate = _log_rate(sheared, spread, law) if heat > 0.0 else -np.inf
+    start = guess, ln_viscosity(law.viscosity, p, guess)
     for kind in (PARABOLA, INSULATED, APART):
         exchange, alpha = exchange_law(kind, r, walls)
         slope, intercept = a + exchange, b + g + alpha * exchange
-        t0, rise = _resolved(guess, slope, intercept, a, heat, r, ln_rate, p, law)
-        cold, hot, shape, shear = _state(p, t0, rise, ln_rate, law)
+        t0, rise = _resolved(slope, intercept, a, heat, r, ln_rate, p, start, law)
+        cold, hot, shape, shear = _state(p, t0, rise, ln_rate, start, law)
         q1, q2, by_r = fluxes(kind, t0 + rise * shape[2] / 1.5, r, walls, exchange, alpha)
         if kind == PARABOLA and (q1 if walls[0] < walls[1] else q2) >= -NO_FLUX * exchange:
             break
@@ -103,7 +109,7 @@ def resolved_temperature(
     ln_r_h = 1.0 / h if h > 0.0 else 0.0
     f1, f2 = by_r * over_conductivity - heat * tau_h, -ln_r_h - tau_h * over_tau
     by_h = _mean_change(f1, f2, j, rise, shape, cold, hot, 0.0)
-    return t, by_p, by_h, q1, q2, heat * shear[0], ln_viscosity(law.viscosity, p, t), t0 + rise, shear_ln_eta
+    return t, by_p, by_h, q1, q2, heat * shear[0], _viscosity(p, t, start, law), t0 + rise, shear_ln_eta
 
 
 @inlined
@@ -147,7 +153,6 @@ def _mean_change(
 
 @inlined
 def _resolved(
-    guess: float,
     slope: float,
     intercept: float,
     a: float,
@@ -155,6 +160,7 @@ def _resolved(
     r: float,
     ln_rate: float,
     p: float,
+    start: tuple,
     law: FilmLaw,
 ) -> tuple[float, float]:
     """T_0 and rise to the middle [K] of a node, by Newton's method in T_0 and ln(theta).
@@ -162,13 +168,13 @@ def _resolved(
     The temperature is uniform without conduction, and where the oil stores so much heat that no profile is in
     balance.
     """
-    low = intercept / slope
+    guess, low = start[0], intercept / slope
     if heat == 0.0 or r == 0.0:
         return _balanced(guess, slope, intercept, heat, ln_rate, p, law)[0], MIN_RISE
     parabola = min(slope * r / 12.0, 1.0) * max(guess - low, 0.0)
     t0, rise = max(guess, low) - parabola, max(1.5 * parabola, 1e-3)
     for _ in range(ITERATIONS):
-        cold, hot, shape, shear = _state(p, t0, rise, ln_rate, law)
+        cold, hot, shape, shear = _state(p, t0, rise, ln_rate, start, law)
         flux, mean = shape[2], shape[4]
         f1 = slope * (t0 + rise * flux / 1.5) + a * rise * (mean - flux / 1.5) - intercept - heat * shear[0]
         f2 = np.log(rise * flux / max(0.125 * r * heat * shear[0], MIN_RISE))
