@@ -1,13 +1,11 @@
-"""The program given invalid input: ``python3 tests/fuzz/all.py --seed 1 --options 500 --restarts 500 ...``.
+"""The program given invalid input: ``python3 tests/fuzz/all.py --seed 1 --options 500 --results 500 ...``.
 
 options   a small case run with one to four PETSc and own options drawn from a list of good and bad ones
-restarts  damaged restart files: bytes changed or cut off; or content changed under a right checksum, run on
-results   damaged result files: a bit changed, or datasets and attributes replaced; read, compared, drawn
+results   results, some of them cut off, changed in one bit or foreign, given to the commands that read them
 cases     case files with one to three mutations, loaded, explained, used up to the first solve
-ensembles results, damaged ones among them, given to every command that reads several
 passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
 python    calls from Python with arguments drawn from lists of good and bad ones
-gears     the command gears: keys of a pair, cases with mutations, damaged results, outputs good and bad
+gears     the command gears: keys of a pair, cases with mutations, outputs good and bad
 
 Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
 traceback, hang, signal, different (status 0 with another answer and no word), changed (an input is not as it
@@ -31,18 +29,16 @@ from sandbox import BAD, WORDS
 from ehlpetsc import environment
 
 environment.prepare()
-# restarts import PETSc, after which nothing may be forked
+# calls from Python import PETSc, after which nothing may be forked
 KINDS = (
     "cases",
     "results",
     "options",
-    "restarts",
-    "ensembles",
     "passes",
     "python",
     "gears",
 )
-LATE = ("restarts", "python")
+LATE = ("python",)
 
 
 def fuzz(seed, show=False, keep=None, **numbers):

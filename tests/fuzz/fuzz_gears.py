@@ -1,10 +1,9 @@
-"""The command gears, given case files with mutations and damaged results of a gear pair."""
+"""The command gears, given case files with mutations and the result of a gear pair."""
 
 import random
 
 import h5py
 import numpy as np
-from hdf5_damage import Flips, Strange, Structures
 from sandbox import beside_others
 from support import CASES
 from support.made_results import make_result, with_solids
@@ -53,24 +52,16 @@ class Draw:
             for side in "12":
                 file[f"damage/{side}"] = np.full((2, 21), 1e-3)
         self.content = {path.name: path.read_bytes() for path in (run, post)}
-        self.spoil = {
-            path.name: [Flips(path), kind(path)] for path, kind in ((run, Structures), (post, Strange))
-        }
 
     def __call__(self, rng):
         """Outcome and what was done."""
-        inputs, damage = FOREIGN | self.content, []
+        inputs = FOREIGN | self.content
         inputs["pair.toml"] = self._case(rng).encode("utf-8", "surrogateescape")
-        for name, kinds in self.spoil.items():
-            if rng.random() < 0.4:
-                spoil = kinds[int(rng.integers(2))]
-                damage.append(f"{name}: {spoil(rng, int(rng.integers(10**6)), self.folder / name)}")
-                inputs[name] = (self.folder / name).read_bytes()
         words = [("pair.toml", "run.h5")[int(rng.integers(2))]]
         for _ in range(int(rng.integers(3))):
             words += WORDS[int(rng.integers(len(WORDS)))]
         word, ended = beside_others(self.folder, inputs, lambda: main(words), LIMIT)
-        return word, f"{damage} gears {words}: {ended}"
+        return word, f"gears {words}: {ended}"
 
     def _case(self, rng):
         """The case as it is, with another value of a key of its pair, or with mutations."""

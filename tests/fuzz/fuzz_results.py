@@ -1,78 +1,96 @@
-"""Damaged result files, read whole, compared with the sound one, every tenth drawn."""
+"""Commands that read results, some cut off, changed in one bit, or no results at all."""
 
-import hashlib
-
+import h5py
 import numpy as np
-from hdf5_damage import Flips, Structures
-from sandbox import process, word_of
-from support.made_results import make_result
+from sandbox import beside_others
+from support.made_results import make_result, with_solids
 
-from ehlpetsc.analysis import compare
-from ehlpetsc.errors import OutputError
-from ehlpetsc.results.reader import read_result
+from ehlpetsc.analysis import compare, ensemble, summary
+from ehlpetsc.pictures import command as plot
 
-LIMIT = 240  # s
-PICTURES = 25
+LIMIT = 120  # s
+SPEEDS = (10.0, 5.0, 1.0)
+FOREIGN = {"foreign.csv": b"0,1\n1,2\n", "case.toml": b"title = 'a'", "foreign.restart.h5": b"a"}
+WORDS = {
+    ensemble: ("--resamples 0", "--resamples 50", "--seed -1", "--seed 3", "--resamples x"),
+    compare: ("--rtol 0", "--rtol -1", "--atol nan", "--rtol 1e300"),
+    summary: ("--steps", "--frame 3", "--frame -1", "--frame x", "--steps --frame 3"),
+    plot: (
+        *("--stribeck", "--ensemble", "--map", "--report", "--step 3", "--time nan", "--around 0.2"),
+        *("--around nan", "--width 0", "--running-in"),
+    ),
+}
+OUTPUTS = (
+    *("t.csv", "t.json", "p.png", "p.svg", "p.html", "p.gif", "t.txt", "", "none/t.csv", "foreign.csv"),
+    *("r0.h5", "case.toml", "foreign.restart.h5", "x.series.json", "\udcff.csv"),
+)
+
+
+def stored_values(path):
+    """Places of the bytes of all chunks of a file."""
+    places = []
+
+    def add(_, item):
+        if isinstance(item, h5py.Dataset) and item.chunks:
+            for k in range(item.id.get_num_chunks()):
+                chunk = item.id.get_chunk_info(k)
+                places.append(np.arange(chunk.byte_offset, chunk.byte_offset + chunk.size))
+
+    with h5py.File(path) as file:
+        file.visititems(add)
+    return np.concatenate(places)
 
 
 class Draw:
-    """One damaged file after the other, by turns of single bits and of structure."""
+    """One command line after the other."""
 
     def __init__(self, folder):
-        self.folder, self.number = folder, 0
-        self.sound = make_result(folder / "sound.h5", nodes=41, steps=9, rough=True)
-        self.path = folder / "damaged.h5"
-        self.spoil = [Flips(self.sound), Structures(self.sound)]
-        self.content = content(self.sound)
+        self.folder = folder
+        paths = [
+            with_solids(make_result(folder / f"s{k}.h5", nodes=81, steps=9, speed=speed, rough=k != 2))
+            for k, speed in enumerate(SPEEDS)
+        ]
+        self.sound = [(path.read_bytes(), stored_values(path)) for path in paths]
+        members = [f'{{"value": {v}, "file": "r{k}.h5"}}' for k, v in enumerate(SPEEDS)]
+        self.index = f'{{"key": "motion.entrainment_speed", "members": [{", ".join(members)}], "case": ""}}'
 
     def __call__(self, rng):
         """Outcome and what was done."""
-        flipped = self.number % 2 == 0
-        what = self.spoil[not flipped](rng, self.number // 2, self.path)
-        before, self.number = digest(self.path), self.number + 1
-        drawn = self.number % PICTURES < 2
-        status, report = process(lambda: self._use(flipped, drawn), self.folder / "report", LIMIT)
-        word = "different" if "DIFFERENT CONTENT" in report else word_of(status, report)
-        if digest(self.path) != before:
-            word = "changed"
-        return word, f"{what}: {status} {report[-1500:]}"
+        inputs, damage = FOREIGN | {"x.series.json": self.index.encode()}, []
+        for k, (content, places) in enumerate(self.sound):
+            inputs[f"r{k}.h5"], what = self._damaged(rng, content, places)
+            damage.append(what)
+        command = list(WORDS)[int(rng.integers(len(WORDS)))]
+        count = 2 if command is compare else int(rng.integers(1, 4))
+        words = [f"r{k}.h5" for k in rng.permutation(3)[:count]]
+        if rng.random() < 0.4 and command is not compare:
+            words = ["x.series.json"]
+        if rng.random() < 0.6:
+            words += str(rng.choice(WORDS[command])).split()
+        if command is not compare and rng.random() < 0.6:
+            words += ["-o", OUTPUTS[int(rng.integers(len(OUTPUTS)))]]
+        work = lambda: self._status(command, words)  # noqa: E731
+        word, ended = beside_others(self.folder, inputs, work, LIMIT)
+        return word, f"{damage} {command.__name__} {words}: {ended}"
 
     def keep(self, place):
-        """Copy the file of the last draw."""
-        place.with_suffix(".h5").write_bytes(self.path.read_bytes())
+        """Copy the files of the last draw."""
+        place.mkdir()
+        for path in self.folder.iterdir():
+            (place / path.name).write_bytes(path.read_bytes())
 
-    def _use(self, flipped, drawn):
-        """Read a result in every way; a flipped bit is reported or lies outside the data read."""
-        try:
-            now = content(self.path)
-        except OutputError as error:
-            print(f"ehlpetsc: {error}")
-            now = None
-        if flipped and now is not None and now != self.content:
-            print("DIFFERENT CONTENT", [name for name in now if now[name] != self.content.get(name)])
-        statuses = [compare.main([str(self.sound), str(self.path)])]
-        if drawn:
-            from ehlpetsc.pictures import command as plot
+    @staticmethod
+    def _damaged(rng, content, places):
+        kind = rng.random()
+        if kind < 0.1:
+            return content[: int(rng.integers(len(content)))], "cut"
+        if kind < 0.2:
+            changed, place = bytearray(content), int(rng.choice(places))
+            changed[place] ^= 1 << int(rng.integers(8))
+            return bytes(changed), f"byte {place}"
+        return (b"mine", "foreign") if kind < 0.25 else (content, "sound")
 
-            statuses.append(plot.main([str(self.path), "-o", str(self.folder / "picture.png")]))
-        return 2 if now is None or 2 in statuses else 1 if set(statuses) - {0, 1} else 0
-
-
-def content(path):
-    """Everything a result gives, as bytes by name."""
-    with read_result(path) as result:
-        found = {f"attribute {name}": repr(value).encode() for name, value in result.attrs.items()}
-        names = ["x", "time", "step", "contact_count", *result.fields]
-        found |= {name: np.asarray(result[name][:]).tobytes() for name in names}
-        found |= {f"steps/{name}": result.steps(name).tobytes() for name in result.scalars}
-        for side in ("1", "2"):
-            profile = result.profile(side)
-            found[side] = repr(
-                None if profile is None else [np.asarray(p).tobytes() for p in profile]
-            ).encode()
-        return found
-
-
-def digest(path):
-    """Of a file's bytes."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    @staticmethod
+    def _status(command, words):
+        status = int(command.main(words))
+        return 0 if command is compare and status == 1 else status  # they differ
