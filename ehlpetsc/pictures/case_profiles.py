@@ -102,7 +102,7 @@ def _heights(axes, profile, case, scales, side):
 def _description(profile, case, scales, begin, end):
     coarse = profile.unresolved_variance(scales.dx)
     mesh = f"{100 * coarse:.2g} % of the height variance in waves of fewer than 4 nodes"
-    if case.time is None or not profile.is_moving:
+    if case.time is None or not profile.enters:
         return f"under the domain from the start; {mesh}"
     if end >= profile.X[-1] > begin:
         passing = f"all of it passes the whole contact within travel {case.time.travel:g} a"

@@ -148,7 +148,7 @@ def _profile(case, s, profile):
         lines.insert(1, size)
         if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
-        if case.time is not None and profile.is_moving:
+        if case.time is not None and profile.enters:
             lines += _part_in_contact(case, s, profile)
     times = entry_times(profile, s)
     if times:

@@ -83,21 +83,30 @@ class TimeStepping:
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time = baseline, 0.0
+        time = scene.case.time
+        self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
     def start(self, records: dict, watch: Watch = None) -> State:
         """Steady state at time 0 from the records of the effects.
 
-        By time steps if roughness at rest prevents convergence.
+        By time steps if roughness at rest prevents convergence, or if the case starts rough.
         """
+        if self._starts_rough:
+            return self._ramped(records, watch)
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
             state = self._steady(inputs, records, watch)
         except NoSteadyStart as error:
             if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
                 raise NotConverged(f"steady start: {error}") from error
-            state = self._start_by_time_stepping(records, watch)
+            return self._ramped(records, watch)
+        self.baseline = (state.q, state.w)
+        return state
+
+    def _ramped(self, records: dict, watch: Watch) -> State:
+        state = self._start_by_time_stepping(records, watch)
         self.baseline = (state.q, state.w)
         return state
 

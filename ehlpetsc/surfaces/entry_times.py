@@ -16,7 +16,7 @@ def entry_times(profile, scales):
         one. Of a lone ridge or dent `fills` is for its middle at x = 0. None where the profile lies
         under the domain from the start.
     """
-    if not profile.is_moving:
+    if not profile.enters:
         return None
     edge = -1.0 - scales.x[0] if profile.speed > 0 else scales.x[-1] - 1.0
     first, last = profile.X[0] / scales.a, profile.X[-1] / scales.a

@@ -18,7 +18,8 @@ class Profile:
     * U = 0, or a steady case: :math:`X=s-x_\mathrm{inlet}`, in the whole domain from the start.
 
     A moving surface is smooth where X < 0; its heights increase over the ramp as
-    :math:`r^3(10-15r+6r^2)`, so that film and its rate of change have no jump.
+    :math:`r^3(10-15r+6r^2)`, so that film and its rate of change have no jump. With `ahead` the profile has
+    entered by this length at time 0.
 
     Parameters
     ----------
@@ -39,7 +40,9 @@ class Profile:
     Attributes
     ----------
     is_moving : bool
-        False if it is in the whole domain from the start.
+        False if its abscissa is fixed to the domain at time 0, without a ramp.
+    enters : bool
+        Whether it enters during the run; otherwise it is in the whole domain from the start.
     ramp, travelled : float
         Length of the ramp, and of the part of the profile that enters [m].
     body_offset : float
@@ -49,19 +52,31 @@ class Profile:
     """
 
     def __init__(
-        self, samples, speed, moving, inlet, outlet, ramp, swept_length, begin=0.0, reach=None, is_flank=False
+        self,
+        samples,
+        speed,
+        moving,
+        inlet,
+        outlet,
+        ramp,
+        swept_length,
+        begin=0.0,
+        reach=None,
+        is_flank=False,
+        ahead=0.0,
     ):
         from scipy.interpolate import CubicSpline
 
         X, z, self.repeats, self.speed = samples.X, samples.z, samples.repeats, speed
         self.given, self.X, self.heights = samples, X, z
         self.is_moving = moving and speed != 0.0 and not is_flank
-        self._origin, self._sign = (inlet, -1.0) if self.is_moving and speed > 0 else (outlet, 1.0)
+        self.enters = self.is_moving and not ahead
+        self._origin, self._sign = (inlet + ahead, -1.0) if speed > 0 else (outlet - ahead, 1.0)
         if not self.is_moving:
             self._origin, self._sign = (0.0, -1.0) if is_flank else (inlet, 1.0)
         self._begin, self.body_offset = begin, self._sign * begin
         self.ramp = ramp
-        self.travelled = swept_length if self.is_moving else outlet - inlet
+        self.travelled = swept_length + ahead if self.is_moving else outlet - inlet
         self._ends = None if self.is_moving or reach is None else (inlet - reach[1], outlet - reach[0])
         # level ends: mirrored end to end, the profile has no kink
         self._spline = CubicSpline(X, z, bc_type="clamped")

@@ -141,6 +141,7 @@ def _profile(case, scales, spec, speed, side, positions):
         wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
         swept_length = abs(travelled) + left * abs(speed) / scales.u_max
         swept_length += wider if wider > END_TOLERANCE * scales.a else 0.0
+    starts_rough = case.time is not None and case.time.start == "rough"
     return Profile(
         samples(case.path.parent, spec, scales.dx),
         speed,
@@ -152,4 +153,5 @@ def _profile(case, scales, spec, speed, side, positions):
         positions.profile_offsets[side],
         reach,
         table is not None and table.profile_offsets is not None,
+        ahead=outlet - inlet + RAMP_LENGTH * scales.a if starts_rough else 0.0,
     )

@@ -72,7 +72,7 @@ def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
         ([str(CASES / "table1_smooth.toml")], "table1_smooth.toml: both surfaces"),
         (["none.toml"], "none.toml: "),
         ([str(CASES / "fig1.toml"), "a.h5"], "fig1.toml: a case"),
-        ([str(CASES / "fig1.toml"), "-ehl_set", "mesh.inlet=3"], "mesh.inlet = 3"),
+        ([str(CASES / "fig1.toml"), "--set", "mesh.inlet=3"], "mesh.inlet = 3"),
     ],
 )
 def test_undrawable_case_is_refused_in_one_line(words, message, capsys, tmp_path, monkeypatch):

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from support import CASES
 
+import ehlpetsc
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.entry_times import entry_times
 from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.measured.profile_files import read_profile
@@ -40,6 +42,38 @@ def test_measured_profiles_have_their_published_roughness():
     X, z, _ = read_profile(CASES / "profiles" / "hommel_stylus_profile.csv")
     assert X[-1] == pytest.approx(4.8e-3, rel=2e-4)
     assert np.abs(high_pass(X, z, 0.8e-3)).mean() == pytest.approx(0.018e-6, abs=0.0005e-6)
+
+
+def test_rough_start_is_the_later_part_of_an_entering_profile():
+    smooth, scales = rough("table1_rough.toml")
+    filled, _ = rough("table1_rough.toml", "time.start='rough'")
+    x = scales.x * scales.a
+    ahead = x[-1] - x[0] + RAMP_LENGTH * scales.a
+    for side, speed in (("1", scales.u1), ("2", scales.u2)):
+        one, other = filled.side(side), smooth.side(side)
+        assert one.entered(x).min() > 1.0 - 1e-12 and not other.entered(x).any()
+        before = x - np.sign(speed) * ahead
+        np.testing.assert_allclose(one.height(x), other.height(before), atol=1e-15)
+        assert one.travelled == pytest.approx(other.travelled + ahead)
+
+
+@pytest.mark.slow
+def test_film_of_a_rough_start_is_that_of_an_entered_profile():
+    wave = {"2": {"synthetic": {"kind": "ground", "ra": 5e-8, "correlation": 3e-5, "seed": 1}}}
+    mesh = {"mesh.points_per_half_width": 40, "mesh.inlet": -2.0}
+    sets = mesh | {"motion.slide_roll_ratio": 0.0, "surface": wave}
+    filled, entered = (
+        ehlpetsc.solve(
+            case.load(CASES / "table1_smooth.toml", sets | {"motion.slide_roll_ratio": 0.0} | time)
+        )
+        for time in ({"time.start": "rough", "time.travel": 1.5}, {"time.travel": 5.1})
+    )
+    a, u = filled.attrs["a"], filled.attrs["u2"]
+    time = filled.steps.time
+    later = np.interp(time + 3.6 * a / u, entered.steps.time, entered.steps.film_central)
+    difference = np.abs(filled.steps.film_central / later - 1.0)
+    assert difference.max() < 0.03 and difference[-1] < 0.002
+    assert filled_from(filled) == 0.0 < filled_from(entered)
 
 
 def test_levelling_removes_a_line_only():

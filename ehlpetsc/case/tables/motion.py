@@ -127,6 +127,11 @@ TIME_KEYS = {
         1e5,
         replaced_by=CONDITIONS,
     ),
+    "start": Key(
+        "smooth: profiles enter the contact from time 0; rough: they fill it, after a ramp before time 0",
+        choices=("smooth", "rough"),
+        default="smooth",
+    ),
     "courant": Key("Courant number u_max dt/dx", "", 1e-3, 100, default=0.5),
     "passes": Key("passes of the same stretches of both surfaces", "", 1, 10_000, kind=int, default=1),
     "pass_shift": Key("shift of the profile of surface 2 from pass to pass", "m", -1, 1, default=0.0),
