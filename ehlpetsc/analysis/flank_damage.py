@@ -1,55 +1,37 @@
 """Fatigue damage of both flanks by arc length, from a post-processed gear run."""
 
-import h5py
+from pathlib import Path
+
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.results.post_result import PostResult
 
 FLANKS = ("pinion", "wheel")  # surfaces 1 and 2
 MAX_DEPTHS = 4  # in the picture
 
 
 class FlankDamage:
-    """Damage of one engagement along both flanks.
-
-    Parameters
-    ----------
-    file : path-like
-        Result of post-processing, ``RESULT.post.h5``.
-    profile_offsets : (float, float)
-        Arc lengths from A at which both flanks are at x = 0 at time 0 [m].
+    """Damage of one engagement along both flanks, from ``RESULT.post.h5``.
 
     Attributes
     ----------
-    depths : ndarray, shape (nz,)
-        [m].
-    arcs : pair of ndarray
+    depths
+        [m], shape (nz,).
+    arcs
         Arc lengths from A along the flanks of pinion and wheel [m], increasing.
-    damage : pair of ndarray or None, shape (nz, ns)
-        nan for points that did not pass the whole contact; None for a flank without damage.
-
-    Raises
-    ------
-    OutputError
-        The file cannot be read.
+    damage
+        Of pinion and wheel, shape (nz, ns); nan for points that did not pass the whole contact, None for a
+        flank without damage.
     """
 
-    def __init__(self, file, profile_offsets):
-        try:
-            with h5py.File(file) as stored:
-                group = stored["damage"]
-                self.depths = group["z_over_a"][:].astype(float) * float(stored.attrs["a"])
-                s = group["s"][:].astype(float)
-                shape = self.depths.size, s.size
-                self.damage = [
-                    group[name][:].astype(float).reshape(shape)[:, ::-1] if name in group else None
-                    for name in ("1", "2")
-                ]
-                self.arcs = [begin - s[::-1] for begin in profile_offsets]
-        except (OSError, KeyError, RuntimeError, TypeError, ValueError) as error:
-            raise OutputError(f"{file}: cannot be read as a result of post-processing: {error}") from None
+    def __init__(self, file: str | Path, profile_offsets: tuple[float, float]) -> None:
+        """`profile_offsets` are the arc lengths from A at which the flanks are at x = 0 at time 0 [m]."""
+        post = PostResult(file)
+        self.depths = post.z * post.a
+        self.damage = [post.damage[side][:, ::-1] if side in post.damage else None for side in ("1", "2")]
+        self.arcs = [begin - post.s[::-1] for begin in profile_offsets]
 
-    def lines(self):
+    def lines(self) -> list[str]:
         """Lines of text: maximum damage of each flank with its position and depth."""
         lines = []
         for flank, damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):

@@ -266,11 +266,6 @@ def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
     assert is_line_with(wheel, "wheel: 0.001 ", " 6.050 mm from A, 25.0 um ")
     found.draw(path.pair, tmp_path / "flanks.png", "made")
     assert (tmp_path / "flanks.png").stat().st_size > 10_000
-    with h5py.File(tmp_path / "run.post.h5", "a") as file:
-        del file["damage/s"]
-        file["damage/s"] = np.zeros(81, [("a", "f8"), ("b", "i4")])
-    with pytest.raises(OutputError, match="run.post.h5"):
-        FlankDamage(tmp_path / "run.post.h5", (1e-5, 5e-5))
     (tmp_path / "bad.post.h5").write_bytes(b"no HDF5")
     with pytest.raises(OutputError, match="bad.post.h5"):
         FlankDamage(tmp_path / "bad.post.h5", (0.0, 0.0))
