@@ -150,9 +150,9 @@ class Effect:
         """Whether a steady solution is consistent with the record after it; otherwise it is solved again."""
         return True
 
-    def log_viscosity(self, record, solution, ln_eta):
-        """ln(eta/eta0) of a solution, shape (nx,); `ln_eta` is that without this effect, None: isothermal."""
-        return ln_eta
+    def film_shear(self, record, solution, shear):
+        """Mean shear stress of the film [Pa] by `shear`, that without this effect; None: isothermal."""
+        return shear
 
     def observe(self, record, solution, step):
         """Values of `fields` and `scalars` by name, in SI units."""

@@ -337,6 +337,11 @@ def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tup
     return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
 
 
+def slope_by_temperature(p: np.ndarray, T: np.ndarray, fluid: Any, heat: Any) -> np.ndarray:
+    """d ln(eta)/dT [1/K]."""
+    return LAWS[fluid.law](p, T, viscosity_law(fluid, heat).constants)[2]
+
+
 def is_linear_in_temperature(law: OilLaw) -> bool:
     """Whether the logarithm of the viscosity is linear in temperature."""
     function, rise = list(LAWS.values())[law.kind], 0.1 * law.temperature

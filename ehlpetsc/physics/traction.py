@@ -16,7 +16,7 @@ def shear_stresses(
     oil: np.ndarray,
     h: np.ndarray,
     sheared: np.ndarray,
-    ln_eta: np.ndarray | None = None,
+    mean: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Shear stress [Pa] in +x on surfaces 1 (upper) and 2 (lower).
 
@@ -41,15 +41,16 @@ def shear_stresses(
         Film [m].
     sheared
         Fraction of the gap in which oil is sheared: 1 less the void fraction, 0 without a film.
-    ln_eta
-        ln(eta/eta0); None: of the isothermal law.
+    mean
+        Mean shear stress of the film [Pa], not negative; None: isothermal.
     """
     shear_2 = np.sign(sliding) * solids
     shear_1 = -shear_2
     if fluid is None:
         return shear_1, shear_2
-    if ln_eta is None:
-        ln_eta, _ = viscosity(oil, fluid)
-    film = np.where(sheared > 0.0, h, 1.0)
-    lower, upper = wall_shear(film, np.gradient(oil, dx), ln_eta, fluid, sliding, oil)
+    film, gradient = np.where(sheared > 0.0, h, 1.0), np.gradient(oil, dx)
+    if mean is None:
+        lower, upper = wall_shear(film, gradient, viscosity(oil, fluid)[0], fluid, sliding, oil)
+    else:
+        lower, upper = (np.sign(sliding) * mean + sign * 0.5 * film * gradient for sign in (-1.0, 1.0))
     return shear_1 - upper * sheared, shear_2 + lower * sheared

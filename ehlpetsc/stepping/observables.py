@@ -26,11 +26,11 @@ def diagnostics(
     """
     case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
     solution, loads = state.solution, state.solution.loads
-    ln_eta = None
+    shear = None
     for effect in effects:
         if effect.is_in(case):
-            ln_eta = effect.log_viscosity(state.records[effect.name], solution, ln_eta)
-    fields, contact_mask = _fields(scene, conditions, solution, ln_eta), loads.contact_mask
+            shear = effect.film_shear(state.records[effect.name], solution, shear)
+    fields, contact_mask = _fields(scene, conditions, solution, shear), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
     load, film = s.dx * pressure.sum(), mean_film(s, solution.nodes.film)
     friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
@@ -69,7 +69,7 @@ def diagnostics(
     return scalars, fields, contact_mask
 
 
-def _fields(scene: Scene, conditions: Conditions, solution: Solution, ln_eta: np.ndarray | None) -> dict:
+def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.ndarray | None) -> dict:
     """Fields in SI units that every case has."""
     s, loads, fluid = scene.scales, solution.loads, solution.inputs.fluid
     void = np.zeros(s.nx) if fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
@@ -83,7 +83,7 @@ def _fields(scene: Scene, conditions: Conditions, solution: Solution, ln_eta: np
         oil,
         film,
         sheared,
-        ln_eta,
+        shear,
     )
     return {
         "pressure": loads.pressure * s.p0,

@@ -5,10 +5,13 @@ import pytest
 
 from ehlpetsc.effects.heat.film_law import FilmLaw
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
+from ehlpetsc.physics.film_shear import NEWTON, FlowLaw
 from ehlpetsc.physics.laws import padded
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
-LAW = FilmLaw((0, padded((0.0, 1.0, 1.0)), 300.0), True, 1.0, np.inf, np.inf, 0.14, 0.0, 0.0)
+LAW = FilmLaw(
+    (0, padded((0.0, 1.0, 1.0)), 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, 0.14, 0.0, 0.0, 0.0
+)
 
 
 def carried(profile, nodes, way=1.0, moving=False):
@@ -30,9 +33,9 @@ def carried(profile, nodes, way=1.0, moving=False):
         film = zero, 1e-6 * full, full, t, stored, change, kept, flow
         a, b = explicit_transport(stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
-        of_nodes = np.array((a, b, zero, zero, *walls))
+        of_nodes = np.array((a, b, zero, zero, *walls, INLET * full))
         new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
-        assert transport(b / a, *film, INLET, INLET, tuple(LAW), of_nodes, *out) == 1
+        assert transport(b / a, zero.copy(), b / a, *film, INLET, INLET, tuple(LAW), of_nodes, *out) == 1
         taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
         worst = max(worst, abs(taken + q1.sum() + q2.sum()))
         change, t, kept = new - t, new, beyond

@@ -5,7 +5,8 @@ Equations and the temperature of a node: :mod:`ehlpetsc.effects.heat.film_law`; 
 from its pressure and film, with the response of both surfaces to the flux of the step; heat of the pressure
 flow and of rubbing solids, and the heat that the film carries along, are those of the last level there. Of
 the accepted solution all temperatures and fluxes are then computed with its own flow, so that the energy
-balance holds in every step.
+balance holds in every step. The stored film temperature is that of the solve: with pressure, film and void
+fraction it is one state.
 """
 
 from dataclasses import replace
@@ -75,32 +76,45 @@ class Heat(Effect):
         n, steps = self.scene.scales.nx, self._steps
         zeros, ones = np.zeros(n), np.ones(n)
         walls = [bulk * ones for bulk in steps.bulk]
-        state = (steps.inlet * ones, *walls, zeros, zeros, zeros, zeros, np.zeros(n + 1), *[zeros] * 5)
+        film = steps.inlet * ones
+        state = film, *walls, zeros, zeros, film, zeros, film, *[zeros] * 4, np.zeros(n + 1), *[zeros] * 5
         return HeatRecord(*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0)
 
     def inputs(self, record, inputs, step):
         """Add the data of the film's temperature; the first steady solution is isothermal."""
-        if not record.solved and self.scene.case.fluid is not None:
+        if not record.levels and self.scene.case.fluid is not None:
             return inputs
         return replace(inputs, heat=self._steps.film_heat(record, inputs, step))
 
     def accept(self, record, solution, step):
         """Temperatures and fluxes of a solution."""
-        temperatures, film, source, spread = self._steps.solve(record, solution, step)
+        steps = self._steps
+        temperatures, film, source, spread, solved = steps.solve(record, solution, step)
+        heat, error = steps.balance(temperatures, film, source)
         return HeatRecord(
-            temperatures.film,
-            *temperatures.walls,
-            *temperatures.fluxes,
-            source - film.rubbing,
-            spread,
-            film.couette,
-            *temperatures.responses,
-            film.pressure,
-            (temperatures.film - film.old) / (step.dt or np.inf),
-            temperatures.extrapolated * (step.dt or 0.0),
-            *temperatures.bodies,
-            *self._steps.balance(temperatures, film, source),
-            record.solved + 1,
+            film=temperatures.film,
+            wall_1=temperatures.walls[0],
+            wall_2=temperatures.walls[1],
+            flux_1=temperatures.fluxes[0],
+            flux_2=temperatures.fluxes[1],
+            base=temperatures.state[0],
+            profile=temperatures.state[1],
+            solved=temperatures.film if solution.inputs.fluid is None else solved,
+            shear=steps.shear(temperatures, film, step),
+            source=source,
+            rubbing=np.zeros_like(film.rubbing) if steps.thinnest else film.rubbing,
+            spread=spread,
+            flow=film.couette,
+            response_1=temperatures.responses[0],
+            response_2=temperatures.responses[1],
+            pressure=film.pressure,
+            rate=(temperatures.film - film.old) / (step.dt or np.inf),
+            extrapolated=temperatures.extrapolated * (step.dt or 0.0),
+            body_1=temperatures.bodies[0],
+            body_2=temperatures.bodies[1],
+            heat=heat,
+            error=error,
+            levels=record.levels + 1,
         )
 
     def is_settled(self, before, after):
@@ -108,16 +122,13 @@ class Heat(Effect):
         rise = max(np.abs(after.film - self._steps.inlet).max(), MIN_TEMPERATURE_RISE)
         return self.scene.case.fluid is None or np.abs(after.film - before.film).max() < STEADY * rise
 
-    def log_viscosity(self, record, solution, ln_eta):
-        """ln(eta/eta0) at the temperatures of a record; None without oil."""
-        from ehlpetsc.physics.laws import viscosity
-
-        fluid, pressure = solution.inputs.fluid, self.scene.scales.p0 * solution.loads.oil_pressure
-        return fluid and viscosity(pressure, fluid, self.scene.case.heat, record.film)[0]
+    def film_shear(self, record, solution, shear):
+        """Mean shear stress of the film [Pa], resolved across it; None without oil."""
+        return shear if solution.inputs.fluid is None else record.shear
 
     def observe(self, record, solution, step):
         """Temperatures and heat fluxes; their largest and mean values."""
-        values = record.film, record.wall_1, record.wall_2, record.flux_1, record.flux_2
+        values = record.solved, record.wall_1, record.wall_2, record.flux_1, record.flux_2
         fields = dict(zip(self.fields, values, strict=True))
         scalars = {"heat": record.heat, "heat_error": record.error}
         for name in ("film_temperature", "temperature_1", "temperature_2"):

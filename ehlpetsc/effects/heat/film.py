@@ -39,10 +39,12 @@ class FilmHeat(NamedTuple):
     law
         Constants of the oil.
     of_nodes
-        Rows `A` to `R2`, as of :func:`.film_law.film_temperature`, shape (8, nx): one array, as numba
+        Rows `A` to `SECANT`, as of :func:`.film_law.film_temperature`, shape (9, nx): one array, as numba
         looks up the types of many in a tuple anew in some calls, slowly.
     guess
-        Temperature to start from [K], shape (nx,).
+        State of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).
+    walls
+        Temperatures without the flux of the step [K], shape (2, nx).
     stored
         Heat capacity of the oil carried over, over the step [W/(m^2 K)], shape (nx,).
     bodies
@@ -52,6 +54,7 @@ class FilmHeat(NamedTuple):
     law: FilmLaw
     of_nodes: np.ndarray
     guess: np.ndarray
+    walls: np.ndarray
     stored: np.ndarray
     bodies: tuple[BodyStep, BodyStep] | None = None
 
@@ -81,10 +84,12 @@ class FilmHeat(NamedTuple):
 
         `temperatures` of the whole mesh to start from become those of the nodes; None: start from `guess`.
         """
-        guess = self.guess[nodes].copy() if temperatures is None else temperatures[nodes]
-        heated_nodal(
-            q, h, density, *units, tuple(self.law), np.ascontiguousarray(self.of_nodes[:, nodes]), guess, at
-        )
+        states = (self.guess if temperatures is None else temperatures)[:, nodes]
+        rows = [np.ascontiguousarray(row) for row in states]
+        of_nodes = np.ascontiguousarray(self.of_nodes[:, nodes])
+        heated_nodal(q, h, density, *units, tuple(self.law), of_nodes, *rows, at)
+        if temperatures is not None:
+            states[:] = rows
 
 
 @compiled
@@ -97,26 +102,30 @@ def heated_nodal(
     unit: float,
     law: tuple,
     of_nodes: np.ndarray,
-    guess: np.ndarray,
+    base: np.ndarray,
+    profile: np.ndarray,
+    mean: np.ndarray,
     at: np.ndarray,
 ) -> None:
     """Fill in the properties of nodes for their faces, viscosity at the film's temperature with derivatives.
 
     q, h, density, p0, film, unit and `at` as of :func:`.reynolds.nodal`; the node beyond the outlet has the
-    temperature of the last one. `guess` becomes the temperature of the nodes. `law` is a tuple:
-    numba looks up the type of a named one anew in some calls, slowly.
+    temperature of the last one. `base`, `profile` and `mean` are the state of the film to start from,
+    and become that of the nodes. `law` is a tuple: numba looks up the type of a named one anew in some calls.
     """
     nodes, law = len(q), FilmLaw(*law)
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
         of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
         left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, viscosity = film_temperature(guess[i], p, at[H, i], left, *of_node)
+        t, t_p, t_h, _, _, _, viscosity, base[i], profile[i] = film_temperature(
+            base[i], profile[i], p, at[H, i], left, *of_node
+        )
         _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
-        guess[i] = t
+        mean[i] = t
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
-        t = guess[nodes - 1]
+        t = mean[nodes - 1]
         viscosity = ln_viscosity(law.viscosity, p, t)
         _fill_fluidity(nodes, p, t, viscosity, 0.0, 0.0, law, p0, film, at)
 

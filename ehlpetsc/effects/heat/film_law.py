@@ -1,25 +1,24 @@
-r"""Temperature of the film at a node, with both surfaces, as a law of pressure and film.
+r"""Temperature and shear stress of the film at a node, with both surfaces, as a law of pressure and film.
 
-With one temperature T of the film and both surfaces' response :math:`R_i` to the present flux,
+With both surfaces' response :math:`R_i` to the present flux, a film of mean temperature T has
 
-.. math:: aT-b=\Phi(T)+G-q_1-q_2,\qquad T_i=W_i+R_iq_i,
+.. math:: aT-b=\Phi+G-q_1-q_2,\qquad T_i=W_i+R_iq_i,\qquad \Phi=\tau_m|u_1-u_2|.
 
-:math:`\Phi=\tau_m|u_1-u_2|`, the fluxes by :mod:`.exchange`, linear in T. What is left is one equation for T,
-monotone because the shear stress falls with T; the derivatives follow from the implicit function theorem.
+The shear stress is that of :mod:`ehlpetsc.physics.film_shear`, resolved across the film: the heat of shear
+concentrates in its middle. Its base temperature is that of the walls and of all other heat,
+:math:`T_s=(T_1+T_2)/2+c\,Hr`, :math:`H=q_1+q_2-\Phi`, :math:`r=h/k_f`. The fluxes are those of a parabola
+with the mean temperature :math:`T_e=(T_1+T_2)/2+(q_1+q_2)r/12`,
 
-Heat fluxes from the film into both surfaces, by the film's mean temperature T.
+.. math:: q_{1,2}=\frac1r\Big[6(T_e-T_w)\pm(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2,
 
-A parabola across the film gives
-
-.. math:: q_{1,2}=\frac{k_f}{h}\Big[6(T-T_w)\pm(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2.
+and the mean of the profile is :math:`T=T_e-\Phi r/12+m/\beta`. What is left are two
+equations, for :math:`T_s` and y.
 
 Oil that enters cold between surfaces far apart in temperature has no parabola: the law would cool the colder
 surface by oil that is warmer than it. Where it does, the sum of both fluxes stays and the colder surface has
 none; where the oil is colder than both surfaces, each gives heat by its own difference,
-:math:`q_i=6(k_f/h)(T-T_i)`, with the same sum. All three agree where they meet.
-
-With the responses :math:`T_i=W_i+R_iq_i` and :math:`r=h/k_f` the sum is :math:`(T-\alpha)/\kappa`, for the
-parabola with
+:math:`q_i=6(T_e-T_i)/r`, with the same sum. All three agree where they meet. The sum is
+:math:`(T_e-\alpha)/\kappa`, for the parabola with
 
 .. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r+R_1+R_2}\Big],\qquad
    \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r+R_1+R_2)},
@@ -27,27 +26,39 @@ parabola with
 regular at r = 0.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.compiled import inlined
-from ehlpetsc.physics.laws import SLOTS, is_linear_in_temperature, ln_viscosity, viscosity_law
-from ehlpetsc.physics.rheology import limited_shear
+from ehlpetsc.physics.film_shear import (
+    EYRING,
+    NEWTON,
+    FlowLaw,
+    across,
+    flow_stress,
+    mean_rise,
+    resolved_stress,
+)
+from ehlpetsc.physics.laws import ROELANDS_ZERO, SLOTS, is_linear_in_temperature, ln_viscosity, viscosity_law
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
-ITERATIONS = 200
-ACCURACY = 1e-10  # K: change in an iteration that ends it
-QUADRATIC = 1e-4  # K: the same of an iteration of Newton's method, after which it is accurate to 1e-9 K
-ERROR = 1e-8  # K: estimated error of an iteration of Chebyshev's method that ends it,
-SMALL = 0.3  # change of ln(eta) up to which that estimate holds
+ITERATIONS = 30  # of Newton's method, before bisection
+BISECTIONS = 200
+MAX_CHANGE = 60.0  # K in an iteration
+QUADRATIC = 1e-4  # K: change in an iteration of Newton's method, after which it is accurate to 1e-9 K
+QUADRATIC_Y = 1e-5  # the same of y
+MIN_SLOPE = 1e-12  # 1/K
+MIN_HEATING = 1e-12  # of b: less does not heat the film
+SMALL_Y = 1e-3  # below which the weight of other heat is a series
+UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
-A, B, G, SPREAD, W1, W2, R1, R2 = range(8)  # rows of FilmHeat.of_nodes
+A, B, G, SPREAD, W1, W2, R1, R2, SECANT = range(9)  # rows of FilmHeat.of_nodes
+BASE, PROFILE, MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
 PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
-MAX_LN_SINH = 20.0  # above it the stress is linear in ln(eta) to 1e-17
-
-_limited = inlined(limited_shear)
 
 
 class FilmLaw(NamedTuple):
@@ -55,62 +66,52 @@ class FilmLaw(NamedTuple):
 
     Attributes
     ----------
-    viscosity : tuple
+    viscosity
         :class:`ehlpetsc.physics.laws.OilLaw` as a tuple.
-    is_linear : bool
+    is_linear
         Whether the logarithm of the viscosity is linear in temperature.
-    eta0 : float
+    eta0
         Viscosity at ambient pressure and reference temperature [Pa s].
-    eyring : float
-        Eyring stress [Pa]; infinite: Newtonian.
-    limit : float
+    flow
+        :class:`ehlpetsc.physics.film_shear.FlowLaw` as a tuple.
+    limit
         Limiting shear stress over pressure; infinite: none.
-    conductivity : float
-        k_f at ambient pressure [W/(m K)].
-    conductivity_pressure : float
-        Its relative increase with pressure [1/Pa].
-    sliding : float
+    conductivity, conductivity_pressure, conductivity_saturation
+        k_f at ambient pressure [W/(m K)], its relative increase with pressure, and the
+        decrease of that [1/Pa].
+    sliding
         |u1 - u2| [m/s].
-    thinnest : float
+    thinnest
         Film [m] below which the shear stress is that of this film; 0: films of no thickness are not sheared.
     """
 
     viscosity: tuple
     is_linear: bool
     eta0: float
-    eyring: float
+    flow: tuple
     limit: float
     conductivity: float
     conductivity_pressure: float
+    conductivity_saturation: float
     sliding: float
     thinnest: float = 0.0
 
 
-def film_law(fluid, heat, sliding, thinnest=0.0):
-    """Constants of the oil in a step, :class:`.film.FilmLaw`.
-
-    Parameters
-    ----------
-    fluid : case.tables.fluid.Fluid or None
-        None: dry.
-    heat : case.tables.heat.Heat
-    sliding : float
-        u1 - u2 [m/s].
-    thinnest : float
-        See :class:`.film.FilmLaw`.
-    """
-    conduction = float(heat.oil_conductivity), float(heat.oil_conductivity_pressure)
+def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
+    """Constants of the oil in a step with u1 - u2 [m/s]; `fluid` None: dry."""
+    conduction = float(heat.oil_conductivity), float(heat.oil_conductivity_pressure), 0.0
     if fluid is None:
-        return FilmLaw((0, (0.0,) * SLOTS, 300.0), True, 1.0, np.inf, np.inf, *conduction, 0.0)
-    eyring = np.inf if fluid.eyring_stress is None else float(fluid.eyring_stress)
-    law = viscosity_law(fluid, heat)
-    limiting = getattr(fluid, "limiting_shear", None)
+        return FilmLaw(
+            (0, (0.0,) * SLOTS, 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, *conduction, 0.0
+        )
+    law, stress = viscosity_law(fluid, heat), fluid.eyring_stress
+    flow = FlowLaw(NEWTON) if stress is None else FlowLaw(EYRING, float(stress))
     return FilmLaw(
         tuple(law),
         is_linear_in_temperature(law),
         float(fluid.viscosity),
-        eyring,
-        np.inf if limiting is None else float(limiting),
+        tuple(flow),
+        np.inf if fluid.limiting_shear is None else float(fluid.limiting_shear),
         *conduction,
         abs(float(sliding)),
         thinnest,
@@ -151,163 +152,205 @@ def fluxes(kind, t, r, walls, exchange, alpha):
 
 
 @inlined
-def shear_stress(ln_rate, ln_eta, p, eyring, limit):
-    r"""Mean shear stress of the film :math:`\tau_m` [Pa].
-
-    :math:`\tau_0\,\mathrm{asinh}(\eta|u_1-u_2|/(\tau_0h)\,e^{-s})`, :math:`s=\ln(\sinh\Sigma/\Sigma)` (Conry,
-    Wang & Cusano 1987), limited by :func:`.rheology.limited_shear`.
-
-    Parameters
-    ----------
-    ln_rate : float
-        :math:`\ln(\eta_0|u_1-u_2|/(\tau_0h))-s`; Newtonian: :math:`\ln(\eta_0|u_1-u_2|/h)`.
-    ln_eta, p : float
-        ln(eta/eta0), pressure [Pa].
-    eyring, limit : float
-        Eyring stress [Pa], limiting shear stress over pressure; infinite: none.
-
-    Returns
-    -------
-    tau, by_ln_eta, by_ln_eta_twice, by_p : float
-        `by_p` at constant viscosity.
-    """
-    argument = ln_rate + ln_eta
-    if eyring == np.inf:
-        tau = by_ln_eta = twice = np.exp(min(argument, 600.0))
-    elif argument > MAX_LN_SINH:
-        tau, by_ln_eta, twice = eyring * (argument + 0.6931471805599453), eyring, 0.0
-    else:
-        x = np.exp(argument)
-        root = np.sqrt(1.0 + x * x)
-        over_root = 1.0 / root
-        by_ln_eta = eyring * x * over_root
-        tau = eyring * np.log(x + root) if x > 1e-4 else eyring * x
-        twice = by_ln_eta * over_root * over_root
-    if limit == np.inf:
-        return tau, by_ln_eta, twice, 0.0
-    value, by_tau, by_limit = _limited(tau, limit * p)
-    if tau > 0.0:
-        twice = by_tau * twice - 5.0 * by_tau * by_ln_eta * by_ln_eta / tau * (1.0 - (value / tau) ** 4)
-    return value, by_ln_eta * by_tau, twice, by_limit * limit
+def other_heat_excess(y: float, mean: float, mean_by_y: float) -> tuple[float, float]:
+    """Weight of :func:`ehlpetsc.physics.film_shear.other_heat` over that of uniform heat; derivative by y."""
+    s = 0.5 * y
+    if s < SMALL_Y:
+        return s * s / 45.0, s / 45.0
+    e = np.exp(-y)
+    tanh = (1.0 - e) / (1.0 + e)
+    square = 1.0 - tanh * tanh
+    over, under = 2.0 * s * tanh - mean, 8.0 * s * (tanh + s * square)
+    over_y = tanh + s * square - mean_by_y
+    under_y = 4.0 * (tanh + s * square) + 4.0 * s * (2.0 * square - 2.0 * s * tanh * square)
+    ratio = over / under
+    return ratio - UNIFORM, (over_y - ratio * under_y) / under
 
 
 @inlined
-def _log_rate(h, spread, law):
-    """`ln_rate` of :func:`.shear.shear_stress`."""
-    if law.eyring == np.inf:
-        return np.log(law.sliding * law.eta0 / h)
-    return np.log(law.sliding * law.eta0 / (law.eyring * h)) - spread
+def conductivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
+    """1/k_f [m K/W] of a film with a fraction of oil, and d ln(k_f)/dp [1/Pa]."""
+    below = 1.0 + law.conductivity_saturation * p
+    factor = 1.0 + law.conductivity_pressure * p / below
+    over = 1.0 / (law.conductivity * factor * max(left, MIN_CONDUCTING_FRACTION))
+    return over, law.conductivity_pressure / (below * below * factor)
 
 
 @inlined
-def _balanced(guess, slope, intercept, heat, ln_rate, p, law):
-    """Temperature of `slope` T = `intercept` + `heat` times the shear stress, by safeguarded Halley steps.
-
-    Returns
-    -------
-    temperature : float
-    shear : tuple of 3 floats
-        Stress [Pa] and its derivatives with respect to ln(eta) and p.
-    viscosity : tuple of 3 floats
-        Of :func:`.laws.ln_viscosity`.
-    """
-    eyring, limit = law.eyring, law.limit
-    low, high = intercept / slope, np.inf
-    t = low if heat == 0.0 else max(guess, low)
-    linear = law.is_linear  # in T: the power of the pressure is taken once
-    ln_eta, eta_p, eta_t = 0.0, 0.0, 0.0
-    tau, by_ln_eta, twice, by_p = 0.0, 0.0, 0.0, 0.0
-    change, last = 0.0, heat == 0.0
-    for k in range(ITERATIONS):
-        if k == 0 or not linear:
-            ln_eta, eta_p, eta_t = ln_viscosity(law.viscosity, p, t)
-        else:
-            ln_eta += eta_t * change
-        if heat > 0.0:
-            tau, by_ln_eta, twice, by_p = shear_stress(ln_rate, ln_eta, p, eyring, limit)
-        if last:
-            break
-        f, over_f_t = slope * t - intercept - heat * tau, 1.0 / (slope - heat * by_ln_eta * eta_t)
-        low, high = (low, min(high, t)) if f > 0.0 else (max(low, t), high)
-        change = -f * over_f_t
-        bend = -0.5 * heat * twice * eta_t * eta_t * over_f_t * change  # of f over a step of Newton's
-        if linear:
-            change *= 1.0 + min(max(-bend, -0.5), 1.0)
-        new = t + change
-        newton = low <= new <= high
-        if not newton:
-            new = 0.5 * (low + high) if high < np.inf else max(new, low)
-        change, t = new - t, new
-        step = eta_t * change
-        error = abs(bend * step * change) if linear and abs(step) < SMALL else np.inf
-        if newton and (error < ERROR or abs(change) < QUADRATIC):
-            ln_eta += step
-            tau += (by_ln_eta + 0.5 * twice * step) * step
-            by_ln_eta += twice * step
-            break
-        last = abs(change) < ACCURACY
-    return t, (tau, by_ln_eta, by_p), (ln_eta, eta_p, eta_t)
-
-
-@inlined
-def fixed_at(i, of_nodes, law):
-    """Last arguments of :func:`film_temperature` at node i, from `g` on, from those of :class:`FilmHeat`."""
+def fixed_at(i: int, of_nodes: np.ndarray, law: FilmLaw) -> tuple:
+    """Arguments of :func:`film_temperature` at node i from `g` on, by :class:`.film.FilmHeat`."""
     walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i]
-    return of_nodes[G, i], of_nodes[SPREAD, i], walls, law
+    return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[SECANT, i], walls, law
 
 
 @inlined
-def film_temperature(guess, p, h, left, a, b, g, spread, walls, law):
+def _slope(p: float, secant: float, law: FilmLaw) -> tuple[float, float]:
+    """-d ln(eta)/dT [1/K] at the temperature `secant`, and its derivative by p."""
+    _, _, slope = ln_viscosity(law.viscosity, p, secant)
+    if law.is_linear:
+        return max(-slope, MIN_SLOPE), 0.0
+    step = 1e-6 * p + 1.0
+    _, _, further = ln_viscosity(law.viscosity, p + step, secant)
+    return max(-slope, MIN_SLOPE), (slope - further) / step
+
+
+@inlined
+def film_temperature(
+    base: float,
+    profile: float,
+    p: float,
+    h: float,
+    left: float,
+    a: float,
+    b: float,
+    g: float,
+    spread: float,
+    secant: float,
+    walls: tuple[float, float, float, float],
+    law: FilmLaw,
+) -> tuple:
     r"""Temperature of the film at one node.
 
     Parameters
     ----------
-    guess : float
-        Start of the iteration [K].
-    p, h, left : float
+    base, profile
+        Start of the iteration: :math:`T_s` [K] and y.
+    p, h, left
         Pressure [Pa], film [m], fraction of the gap full of oil.
-    a, b : float
+    a, b
         Storage and transport per temperature [W/(m^2 K)], and their known part [W/m^2].
-    g : float
+    g
         Heat that does not depend on the temperature [W/m^2].
-    spread : float
+    spread
         :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress.
-    walls : tuple of 4 floats
+    secant
+        Temperature between the walls and the middle at which :math:`\beta` is the secant of ln(eta) [K].
+    walls
         W1, W2 [K], R1, R2 [m^2 K/W].
-    law : FilmLaw
 
     Returns
     -------
-    temperature : float
-        [K]
-    by_p, by_h : float
-        Derivatives [K/Pa], [K/m].
-    q1, q2 : float
-        Heat fluxes into both surfaces [W/m^2].
-    shear_heat : float
-        Phi [W/m^2].
-    viscosity : tuple of 3 floats
+    temperature, by_p, by_h
+        Mean across the film [K] and its derivatives [K/Pa], [K/m].
+    q1, q2, shear_heat
+        Heat fluxes into both surfaces and Phi [W/m^2].
+    viscosity
         Of :func:`.laws.ln_viscosity` at that temperature.
+    base, profile
+        :math:`T_s` [K] and y.
     """
-    pressure_factor = 1.0 + law.conductivity_pressure * p
-    over_conductivity = 1.0 / (law.conductivity * pressure_factor * max(left, MIN_CONDUCTING_FRACTION))
-    r = h * over_conductivity
+    w1, w2, r1, r2 = walls
+    over_k, k_slope = conductivity(p, left, law)
+    r = h * over_k
+    flow = FlowLaw(*law.flow)
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
-    ln_rate = _log_rate(sheared, spread, law) if heat > 0.0 else 0.0
+    ln_rate, limit, beta, beta_p = 0.0, np.inf, 1.0, 0.0
+    if heat > 0.0:
+        ln_rate = np.log(law.sliding * law.eta0 / (flow.stress * sheared)) - spread
+        limit = np.inf if law.limit == np.inf else law.limit * p
+        beta, beta_p = _slope(p, secant, law)
+    heating = 0.125 * beta * law.sliding * r * max(left, MIN_CONDUCTING_FRACTION)
+    t, y, eta = base, profile, ln_viscosity(law.viscosity, p, base)
+    temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
+    t_p, t_h, change, low, high = 0.0, 0.0, 0.0, 0.0, 0.0
     for kind in (PARABOLA, INSULATED, APART):
         exchange, alpha = exchange_law(kind, r, walls)
-        slope = a + exchange
-        t, shear, viscosity = _balanced(guess, slope, b + g + alpha * exchange, heat, ln_rate, p, law)
-        q1, q2, by_r = fluxes(kind, t, r, walls, exchange, alpha)
-        if kind == PARABOLA and (q1 if walls[0] < walls[1] else q2) >= -NO_FLUX * exchange:
+        if heat == 0.0:
+            energy_t = (b + g + alpha * exchange) / (a + exchange)
+            t, y, phi, temperature = energy_t, 0.0, 0.0, energy_t
+            q1, q2, by_r = fluxes(kind, energy_t, r, walls, exchange, alpha)
+            t_r = -by_r / (a + exchange)
+            t_p, t_h = -t_r * r * k_slope, t_r * over_k
+        else:
+            energy_t, low, high = t, ROELANDS_ZERO + 1.0, 1e5
+            for k in range(ITERATIONS + BISECTIONS):
+                q1, q2, _ = fluxes(kind, energy_t, r, walls, exchange, alpha)
+                d = 0.5 * beta * (w1 + r1 * q1 - w2 - r2 * q2)
+                if k > 0 and law.is_linear:
+                    eta = eta[0] + eta[2] * change, eta[1], eta[2]
+                else:
+                    eta = ln_viscosity(law.viscosity, p, t)
+                x = ln_rate + eta[0]
+                if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
+                    y = resolved_stress(y, x, heating, d, flow, limit)[0]
+                tau, by_x, by_limit = flow_stress(x, flow, limit)
+                is_heated = heating * tau > MIN_HEATING
+                f_y, lr_y, f1, f1_t, mean, mean_y, c, c_y = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+                if not is_heated:
+                    y = abs(d)
+                    if y > 1e-6:
+                        tau, by_x, by_limit = flow_stress(x - across(y, 0.0)[0], flow, limit)
+                else:
+                    if y <= abs(d):
+                        half = np.sinh(0.5 * d)
+                        y = 2.0 * np.arcsinh(np.sqrt(heating * tau + half * half))
+                    lr, lr_y, f, f_y, _ = across(y, d)
+                    tau, by_x, by_limit = flow_stress(x - lr, flow, limit)
+                    f1, f1_t = f - heating * tau, -heating * by_x * eta[2]
+                    f_y += heating * by_x * lr_y
+                    mean, mean_y = mean_rise(y, d)
+                    c, c_y = other_heat_excess(y, mean, mean_y)
+                phi, phi_t, phi_y = heat * tau, heat * by_x * eta[2], -heat * by_x * lr_y
+                over = 1.0 / (1.0 + c * r * exchange)
+                energy_t = (t + phi * r * (UNIFORM + c) + c * r * exchange * alpha) * over
+                flow_in = (energy_t - alpha) * exchange
+                e_phi, e_y = r * (UNIFORM + c) * over, -r * (flow_in - phi) * c_y * over
+                uniform = r * UNIFORM if is_heated else 0.0
+                temperature = energy_t - phi * uniform + mean / beta
+                m_phi = e_phi - uniform
+                f2 = a * temperature - b - phi - g + flow_in
+                f2_t = a * (over + m_phi * phi_t) - phi_t + (over + e_phi * phi_t) * exchange
+                f2_y = a * (m_phi * phi_y + e_y + mean_y / beta) - phi_y + (e_phi * phi_y + e_y) * exchange
+                over_det = 1.0 / (f_y * f2_t - f1_t * f2_y)
+                change, change_y = (f1 * f2_y - f_y * f2) * over_det, (f1_t * f2 - f2_t * f1) * over_det
+                change = min(max(change, -MAX_CHANGE, 0.5 * (ROELANDS_ZERO - t)), MAX_CHANGE)
+                if k >= ITERATIONS:
+                    low, high = (low, min(high, t)) if f2 > 0.0 else (max(low, t), high)
+                    if not low <= t + change <= high:
+                        change = 0.5 * (low + high) - t
+                new_y = min(max(y + change_y, abs(d) + 0.2 * (y - abs(d))), 3.0 * y + 1.0)
+                t, change_y = t + change, new_y - y
+                y = new_y
+                if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
+                    break
+            phi += phi_t * change + phi_y * change_y
+            energy_t += over * change + e_phi * (phi_t * change + phi_y * change_y) + e_y * change_y
+            temperature = energy_t - phi * uniform + (mean + mean_y * change_y) / beta
+            q1, q2, by_r = fluxes(kind, energy_t, r, walls, exchange, alpha)
+            phi = a * temperature - b - g + q1 + q2  # so that the balance of heat closes
+            # derivatives of both equations by the pressure and by the film, at constant t and y
+            e_r = (phi * UNIFORM - c * (q1 + q2 - phi) - c * r * by_r) * over
+            tau_p, r_p = by_x * eta[1], -r * k_slope
+            if limit < np.inf:
+                tau_p += by_limit * law.limit
+            heating_p = heating * (beta_p / beta - k_slope)
+            tau_h = -by_x / h if h == sheared else 0.0
+            heating_h = 0.125 * beta * law.sliding * over_k * max(left, MIN_CONDUCTING_FRACTION)
+            for side in range(2):
+                tau_s, r_s, heating_s = (tau_p, r_p, heating_p) if side == 0 else (tau_h, over_k, heating_h)
+                mean_s = -mean * beta_p / (beta * beta) if side == 0 else 0.0
+                phi_s = heat * tau_s
+                e_s = e_r * r_s + e_phi * phi_s
+                m_s = e_s + mean_s
+                if is_heated:
+                    m_s -= UNIFORM * (phi * r_s + r * phi_s)
+                f1_s = -heating_s * tau - heating * tau_s if is_heated else 0.0
+                f2_s = a * m_s - phi_s + by_r * r_s + e_s * exchange
+                base_s = (f1_s * f2_y - f_y * f2_s) * over_det
+                y_s = (f1_t * f2_s - f2_t * f1_s) * over_det
+                mean_t, mean_of_y = over + m_phi * phi_t, m_phi * phi_y + e_y + mean_y / beta
+                total = m_s + mean_t * base_s + mean_of_y * y_s
+                if side == 0:
+                    t_p = total
+                else:
+                    t_h = total
+        if kind == PARABOLA and (q1 if w1 < w2 else q2) >= -NO_FLUX * exchange:
             break
-        if kind == INSULATED and t >= min(walls[0], walls[1]):
+        if kind == INSULATED and energy_t >= min(w1, w2):
             break
-    tau, by_ln_eta, by_p = shear
-    over_f_t = 1.0 / (slope - heat * by_ln_eta * viscosity[2])
-    f_h = by_r * over_conductivity
-    if heat > 0.0 and h == sheared:
-        f_h += heat * by_ln_eta / h
-    f_p = -by_r * r * law.conductivity_pressure / pressure_factor - heat * (by_ln_eta * viscosity[1] + by_p)
-    return t, -f_p * over_f_t, -f_h * over_f_t, q1, q2, heat * tau, viscosity
+    if law.is_linear and heat > 0.0:
+        eta = eta[0] + eta[2] * (temperature - t + change), eta[1], eta[2]
+    else:
+        eta = ln_viscosity(law.viscosity, p, temperature)
+    return temperature, t_p, t_h, q1, q2, phi, eta, t, y

@@ -36,10 +36,19 @@ class HeatRecord(NamedTuple):
         Temperatures [K].
     flux_1, flux_2
         Heat fluxes into both bodies [W/m^2].
+    base, profile
+        State of the film, see :mod:`.film_law`.
+    solved
+        Mean temperature of the film in the solve of this level [K], on which its viscosity depended; `film`
+        is that of the accepted solution, with its own heat and flow.
+    shear
+        Mean shear stress of the film [Pa].
     source
-        Heat that does not depend on the film's temperature in a step [W/m^2].
+        Heat of the pressure flow and of compression [W/m^2].
+    rubbing
+        Heat of the solids [W/m^2], in the walls of the next solve.
     spread
-        Of :func:`ehlpetsc.effects.heat.film_law.shear_stress`.
+        Of :func:`.film_law.film_temperature`.
     flow
         Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
     response_1, response_2
@@ -49,13 +58,13 @@ class HeatRecord(NamedTuple):
     rate
         Change of the film's temperature over the last step [K/s]; 0: steady.
     extrapolated
-        Heat of the film beyond that at its temperature, see :mod:`.effects.heat.transport` [J/m^2].
+        Heat of the film beyond that at its temperature, see :mod:`.transport` [J/m^2].
     body_1, body_2 : BodyHeat
     heat : float
         Dissipated [W/m].
     error : float
         Its imbalance over it.
-    solved : int
+    levels : int
         Number of solutions before this level; 0: none yet.
     """
 
@@ -64,7 +73,12 @@ class HeatRecord(NamedTuple):
     wall_2: np.ndarray
     flux_1: np.ndarray
     flux_2: np.ndarray
+    base: np.ndarray
+    profile: np.ndarray
+    solved: np.ndarray
+    shear: np.ndarray
     source: np.ndarray
+    rubbing: np.ndarray
     spread: np.ndarray
     flow: np.ndarray
     response_1: np.ndarray
@@ -76,4 +90,4 @@ class HeatRecord(NamedTuple):
     body_2: BodyHeat
     heat: float
     error: float
-    solved: int
+    levels: int

@@ -1,6 +1,7 @@
 """Temperatures of one step: the data of a solve, and temperatures and heat of its solution."""
 
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -9,33 +10,40 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces
-from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, W1, W2, G, film_law
+from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, FilmLaw, G, film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.physics.flash_temperature import Solid
+from ehlpetsc.physics.laws import slope_by_temperature
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the largest one
+MIN_TEMPERATURE_RISE = 1e-3  # K
 DEPTH = 6
 ITERATIONS = 200
 ACCURACY = 1e-11  # of the largest value
 
 
 class Temperatures(NamedTuple):
-    """Temperatures [K], heat fluxes, heat of shear and `extrapolated` of :class:`.transport.Film` at its end
-    [W/m^2] at the nodes, and records of both bodies."""
+    """State of the film, temperatures of the walls [K], heat fluxes, heat of shear and `extrapolated` of
+    :class:`.transport.Film` at its end [W/m^2] at the nodes, and records of both bodies."""
 
-    film: np.ndarray
+    state: np.ndarray
     walls: list
     fluxes: list
     shear: np.ndarray
     extrapolated: np.ndarray
     bodies: list
     responses: list
+
+    @property
+    def film(self) -> np.ndarray:
+        """Mean temperature of the film [K]."""
+        return self.state[MEAN]
 
 
 class HeatStep:
@@ -78,10 +86,21 @@ class HeatStep:
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-        t = record.film
-        rows = *explicit_transport(stored, record.flow, t, self.inlet), record.source, record.spread
+        rows = *explicit_transport(stored, record.flow, record.film, self.inlet), record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
-        return FilmHeat(law, np.array((*rows, *walls, *responses)), t, stored, bodies)
+        rubbed, _ = _rubbed(walls, responses, record.rubbing)
+        of_nodes = np.array((*rows, *rubbed, *responses, self._secant(record, inputs.fluid, law)))
+        guess = np.array((record.base, record.profile, record.film))
+        return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
+
+    def _secant(self, record: HeatRecord, fluid: Any, law: FilmLaw) -> np.ndarray:
+        """Temperatures [K] at which the slope of ln(eta) is its secant from the walls to the middle."""
+        if law.is_linear:
+            return record.base
+        rise, at = np.log(np.cosh(0.5 * record.profile)), record.base
+        for _ in range(2):
+            at = record.base - rise / slope_by_temperature(record.pressure, at, fluid, self.heat)
+        return at
 
     def solve(self, record, solution, step):
         """Temperatures and heat of an accepted solution.
@@ -90,18 +109,20 @@ class HeatStep:
         -------
         Temperatures
         Film
-        source, spread : ndarray, shape (nx,)
-            See :class:`ehlpetsc.effects.heat.HeatRecord`.
+        source, spread, solved : ndarray, shape (nx,)
+            See :class:`.record.HeatRecord`.
         """
         s, loads = self.scales, solution.loads
         heat = solution.inputs.heat or self.film_heat(record, solution.inputs, step)
         friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
-        source = rubbing = friction * loads.friction_pressure * s.p0
+        rubbing = friction * loads.friction_pressure * s.p0
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            film = Film(blank, thickness, np.ones(s.nx), record.film, *[blank] * 3, np.zeros(s.nx + 1), blank)
-            spread = blank
+            film = Film(
+                blank, thickness, np.ones(s.nx), record.film, *[blank] * 3, np.zeros(s.nx + 1), rubbing
+            )
+            source = spread = blank
         else:
             q = solution.nodes.reynolds_unknown
             solved, couette, pressure_heat, spread, gradient = self._flow(solution, heat)
@@ -109,18 +130,23 @@ class HeatStep:
             unit = self.capacity * s.u * s.h / s.dx
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
             left = 1.0 + np.minimum(q, 0.0)
-            film_rubbing = rubbing if self.thinnest else blank
             last_step = (record.rate * step.dt, record.extrapolated / step.dt) if step.dt else (blank, blank)
-            old, flow = record.film, unit * couette
-            film = Film(pressure, thickness, left, old, heat.stored, *last_step, flow, film_rubbing)
-            source = source + np.where(loads.sheared_oil, pressure_heat, 0.0)
+            film = Film(
+                pressure, thickness, left, record.film, heat.stored, *last_step, unit * couette, rubbing
+            )
+            source = np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
         heat = heat.with_rows((G, SPREAD), (source, spread))
         heat = heat._replace(law=heat.law._replace(thinnest=0.0))
         temperatures = (
             self._steady(record, heat, film, step) if heat.bodies is None else self._moving(heat, film)
         )
-        return temperatures, film, source, spread
+        return temperatures, film, source, spread, heat.guess[MEAN]
+
+    def shear(self, temperatures: Temperatures, film: Film, step: Step) -> np.ndarray:
+        """Mean shear stress of the film [Pa]."""
+        speed = film.left * abs(step.conditions.sliding)
+        return np.divide(temperatures.shear, speed, out=np.zeros_like(speed), where=speed > 0.0)
 
     def _flow(self, solution, heat):
         """Temperatures of the film in the solve; results of `film.faces`."""
@@ -129,7 +155,7 @@ class HeatStep:
         backward = inputs.conditions.entrainment < 0.0
         if backward:  # the first node is the inlet
             inputs, q, h, oil = inputs.mirrored(), q[::-1], h[::-1], np.ascontiguousarray(oil[::-1])
-        solved, couette = heat.guess[::-1].copy() if backward else heat.guess.copy(), np.zeros(n + 1)
+        solved, couette = heat.guess[:, ::-1].copy() if backward else heat.guess.copy(), np.zeros(n + 1)
         pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
         at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs, solved)
         faces(
@@ -143,7 +169,7 @@ class HeatStep:
             gradient,
         )
         if backward:
-            return solved[::-1].copy(), -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
+            return solved[:, ::-1].copy(), -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
         return solved, couette, pressure_heat, spread, gradient
 
     def _max_flow(self, h, oil, inputs):
@@ -162,21 +188,27 @@ class HeatStep:
             rate = rate + (film.pressure - record.pressure) / step.dt
         return self.heat.thermal_expansion * film.old * film.thickness * film.left * rate
 
-    def _nodes(self, heat, film, guess):
-        """Film temperatures, both fluxes, the heat of shear and e."""
-        out = [np.empty(len(guess)) for _ in range(5)]
-        transport(guess, *film[:-1], self.inlet, self.coldest, tuple(heat.law), heat.of_nodes, *out)
-        return out
+    def _nodes(self, heat, film, walls, responses, state):
+        """State of the film, both fluxes, the heat of shear and e."""
+        rubbed, fractions = _rubbed(walls, responses, film.rubbing)
+        heat = heat.with_rows((W1, W2, R1, R2), (*rubbed, *responses))
+        base, profile, t = (row.copy() for row in state)
+        new, *fluxes, shear, extrapolated = out = [np.empty(len(t)) for _ in range(5)]
+        transport(
+            base, profile, t, *film[:-1], self.inlet, self.coldest, tuple(heat.law), heat.of_nodes, *out
+        )
+        fluxes = [q + part * film.rubbing for q, part in zip(fluxes, fractions, strict=True)]
+        return np.array((base, profile, new)), fluxes, shear, extrapolated
 
     def _moving(self, heat, film):
-        t, *fluxes, shear, extrapolated = self._nodes(heat, film, heat.guess)
-        walls_before, responses = heat.of_nodes[[W1, W2]], heat.of_nodes[[R1, R2]]
-        walls = [w + r * q for w, r, q in zip(walls_before, responses, fluxes, strict=True)]
+        responses = heat.of_nodes[[R1, R2]]
+        state, fluxes, shear, extrapolated = self._nodes(heat, film, heat.walls, responses, heat.guess)
+        walls = [w + r * q for w, r, q in zip(heat.walls, responses, fluxes, strict=True)]
         bodies = [
             body.accept(body_step, q)
             for body, body_step, q in zip(self.bodies, heat.bodies, fluxes, strict=True)
         ]
-        return Temperatures(t, walls, fluxes, shear, extrapolated, bodies, responses)
+        return Temperatures(state, walls, fluxes, shear, extrapolated, bodies, responses)
 
     def _steady(self, record, heat, film, step):
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
@@ -194,28 +226,46 @@ class HeatStep:
             walls_without_flux = [
                 w - response * flux for w, response, flux in zip(walls, responses, q, strict=True)
             ]
-            now = heat.with_rows((W1, W2, R1, R2), walls_without_flux + responses)
-            guess = record.film if temperatures is None else temperatures.film
-            t, *new_fluxes, shear, extrapolated = self._nodes(now, film, guess)
+            state = np.array((record.base, record.profile, record.film))
+            if temperatures is not None:
+                state = temperatures.state
+            state, new_fluxes, shear, extrapolated = self._nodes(
+                heat, film, walls_without_flux, responses, state
+            )
             bodies = [
                 body.record(flux, terms) for body, flux, (_, terms) in zip(self.bodies, q, risen, strict=True)
             ]
-            temperatures = Temperatures(t, walls, new_fluxes, shear, extrapolated, bodies, responses)
+            temperatures = Temperatures(state, walls, new_fluxes, shear, extrapolated, bodies, responses)
             return np.concatenate(new_fluxes)
 
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
         return temperatures
 
     def balance(self, temperatures, film, source):
-        """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it."""
-        total = (temperatures.shear + source).sum()
+        """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it.
+
+        Next to no heat, as at a start from rest, is not the measure of the imbalance, but the heat that warms
+        the oil by `MIN_TEMPERATURE_RISE`.
+        """
+        total = (temperatures.shear + source + film.rubbing).sum()
         of_film = film.old, film.stored, film.extrapolated, film.couette
         taken = heat_taken(*of_film, self.inlet, temperatures.film, temperatures.extrapolated)
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
-        return self.scales.dx * total, abs(missing) / max(abs(total), 1e-300) if total else 0.0
+        least = MIN_TEMPERATURE_RISE * (np.abs(film.couette).max() + film.stored.sum())
+        return self.scales.dx * total, abs(missing) / max(abs(total), least, 1e-300)
 
 
-def mixing(function, start):
+def _rubbed(
+    walls: Sequence[np.ndarray], responses: Sequence[np.ndarray], rubbing: np.ndarray
+) -> tuple[list[np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    """Walls [K] with the heat of the solids, which warms both by the same, and the parts in either."""
+    total = responses[0] + responses[1]
+    first = np.divide(responses[1], total, out=np.full_like(total, 0.5), where=total > 0.0)
+    rise = responses[0] * first * rubbing
+    return [wall + rise for wall in walls], (first, 1.0 - first)
+
+
+def mixing(function: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
     r"""Fixed point :math:`x=g(x)` by Anderson's acceleration (Walker & Ni 2011).
 
     Parameters

@@ -52,7 +52,7 @@ class Film(NamedTuple):
     couette : ndarray, shape (nx + 1,)
         Heat capacity that the mean speed of the surfaces moves through the faces, per cell [W/(m^2 K)].
     rubbing
-        Heat of solids in direct contact [W/m^2], for which the law of the next solve has that of a thin film.
+        Heat of the solids [W/m^2], which arises in the walls.
     """
 
     pressure: np.ndarray
@@ -67,7 +67,9 @@ class Film(NamedTuple):
 
 
 @compiled
-def explicit_transport(stored, flow, t, inlet):
+def explicit_transport(
+    stored: np.ndarray, flow: np.ndarray, t: np.ndarray, inlet: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Storage and upwind transport by temperatures t of the old level, of :func:`.film.film_temperature`.
 
     Parameters
@@ -114,45 +116,43 @@ def _limiters(t, old, change, couette, in_space, in_time):
 
 @compiled
 def transport(
-    t,
-    pressure,
-    thickness,
-    left,
-    old,
-    stored,
-    change,
-    before_step,
-    flow,
-    inlet,
-    coldest,
-    law,
-    of_nodes,
-    t_new,
-    q1,
-    q2,
-    shear_heat,
-    extrapolated,
-):
-    """Temperatures of the film and heat fluxes of a solution, by sweeps along the film.
+    base: np.ndarray,
+    profile: np.ndarray,
+    t: np.ndarray,
+    pressure: np.ndarray,
+    thickness: np.ndarray,
+    left: np.ndarray,
+    old: np.ndarray,
+    stored: np.ndarray,
+    change: np.ndarray,
+    before_step: np.ndarray,
+    flow: np.ndarray,
+    inlet: float,
+    coldest: float,
+    law: tuple,
+    of_nodes: np.ndarray,
+    t_new: np.ndarray,
+    q1: np.ndarray,
+    q2: np.ndarray,
+    shear_heat: np.ndarray,
+    extrapolated: np.ndarray,
+) -> int:
+    """Temperatures of the film and heat fluxes of a solution, by sweeps along the film; returns their number.
 
     Parameters
     ----------
-    t : ndarray, shape (nodes,)
-        First guess, at which the limiters are taken [K].
+    base, profile, t
+        State of the film to start from; the limiters are taken at the mean temperatures t [K]. `base` and
+        `profile` become those of the solution.
     pressure, thickness, left, old, stored, change, before_step, flow
         As `pressure` to `couette` of :class:`Film`. One by one, as numba looks up the types of many arrays in
         a tuple, and of named tuples, anew in some calls, slowly.
-    inlet, coldest : float
-        Temperature of the oil that enters, least one of it and both bodies [K].
+    inlet, coldest
+        Temperature of the oil that enters, minimum of it and both bodies [K].
     law, of_nodes
         As of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
-    t_new, q1, q2, shear_heat, extrapolated : ndarray, shape (nodes,)
+    t_new, q1, q2, shear_heat, extrapolated
         Filled in; the last one is e at the end of the step, over the step [W/m^2].
-
-    Returns
-    -------
-    int
-        Sweeps.
     """
     nodes, law = len(t), FilmLaw(*law)
     in_space, in_time = np.empty(nodes), np.empty(nodes)
@@ -179,8 +179,9 @@ def transport(
                 to_right, to_left = in_space[i] * max(flow[i + 1], 0.0), in_space[i] * max(-flow[i], 0.0)
                 a = stored[i] + from_left + from_right + beyond + to_right + to_left
                 b = first_order + beyond * old[i] + to_right * before + to_left * after
-                value, _, _, q1[i], q2[i], shear_heat[i], _ = film_temperature(
-                    t_new[i],
+                value, _, _, q1[i], q2[i], shear_heat[i], _, base[i], profile[i] = film_temperature(
+                    base[i],
+                    profile[i],
                     pressure[i],
                     thickness[i],
                     left[i],
