@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 from collections.abc import Collection, Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 from ehlpetsc.case.messages import allowed, show, slip, unknown
 from ehlpetsc.case.tables import CASE, key_of
@@ -32,7 +32,7 @@ class _Wrong(Exception):
     """A value is not an allowed one."""
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """Whether a value is a finite number of TOML: an integer is one, true and false are not."""
     return isinstance(value, int | float) and not isinstance(value, bool) and -MAX_FLOAT < value < MAX_FLOAT
 
@@ -210,7 +210,7 @@ def _item(key: Key, value: Any) -> Any:
     if not isinstance(value, key.kind) or key.choices and value not in key.choices:
         raise _Wrong
     longest = key.max_items if key.max_items and not key.many else math.inf
-    if key.kind is str and not (is_plain(value) and 0 < len(value) <= longest):
+    if isinstance(value, str) and not (is_plain(value) and 0 < len(value) <= longest):
         raise _Wrong
     return value
 

@@ -22,7 +22,6 @@ from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
 MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
-RATES = ("load", "radius", "speed_1", "speed_2")
 
 
 def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
@@ -41,10 +40,10 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
         return None
     if values.file is not None:
         columns, lines = read_table(folder / values.file)
-    else:
-        columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
-        lines = range(1, len(columns.get("time", ())) + 1)
-    return _table(columns, "line" if values.file else "entry", lines, tables, values.repeat)
+        return _table(columns, "line", lines, tables, values.repeat)
+    columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
+    entries = range(1, len(columns.get("time", ())) + 1)
+    return _table(columns, "entry", entries, tables, values.repeat)
 
 
 def with_columns(tables: Tables, folder: Path) -> Tables:
@@ -111,7 +110,8 @@ def _table(
     values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
     if not (values["speed_1"].any() or values["speed_2"].any()):
         raise TableFault(f"up to {row} {numbers[-1]}: both speeds are zero; allowed: a speed at some time")
-    return ConditionsTable(values["time"] - values["time"][0], *(values[key] for key in RATES), repeat)
+    load, radius, u1, u2 = (values[key] for key in ("load", "radius", "speed_1", "speed_2"))
+    return ConditionsTable(values["time"] - values["time"][0], load, radius, u1, u2, repeat)
 
 
 def _constants(tables: Tables) -> dict[str, float]:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 from ehlpetsc.case.tables.motion import COLUMNS, OPERATION
 from ehlpetsc.units import UnitFault, factor
 
 SI = {key: OPERATION.keys[key].unit for key in COLUMNS}
-UNIT = re.compile(r"(?P<name>[^\[(]*)(?:[\[(](?P<unit>[^\])]*)[\])].*)?.*", re.DOTALL)
 MAX_TABLE_BYTES = 2**26
 
 
@@ -43,7 +41,9 @@ def read_table(path: Path) -> tuple[dict[str, list[float]], list[int]]:
             raise TableFault(f"line {number}: {shown(line)}: allowed: {len(keys)} numbers")
         columns.append(values)
         lines.append(number)
-    return {key: [row[k] * factors.get(key, 1.0) for row in columns] for k, key in enumerate(keys)}, lines
+    return {
+        key: [row[k] * factors.get(key, 1.0) for row in columns] for k, key in enumerate(keys or ())
+    }, lines
 
 
 def shown(line: str) -> str:
@@ -80,7 +80,8 @@ def _factors(number: int, line: str, separator: str | None) -> dict[str, float]:
     key_by_name = {name: key for key, names in COLUMNS.items() for name in names}
     factors = {}
     for word in line.split(separator):
-        name, unit = UNIT.fullmatch(word.strip(" \"'")).group("name", "unit")
+        name, _, unit = word.strip(" \"'").replace("(", "[").partition("[")
+        unit = unit.rstrip(")] ")
         key = key_by_name.get(" ".join(name.lower().replace("_", " ").split()))
         if key is None:
             allowed = ", ".join(names[0] for names in COLUMNS.values())

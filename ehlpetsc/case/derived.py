@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from ehlpetsc.case.checking import Fault, Tables, is_number, values_of
+from ehlpetsc.case.checking import Fault, Tables, check, is_number, values_of
+from ehlpetsc.case.tables.oil import GRADE
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.keys import Values
@@ -58,22 +59,18 @@ def _with_grade(tables: Tables) -> Tables:
         return tables
     grade, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
     if isinstance(grade, str) and grade in OILS:
-        oil = OILS[grade]
-        density = oil.density_at(temperature) if is_number(temperature) else oil.density
-        grade = {"v40": oil.v40, "v100": oil.v100, "density": density}
+        named = OILS[grade]
+        density = named.density_at(temperature) if is_number(temperature) else named.density
+        grade = {"v40": named.v40, "v100": named.v100, "density": density}
         fluid = fluid | {"grade": grade}
         tables = tables | {"fluid": fluid}
-    if not isinstance(grade, dict):
+    oil = check(GRADE, grade)[0] if isinstance(grade, dict) else None
+    if oil is None or not is_number(temperature) or not 200.0 < temperature < 700.0:
         return tables
-    v40, v100, density = (grade.get(key) for key in ("v40", "v100", "density"))
-    if not all(is_number(value) for value in (v40, v100, density, temperature)):
-        return tables
-    if not (2e-6 < v100 < v40 < 1.0 and 200.0 < temperature < 700.0 and density > 0.0):
-        return tables
-    nu = float(walther(temperature, *walther_constants(v40, v100))[0])
-    properties = {"viscosity": nu / MM2 * density, "pressure_viscosity": gold_pressure_viscosity(nu)}
+    nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])
+    properties = {"viscosity": nu / MM2 * oil.density, "pressure_viscosity": gold_pressure_viscosity(nu)}
     tables = tables | {"fluid": properties | fluid}
-    return tables | {"heat": {"oil_density": density} | heat} if heat else tables
+    return tables | {"heat": {"oil_density": oil.density} | heat} if heat else tables
 
 
 def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:

@@ -36,9 +36,10 @@ def _below(table: KeyTable, above: str) -> Iterator[tuple[str, KeyTable]]:
             if _keys(key.table):
                 yield above + name, key.table
             yield from _below(key.table, f"{above}{name}.")
-        for variant in dict.fromkeys(map(id, (key.variants or {}).values())):
-            kinds = [kind for kind, one in key.variants.items() if id(one) == variant]
-            yield f"{above}{name} ({', '.join(kinds)})", key.variants[kinds[0]]
+        variants = key.variants or {}
+        for variant in {id(one): one for one in variants.values()}.values():
+            kinds = [kind for kind, one in variants.items() if one is variant]
+            yield f"{above}{name} ({', '.join(kinds)})", variant
 
 
 def _keys(table: KeyTable) -> dict[str, Key]:

@@ -39,10 +39,11 @@ def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> No
     spec, faults = check(PROFILE, table)
     if faults:  # reported with its keys
         return
-    scales = case and Scales.of(case)
-    profile_samples = samples(folder, spec, scales and scales.dx)
     if case is None:
+        samples(folder, spec)
         return
+    scales = Scales.of(case)
+    profile_samples = samples(folder, spec, scales.dx)
     film = scales.h * expected_film(case, scales) if case.fluid else 0.0
     fault = absurd(profile_samples, scales.a, scales.dx, scales.h, film)
     if fault:

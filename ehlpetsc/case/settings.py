@@ -8,7 +8,7 @@ from typing import Any
 from ehlpetsc.toml_file import MAX_KEY_PARTS, plain
 
 
-def parsed(override: str | tuple[str, Any]) -> tuple[list[str], Any]:
+def parsed(override: object) -> tuple[list[str], Any]:
     """("a.b=value") or ("a.b", value) -> (["a", "b"], value); ValueError: not a setting of a key."""
     if isinstance(override, tuple) and len(override) == 2 and isinstance(override[0], str):
         return override[0].split("."), plain(override[1])
