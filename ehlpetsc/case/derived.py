@@ -12,7 +12,6 @@ from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.keys import Values
 from ehlpetsc.materials import OILS, Steel, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.physics.laws import gold_pressure_viscosity, walther, walther_constants
-from ehlpetsc.surfaces.samples import samples
 
 BY_MATERIAL = "material"
 ELASTIC = ("youngs_modulus", "poisson_ratio")
@@ -111,5 +110,7 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
 
 def _removed(folder: Path, profile: Values) -> float:
     """Rms height [m] that the short cut-off removes from one profile."""
+    from ehlpetsc.surfaces.samples import samples
+
     before = samples(folder, profile.copy(update={"short_cutoff": None}))
     return float((before.z - samples(folder, profile).z).std())

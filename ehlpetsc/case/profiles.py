@@ -12,8 +12,6 @@ from ehlpetsc.case.tables.surface import PROFILE, SIDES
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
-from ehlpetsc.surfaces.samples import layout_of, samples
 
 
 def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
@@ -36,6 +34,9 @@ def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
 
 
 def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> None:
+    from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit  # smooth surfaces need none
+    from ehlpetsc.surfaces.samples import layout_of, samples
+
     spec, faults = check(PROFILE, table)
     if faults:  # reported with its keys
         return

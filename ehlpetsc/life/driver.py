@@ -160,8 +160,8 @@ class _Life:
         self, case: Case, path: Path, comm: MPI.Comm, history: LifeHistory, show: Callable, unresolved: bool
     ) -> None:
         from ehlpetsc.life.rounds import Ranks
+        from ehlpetsc.physics.operation import operation_of
         from ehlpetsc.physics.scales import Scales
-        from ehlpetsc.physics.variable_operation import operation_of
         from ehlpetsc.run.scene import scene_of
 
         self.case, self.path, self.comm, self.history, self.show = case, path, comm, history, show

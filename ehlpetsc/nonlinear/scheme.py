@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from petsc4py import PETSc
 
 from ehlpetsc.errors import UsageError
-from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 
 ALLOWED = ("newton", "sweep")
 
@@ -47,4 +49,6 @@ def solver_of(
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:
         raise UsageError("-ehl_scheme sweep: the paper's sweeps solve direct contact only; leave it out")
+    from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
+
     return GaussSeidelSolver(case, scales, film_scale, options.real("snes_atol"))

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ehlpetsc.physics.conditions_table import END_TOLERANCE, ConditionsTable, cumulative
-from ehlpetsc.physics.operation import LEVEL_TOLERANCE, Conditions, ConstantOperation
+from ehlpetsc.physics.operation import LEVEL_TOLERANCE, Conditions
 
 MAX_SPEED_CHANGE = 0.04  # in a time step, of the largest speed, for a Courant number of 1
 MIN_STEPS = 25  # of a table in which nothing moves for some time, for a Courant number of 1
@@ -154,25 +154,3 @@ class VariableOperation:
         left = (1.0 - fraction) * step if fraction > LEVEL_TOLERANCE else step
         end = self.duration - time
         return min(left, end) if end > END_TOLERANCE * self.duration else left
-
-
-def operation_of(case, scales):
-    """Operation of a case: constant, or from its table of conditions.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-
-    Returns
-    -------
-    ConstantOperation or VariableOperation
-    """
-    table = case.conditions
-    if table is None:
-        return ConstantOperation.of(case, scales)
-    travel = case.time.travel * scales.a
-    if not table.varies:
-        conditions = Conditions(*(float(column[0]) for column in table[1:5]))
-        return ConstantOperation(conditions, min(travel, table.swept_length()))
-    return VariableOperation(table, case.time.courant, scales.dx, scales.E, travel)

@@ -13,7 +13,6 @@ import numpy as np
 
 from ehlpetsc.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH
-from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
 
 if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result
@@ -87,6 +86,8 @@ def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: l
 
 def _filled_by(result: Result, side: str) -> float:
     """Time [s] from which the roughness of one surface fills the contact."""
+    from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
+
     profile, body, speed = result.profile(side), result.case.surface.side(side), result.attrs[f"u{side}"]
     feature = body and body.synthetic
     is_single = feature is not None and feature.kind in SINGLE_FEATURES

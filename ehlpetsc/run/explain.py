@@ -1,15 +1,20 @@
 """The command ``ehlpetsc explain``: a case in words."""
 
+from __future__ import annotations
+
 import math
 import tomllib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.command_parser import CommandParser, exit_status, put
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.film_formulas import smooth_films
+from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.run.forecast import (
     begin_time,
     file_size,
@@ -23,6 +28,9 @@ from ehlpetsc.run.forecast import (
 from ehlpetsc.run.warnings import domain_faults, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+
 
 def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc explain``; returns its exit status."""
@@ -32,17 +40,12 @@ def main(words: list[str]) -> int:
     return exit_status("explain", lambda: put(explain(load(chosen.case, chosen.set)), chosen))
 
 
-def explain(case):
+def explain(case: Case) -> str:
     """Text summary of a case: conditions, mesh size, effects that are switched off.
-
-    Parameters
-    ----------
-    case : case.loading.Case
 
     Returns
     -------
-    str
-        Several lines.
+    Several lines.
 
     Raises
     ------
@@ -68,14 +71,14 @@ def explain(case):
     return "\n".join(line for section in sections for line in section)
 
 
-def _contact(s):
+def _contact(s: Scales) -> list[str]:
     return [
         f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
         f"Hertz: half width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
     ]
 
 
-def _layer(contact, s):
+def _layer(contact: Any, s: Scales) -> list[str]:
     """Films at which a compliant layer carries load; [] without a layer."""
     if contact.asperity_height is None:
         return []
@@ -87,7 +90,7 @@ def _layer(contact, s):
     ]
 
 
-def _film(case, s, rough):
+def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(case.fluid, s.E, s.conditions)
@@ -100,7 +103,7 @@ def _film(case, s, rough):
     return [*lines, *lambda_line(case, s, rough)]
 
 
-def _motion(case, s):
+def _motion(case: Case, s: Scales) -> list[str]:
     if case.motion is None:
         return ["Motion: none"]
     if case.conditions is not None:
@@ -115,12 +118,12 @@ def _motion(case, s):
     ]
 
 
-def _variable(case, s):
+def _variable(case: Case, s: Scales) -> list[str]:
     """Ranges of conditions that change with time."""
     table, operation = case.conditions, operation_of(case, s)
     origin = "gear pair" if case.gears else "table"
 
-    def range_of(values, unit):
+    def range_of(values: np.ndarray, unit: str) -> str:
         low, high = values.min(), values.max()
         return f"{low:.4g} {unit}" if low == high else f"{low:.4g} to {high:.4g} {unit}"
 
@@ -136,7 +139,7 @@ def _variable(case, s):
     ]
 
 
-def _size(case, s, rough):
+def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     seconds, passes = run_time(case, s, rough), case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
     return [
@@ -147,7 +150,7 @@ def _size(case, s, rough):
     ]
 
 
-def _series(case):
+def _series(case: Case) -> list[str]:
     """Members of a series and their total cost."""
     series = tomllib.loads(case.text)["series"]
     values = "; ".join(
@@ -165,7 +168,7 @@ def _series(case):
     ]
 
 
-def _switched_off(case, rough):
+def _switched_off(case: Case, rough: Roughness | None) -> list[str]:
     fluid = case.fluid
     off = {
         "Reynolds equation (no [fluid])": fluid is None,
@@ -179,14 +182,14 @@ def _switched_off(case, rough):
     return ["Switched off: " + (", ".join(name for name, is_off in off.items() if is_off) or "nothing")]
 
 
-def _duration(seconds):
+def _duration(seconds: float) -> str:
     for limit, unit, size in ((90, "s", 1), (5400, "min", 60)):
         if seconds < limit:
             return f"about {max(seconds / size, 1):.0f} {unit}"
     return f"about {seconds / 3600:.1f} h"
 
 
-def _bytes(count):
+def _bytes(count: float) -> str:
     for unit, size in (("GB", 1e9), ("MB", 1e6)):
         if count >= size:
             return f"about {count / size:.1f} {unit}"

@@ -1,9 +1,13 @@
 """Before a run: heading, both surfaces in words, forecast of run time and file size."""
 
+from __future__ import annotations
+
 import math
 import os
 import time as clock
+from collections.abc import Iterator
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +15,12 @@ from ehlpetsc import __version__
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
-from ehlpetsc.surfaces.entry_times import entry_times
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.profile import Profile
+    from ehlpetsc.surfaces.roughness import Roughness
 
 # time of a Newton iteration on one rank over that of `probe`: constant part and part for each node, measured
 # side by side on 141 to 2661 nodes; a step takes the time of its iterations and of one more
@@ -24,30 +33,30 @@ FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 
 
-def lambda_ratio(case, s, rough):
+def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected smooth minimum film over the combined root mean square height."""
     film = film_formulas.smooth_films(case.fluid, s.E, s.conditions)[1]
     return film / rough.rq if rough.rq > 0 else math.inf
 
 
-def run_time(case, s, rough):
+def run_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected wall clock time of all passes on one rank of this machine at its current load [s]."""
     return begin_time() + work_time(case, s, rough)
 
 
-def begin_time():
+def begin_time() -> float:
     """Wall clock time before the first iteration, once for a series [s]."""
     return START_PROBES * probe()
 
 
-def work_time(case, s, rough):
+def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the iterations [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
     each = (ITERATION_PROBES + NODE_PROBES * s.nx) * probe()
     return passes * (iterations(case, s, rough) + solves) * each
 
 
-def iterations(case, s, rough):
+def iterations(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected Newton iterations of a run."""
     fraction = _rough_fraction(case, s, rough)
     mixed = rough and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
@@ -55,22 +64,24 @@ def iterations(case, s, rough):
     return STEADY_ITERATIONS + (steps(s) if case.time else 0) * each
 
 
-def _rough_fraction(case, s, rough):
+def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Fraction of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
+    from ehlpetsc.surfaces.entry_times import entry_times
+
     entries = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
     first = min(times[0] if times else 0.0 for times in entries)
     return min(max(1.0 - first / case.time.travel, 0.0), 1.0)
 
 
 @cache
-def probe():
+def probe() -> float:
     """Time of `PROBE_OPERATIONS` small array operations, as in a time step, on this machine [s]."""
     return sorted(_timed_operations() for _ in range(3))[1]
 
 
-def _timed_operations():
+def _timed_operations() -> float:
     small = np.linspace(0.0, 1.0, 400)
     begun = clock.perf_counter()
     for k in range(PROBE_OPERATIONS):
@@ -80,12 +91,12 @@ def _timed_operations():
     return clock.perf_counter() - begun
 
 
-def steps(s):
+def steps(s: Scales) -> int:
     """Number of time steps of a transient case without halved steps."""
     return math.ceil(s.duration / s.dt - 1e-9)
 
 
-def file_size(case, s):
+def file_size(case: Case, s: Scales) -> float:
     """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed."""
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
@@ -96,19 +107,8 @@ def file_size(case, s):
     return fields * value * s.nx * rows * math.ceil(frames / rows) + scalars
 
 
-def surface_lines(case, s, rough):
-    """Both surfaces: size, roughness and travel, a line each.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    s : physics.scales.Scales
-    rough : surfaces.roughness.Roughness or None
-
-    Returns
-    -------
-    list of str
-    """
+def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
+    """Both surfaces: size, roughness and travel, a line each."""
     lines = []
     for side in ("1", "2"):
         profile = rough and rough.side(side)
@@ -117,7 +117,7 @@ def surface_lines(case, s, rough):
     return lines
 
 
-def lambda_line(case, s, rough):
+def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
     if case.fluid is None or not rough or rough.rq <= 0.0:
         return []
@@ -128,14 +128,14 @@ def lambda_line(case, s, rough):
     ]
 
 
-def _regime(ratio):
+def _regime(ratio: float) -> str:
     """Lubrication regime by the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
     if ratio > FULL_FILM:
         return "full film"
     return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
 
 
-def _profile(case, s, profile):
+def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
     """Size, roughness and travel of one profile, a line each."""
     samples = profile.given
     lines = [
@@ -150,6 +150,8 @@ def _profile(case, s, profile):
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
         if case.time is not None and profile.enters:
             lines += _part_in_contact(case, s, profile)
+    from ehlpetsc.surfaces.entry_times import entry_times
+
     times = entry_times(profile, s)
     if times:
         reaches, fills = times
@@ -158,8 +160,10 @@ def _profile(case, s, profile):
     return lines
 
 
-def _part_in_contact(case, s, profile):
+def _part_in_contact(case: Case, s: Scales, profile: Profile) -> list[str]:
     """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
+    from ehlpetsc.surfaces.entry_times import entry_times
+
     reaches, length = entry_times(profile, s)[0], profile.given.length
     slower = s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower
@@ -174,7 +178,7 @@ def _part_in_contact(case, s, profile):
     ]
 
 
-def height_lines(rough, s):
+def height_lines(rough: Roughness | None, s: Scales) -> Iterator[str]:
     """Height ranges of the profiles, and of their means over the cells of the mesh."""
     for side in ("1", "2"):
         profile = rough and rough.side(side)
@@ -191,20 +195,8 @@ def height_lines(rough, s):
 MIN_NODES_OF_TWO_RANKS = 8000  # with fewer, two ranks gain little on a quiet machine and lose on a busy one
 
 
-def banner(case, scales, rough, ranks):
-    """Heading of a run in a few lines: title, size, surfaces.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : scales.Scales
-    rough : roughness.Roughness or None
-    ranks : int
-
-    Returns
-    -------
-    list of str
-    """
+def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:
+    """Heading of a run in a few lines: title, size, surfaces."""
     length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
     return [
         f"ehlpetsc {__version__}: {case.title}",
@@ -216,18 +208,18 @@ def banner(case, scales, rough, ranks):
     ]
 
 
-def worthwhile_ranks(case):
+def worthwhile_ranks(case: Case) -> int:
     """Default number of ranks: two for a series, and for a large mesh if two cores are idle; else one."""
     is_large = case.mesh.nodes >= MIN_NODES_OF_TWO_RANKS
     return 2 if case.series or (is_large and idle_cores() >= 2) else 1
 
 
-def idle_cores():
+def idle_cores() -> int:
     """Idle cores of this process, mean over the last minute."""
     return round(len(os.sched_getaffinity(0)) - os.getloadavg()[0])
 
 
-def _note_on_ranks(scales, ranks):
+def _note_on_ranks(scales: Scales, ranks: int) -> list[str]:
     if ranks == 1 or scales.nx >= MIN_NODES_OF_TWO_RANKS:
         return []
     return [

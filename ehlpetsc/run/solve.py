@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.results.means import Totals, means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.outputs.progress import ProgressOutput, SlowSteps, summary_line
-from ehlpetsc.run.outputs.recorder import Recorder
+from ehlpetsc.run.progress import ProgressOutput, SlowSteps, summary_line
+from ehlpetsc.run.recorder import Recorder
 
 if TYPE_CHECKING:
     from ehlpetsc.nonlinear.options import RunOptions
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Output(Protocol):
-    """Observer of a run on every rank, see :mod:`ehlpetsc.run.outputs`."""
+    """Observer of a run on every rank, see `ehlpetsc.run.solve.Output`."""
 
     def write(self, state: AcceptedState) -> None: ...
 

@@ -1,6 +1,9 @@
 """Warnings about a case before it runs: solids, motion, domain, mesh, profiles; faults of the domain."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,9 +16,11 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
 from ehlpetsc.physics.laws import LAWS
-from ehlpetsc.surfaces.entry_times import entry_warnings
-from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
 from ehlpetsc.surfaces.roughness import Roughness
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.scales import Scales
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
 PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
@@ -25,18 +30,8 @@ MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no
 MAX_INLET = 100.0  # half widths: largest distance of the proposed inlet
 
 
-def domain_warnings(case, scales):
-    """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-
-    Returns
-    -------
-    list of str
-    """
+def domain_warnings(case: Case, scales: Scales) -> list[str]:
+    """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure."""
     if case.fluid is None:
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
@@ -46,7 +41,7 @@ def domain_warnings(case, scales):
     return notes
 
 
-def domain_faults(case, scales):
+def domain_faults(case: Case, scales: Scales) -> list[str]:
     """Faults of the domain that make the result meaningless, one message each; checked before a run.
 
     Parameters as in :func:`domain_warnings`.
@@ -63,7 +58,7 @@ def domain_faults(case, scales):
     return [f"{where}: {_coarse(opening)}, which leaves no film; {_finer_mesh_hint(case, scales)}"]
 
 
-def _too_narrow(case, scales):
+def _too_narrow(case: Case, scales: Scales) -> list[str]:
     """Fault of a domain too narrow to bear the load at the yield pressure."""
     pressure = min(case.contact.yield_pressure)
     needed, width = scales.load / (pressure * scales.a), case.mesh.outlet - case.mesh.inlet
@@ -75,12 +70,12 @@ def _too_narrow(case, scales):
     ]
 
 
-def _smallest_expected_film(case, scales):
+def _smallest_expected_film(case: Case, scales: Scales) -> float:
     """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
     return max(expected_film(case, scales), smallest_film(case.contact, scales))
 
 
-def _near_inlet(case, scales):
+def _near_inlet(case: Case, scales: Scales) -> list[str]:
     film, inlet = expected_film(case, scales), -case.mesh.inlet
     ratio = film_left_by_inlet(film, inlet)
     if ratio >= MIN_FILM_RATIO:
@@ -95,14 +90,14 @@ def _near_inlet(case, scales):
     ]
 
 
-def _coarse(opening):
+def _coarse(opening: float) -> str:
     return (
         f"the mesh is too coarse for the inlet: beside the contact the gap opens by {opening:.2g} films "
         "from one node to the next"
     )
 
 
-def _finer_mesh_hint(case, scales):
+def _finer_mesh_hint(case: Case, scales: Scales) -> str:
     points = math.ceil(points_for_opening(_smallest_expected_film(case, scales), MAX_FILM_SLOPE))
     other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
     return f"try mesh.points_per_half_width = {points}{other}"
@@ -114,14 +109,8 @@ MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a stra
 MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
 
 
-def warnings(case, scales):
-    """Warnings before a run, one message each.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : scales.Scales
-    """
+def warnings(case: Case, scales: Scales) -> list[str]:
+    """Warnings before a run, one message each."""
     rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
     notes = []
     if case.contact.yield_pressure and min(case.contact.yield_pressure) < MIN_YIELD_PRESSURE * scales.p0:
@@ -137,11 +126,16 @@ def warnings(case, scales):
         )
     profiles = Roughness.of(case, scales)
     notes += magnitude_warnings(case, scales) + oil_warnings(case.fluid) + domain_warnings(case, scales)
-    notes += tilt_warnings(case, profiles) + entry_warnings(case, scales, profiles)
-    return notes + mesh_warnings(profiles, scales) + heat_warnings(case, scales)
+    if profiles:
+        from ehlpetsc.surfaces.entry_times import entry_warnings
+        from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
+
+        notes += tilt_warnings(case, profiles) + entry_warnings(case, scales, profiles)
+        notes += mesh_warnings(profiles, scales)
+    return notes + heat_warnings(case, scales)
 
 
-def soft_pass_warnings(case, scales):
+def soft_pass_warnings(case: Case, scales: Scales) -> list[str]:
     """Shifted passes of solids that yield under the smooth contact, with which every pass starts."""
     softest, time = min(case.contact.yield_pressure or (np.inf,)), case.time
     if softest >= scales.p0 or time is None or time.passes == 1 or not time.pass_shift:
@@ -153,7 +147,7 @@ def soft_pass_warnings(case, scales):
     ]
 
 
-def heat_warnings(case, scales):
+def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
     if case.heat is not None or case.motion is None:
         return []
@@ -168,7 +162,7 @@ def heat_warnings(case, scales):
     ]
 
 
-def magnitude_warnings(case, scales):
+def magnitude_warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings of magnitudes outside elastohydrodynamic contacts, most likely wrong units."""
     notes = []
     if not LOW_PRESSURE <= scales.p0 <= HIGH_PRESSURE:
@@ -187,7 +181,7 @@ def magnitude_warnings(case, scales):
     return notes
 
 
-def oil_warnings(fluid):
+def oil_warnings(fluid: Any) -> list[str]:
     """Warning of oil constants that the viscosity law does not use."""
     if fluid is None:
         return []
@@ -196,7 +190,7 @@ def oil_warnings(fluid):
     return [f'{", ".join(keys)}: not used by law = "{fluid.law}"'] if keys else []
 
 
-def tilt_warnings(case, profiles):
+def tilt_warnings(case: Case, profiles: Roughness | None) -> list[str]:
     """Warnings of profiles whose heights are mostly a straight line, a tilt of the measurement."""
     notes = []
     for side in ("1", "2"):

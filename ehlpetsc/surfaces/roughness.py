@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehlpetsc.surfaces.profile import Profile
-from ehlpetsc.surfaces.samples import samples
 
 END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are equal
 RAMP_LENGTH = 0.1  # half widths at the beginning of a profile over which its heights increase from zero
@@ -130,6 +129,8 @@ class Roughness:
 
 
 def _profile(case, scales, spec, speed, side, positions):
+    from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
+
     (inlet, outlet), travelled = positions.domain_ends_at_entry, positions.travelled[side]
     swept_length, table, reach = 0.0, case.conditions, None
     if table is not None and table.varies:

@@ -9,8 +9,9 @@ import pytest
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.conditions_table import ConditionsTable
+from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.variable_operation import VariableOperation, operation_of
+from ehlpetsc.physics.variable_operation import VariableOperation
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 TABLE = """time [s], load [N/m], radius [m], speed 1, speed 2 [m/s]

@@ -7,8 +7,8 @@ from support.made_loads import LOAD, A, Scene, write
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import PostError
+from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales, hertz_line
-from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, run

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 from support import is_line_with
 
-from ehlpetsc.run.outputs.progress import MEDIAN_STEPS, SKIPPED_STEPS, SLOWDOWN, SlowSteps
+from ehlpetsc.run.progress import MEDIAN_STEPS, SKIPPED_STEPS, SLOWDOWN, SlowSteps
 
 
 def warned(times, ranks=2):

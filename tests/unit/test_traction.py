@@ -10,9 +10,9 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
+from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
-from ehlpetsc.physics.variable_operation import operation_of
 from ehlpetsc.stepping.observables import diagnostics, mean_film
 from ehlpetsc.stepping.state import State
 

@@ -1,16 +1,10 @@
-"""Contact models: what oil and solids do at a node, one module a law, behind one interface."""
+"""Contact models: what oil and solids do at a node, one module a law behind one interface."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
-from ehlpetsc.discretisation.contact.direct import DirectContact, DryContact
-from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.contact.yielding import YieldingContact
-from ehlpetsc.physics.asperities import GAMMA
 from ehlpetsc.physics.scales import Scales
 
 
@@ -22,6 +16,9 @@ def film_scale_of(case: Any, scales: Scales, expected_film: float) -> float:
 def smallest_film(contact: Any, scales: Scales) -> float:
     """Film in a^2/R that solids in contact leave: boundary film, or that of the layer under p0; 0: none."""
     if contact.asperity_height is not None:
+        from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
+        from ehlpetsc.physics.asperities import GAMMA
+
         return CompliantContact(Layer.of(contact, scales, GAMMA)).minimum_film
     return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
 
@@ -38,14 +35,23 @@ def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance:
     """
     contact = case.contact
     if contact.model == "direct":
+        from ehlpetsc.discretisation.contact.direct import DirectContact, DryContact
+
         return (DryContact if case.fluid is None else DirectContact)(
             contact.minimum_film / scales.h, bound_tolerance
         )
     if contact.asperity_height is not None:
+        from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
+        from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
+        from ehlpetsc.physics.asperities import GAMMA
+
         layer = Layer.of(contact, scales, GAMMA)
         if contact.yield_pressure is None:
             return CompliantContact(layer)
         return CompliantYieldingContact(layer, min(contact.yield_pressure) / scales.p0, film_scale)
+    from ehlpetsc.discretisation.contact.mixed import MixedContact
+    from ehlpetsc.discretisation.contact.yielding import YieldingContact
+
     boundary_film, stiffness = contact.boundary_film / scales.h, 1.0 / film_scale
     if contact.yield_pressure is None:
         return MixedContact(boundary_film, stiffness)

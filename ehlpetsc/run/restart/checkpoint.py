@@ -15,7 +15,6 @@ from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
 from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.run.restart.rescaling import rescale
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.roughness import SurfacePositions
 
@@ -110,6 +109,8 @@ def load(path: Path, case: Case, scales: Scales, model: ContactModel) -> tuple[C
         misfit = _misfit(arrays, attributes, earlier, case, scales)
         if misfit:
             raise OutputError(f"{path}: {misfit}")
+        from ehlpetsc.run.restart.rescaling import rescale
+
         rescale(arrays, attributes, scales)
         checkpoint = _checkpoint(arrays, attributes, model)
     except KeyError as missing:

@@ -3,13 +3,20 @@
 The messages follow from the totals over all steps and are also stored in the result file.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
-from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
-from ehlpetsc.surfaces.profile import WAVE_NODES
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.roughness import Roughness
 
 ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
@@ -18,20 +25,13 @@ MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about
 MAX_DECADES = 300  # log10 of the largest viscosity that is printed with digits
 
 
-def limits(case, scales, rough, totals):
+def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str, float]) -> list[str]:
     """Messages on results outside the validity of the model.
 
     Parameters
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    rough : surfaces.roughness.Roughness or None
-    totals : dict of str to number
+    totals
         Scalars over the run, see `ehlpetsc.results.means.Totals`.
-
-    Returns
-    -------
-    list of str
     """
     if "p_max" not in totals:  # no step was taken
         return []
@@ -42,7 +42,7 @@ def limits(case, scales, rough, totals):
     return [message for message in messages if message]
 
 
-def _yield(case, totals):
+def _yield(case: Case, totals: dict[str, float]) -> str | None:
     if case.contact.yield_pressure is not None or totals["p_max"] <= ASPERITY_YIELD_PRESSURE:
         return None
     return (
@@ -52,7 +52,7 @@ def _yield(case, totals):
     )
 
 
-def _heat(case, scales, totals):
+def _heat(case: Case, scales: Scales, totals: dict[str, float]) -> str | None:
     if "friction_coefficient" not in totals or case.heat is not None or case.motion is None:
         return None
     flash = flash_temperature(abs(totals["friction_coefficient"]), scales)
@@ -64,7 +64,7 @@ def _heat(case, scales, totals):
     )
 
 
-def _friction(case, totals):
+def _friction(case: Case, totals: dict[str, float]) -> str | None:
     coefficient = abs(totals.get("friction_coefficient", 0.0))
     if coefficient <= max(MAX_OIL_FRICTION, case.contact.boundary_friction):
         return None
@@ -74,7 +74,7 @@ def _friction(case, totals):
     )
 
 
-def _viscosity(fluid, totals):
+def _viscosity(fluid: Any, totals: dict[str, float]) -> str | None:
     pressure = totals["oil_pressure"]
     decades = (float(viscosity(np.array([pressure]), fluid)[0][0]) + np.log(fluid.viscosity)) / np.log(10.0)
     if decades <= np.log10(MAX_MEASURED_VISCOSITY):
@@ -86,7 +86,7 @@ def _viscosity(fluid, totals):
     )
 
 
-def _balance(case, totals):
+def _balance(case: Case, totals: dict[str, float]) -> str | None:
     error = totals["mass_error"]
     if error <= MAX_MASS_ERROR:
         return None
@@ -97,7 +97,7 @@ def _balance(case, totals):
     return f"oil balance: the mass defect of one step is {ratio} the oil that the contact carries; {cure}"
 
 
-def _molecules(totals):
+def _molecules(totals: dict[str, float]) -> str | None:
     count = totals["nodes_below_1nm"]
     if not count:
         return None
@@ -107,8 +107,13 @@ def _molecules(totals):
     )
 
 
-def _mesh(rough, scales):
-    sides = [side for side in ("1", "2") if rough and rough.side(side)]
+def _mesh(rough: Roughness | None, scales: Scales) -> str | None:
+    if rough is None:
+        return None
+    from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
+    from ehlpetsc.surfaces.profile import WAVE_NODES
+
+    sides = [side for side in ("1", "2") if rough.side(side)]
     unresolved = {side: rough.side(side).unresolved_variance(scales.dx) for side in sides}
     coarse = [
         f"{100 * value:.1f} % of surface.{side}"

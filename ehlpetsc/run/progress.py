@@ -1,12 +1,22 @@
 """Progress and summary of a run, on rank 0."""
 
+from __future__ import annotations
+
 import os
 import shutil
 import statistics
 import sys
 import time as clock
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.quantities import STEP_SCALARS
+
+if TYPE_CHECKING:
+    from ehlpetsc.errors import ExitStatus
+    from ehlpetsc.results.means import Totals
+    from ehlpetsc.run.accepted_state import AcceptedState
+    from ehlpetsc.run.simulation import Simulation
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
@@ -16,7 +26,7 @@ _COLUMNS = {name: scalar.progress for name, scalar in STEP_SCALARS.items() if sc
 _REMAINING = "{:>9s}"
 
 
-def on_terminal(stream):
+def on_terminal(stream: TextIO | None) -> bool:
     """Whether output is shown on a terminal.
 
     Under mpirun every rank has a terminal, even if the output of mpirun is a file: the output of the parent
@@ -32,7 +42,7 @@ def on_terminal(stream):
         return True
 
 
-def in_notebook():
+def in_notebook() -> bool:
     """Whether output is shown in a notebook."""
     shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     return type(shell).__name__ == "ZMQInteractiveShell"
@@ -43,13 +53,13 @@ class Progress:
 
     Parameters
     ----------
-    begin, end : float
+    begin, end
         Time at the start of this run and at its end [s].
-    stream : file, optional
+    stream
         Default: standard output.
     """
 
-    def __init__(self, begin, end, stream=None):
+    def __init__(self, begin: float, end: float, stream: TextIO | None = None) -> None:
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
         self._bar = on_terminal(self._stream) or in_notebook()
@@ -58,12 +68,12 @@ class Progress:
         self._shown = None
         self._pending = None
 
-    def step(self, scalars):
+    def step(self, scalars: dict[str, float]) -> None:
         """Show an accepted step if it is the first or enough time has passed.
 
         Parameters
         ----------
-        scalars : dict of str to number
+        scalars
             Scalars of the step, as in ``steps/`` of a result file.
         """
         now = clock.monotonic()
@@ -72,7 +82,7 @@ class Progress:
         if self._shown is None or now - self._shown >= wait:
             self._show(now)
 
-    def close(self):
+    def close(self) -> None:
         """Show the last step if it has not been shown."""
         if self._pending:
             self._show(clock.monotonic())
@@ -80,7 +90,7 @@ class Progress:
             self._stream.write("\n")
             self._stream.flush()
 
-    def _show(self, now):
+    def _show(self, now: float) -> None:
         scalars, self._pending = self._pending, None
         done = (scalars["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
         done = min(max(done, 0.0), 1.0)
@@ -94,7 +104,7 @@ class Progress:
         self._stream.flush()
         self._shown = now
 
-    def _remaining(self, now, time):
+    def _remaining(self, now: float, time: float) -> str:
         """Remaining time from the rate over the last half of the wall clock time; "?": not known yet."""
         if not self._samples or now - self._samples[-1][0] > SECONDS_BETWEEN_BARS:
             self._samples.append((now, time))
@@ -104,7 +114,7 @@ class Progress:
             return "0s" if time >= self._end else "?"
         return duration((now - since[0]) * max(self._end - time, 0.0) / (time - since[1]))
 
-    def _draw_bar(self, done, remaining, scalars):
+    def _draw_bar(self, done: float, remaining: str, scalars: dict[str, float]) -> None:
         values = [column.bar.format(value) for column, value in _scaled(scalars) if column.bar]
         text = "  ".join([f" {100 * done:5.1f} %", *values, f"{remaining} left"])
         columns = shutil.get_terminal_size().columns
@@ -116,7 +126,7 @@ class Progress:
         else:
             self._stream.write("\r" + bar.ljust(columns - 1))
 
-    def _update_cell(self, bar):
+    def _update_cell(self, bar: str) -> None:
         """Replace the bar in a notebook's cell, where a carriage return does not overwrite a line."""
         from IPython.display import display
 
@@ -127,37 +137,31 @@ class Progress:
 
 
 class ProgressOutput:
-    """Progress of a simulation as an output, from its first step on.
+    """Progress of a simulation as an output, from its first step on."""
 
-    Parameters
-    ----------
-    simulation : run.simulation.Simulation
-    stream : file
-    """
-
-    def __init__(self, simulation, stream):
+    def __init__(self, simulation: Simulation, stream: TextIO | None) -> None:
         self._simulation, self._stream = simulation, stream
         self._progress = (
             None if simulation.solution is None else self._progress_from(simulation.solution.time)
         )
 
-    def write(self, state):
+    def write(self, state: AcceptedState) -> None:
         """Show a step, but not the steady start."""
         if self._progress is not None:
             self._progress.step(state.scalars)
         elif not self._simulation.finished:  # a steady case has no steps
             self._progress = self._progress_from(state.time)
 
-    def close(self, status):
+    def close(self, status: ExitStatus) -> None:
         """Show the last step."""
         if self._progress is not None:
             self._progress.close()
 
-    def _progress_from(self, time):
+    def _progress_from(self, time: float) -> Progress:
         return Progress(time, self._simulation.end, self._stream)
 
 
-def _scaled(scalars):
+def _scaled(scalars: dict[str, float]) -> Iterator[tuple[Any, float]]:
     """Columns and scaled values of the scalars of a step."""
     for name, column in _COLUMNS.items():
         if name in scalars:
@@ -165,17 +169,17 @@ def _scaled(scalars):
             yield column, int(scalars[name]) if is_integer else column.factor * scalars[name]
 
 
-def _heading(scalars):
+def _heading(scalars: dict[str, float]) -> str:
     cells = [column.heading.rjust(len(column.form.format(0))) for column, _ in _scaled(scalars)]
     return " ".join([*cells, _REMAINING.format("remaining")]) + "\n"
 
 
-def _line(scalars, remaining):
+def _line(scalars: dict[str, float], remaining: str) -> str:
     cells = [column.form.format(value) for column, value in _scaled(scalars)]
     return " ".join([*cells, _REMAINING.format(remaining)]) + "\n"
 
 
-def duration(seconds):
+def duration(seconds: float) -> str:
     """Duration as text: ``45s``, ``12m05s``, ``3h20m``, ``2d04h``."""
     s = round(seconds)
     if s < 60:
@@ -187,14 +191,12 @@ def duration(seconds):
     return f"{s // 86400}d{s % 86400 // 3600:02d}h"
 
 
-def summary_line(status, totals, wall):
+def summary_line(status: ExitStatus, totals: Totals, wall: float) -> str:
     """Last line of the output of a run.
 
     Parameters
     ----------
-    status : errors.ExitStatus
-    totals : results.totals.Totals
-    wall : float
+    wall
         Wall clock time [s].
     """
     return f"ehlpetsc: {status.words} {totals} wall={wall:.1f}"
@@ -213,16 +215,15 @@ class SlowSteps:
 
     Parameters
     ----------
-    ranks : int
-    show : callable
+    show
         Prints a line.
     """
 
-    def __init__(self, ranks, show):
+    def __init__(self, ranks: int, show: Callable[[str], None]) -> None:
         self._ranks, self._show = ranks, show
         self._seen, self._first, self._latest, self._warned = 0, [], [], False
 
-    def write(self, state):
+    def write(self, state: AcceptedState) -> None:
         """Compare the latest steps with the first ones, without the steady start."""
         scalars = state.scalars
         if scalars["step"] == 0 or not scalars["newton"]:
@@ -238,10 +239,10 @@ class SlowSteps:
         if len(self._latest) == MEDIAN_STEPS and not self._warned:
             self._compare()
 
-    def close(self, status):
+    def close(self, status: ExitStatus) -> None:
         """Do nothing."""
 
-    def _compare(self):
+    def _compare(self) -> None:
         now, begun = statistics.median(self._latest), statistics.median(self._first)
         if now < SLOWDOWN * begun:
             return
