@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +17,11 @@ from ehlpetsc.case.checking import Tables, check, is_number
 from ehlpetsc.case.conditions_file import TableFault, read_table
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION
-from ehlpetsc.gears.path import Path as ContactPath
-from ehlpetsc.gears.path import path_of_contact
-from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+
+if TYPE_CHECKING:
+    from ehlpetsc.gears.path import Path as ContactPath
+    from ehlpetsc.physics.conditions_table import ConditionsTable
 
 MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
 
@@ -33,6 +35,8 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
     if gears is not None and isinstance(operation, dict):
         raise TableFault("[gears] gives the same conditions; allowed: one of both")
     if isinstance(gears, dict):
+        from ehlpetsc.gears.path import path_of_contact
+
         values, _ = check(GEARS, gears)
         return of_gears(path_of_contact(values.pair)) if values else None
     values = check(OPERATION, operation)[0] if isinstance(operation, dict) else None
@@ -70,6 +74,8 @@ def of_gears(path: ContactPath) -> ConditionsTable:
     rho = np.interp(time, path.time, path.rho)
     u1, u2 = path.pair.speeds(rho)
     arcs = path.pair.flank_arcs(rho[0])
+    from ehlpetsc.physics.conditions_table import ConditionsTable
+
     return ConditionsTable(
         time - begin,
         np.interp(time, path.time, path.load),
@@ -110,6 +116,8 @@ def _table(
     values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
     if not (values["speed_1"].any() or values["speed_2"].any()):
         raise TableFault(f"up to {row} {numbers[-1]}: both speeds are zero; allowed: a speed at some time")
+    from ehlpetsc.physics.conditions_table import ConditionsTable
+
     load, radius, u1, u2 = (values[key] for key in ("load", "radius", "speed_1", "speed_2"))
     return ConditionsTable(values["time"] - values["time"][0], load, radius, u1, u2, repeat)
 

@@ -4,7 +4,15 @@ Geometry alone: no solver, no PETSc. ``ehlpetsc gears CASE.toml`` prints the tab
 case and draws it.
 """
 
+from importlib import import_module
+
 from ehlpetsc.gears.geometry import GearPair
-from ehlpetsc.gears.path import Path, path_of_contact
 
 __all__ = ["GearPair", "Path", "path_of_contact"]
+
+
+def __getattr__(name: str) -> object:
+    """Names of the path of contact, which a case without gears does not load."""
+    if name in ("Path", "path_of_contact"):
+        return getattr(import_module("ehlpetsc.gears.path"), name)
+    raise AttributeError(f"module 'ehlpetsc.gears' has no attribute {name!r}")

@@ -160,7 +160,7 @@ class _Life:
         self, case: Case, path: Path, comm: MPI.Comm, history: LifeHistory, show: Callable, unresolved: bool
     ) -> None:
         from ehlpetsc.life.rounds import Ranks
-        from ehlpetsc.physics.operation import operation_of
+        from ehlpetsc.physics import operation_of
         from ehlpetsc.physics.scales import Scales
         from ehlpetsc.run.scene import scene_of
 

@@ -6,7 +6,7 @@ state; the conditions at an instant are defined here.
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 LEVEL_TOLERANCE = 1e-6  # of a time step: times nearer than this are equal
 
@@ -122,17 +122,3 @@ class ConstantOperation:
     def step_count(self, nominal):
         """Number of time steps of the whole run."""
         return math.ceil(self.duration / nominal - 1e-9)
-
-
-def operation_of(case: Any, scales: Any) -> Any:
-    """Operation of a case: constant, or from its table of conditions."""
-    table = case.conditions
-    if table is None:
-        return ConstantOperation.of(case, scales)
-    from ehlpetsc.physics.variable_operation import VariableOperation
-
-    travel = case.time.travel * scales.a
-    if not table.varies:
-        conditions = Conditions(*(float(column[0]) for column in table[1:5]))
-        return ConstantOperation(conditions, min(travel, table.swept_length()))
-    return VariableOperation(table, case.time.courant, scales.dx, scales.E, travel)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.case.loading import stored_case
 from ehlpetsc.errors import PostError
-from ehlpetsc.physics.operation import operation_of
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.stresses.half_plane import spacing
 from ehlpetsc.results.post_result import SURFACES

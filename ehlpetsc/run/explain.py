@@ -11,9 +11,9 @@ import numpy as np
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.command_parser import CommandParser, exit_status, put
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
 from ehlpetsc.physics.film_formulas import smooth_films
-from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import (
     begin_time,

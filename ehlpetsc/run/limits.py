@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 
@@ -55,6 +54,8 @@ def _yield(case: Case, totals: dict[str, float]) -> str | None:
 def _heat(case: Case, scales: Scales, totals: dict[str, float]) -> str | None:
     if "friction_coefficient" not in totals or case.heat is not None or case.motion is None:
         return None
+    from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
+
     flash = flash_temperature(abs(totals["friction_coefficient"]), scales)
     if flash <= MAX_ISOTHERMAL_FLASH:
         return None

@@ -18,8 +18,8 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.scheme import solver_of
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts

@@ -14,7 +14,6 @@ from ehlpetsc.physics.film_formulas import (
     inlet_opening,
     points_for_opening,
 )
-from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
 from ehlpetsc.physics.laws import LAWS
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -151,6 +150,8 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
     if case.heat is not None or case.motion is None:
         return []
+    from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
+
     friction = case.contact.boundary_friction
     friction = expected_friction(case.fluid, friction, scales, expected_film(case, scales) * scales.h)
     flash = flash_temperature(friction, scales)

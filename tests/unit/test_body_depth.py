@@ -8,7 +8,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation, PlasticRecord
 from ehlpetsc.effects.wear import Wear, WearRecord
-from ehlpetsc.physics.operation import operation_of
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.scene import scene_of
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields

@@ -8,8 +8,8 @@ import pytest
 
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.errors import CaseError
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.conditions_table import ConditionsTable
-from ehlpetsc.physics.operation import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import VariableOperation
 

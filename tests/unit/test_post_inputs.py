@@ -7,7 +7,7 @@ from support.made_loads import LOAD, A, Scene, write
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import PostError
-from ehlpetsc.physics.operation import operation_of
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales, hertz_line
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare

@@ -10,7 +10,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.physics.operation import operation_of
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.stepping.observables import diagnostics, mean_film

@@ -13,7 +13,6 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.roughness import SurfacePositions
@@ -125,6 +124,8 @@ def pass_of(path: Path) -> int:
 
 def changed_keys(earlier: dict, now: dict) -> list[str]:
     """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics."""
+    from ehlpetsc.results.index import flat_keys
+
     old, new = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
     return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
