@@ -60,8 +60,8 @@ def run(chosen):
 
 def _run_of(chosen):
     """Print and draw a result along its path of contact."""
-    from ehlpetsc.analysis.flank_damage import FlankDamage
-    from ehlpetsc.analysis.gear_run import GearRun
+    from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
+    from ehlpetsc.pictures.gears import draw_damage, draw_run
 
     if chosen.csv is not None:
         raise OutputError(f"{chosen.case}: a result; allowed for --csv: a case with a [gears] table")
@@ -74,14 +74,14 @@ def _run_of(chosen):
     print("\n".join(gear_run.lines()))
     if target:
         with replacing(target, keep_ending=True) as temporary:
-            gear_run.draw(temporary)
+            draw_run(gear_run, temporary)
         print(target)
     if post.exists():
         damage = FlankDamage(post, gear_run.profile_offsets)
         print("\n".join(damage.lines()))
         if flanks:
             with replacing(flanks, keep_ending=True) as temporary:
-                damage.draw(gear_run.path.pair, temporary, gear_run.title)
+                draw_damage(damage, gear_run.path.pair, temporary, gear_run.title)
             print(flanks)
 
 

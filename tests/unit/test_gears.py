@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support import is_line_with
 
-from ehlpetsc.analysis.flank_damage import FlankDamage
+from ehlpetsc.analysis.gear_run import FlankDamage
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.gears import GearPair, path_of_contact
@@ -15,6 +15,7 @@ from ehlpetsc.gears.command import main
 from ehlpetsc.gears.load_sharing import relief_ratio
 from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.pictures.gears import draw_damage
 from ehlpetsc.post.stresses.body_points import body_points, passage
 
 FZG = {  # type C
@@ -264,7 +265,7 @@ def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
     pinion, wheel = found.lines()
     assert is_line_with(pinion, "pinion: 0.002 ", " 6.010 mm from A, 25.0 um ")
     assert is_line_with(wheel, "wheel: 0.001 ", " 6.050 mm from A, 25.0 um ")
-    found.draw(path.pair, tmp_path / "flanks.png", "made")
+    draw_damage(found, path.pair, tmp_path / "flanks.png", "made")
     assert (tmp_path / "flanks.png").stat().st_size > 10_000
     (tmp_path / "bad.post.h5").write_bytes(b"no HDF5")
     with pytest.raises(OutputError, match="bad.post.h5"):

@@ -80,7 +80,7 @@ SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run", "nonlinear", "life", "command"},
-    "matplotlib": {"pictures", "api", "analysis"},
+    "matplotlib": {"pictures", "api"},
     "numba": {"compiled"},
 }
 
