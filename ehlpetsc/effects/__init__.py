@@ -1,6 +1,7 @@
 """Effects: physics, other than the film, whose state changes from time level to time level.
 
-An effect is one module with a class derived from :class:`.effect.Effect` and one entry in `EFFECTS`.
+An effect is one module with a class derived from :class:`.effect.Effect`, with its keys and quantities, and
+one entry in `EFFECTS`.
 """
 
 from ehlpetsc.effects.heat.effect import Heat

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, get_type_hints
 
+from ehlpetsc.keys import KeyTable
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -86,6 +88,8 @@ class Effect:
         Name of the record in the state and in restart files.
     record : type
         Type of the record, a NamedTuple.
+    table : KeyTable or None
+        Table of the case file, :class:`ehlpetsc.keys.KeyTable`.
     moves_with_surfaces : bool
         Whether its contribution to the gap moves with the surfaces from the first step on.
     fields, scalars, surface : dict
@@ -95,6 +99,7 @@ class Effect:
 
     name = ""
     record = NoRecord
+    table: KeyTable | None = None
     moves_with_surfaces = False
     fields: dict = {}
     scalars: dict = {}
@@ -105,8 +110,8 @@ class Effect:
 
     @classmethod
     def is_in(cls, case):
-        """Whether a case has this effect."""
-        raise NotImplementedError
+        """Whether a case has this effect: by default its table of keys."""
+        return cls.table is not None and getattr(case, cls.table.name) is not None
 
     def start(self, before=None):
         """Record at time 0.

@@ -10,8 +10,16 @@ coefficient over the hardness. Implicit in time: a step wears with the pressure 
 from typing import NamedTuple
 
 from ehlpetsc.effects.body_depth import BodyDepth
+from ehlpetsc.keys import KeyTable, Required
 from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
+
+COEFFICIENT = Required(
+    "wear rate k, dz/dt = k p_c |u1 - u2|, z the depth worn off a surface", "m^2/N", 0, 1e-10, many="both"
+)
+WEAR = KeyTable(
+    "wear", "left out: no wear", {"coefficient": COEFFICIENT}, needs=('contact.model = "mixed"', "[time]")
+)
 
 
 def wear_depth(coefficient, contact_pressure, sliding, dt):
@@ -42,6 +50,7 @@ class Wear(BodyDepth):
     """Wear depth, added to the gap and kept in the bodies."""
 
     name = "wear"
+    table = WEAR
     record = WearRecord
     fields = {
         "wear_1": Field("m", "wear depth of surface 1", on_request=True),
@@ -57,11 +66,6 @@ class Wear(BodyDepth):
         )
     }
     surface = {"wear": Field("m", "wear depth at the end", ("s",))}
-
-    @classmethod
-    def is_in(cls, case):
-        """Whether the case has a table [wear]."""
-        return case.wear is not None
 
     def accept(self, record, solution, step):
         """Wear both surfaces where the solids carry."""

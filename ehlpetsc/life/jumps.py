@@ -18,7 +18,7 @@ import numpy as np
 from ehlpetsc.life import laws
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.post import Life
+    from ehlpetsc.keys import Values
     from ehlpetsc.life.body import LifeBody
     from ehlpetsc.life.rounds import Round
 
@@ -100,7 +100,7 @@ class Jumps:
         Combined root mean square roughness [m].
     """
 
-    def __init__(self, life: Life, rq: float) -> None:
+    def __init__(self, life: Values, rq: float) -> None:
         self.life, self.passes = life, int(life.passes)
         self.wear_allowed = life.wear_jump * rq
 

@@ -27,7 +27,7 @@ MAY_IMPORT = (
         "effects": {"surfaces", "physics", "discretisation"},
         "quantities": {"effects"},
         "gears": {"physics"},
-        "case": {"gears", "surfaces", "physics", "quantities"},
+        "case": {"gears", "surfaces", "physics", "quantities", "effects"},
         "results": {"quantities", "case", "surfaces", "physics"},
         "discretisation": {"physics"},
         "nonlinear": {"discretisation", "physics"},

@@ -1,4 +1,4 @@
-"""Keys of `[contact]` and `[wear]`: solids, load, contact model, wear rate."""
+"""Keys of `[contact]`: solids, load, contact model."""
 
 from __future__ import annotations
 
@@ -94,8 +94,3 @@ KEYS = {
     ),
 }
 CONTACT = KeyTable("contact", "solids and load", KEYS, required=True, values=Contact, complete=_complete)
-
-WEAR_RATE = Required(
-    "wear rate k, dz/dt = k p_c |u1 - u2|, z the depth worn off a surface", "m^2/N", 0, 1e-10, many="both"
-)
-WEAR = KeyTable("wear", "left out: no wear", {"coefficient": WEAR_RATE}, needs=(MIXED, "[time]"))

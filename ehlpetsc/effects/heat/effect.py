@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.heat.keys import HEAT
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.quantity import Field, StepScalar
 
@@ -30,6 +31,7 @@ class Heat(Effect):
     """Film and surface temperatures."""
 
     name = "heat"
+    table = HEAT
     record = HeatRecord
     fields = {
         "film_temperature": Field("K", "mean temperature across the film"),
@@ -53,11 +55,6 @@ class Heat(Effect):
             summary=".2e",
         ),
     }
-
-    @classmethod
-    def is_in(cls, case):
-        """Whether the case has a table [heat]."""
-        return case.heat is not None
 
     @cached_property
     def _steps(self):
