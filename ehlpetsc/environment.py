@@ -7,11 +7,14 @@
     environment.py found MODULE ...    prints the version of Python and the missing modules
 """
 
+from __future__ import annotations
+
 import importlib
 import importlib.util
 import os
 import re
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 DEBIAN = Path("/usr/lib/petscdir")
@@ -23,7 +26,7 @@ RANK_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID
 OLDEST_PYTHON = (3, 11)
 
 
-def prepare():
+def prepare() -> list[str]:
     """Prepare the imports of a run.
 
     The petsc4py of Debian or of a PETSc built from source is not on Python's path: that of ``PETSC_DIR`` is
@@ -33,8 +36,7 @@ def prepare():
 
     Returns
     -------
-    list of str
-        Missing packages.
+    Missing packages.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
@@ -43,27 +45,18 @@ def prepare():
     return missing(NEEDED)
 
 
-def has(name):
+def has(name: str) -> bool:
     """Whether a package can be imported; a folder of its name without a package does not count."""
     spec = importlib.util.find_spec(name)
     return spec is not None and spec.origin is not None
 
 
-def missing(names):
-    """Missing packages of a list.
-
-    Parameters
-    ----------
-    names : iterable of str
-
-    Returns
-    -------
-    list of str
-    """
+def missing(names: Iterable[str]) -> list[str]:
+    """Missing packages of a list."""
     return [name for name in names if not has(name)]
 
 
-def _of_petsc_dir():
+def _of_petsc_dir() -> list[Path]:
     """Folders of the petsc4py of ``PETSC_DIR``."""
     if "PETSC_DIR" not in os.environ:
         return []
@@ -72,20 +65,19 @@ def _of_petsc_dir():
     return [folder for folder in folders if (folder / "petsc4py").is_dir()]
 
 
-def _debians():
+def _debians() -> list[Path]:
     """Folders of Debian's petsc4py for this release of Python, newest first."""
     built = f"petsc4py/lib/PETSc.{sys.implementation.cache_tag}-*.so"
     folders = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
     return sorted(folders, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
 
 
-def advice(lacks, arguments):
+def advice(lacks: list[str], arguments: list[str]) -> str:
     """Advice on missing packages: one line with the reason and one with a command.
 
     Parameters
     ----------
-    lacks : list of str
-    arguments : list of str
+    arguments
         Arguments of the command.
     """
     command = " ".join(arguments) or "CASE.toml"
@@ -101,7 +93,7 @@ def advice(lacks, arguments):
     )
 
 
-def startup_problem():
+def startup_problem() -> str | None:
     """Reason why a run cannot be started; None if it can."""
     try:
         os.getcwd()
@@ -116,12 +108,12 @@ def startup_problem():
     return None
 
 
-def first_rank():
+def first_rank() -> bool:
     """Whether this process is rank 0 of mpirun, or alone; also before MPI is initialised."""
     return next((os.environ[name] for name in RANK_VARIABLES if name in os.environ), "0") == "0"
 
 
-def _is_own_python(names):
+def _is_own_python(names: Iterable[str]) -> bool:
     """Whether this Python has all packages without Debian's PETSc, whose environment run_mpi.sh sets."""
     if sys.version_info < OLDEST_PYTHON:
         return False
@@ -135,12 +127,12 @@ def _is_own_python(names):
     return petsc.ScalarType.__name__ in ("float", "float64")
 
 
-def _python_report(names):
+def _python_report(names: Iterable[str]) -> str:
     lacks = f"without {', '.join(missing(names))}" if missing(names) else "with all packages"
     return f"{sys.executable} is Python {sys.version.split()[0]}, {lacks}"
 
 
-def _answer(question, *names):
+def _answer(question: str, *names: str) -> int:
     sys.path.pop(0)  # this file's folder, whose modules are part of a package
     if question == "own":
         return 0 if _is_own_python(names) else 1

@@ -3,7 +3,10 @@
 The message of an error that a user can correct states the fault, its place, and allowed values or a cure.
 """
 
+from __future__ import annotations
+
 from enum import IntEnum
+from os import PathLike
 
 
 class ExitStatus(IntEnum):
@@ -16,38 +19,21 @@ class ExitStatus(IntEnum):
     STOPPED = 4
 
     @property
-    def words(self):
+    def words(self) -> str:
         """Status as text in summaries, result files and indices of series: ``not converged``."""
         return self.name.lower().replace("_", " ")
 
 
-def not_written(error, path=None):
-    """Message of a failed write: the file and the reason.
-
-    Parameters
-    ----------
-    error : OSError
-    path : path-like, optional
-        File; by default that of the error, if any.
-
-    Returns
-    -------
-    str
-    """
+def not_written(error: OSError, path: str | PathLike | None = None) -> str:
+    """Message of a failed write: the file, by default that of the error if any, and the reason."""
     path = path or error.filename
     return f"{path}: not written, {error.strerror or error}" if path else str(error)
 
 
 class CaseError(Exception):
-    """The case cannot be run.
+    """The case cannot be run; `faults` are all faults, one message each."""
 
-    Attributes
-    ----------
-    faults : list of str
-        All faults, one message each.
-    """
-
-    def __init__(self, faults):
+    def __init__(self, faults: list[str]) -> None:
         super().__init__("\n".join(faults))
         self.faults = list(faults)
 
@@ -69,22 +55,13 @@ class PostError(Exception):
 
 
 class SolveFailed(Exception):
-    """A solve of the discrete equations failed.
+    """A solve of the discrete equations failed: by SNES, Gauss-Seidel, or the check of the solution."""
 
-    Attributes
-    ----------
-    method : str
-        Method that failed: SNES, Gauss-Seidel sweeps, or the check of the solution.
-    reason : str
-    iterations : int
-        Iterations of the solve.
-    """
-
-    def __init__(self, method, reason, iterations):
+    def __init__(self, method: str, reason: str, iterations: int) -> None:
         super().__init__(f"{method} {reason} after {iterations} iterations")
         self.method, self.reason, self.iterations = method, reason, iterations
 
-    def after(self, iterations):
+    def after(self, iterations: int) -> SolveFailed:
         """The same failure with the iterations of a previous attempt added."""
         return SolveFailed(self.method, self.reason, self.iterations + iterations)
 
@@ -100,12 +77,9 @@ class NoSteadyStart(Exception):
 class NotConverged(Exception):
     """A time step or steady start did not converge; the message states step, time, reason and a cure.
 
-    Attributes
-    ----------
-    state : run.accepted_state.AcceptedState or None
-        Last accepted state; None if there is none.
+    `state` is the last accepted state, a `run.accepted_state.AcceptedState`; None if there is none.
     """
 
-    def __init__(self, message, state=None):
+    def __init__(self, message: str, state: object | None = None) -> None:
         super().__init__(message)
         self.state = state

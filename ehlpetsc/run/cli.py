@@ -4,15 +4,26 @@ Options of the program are PETSc's too, in the table of which they end: ``-o FIL
 Only rank 0 reads the case file.
 """
 
+from __future__ import annotations
+
 import difflib
 import itertools
 import os
 import shlex
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+    from petsc4py import PETSc
+
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.run.stop import StopRequest
 
 NO_SIGNAL_HANDLER = "-no_signal_handler"  # PETSc's handler would end the process with its own report
 
@@ -49,13 +60,13 @@ class Run:
 
     Attributes
     ----------
-    case : str or None
+    case
         The case file; None: -help alone.
-    overrides : list of str
+    overrides
         Values of -ehl_set in PETSC_OPTIONS, then on the command line.
-    petsc : list of str
+    petsc
         All other words, for PETSc.
-    shows_ranks : bool
+    shows_ranks
         Whether only the default number of ranks is printed, for run_mpi.sh.
     """
 
@@ -102,10 +113,10 @@ class Run:
 class Lasting:
     """Text stream whose output is dropped once its reader has gone, as `head -1` does: the run continues."""
 
-    def __init__(self, stream):
+    def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> None:
@@ -116,7 +127,7 @@ class Lasting:
         """Flush like a file."""
         self._attempt(self._stream.flush)
 
-    def _attempt(self, action, *arguments: str) -> None:
+    def _attempt(self, action: Callable, *arguments: str) -> None:
         try:
             action(*arguments)
         except OSError:
@@ -253,7 +264,7 @@ def faults(names: list[str]) -> list[str]:
     return lines
 
 
-def text_of(options, name: str) -> str:
+def text_of(options: PETSc.Options, name: str) -> str:
     """Value of an option of the program in PETSc's table; "" if it is not set.
 
     Raises
@@ -267,7 +278,7 @@ def text_of(options, name: str) -> str:
     return value
 
 
-def time_limit(options) -> float:
+def time_limit(options: PETSc.Options) -> float:
     """Minutes of -ehl_time_limit; 0: no limit."""
     text = text_of(options, "time_limit")
     try:
@@ -279,14 +290,14 @@ def time_limit(options) -> float:
     return minutes if text else 0.0
 
 
-def _ranks_per_member(options, size: int) -> int:
+def _ranks_per_member(options: PETSc.Options, size: int) -> int:
     text = text_of(options, "ranks_per_member") or "1"
     if not text.isdecimal() or not 1 <= int(text) <= size:
         raise UsageError(f"-ehl_ranks_per_member {text}: allowed: whole numbers 1 to {size}, all ranks")
     return int(text)
 
 
-def _run(words: Run, comm, options) -> int:
+def _run(words: Run, comm: MPI.Comm, options: PETSc.Options) -> int:
     """Run a case file on all ranks; with -help print PETSc's options."""
     from ehlpetsc.nonlinear.scheme import check_scheme
     from ehlpetsc.run.simulation import Simulation
@@ -321,7 +332,7 @@ def _run(words: Run, comm, options) -> int:
     return _run_single(comm, case, stop, output, restart, overwrite)
 
 
-def _read_case(comm, words: Run):
+def _read_case(comm: MPI.Comm, words: Run) -> Case:
     """Case on every rank, read on rank 0."""
     from ehlpetsc.case.loading import load
 
@@ -337,7 +348,9 @@ def _read_case(comm, words: Run):
     return case
 
 
-def _run_single(comm, case, stop, output: Path, restart: str, overwrite: bool) -> int:
+def _run_single(
+    comm: MPI.Comm, case: Case, stop: StopRequest, output: Path, restart: str, overwrite: bool
+) -> int:
     """Run a case that is not a series."""
     from ehlpetsc.run.forecast import banner
     from ehlpetsc.run.simulation import Simulation

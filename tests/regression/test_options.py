@@ -77,7 +77,7 @@ def test_ehl_set_is_repeatable_also_in_petsc_options(tmp_path, monkeypatch):
     with read_result(tmp_path / "table1_smooth.h5") as result:
         assert len(result.x) == 81
         assert result.attrs["title"] == "two words"
-        assert "viscosity = 0.01 " in result.attrs["case"]
+        assert "viscosity = 0.01\n" in result.attrs["case"]
 
 
 def test_options_of_the_program_have_long_names():
