@@ -72,7 +72,7 @@ STEP_SCALARS = {
     "retries": StepScalar("1", "attempts that did not converge", dtype="i4", over_run="sum"),
     "h_min": StepScalar(
         "m",
-        "least film thickness",
+        "minimum film thickness",
         over_run="min",
         summary=".9g",
         progress=Column("h_min/um", 1e6, "{:>9.5f}", "h_min {:.4f} um"),
@@ -80,7 +80,7 @@ STEP_SCALARS = {
     ),
     "p_max": StepScalar(
         "Pa",
-        "greatest pressure",
+        "maximum pressure",
         over_run="max",
         summary=".9g",
         progress=Column("p_max/GPa", 1e-9, "{:>9.4f}", "p_max {:.3f} GPa"),
@@ -117,7 +117,7 @@ STEP_SCALARS = {
     ),
     "mean_gap_ratio": StepScalar("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
     "oil_pressure": StepScalar(
-        "Pa", "greatest pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
+        "Pa", "maximum pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
     ),
     "nodes_below_1nm": StepScalar(
         "1", "nodes out of contact under less than 1 nm of oil", dtype="i4", over_run="sum", only="fluid"

@@ -8,30 +8,38 @@ differ only in seeds form one ensemble; several ensembles, as of a grid over see
 by one. If RESULT.post.h5 exists, quantiles of damage are included.
 """
 
+from __future__ import annotations
+
 import argparse
 import contextlib
 import csv
 import io
 import json
 import tomllib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.analysis.run_scalars import run_scalars
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.index import differences, open_all
+from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.results.output_guard import check_derived
+from ehlpetsc.results.post_result import PostResult, damage_beside
+from ehlpetsc.results.reader import Result
 
+QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
+EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
+EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "load", "approach")
 RESAMPLES = 2000  # default of the bootstrap
 MAX_RESAMPLES = 100_000
 CONFIDENCE = 0.95  # of the intervals
 TABLES = {".csv": b"ensemble,figure,units,runs,", ".json": b'"ensemble":'}  # suffixes and signatures
-COLUMNS = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "least", "greatest")
+COLUMNS = ("ensemble", "figure", "units", "runs", "mean", "low", "high", "min", "max")
 
 
 @dataclass(frozen=True)
@@ -40,33 +48,69 @@ class Ensemble:
 
     Attributes
     ----------
-    name : str
+    name
         Keys and values in which it differs from the other ensembles; "" for a single ensemble.
-    values : dict
+    values
         Values of the keys in which ensembles differ.
-    scalars : dict of str to ndarray, shape (runs,)
-        Scalars of every run, by name.
+    scalars
+        Scalars of every run by name, shape (runs,).
     """
 
     name: str
-    values: dict
-    scalars: dict
+    values: dict[str, object]
+    scalars: dict[str, np.ndarray]
 
 
-def bootstrap(values, resamples=RESAMPLES, seed=1, confidence=CONFIDENCE):
+def run_scalars(result: Result) -> dict[str, float]:
+    """Scalars of one run, by name; OutputError without a time step.
+
+    Means over the time in which the roughness of both surfaces fills the contact, or over the whole run if it
+    never does; extremes of the scalars in `EXTREMES`. If RESULT.post.h5 exists, also quantiles of damage and
+    flash temperatures [K].
+    """
+    if not len(result.steps("time")):
+        raise OutputError(f"{result.path}: no time step in it")
+    weights = filled_weights(result, or_whole_run=True)
+    selected = weights > 0.0
+    scalars = {}
+    for name in result.scalars:
+        values = result.steps(name)[selected].astype(float)
+        if name in EXCLUDED_SCALARS or not np.isfinite(values).all():
+            continue
+        reduce = EXTREMES.get(name)
+        scalars[name] = float(reduce(values)) if reduce else mean(result, name, weights)
+    post = damage_beside(result)
+    return scalars | _damage(post) | _flash_temperatures(post)
+
+
+def _damage(post: PostResult | None) -> dict[str, float]:
+    """Quantiles of damage over the points of each surface, at every depth; {} without a post result."""
+    quantiles = {}
+    for surface in post.surfaces if post else ():
+        for depth, values in zip(post.z, post.passed(surface), strict=True):
+            for quantile in QUANTILES if values.size else ():
+                name = f"damage_{surface} z/a={depth:g} q={quantile:g}"
+                quantiles[name] = float(np.quantile(values, quantile))
+    return quantiles
+
+
+def _flash_temperatures(post: PostResult | None) -> dict[str, float]:
+    """Maximum and median flash temperature [K] over the points of each surface; {} without heat."""
+    scalars = {}
+    for side, temperatures in (post.temperatures if post else {}).items():
+        flash = temperatures.flash[np.isfinite(temperatures.flash)]
+        if flash.size:
+            scalars[f"flash_temperature_{side} largest"] = float(flash.max())
+            scalars[f"flash_temperature_{side} q=0.5"] = float(np.median(flash))
+    return scalars
+
+
+def bootstrap(
+    values: Sequence[float], resamples: int = RESAMPLES, seed: int = 1, confidence: float = CONFIDENCE
+) -> tuple[float, float]:
     """Confidence interval of a mean: percentiles of the means of samples with replacement (Efron 1979).
 
-    Parameters
-    ----------
-    values : array_like, shape (n,)
-    resamples, seed : int
-        Number of samples; seed of the random numbers.
-    confidence : float
-
-    Returns
-    -------
-    low, high : float
-        nan for less than two values.
+    nan for less than two values.
     """
     values = np.asarray(values, dtype=float)
     if values.size < 2:
@@ -77,24 +121,14 @@ def bootstrap(values, resamples=RESAMPLES, seed=1, confidence=CONFIDENCE):
     return float(low), float(high)
 
 
-def _units(name):
+def _units(name: str) -> str:
     if name.startswith("flash_temperature"):
         return "K"
     return STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
 
 
-def ensembles(results):
-    """Ensembles of results whose cases differ only in keys named seed.
-
-    Parameters
-    ----------
-    results : list of ehlpetsc.results.reader.Result
-
-    Returns
-    -------
-    list of Ensemble
-        In the order of their first results.
-    """
+def ensembles(results: list[Result]) -> list[Ensemble]:
+    """Ensembles of results whose cases differ only in keys named seed, in order of their first results."""
     differing = {
         key: values for key, values in differences(results).items() if key.rpartition(".")[2] != "seed"
     }
@@ -111,7 +145,7 @@ def ensembles(results):
     return made
 
 
-def table(all_ensembles, resamples=RESAMPLES, seed=1):
+def table(all_ensembles: list[Ensemble], resamples: int = RESAMPLES, seed: int = 1) -> list[dict]:
     """Rows of the table, one for each scalar of each ensemble, with the keys `COLUMNS`."""
     rows = []
     for ensemble in all_ensembles:
@@ -132,14 +166,8 @@ def table(all_ensembles, resamples=RESAMPLES, seed=1):
     return rows
 
 
-def write(rows, path):
-    """Write the table as CSV, or as JSON if the name ends in .json.
-
-    Raises
-    ------
-    OutputError
-        The file cannot be written.
-    """
+def write(rows: list[dict], path: Path) -> None:
+    """Write the table as CSV, or as JSON if the name ends in .json; OutputError."""
     table = io.StringIO(newline="")
     if Path(path).suffix.lower() == ".json":
         plain = [{k: None if v != v else v for k, v in row.items()} for row in rows]
@@ -154,7 +182,7 @@ def write(rows, path):
         raise OutputError(not_written(error, path)) from None
 
 
-def text(rows):
+def text(rows: list[dict]) -> list[str]:
     """Lines of the table, for printing."""
     widths = [max(len(name), *(len(str(row[name])) for row in rows)) for name in COLUMNS[:4]]
     lines = [" ".join(f"{n:<{w}}" for n, w in zip(COLUMNS, widths, strict=False))]
@@ -165,7 +193,7 @@ def text(rows):
     return lines
 
 
-def arguments(argv):
+def arguments(argv: Sequence[str]) -> argparse.Namespace:
     """Parse the command line."""
     parser = CommandParser("ensemble", __doc__)
     parser.add_argument("results", nargs="+", metavar="RESULT", help="index of a series, or result files")
@@ -178,10 +206,10 @@ def arguments(argv):
     return parser.parse_args(argv)
 
 
-def _whole_number_within(low, high):
+def _whole_number_within(low: int, high: int) -> Callable[[str], int]:
     """Argument type: integer in a range."""
 
-    def number(text):
+    def number(text: str) -> int:
         if not text.isascii() or not text.isdigit() or not low <= int(text[:20]) <= high:
             raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {low} to {high}")
         return int(text)
@@ -189,7 +217,7 @@ def _whole_number_within(low, high):
     return number
 
 
-def main(words):
+def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status: 0 done, 2 bad input."""
     chosen = arguments(words)
     stem = chosen.results[0].removesuffix(".series.json").removesuffix(".h5")
@@ -197,7 +225,7 @@ def main(words):
     return exit_status("ensemble", lambda: _run(chosen, output), (tomllib.TOMLDecodeError,), output)
 
 
-def _run(chosen, output):
+def _run(chosen: argparse.Namespace, output: Path) -> None:
     with contextlib.ExitStack() as stack:
         results = open_all(chosen.results, stack)
         check_derived(output, [*map(Path, chosen.results), *(r.path for r in results)], TABLES)

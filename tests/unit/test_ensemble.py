@@ -10,7 +10,7 @@ from matplotlib.image import imread
 from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
-from ehlpetsc.analysis.run_scalars import run_scalars
+from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.pictures.ensemble import draw_ensemble
 from ehlpetsc.results.index import distinguishing_names
@@ -97,7 +97,7 @@ def test_ensemble_table_of_a_series(tmp_path, capsys):
     row = rows["entrainment_speed = 1.0", "contact_share"]
     assert int(row["runs"]) == 6
     low, mean, high = (float(row[name]) for name in ("low", "mean", "high"))
-    assert float(row["least"]) < low < mean < high < float(row["greatest"])
+    assert float(row["min"]) < low < mean < high < float(row["max"])
     assert mean == pytest.approx(np.mean(SHARES), rel=0.02)
     assert ensemble.main([str(index), "-o", str(tmp_path / "e.json"), "--seed", "5"]) == 0
     assert len(json.loads((tmp_path / "e.json").read_text())) == len(rows)

@@ -8,7 +8,7 @@ import pytest
 from support.made_results import A, make_result
 
 import ehlpetsc
-from ehlpetsc.analysis.run_scalars import run_scalars
+from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales

@@ -116,7 +116,7 @@ def test_result_on_disk_equals_that_in_memory(case, result, tmp_path):
 def test_xarray_has_units_and_steps(result):
     data = result.to_xarray()
     assert data.pressure.dims == ("time", "x") and data.pressure.units == "Pa"
-    assert data.h_min.dims == ("step",) and data.h_min.long_name == "least film thickness"
+    assert data.h_min.dims == ("step",) and data.h_min.long_name == "minimum film thickness"
     assert float(data.film_thickness.isel(time=-1).min()) == result.steps.h_min[-1]
 
 

@@ -72,7 +72,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
         assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.3g} %"
         assert facts["oil"] == "5 mPa s, roelands" and "node-steps in contact" not in facts
     names = [figure["name"] for figure in data["steps"]["figures"]]
-    assert names[:3] == ["friction coefficient", "contact share", "greatest pressure [GPa]"]
+    assert names[:3] == ["friction coefficient", "contact share", "maximum pressure [GPa]"]
     assert data["damage"] is None
     names = [figure["name"] for figure in data["steps"]["figures"]]
     assert "contact share" in names and "time step [µs]" not in names  # what does not change is left out
@@ -91,7 +91,7 @@ def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
     _, data = page(path)
     with read_result(path) as r:
         assert unpacked(data["frames"]["pressure"]).max() == pytest.approx(1e-9 * r["pressure"][:].max())
-        highest = next(f for f in data["steps"]["figures"] if f["name"].startswith("greatest pressure"))
+        highest = next(f for f in data["steps"]["figures"] if f["name"].startswith("maximum pressure"))
         assert len(unpacked(highest["y"])) == 8  # 40 steps in bins of 5: at most 9
         assert unpacked(highest["y"]).max() == pytest.approx(1e-9 * r.steps("p_max")[1:].max())
 
