@@ -115,7 +115,7 @@ def on_planes(criterion, grid, sx, sz, txz):
     nu, closed, sensitivity = counter.head
     law = (nu, 0.0, closed, sensitivity, *counter.tables)
     history = np.stack([sx, sz, txz])
-    return max(plane_damage(counter.kind, g, history, sx.size, law, 0.0, counter.work) for g in grid)
+    return max(plane_damage(counter.kind, g, history, law, 0.0, counter.work) for g in grid)
 
 
 def contact_like(seed, samples=300):

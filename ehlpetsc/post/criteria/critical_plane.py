@@ -127,42 +127,29 @@ NEGLIGIBLE_RANGE = (
 
 
 @compiled(error_model="python", nogil=True)
-def _sum(weights: tuple, scale: float, offset: float, stress: np.ndarray, size: int, out: np.ndarray) -> None:
-    for k in range(size):
-        out[k] = offset + scale * (
-            weights[0] * float(stress[0, k])
-            + weights[1] * float(stress[1, k])
-            + weights[2] * float(stress[2, k])
-        )
+def _sum(weights: tuple, scale: float, offset: float, stress: np.ndarray, out: np.ndarray) -> None:
+    a, b, c = weights
+    for k in range(stress.shape[1]):
+        value = a * float(stress[0, k]) + b * float(stress[1, k]) + c * float(stress[2, k])
+        out[k] = offset + scale * value
 
 
 @compiled(error_model="python", nogil=True)
-def _on_plane(
-    kind: int,
-    angles: np.ndarray,
-    stress: np.ndarray,
-    size: int,
-    nu: float,
-    residual: float,
-    series: np.ndarray,
-    normal: np.ndarray,
-) -> None:
+def _on_plane(kind: int, angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
     """Fill in the counted series (as an equivalent stress) and, if required, the normal stress."""
-    theta, phi, psi = angles
+    (theta, phi, psi), nu = angles, law[0]
     if kind == SWT:
-        _sum(strain_weights(theta, phi, nu), 1.0, 0.0, stress, size, series)
+        _sum(strain_weights(theta, phi, nu), 1.0, 0.0, stress, work[2])
     else:
-        _sum(shear_weights(theta, phi, psi, nu), 3**0.5, 0.0, stress, size, series)
+        _sum(shear_weights(theta, phi, psi, nu), 3**0.5, 0.0, stress, work[2])
     if kind != SHEAR:
-        offset = residual * residual_share(theta, phi)
-        _sum(normal_weights(theta, phi, nu), 1.0, offset, stress, size, normal)
+        _sum(normal_weights(theta, phi, nu), 1.0, law[1] * residual_share(theta, phi), stress, work[3])
 
 
 @compiled(error_model="python", nogil=True)
-def _cycle_damage(
-    kind: int, width: float, normal: float, sensitivity: float, curve: np.ndarray, lives: np.ndarray
-) -> float:
+def _cycle_damage(kind: int, width: float, normal: float, law: tuple) -> float:
     """1/N of a cycle with a range and a maximum normal stress."""
+    _, _, _, sensitivity, curve, lives = law
     if kind == SWT and normal <= 0 or width <= 0:
         return 0.0
     parameter = interpolate(2 * log(width), curve)
@@ -175,47 +162,47 @@ def _cycle_damage(
 
 @compiled(error_model="python", nogil=True)
 def plane_damage(
-    kind: int, angles: np.ndarray, stress: np.ndarray, size: int, law: tuple, threshold: float, work: tuple
+    kind: int, angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: float, work: tuple
 ) -> float:
     """Damage on one plane, without cycles below `threshold` of the widest range."""
-    nu, residual, closed, sensitivity, curve, lives = law
-    stack, first, second, weight, series, normal = work
-    _on_plane(kind, angles, stress, size, nu, residual, series, normal)
-    n = find_cycles(series[:size], closed, stack, first, second, weight)
+    stack, cycles, series, normal = work
+    size, closed = stress.shape[1], law[2]
+    _on_plane(kind, angles, stress, law, work)
+    n, full = find_cycles(series[:size], closed, stack, cycles)
     min_range = 0.0
     if threshold > 0:
         min_range = threshold * (series[:size].max() - series[:size].min())
     total = 0.0
     for k in range(n):
-        width = abs(series[first[k]] - series[second[k]])
+        i, j = cycles[k, 0], cycles[k, 1]
+        width = abs(series[i] - series[j])
         if width <= min_range:
             continue
         highest = 0.0
         if kind != SHEAR:
-            start, count = loop_of(series, size, first[k], second[k], closed)
+            start, count = loop_of(series, size, i, j, closed)
             for m in range(start, start + count):
                 highest = max(highest, normal[m if m < size else m - size])
-        total += weight[k] * _cycle_damage(kind, width, highest, sensitivity, curve, lives)
+        total += (1.0 if k < full else 0.5) * _cycle_damage(kind, width, highest, law)
     return total
 
 
 @compiled(error_model="python", nogil=True)
 def _coarse(
-    kind: int, grid: np.ndarray, stress: np.ndarray, size: int, law: tuple, work: tuple, bounds: np.ndarray
+    kind: int, grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple
 ) -> tuple[np.ndarray, np.ndarray]:
     """Angles (STARTS, 3) and damage of the best planes of the grid, in falling order."""
-    nu, residual, _, sensitivity, curve, lives = law
-    series, normal = work[4], work[5]
+    size, bounds = stress.shape[1], np.empty(grid.shape[0])
+    _, _, series, normal = work
     for g in range(grid.shape[0]):
-        _on_plane(kind, grid[g], stress, size, nu, residual, series, normal)
+        _on_plane(kind, grid[g], stress, law, work)
         width = series[:size].max() - series[:size].min()
-        highest = normal[:size].max() if kind != SHEAR else 0.0
-        bounds[g] = _cycle_damage(kind, width, highest, sensitivity, curve, lives)
+        bounds[g] = _cycle_damage(kind, width, normal[:size].max() if kind != SHEAR else 0.0, law)
     best, angles = np.full(STARTS, -1.0), np.zeros((STARTS, 3))
     for g in np.argsort(-bounds):
         if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
             break
-        damage = plane_damage(kind, grid[g], stress, size, law, NEGLIGIBLE_RANGE, work)
+        damage = plane_damage(kind, grid[g], stress, law, NEGLIGIBLE_RANGE, work)
         rank = STARTS
         while rank > 0 and damage > best[rank - 1]:
             rank -= 1
@@ -228,8 +215,8 @@ def _coarse(
 
 @compiled(error_model="python", nogil=True)
 def _improve(
-    kind: int, angles: np.ndarray, damage: float, stress: np.ndarray, size: int, law: tuple, work: tuple
-) -> float:
+    kind: int, angles: np.ndarray, damage: float, stress: np.ndarray, law: tuple, work: tuple
+) -> None:
     """Pattern search over the angles, from half the coarse step down to `MIN_ANGLE_STEP`."""
     step = GRID_STEP * pi / 180 / 2
     trial = angles.copy()
@@ -239,52 +226,37 @@ def _improve(
             for change in (-step, step):
                 trial[:] = angles
                 trial[axis] += change
-                trial_damage = plane_damage(kind, trial, stress, size, law, NEGLIGIBLE_RANGE, work)
+                trial_damage = plane_damage(kind, trial, stress, law, NEGLIGIBLE_RANGE, work)
                 if trial_damage > damage:
                     damage, better = trial_damage, True
                     angles[:] = trial
                     break
         if not better:
             step /= 2
-    return damage
 
 
 @compiled(error_model="python", nogil=True)
 def worst_plane(
-    kind: int,
-    grid: np.ndarray,
-    stress: np.ndarray,
-    size: int,
-    few: np.ndarray,
-    few_size: int,
-    law: tuple,
-    work: tuple,
-    bounds: np.ndarray,
-    out: np.ndarray,
-) -> None:
-    """Set out (3,) to the damage on the worst plane of stress (3, :size), theta and phi of its normal [rad].
+    kind: int, grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple, spare: tuple
+) -> tuple[float, float, float]:
+    """Damage on the worst plane of stress (3, samples), theta and phi of its normal [rad].
 
-    `few` (3, :few_size) are the samples at which the path turns.
+    The plane is sought on the samples at which the path turns; `spare` holds arrays for their search.
     """
-    starts, damages = _coarse(kind, grid, few, few_size, law, work, bounds)
-    out[:] = 0.0
-    for k in range(STARTS):
-        if damages[k] <= 0:
-            continue
-        _improve(kind, starts[k], damages[k], few, few_size, law, work)
-        damage = plane_damage(kind, starts[k], stress, size, law, 0.0, work)
-        if damage > out[0]:
-            out[0], out[1], out[2] = damage, starts[k, 0], starts[k, 1]
-
-
-@compiled(error_model="python", nogil=True)
-def reduced(
-    stress: np.ndarray, size: int, nu: float, points: np.ndarray, indices: np.ndarray, few: np.ndarray
-) -> int:
-    """Fill `points` of loops.equivalent_points and `few` (3, :returned) with the samples that turn."""
-    equivalent_points(stress[:, :size], nu, points)
-    count = turning_samples(points, size, indices)
+    points, indices = spare
+    equivalent_points(stress, law[0], points)
+    count = turning_samples(points, stress.shape[1], indices)
+    few = np.empty((3, count))
     for k in range(count):
         for component in range(3):
             few[component, k] = stress[component, indices[k]]
-    return count
+    starts, damages = _coarse(kind, grid, few, law, work)
+    worst, theta, phi = 0.0, 0.0, 0.0
+    for k in range(STARTS):
+        if damages[k] <= 0:
+            continue
+        _improve(kind, starts[k], damages[k], few, law, work)
+        damage = plane_damage(kind, starts[k], stress, law, 0.0, work)
+        if damage > worst:
+            worst, theta, phi = damage, starts[k, 0], starts[k, 1]
+    return worst, theta, phi

@@ -8,7 +8,7 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, reduced, worst_plane
+from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, worst_plane
 from ehlpetsc.post.criteria.dang_van import utilisation
 from ehlpetsc.post.criteria.laws import Criteria, shear_tables, swt_tables
 from ehlpetsc.post.criteria.planes import described, planes, planes_and_directions
@@ -33,35 +33,20 @@ class PlaneDamage(NamedTuple):
 
 @compiled(error_model="python", nogil=True)
 def _worst_planes(
-    kind: int,
-    grid: np.ndarray,
-    stress: np.ndarray,
-    lengths: np.ndarray,
-    law: tuple,
-    work: tuple,
-    spare: tuple,
-    out: np.ndarray,
+    kind: int, grid: np.ndarray, histories: tuple, law: tuple, work: tuple, spare: tuple, out: np.ndarray
 ) -> None:
-    points, indices, few, bounds = spare
+    stress, lengths = histories
     for p in range(stress.shape[0]):
-        history, size = stress[p], lengths[p]
-        count = reduced(history, size, law[0], points, indices, few)
-        worst_plane(kind, grid, history, size, few, count, law, work, bounds, out[p])
+        out[p] = worst_plane(kind, grid, stress[p, :, : lengths[p]].copy(), law, work, spare)
 
 
 @compiled(error_model="python", nogil=True)
-def _utilisations(
-    stress: np.ndarray,
-    lengths: np.ndarray,
-    nu: float,
-    residual: float,
-    slope: float,
-    limit: float,
-    points: np.ndarray,
-    out: np.ndarray,
-) -> None:
+def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, out: np.ndarray) -> None:
+    stress, lengths = histories
+    slope, limit = limits
+    points = np.empty((3, stress.shape[2]))
     for p in range(stress.shape[0]):
-        history = stress[p, :, : lengths[p]]
+        history = stress[p, :, : lengths[p]].copy()
         equivalent_points(history, nu, points)
         out[p, 0] = utilisation(history, points[:, : lengths[p]], nu, residual, slope, limit)
 
@@ -79,12 +64,7 @@ class PlaneCounter:
         self.tables = (swt_tables if self.kind == SWT else shear_tables)(material, strain)
         self.head = (material.poisson_ratio, residue == "closed", constants.sensitivity(material))
         self.work = (*workspace(samples), np.empty(samples), np.empty(samples))
-        self.spare = (
-            np.empty((3, samples)),
-            np.empty(samples, np.int64),
-            np.empty((3, samples)),
-            np.empty(len(self.grid)),
-        )
+        self.spare = np.empty((3, samples)), np.empty(samples, np.int64)
 
     def __call__(
         self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
@@ -94,7 +74,7 @@ class PlaneCounter:
         law = (nu, float(residual), closed, sensitivity, *self.tables)
         worst = np.empty((len(stress), 3))
         stress = np.ascontiguousarray(stress, float)  # one compiled version for files and arrays
-        _worst_planes(self.kind, self.grid, stress, lengths, law, self.work, self.spare, worst)
+        _worst_planes(self.kind, self.grid, (stress, lengths), law, self.work, self.spare, worst)
         out[:, 0] = worst[:, 0]
         out[:, 1], out[:, 2] = described(worst[:, 1], worst[:, 2])
 
@@ -104,17 +84,16 @@ class LimitCounter:
 
     columns = ("utilisation",)
 
-    def __init__(self, poisson_ratio: float, constants: Criteria, samples: int) -> None:
+    def __init__(self, poisson_ratio: float, constants: Criteria) -> None:
         self.nu = poisson_ratio
         self.limits = constants.hydrostatic_slope, constants.torsion_limit
-        self.points = np.empty((3, samples))
 
     def __call__(
         self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
     ) -> None:
         """Stress (points, 3, samples), lengths (points,) -> out (points, 1)."""
         stress = np.ascontiguousarray(stress, float)
-        _utilisations(stress, lengths, self.nu, float(residual), *self.limits, self.points, out)
+        _utilisations((stress, lengths), self.nu, float(residual), self.limits, out)
 
 
 def columns_of(criterion: str) -> tuple[str, ...]:
@@ -131,7 +110,7 @@ def counter_of(
     if residue not in RESIDUES:
         raise ValueError(f"residue = {residue!r}: must be one of {', '.join(RESIDUES)}")
     if criterion == "dang-van":
-        return LimitCounter(material.poisson_ratio, constants, samples)
+        return LimitCounter(material.poisson_ratio, constants)
     return PlaneCounter(criterion, material, constants, residue, strain, samples)
 
 
@@ -189,4 +168,4 @@ def dang_van(
         Residual stress along the surface, equal in x and y [Pa]; adds to the hydrostatic stress.
     """
     constants = constants or Criteria()
-    return evaluate(sx, sz, txz, lambda n: LimitCounter(poisson_ratio, constants, n), residual_stress)[0]
+    return evaluate(sx, sz, txz, lambda samples: LimitCounter(poisson_ratio, constants), residual_stress)[0]

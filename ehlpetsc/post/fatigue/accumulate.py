@@ -88,21 +88,14 @@ def _squared_range(dsx: float, dsz: float, dtxz: float, nu: float) -> float:
 
 @compiled(error_model="python", nogil=True)
 def _sum_cycles(
-    stress: np.ndarray,
-    nu: float,
-    n: int,
-    first: np.ndarray,
-    second: np.ndarray,
-    weight: np.ndarray,
-    options: tuple,
-    constants: tuple,
-    table: np.ndarray,
+    stress: np.ndarray, nu: float, counts: tuple, cycles: np.ndarray, law: tuple
 ) -> tuple[float, float, float]:
-    """Damage, number and largest squared range of n cycles in one history (3, samples)."""
-    _, morrow, rule, residual = options
+    """Damage, number and largest squared range of the cycles of one history (3, samples)."""
+    (_, morrow, rule, residual), constants, table = law
+    n, full = counts
     total = number = largest = 0.0
     for k in range(n):
-        i, j = first[k], second[k]
+        i, j = cycles[k, 0], cycles[k, 1]
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
         squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
         if squared <= 0:
@@ -113,8 +106,9 @@ def _sum_cycles(
             damage = cycle_damage(dsv, mean, rule, constants)
         else:
             damage = look_up(squared, table)
-        total += weight[k] * damage
-        number += weight[k]
+        weight = 1.0 if k < full else 0.5
+        total += weight * damage
+        number += weight
         largest = max(largest, squared)
     return total, number, largest
 
@@ -127,18 +121,11 @@ def _fill_von_mises(stress: np.ndarray, nu: float, scalar: np.ndarray) -> None:
 
 @compiled(error_model="python", nogil=True)
 def damage_of_points(
-    stress: np.ndarray,
-    lengths: np.ndarray,
-    nu: float,
-    channels: np.ndarray,
-    options: tuple,
-    constants: tuple,
-    table: np.ndarray,
-    work: tuple,
-    out: np.ndarray,
+    histories: tuple, nu: float, channels: np.ndarray, law: tuple, work: tuple, out: np.ndarray
 ) -> None:
-    """Set out (points, 3) from stress (points, 3, samples) with lengths[point] samples each."""
-    stack, first, second, weight, scalar = work
+    """Set out (points, 3) from histories: stress (points, 3, samples) with lengths[point] samples each."""
+    stress, lengths = histories
+    stack, cycles, scalar = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
         worst = -1.0
@@ -147,10 +134,8 @@ def damage_of_points(
                 _fill_von_mises(history, nu, scalar)
             else:  # copied, so that counting is compiled once for all kinds of histories
                 scalar[: lengths[point]] = history[channel]
-            n = find_cycles(scalar[: lengths[point]], options[0], stack, first, second, weight)
-            total, number, largest = _sum_cycles(
-                history, nu, n, first, second, weight, options, constants, table
-            )
+            counts = find_cycles(scalar[: lengths[point]], law[0][0], stack, cycles)
+            total, number, largest = _sum_cycles(history, nu, counts, cycles, law)
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
                 out[point, 0], out[point, 1], out[point, 2] = total, number, sqrt(largest)
@@ -180,17 +165,9 @@ class Counter:
 
         `residual` (Pa) acts in both directions along the surface; it enters only the mean-stress term.
         """
-        damage_of_points(
-            stress,
-            lengths,
-            self.material.poisson_ratio,
-            self.channels,
-            (*self.options, float(residual)),
-            self.material.constants(),
-            self.table,
-            self.work,
-            out,
-        )
+        law = (*self.options, float(residual)), self.material.constants(), self.table
+        histories = stress, lengths
+        damage_of_points(histories, self.material.poisson_ratio, self.channels, law, self.work, out)
 
 
 def damage(

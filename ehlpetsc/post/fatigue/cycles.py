@@ -31,14 +31,7 @@ RESIDUES = ("closed", "half")
 
 @compiled(error_model="python", nogil=True)
 def _close(
-    series: np.ndarray,
-    stack: np.ndarray,
-    bottom: int,
-    top: int,
-    first: np.ndarray,
-    second: np.ndarray,
-    weight: np.ndarray,
-    n: int,
+    series: np.ndarray, stack: np.ndarray, bottom: int, top: int, cycles: np.ndarray, n: int
 ) -> tuple[int, int]:
     """Count and remove closed cycles, whose range is within both neighbouring ranges of four reversals."""
     while top - bottom >= 4:
@@ -46,7 +39,7 @@ def _close(
         inner = abs(c - b)
         if inner > abs(b - series[stack[top - 4]]) or inner > abs(series[stack[top - 1]] - c):
             break
-        first[n], second[n], weight[n] = stack[top - 3], stack[top - 2], 1.0
+        cycles[n, 0], cycles[n, 1] = stack[top - 3], stack[top - 2]
         n += 1
         stack[top - 3] = stack[top - 1]
         top -= 2
@@ -54,15 +47,7 @@ def _close(
 
 
 @compiled(error_model="python", nogil=True)
-def _close_residue(
-    series: np.ndarray,
-    stack: np.ndarray,
-    top: int,
-    first: np.ndarray,
-    second: np.ndarray,
-    weight: np.ndarray,
-    n: int,
-) -> int:
+def _close_residue(series: np.ndarray, stack: np.ndarray, top: int, cycles: np.ndarray, n: int) -> int:
     """Count the residue stack[:top] as one period of a repeated history."""
     start = 0
     for i in range(1, top):
@@ -79,30 +64,23 @@ def _close_residue(
             continue
         if (series[new] > series[last]) != rising:
             stack[end] = last
-            end, n = _close(series, stack, bottom, end + 1, first, second, weight, n)
+            end, n = _close(series, stack, bottom, end + 1, cycles, n)
             rising = not rising
         last = new
     stack[end] = last
-    end, n = _close(series, stack, bottom, end + 1, first, second, weight, n)
+    end, n = _close(series, stack, bottom, end + 1, cycles, n)
     if end - bottom == 3:  # highest, lowest, highest: one cycle
-        first[n], second[n], weight[n] = stack[bottom], stack[bottom + 1], 1.0
+        cycles[n, 0], cycles[n, 1] = stack[bottom], stack[bottom + 1]
         n += 1
     return n
 
 
 @compiled(error_model="python", nogil=True)
-def find_cycles(
-    series: np.ndarray,
-    closed: bool,
-    stack: np.ndarray,
-    first: np.ndarray,
-    second: np.ndarray,
-    weight: np.ndarray,
-) -> int:
-    """Write the two reversals and the weight of each cycle; return the number of cycles.
+def find_cycles(series: np.ndarray, closed: bool, stack: np.ndarray, cycles: np.ndarray) -> tuple[int, int]:
+    """Write the two reversals of each cycle into `cycles`; return the numbers of all and of full cycles.
 
-    `series` must be finite. Work arrays: `stack` with 2 len + 4 integers, the others with len + 2. The first
-    sample of a plateau is the reversal.
+    `series` must be finite; the arrays are those of :func:`workspace`. The first sample of a plateau is the
+    reversal.
     """
     size = series.shape[0]
     n = ZERO
@@ -114,7 +92,7 @@ def find_cycles(
         if series[i] != value:
             break
     else:
-        return 0
+        return 0, 0
     rising = series[i] > value
     for k in range(i, size):
         new = series[k]
@@ -124,28 +102,23 @@ def find_cycles(
             stack[top] = last
             top += 1
             if top >= 4:
-                top, n = _close(series, stack, ZERO, top, first, second, weight, n)
+                top, n = _close(series, stack, ZERO, top, cycles, n)
             rising = not rising
         value = new
         last = k
     stack[top] = last
-    top, n = _close(series, stack, ZERO, top + 1, first, second, weight, n)
+    top, n = _close(series, stack, ZERO, top + 1, cycles, n)
     if closed:
-        return _close_residue(series, stack, top, first, second, weight, n)
+        n = _close_residue(series, stack, top, cycles, n)
+        return n, n
     for i in range(top - 1):
-        first[n], second[n], weight[n] = stack[i], stack[i + 1], 0.5
-        n += 1
-    return n
+        cycles[n + i, 0], cycles[n + i, 1] = stack[i], stack[i + 1]
+    return n + top - 1, n
 
 
-def workspace(size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Work arrays (stack, first, second, weight) of :func:`find_cycles` for histories up to `size`."""
-    return (
-        np.empty(2 * size + 4, np.int64),
-        np.empty(size + 2, np.int64),
-        np.empty(size + 2, np.int64),
-        np.empty(size + 2),
-    )
+def workspace(size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Arrays stack and cycles (n, 2) of :func:`find_cycles` for up to `size` samples."""
+    return np.empty(2 * size + 4, np.int64), np.empty((size + 2, 2), np.int64)
 
 
 def rainflow(series: np.ndarray, residue: str = "closed") -> np.ndarray:
@@ -162,10 +135,11 @@ def rainflow(series: np.ndarray, residue: str = "closed") -> np.ndarray:
         raise ValueError("a history must be one row of finite values")
     if series.size < 2:
         return np.empty((0, 5))
-    stack, first, second, weight = workspace(series.size)
-    n = find_cycles(series, residue == "closed", stack, first, second, weight)
-    i, j = first[:n], second[:n]
-    return np.column_stack([np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, weight[:n], i, j])
+    stack, cycles = workspace(series.size)
+    n, full = find_cycles(series, residue == "closed", stack, cycles)
+    i, j = cycles[:n].T
+    weight = np.where(np.arange(n) < full, 1.0, 0.5)
+    return np.column_stack([np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, weight, i, j])
 
 
 @compiled(error_model="python", nogil=True)
