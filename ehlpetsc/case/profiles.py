@@ -34,7 +34,7 @@ def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
 
 
 def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> None:
-    from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit  # smooth surfaces need none
+    from ehlpetsc.surfaces.plausibility import absurd, likely_unit  # smooth surfaces need none
     from ehlpetsc.surfaces.samples import layout_of, samples
 
     spec, faults = check(PROFILE, table)

@@ -12,8 +12,8 @@ from ehlpetsc.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.results.hdf5_file import open_for_reading, plain
-from ehlpetsc.surfaces.mesh_resolution import needed_points
 from ehlpetsc.surfaces.profile import WAVE_NODES
+from ehlpetsc.surfaces.profile_checks import needed_points
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case

@@ -14,7 +14,7 @@ from ehlpetsc.life.checks import check_case, check_files, check_resolution, pass
 from ehlpetsc.life.history import LifeFile
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.positions import Positions
-from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
+from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -6,8 +6,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import labels
-from ehlpetsc.surfaces.entry_times import entry_times
 from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameters
+from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.roughness import Roughness
 
 SIZE = (12.0, 3.6)  # inches, for each profile

@@ -68,7 +68,7 @@ def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Fraction of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
-    from ehlpetsc.surfaces.entry_times import entry_times
+    from ehlpetsc.surfaces.profile_checks import entry_times
 
     entries = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
     first = min(times[0] if times else 0.0 for times in entries)
@@ -150,7 +150,7 @@ def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
         if case.time is not None and profile.enters:
             lines += _part_in_contact(case, s, profile)
-    from ehlpetsc.surfaces.entry_times import entry_times
+    from ehlpetsc.surfaces.profile_checks import entry_times
 
     times = entry_times(profile, s)
     if times:
@@ -162,7 +162,7 @@ def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
 
 def _part_in_contact(case: Case, s: Scales, profile: Profile) -> list[str]:
     """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
-    from ehlpetsc.surfaces.entry_times import entry_times
+    from ehlpetsc.surfaces.profile_checks import entry_times
 
     reaches, length = entry_times(profile, s)[0], profile.given.length
     slower = s.u_max / abs(profile.speed)

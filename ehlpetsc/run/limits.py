@@ -111,8 +111,8 @@ def _molecules(totals: dict[str, float]) -> str | None:
 def _mesh(rough: Roughness | None, scales: Scales) -> str | None:
     if rough is None:
         return None
-    from ehlpetsc.surfaces.mesh_resolution import MAX_UNRESOLVED
     from ehlpetsc.surfaces.profile import WAVE_NODES
+    from ehlpetsc.surfaces.profile_checks import MAX_UNRESOLVED
 
     sides = [side for side in ("1", "2") if rough.side(side)]
     unresolved = {side: rough.side(side).unresolved_variance(scales.dx) for side in sides}

@@ -126,8 +126,7 @@ def warnings(case: Case, scales: Scales) -> list[str]:
     profiles = Roughness.of(case, scales)
     notes += magnitude_warnings(case, scales) + oil_warnings(case.fluid) + domain_warnings(case, scales)
     if profiles:
-        from ehlpetsc.surfaces.entry_times import entry_warnings
-        from ehlpetsc.surfaces.mesh_resolution import mesh_warnings
+        from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
 
         notes += tilt_warnings(case, profiles) + entry_warnings(case, scales, profiles)
         notes += mesh_warnings(profiles, scales)

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ehlpetsc.surfaces import synthetic
-from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
-from ehlpetsc.surfaces.measured.profile_files import KEYS, UNITS, Layout, checked, read_profile
-from ehlpetsc.surfaces.measured.thinning import thinned
+from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass, thinned
+from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 MEAN_TOLERANCE = 1e-3  # of Rq: smaller means are rounding
 

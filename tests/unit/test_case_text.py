@@ -10,7 +10,7 @@ from support import CASES
 
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.errors import CaseError
-from ehlpetsc.surfaces.measured.text_columns import text_columns
+from ehlpetsc.surfaces.text_columns import text_columns
 from ehlpetsc.toml_file import toml_text
 
 CASE = (Path(__file__).parents[2] / "cases" / "table1_smooth.toml").read_text()

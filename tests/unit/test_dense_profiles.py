@@ -13,10 +13,10 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.warnings import warnings
-from ehlpetsc.surfaces.measured import filters
-from ehlpetsc.surfaces.measured.thinning import MAX_POINTS_PER_CELL, MIN_THINNED_POINTS, thinned
-from ehlpetsc.surfaces.mesh_resolution import _running_median, spikes
+from ehlpetsc.surfaces import filters
+from ehlpetsc.surfaces.filters import MAX_POINTS_PER_CELL, MIN_THINNED_POINTS, thinned
 from ehlpetsc.surfaces.profile import Profile
+from ehlpetsc.surfaces.profile_checks import _running_median, spikes
 from ehlpetsc.surfaces.samples import Samples
 
 # a small process between: a child's largest memory begins with that of the process that started it

@@ -17,7 +17,7 @@ from ehlpetsc.pictures.running_in import draw_running_in
 from ehlpetsc.results.means import both_fill, filled_from, means, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import pass_summary
-from ehlpetsc.surfaces.entry_times import entry_times
+from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 
 CONTACT = {"radius": 0.0191, "load": 527e3, "youngs_modulus": [207e9] * 2, "poisson_ratio": [0.3] * 2}

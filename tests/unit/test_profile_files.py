@@ -10,9 +10,9 @@ from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError, ProfileError
-from ehlpetsc.surfaces.measured import text_columns
-from ehlpetsc.surfaces.measured.plausibility import absurd, likely_unit
-from ehlpetsc.surfaces.measured.profile_files import Layout, read_profile
+from ehlpetsc.surfaces import text_columns
+from ehlpetsc.surfaces.plausibility import absurd, likely_unit
+from ehlpetsc.surfaces.profile_files import Layout, read_profile
 from ehlpetsc.surfaces.samples import Samples
 
 X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])

@@ -11,11 +11,10 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
-from ehlpetsc.surfaces.entry_times import entry_times
-from ehlpetsc.surfaces.measured.filters import high_pass, levelled, low_pass
-from ehlpetsc.surfaces.measured.profile_files import read_profile
-from ehlpetsc.surfaces.mesh_resolution import mesh_warnings, spikes
+from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.profile import Profile
+from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings, spikes
+from ehlpetsc.surfaces.profile_files import read_profile
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.errors import ProfileError
-from ehlpetsc.surfaces.measured.text_columns import text_columns, units_in
+from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 OTHER_FORMATS = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.surfaces.measured.profile_files import UNITS
+from ehlpetsc.surfaces.profile_files import UNITS
 
 MAX_SPACING = 0.25  # half widths between two points: wider than asperities
 MAX_RQ = 0.1  # half widths
@@ -50,7 +50,7 @@ def likely_unit(samples, layout, scale):
     Parameters
     ----------
     samples : ehlpetsc.surfaces.samples.Samples
-    layout : ehlpetsc.surfaces.measured.profile_files.Layout
+    layout : ehlpetsc.surfaces.profile_files.Layout
         Layout of the file.
     scale : float
         Factor on the heights in the case.
