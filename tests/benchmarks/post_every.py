@@ -20,17 +20,17 @@ from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 
 DEPTHS = (0.0, 0.01, 0.03, 0.1, 0.5)
-FRAMED = ("time", "pressure", "shear_stress_2", "shear_stress_1")
+FRAMED = ("time", "step", "pressure", "shear_stress_2", "shear_stress_1")
 
 
 def thin(source, target, every, start):
     """Copy of a result with every so manieth frame."""
     with h5py.File(source) as old, h5py.File(target, "w") as new:
         new.attrs.update(old.attrs)
-        new["x"] = old["x"][:]
+        for name in ("x", "contact_count", "steps", "surface"):
+            old.copy(name, new)
         for name in FRAMED:
             new[name] = old[name][start::every]
-        old.copy("surface", new)
 
 
 def processed(path, output):
