@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.results.means import Totals, means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.progress import ProgressOutput, SlowSteps, summary_line
+from ehlpetsc.run.progress import ProgressOutput, summary_line
 from ehlpetsc.run.recorder import Recorder
 
 if TYPE_CHECKING:
@@ -122,8 +122,7 @@ class Run:
             self._notes = self.simulation.options.loose_tolerances()
             printed = []
             if self.root:
-                slow = SlowSteps(self.simulation.comm.size, self._print)
-                printed = [self._unused, ProgressOutput(self.simulation, self.out), slow]
+                printed = [self._unused, ProgressOutput(self.simulation, self.out)]
             return solve(self.simulation, [self.recorder, *printed], self.stop)
 
     def _report(self, outcome: Outcome) -> None:

@@ -20,23 +20,7 @@ SCENES = (
 )
 LIMIT, RUN_MINUTES = 300, "0.15"
 SAME = 1e-5  # relative, of minimum film and maximum pressure
-NUMBERS = (
-    "0",
-    "1",
-    "-1",
-    "2",
-    "7",
-    "100",
-    "1e-3",
-    "1e-9",
-    "0.5",
-    "1e300",
-    "nan",
-    "-inf",
-    "abc",
-    "1e-400",
-    "",
-)
+NUMBERS = (*"0 1 -1 2 7 100 1e-3 1e-9 0.5 1e300 nan -inf abc 1e-400".split(), "")
 NUMERIC = (
     "snes_atol snes_rtol snes_stol snes_max_it snes_max_funcs snes_vi_zero_tolerance snes_lag_jacobian "
     "snes_divergence_tolerance snes_lag_preconditioner snes_max_linear_solve_fail snes_max_fail ksp_rtol "

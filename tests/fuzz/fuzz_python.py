@@ -10,12 +10,7 @@ import ehlpetsc
 from ehlpetsc.run.simulation import Simulation
 
 RIDGE = {"mesh.points_per_half_width": 15, "time.travel": 0.3}
-PASS = {
-    "mesh.points_per_half_width": 15,
-    "time.travel": 0.2,
-    "time.passes": 1,
-    "contact.yield_pressure": 0.95e9,
-}
+PASS = RIDGE | {"time.travel": 0.2, "time.passes": 1, "contact.yield_pressure": 0.95e9}
 LIMIT = 120  # s
 REFUSED = (ehlpetsc.CaseError, ehlpetsc.OutputError, ehlpetsc.UsageError, ehlpetsc.NotConverged)
 STEPS = (None, 0.0, 1e-7, -1e-7, 1e300, np.nan, np.inf, np.float64(1e-7))

@@ -26,7 +26,6 @@ HEAVY = (
     "scipy.interpolate",
     "scipy.linalg",
     "scipy.ndimage",
-    "statistics",
     "ehlpetsc.__main__",
     "ehlpetsc.case.loading",
     "ehlpetsc.discretisation.ehl_problem",
