@@ -8,6 +8,7 @@ writer and reader, progress, the summary line, totals of runs and series, the fo
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from ehlpetsc.quantity import Column, Field, StepScalar
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
 
-REDUCTIONS = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
+REDUCTIONS: dict[str, Callable] = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
 """From the values of the steps, in their order, to the one of a run."""
 
 MEANS = ("friction_coefficient", "film_central", "lambda_ratio", "mean_gap_ratio", "contact_share")

@@ -80,13 +80,13 @@ def run_scalars(result: Result) -> dict[str, float]:
         reduce = EXTREMES.get(name)
         scalars[name] = float(reduce(values)) if reduce else mean(result, name, weights)
     post = damage_beside(result)
-    return scalars | _damage(post) | _flash_temperatures(post)
+    return scalars | _damage(post) | _flash_temperatures(post) if post else scalars
 
 
-def _damage(post: PostResult | None) -> dict[str, float]:
-    """Quantiles of damage over the points of each surface, at every depth; {} without a post result."""
+def _damage(post: PostResult) -> dict[str, float]:
+    """Quantiles of damage over the points of each surface, at every depth."""
     quantiles = {}
-    for surface in post.surfaces if post else ():
+    for surface in post.surfaces:
         for depth, values in zip(post.z, post.passed(surface), strict=True):
             for quantile in QUANTILES if values.size else ():
                 name = f"damage_{surface} z/a={depth:g} q={quantile:g}"
@@ -94,10 +94,10 @@ def _damage(post: PostResult | None) -> dict[str, float]:
     return quantiles
 
 
-def _flash_temperatures(post: PostResult | None) -> dict[str, float]:
+def _flash_temperatures(post: PostResult) -> dict[str, float]:
     """Maximum and median flash temperature [K] over the points of each surface; {} without heat."""
     scalars = {}
-    for side, temperatures in (post.temperatures if post else {}).items():
+    for side, temperatures in post.temperatures.items():
         flash = temperatures.flash[np.isfinite(temperatures.flash)]
         if flash.size:
             scalars[f"flash_temperature_{side} largest"] = float(flash.max())
@@ -106,18 +106,21 @@ def _flash_temperatures(post: PostResult | None) -> dict[str, float]:
 
 
 def bootstrap(
-    values: Sequence[float], resamples: int = RESAMPLES, seed: int = 1, confidence: float = CONFIDENCE
+    values: Sequence[float] | np.ndarray,
+    resamples: int = RESAMPLES,
+    seed: int = 1,
+    confidence: float = CONFIDENCE,
 ) -> tuple[float, float]:
     """Confidence interval of a mean: percentiles of the means of samples with replacement (Efron 1979).
 
     nan for less than two values.
     """
-    values = np.asarray(values, dtype=float)
-    if values.size < 2:
+    runs = np.asarray(values, dtype=float)
+    if runs.size < 2:
         return np.nan, np.nan
-    draws = np.random.default_rng(seed).integers(values.size, size=(resamples, values.size))
+    draws = np.random.default_rng(seed).integers(runs.size, size=(resamples, runs.size))
     tail = 50.0 * (1.0 - confidence)
-    low, high = np.percentile(values[draws].mean(axis=1), (tail, 100.0 - tail))
+    low, high = np.percentile(runs[draws].mean(axis=1), (tail, 100.0 - tail))
     return float(low), float(high)
 
 
@@ -132,7 +135,7 @@ def ensembles(results: list[Result]) -> list[Ensemble]:
     differing = {
         key: values for key, values in differences(results).items() if key.rpartition(".")[2] != "seed"
     }
-    groups = {}
+    groups: dict[str, tuple[dict, list]] = {}
     for number, result in enumerate(results):
         conditions = {key: values[number] for key, values in differing.items()}
         key = json.dumps(conditions, default=str)

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import ExitStatus, UsageError
+from ehlpetsc.errors import UsageError
 from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all, series_values
@@ -88,7 +88,7 @@ def _as_text(cell: str) -> str:
     return f"'{cell}" if cell.startswith(("=", "+", "-", "@")) else cell
 
 
-def main(words: Sequence[str]) -> ExitStatus:
+def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status: 0 done, 2 bad input."""
     description = "Means, percentiles and extremes of every scalar of runs, all steps or one frame, as CSV."
     parser = CommandParser("summary", description)

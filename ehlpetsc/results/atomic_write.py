@@ -28,8 +28,7 @@ def replacing(path: Path, keep_ending: bool = False) -> Iterator[Path]:
     except BaseException as error:
         with contextlib.suppress(OSError):
             temporary.unlink()
-        ours = isinstance(error, OSError) and (error.filename or str(temporary)) == str(temporary)
-        if ours and error.errno:
+        if isinstance(error, OSError) and error.errno and error.filename in (None, str(temporary)):
             raise OSError(error.errno, error.strerror, str(path)) from error
         raise
 
@@ -55,4 +54,5 @@ def os_reason(error: Exception) -> str:
     if error.args and "errno = " in str(error):
         code = int(str(error).split("errno = ")[1].split(",")[0])
         return os.strerror(code)
-    return os.strerror(error.errno) if getattr(error, "errno", None) else str(error)
+    number = getattr(error, "errno", None)
+    return os.strerror(number) if number else str(error)

@@ -6,9 +6,9 @@ import contextlib
 import errno
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
@@ -19,12 +19,12 @@ RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, 
 BEING_WRITTEN = "open for write"  # in the message of HDF5 on a file of a live or killed writer
 
 
-def create(path: Path) -> h5py.File:
+def create(path: Path | BinaryIO) -> h5py.File:
     """New HDF5 file, in the format that can be read while it is written."""
     return h5py.File(path, "w", libver="latest")
 
 
-def open_for_reading(path: Path, **options: Any) -> h5py.File:
+def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
     """Open an HDF5 file, also one that is being written or that a killed writer left open.
 
     Further options are those of `h5py.File`; an OutputError if there is no readable HDF5 file.
@@ -45,7 +45,7 @@ def open_for_reading(path: Path, **options: Any) -> h5py.File:
 
 
 @contextlib.contextmanager
-def reading(path: Path, name: str = "") -> Iterator[None]:
+def reading(path: str | Path, name: str = "") -> Iterator[None]:
     """Convert exceptions of h5py on a damaged file to an OutputError that names file and dataset."""
     try:
         yield
@@ -63,7 +63,7 @@ def plain(value: Any) -> Any:
 class Attributes(dict):
     """Attributes of a file, group or dataset by name; a missing attribute raises an OutputError."""
 
-    def __init__(self, item: h5py.HLObject, path: Path) -> None:
+    def __init__(self, item: h5py.HLObject, path: str | Path) -> None:
         with reading(path):
             super().__init__({name: plain(value) for name, value in item.attrs.items()})
         self._path = path
@@ -107,7 +107,7 @@ def change(file: h5py.File, name: str, text: str) -> None:
     file.attrs.modify(name, np.array(text.encode(), kind))
 
 
-def extend(dataset: h5py.Dataset, rows: np.ndarray) -> None:
+def extend(dataset: h5py.Dataset, rows: Sequence | np.ndarray) -> None:
     """Append rows to a dataset."""
     if len(rows):
         begin = dataset.shape[0]

@@ -6,7 +6,6 @@ import json
 import tomllib
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
-from functools import reduce
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -115,9 +114,10 @@ def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:
 
 
 def _result_of(path: Path) -> str:
+    name = str(path)
     for ending in OTHER_ENDINGS:
-        path = str(path).removesuffix(ending)
-    return f"{path}.h5"
+        name = name.removesuffix(ending)
+    return f"{name}.h5"
 
 
 def files_of(path: Path) -> list[Path]:
@@ -179,7 +179,9 @@ def distinguishing_names(results: list[Result]) -> list[str] | None:
 
 def _setting(case: Case, key: str, label: str, value: Any) -> str:
     if value is None:  # left out: its default
-        value = reduce(lambda table, name: getattr(table, name, None), key.split("."), case)
+        value = case
+        for name in key.split("."):
+            value = getattr(value, name, None)
     if value is None:
         return f"no {label}"
     return f"{label} = {value:g}" if isinstance(value, int | float) else f"{label} = {value}"
@@ -187,7 +189,7 @@ def _setting(case: Case, key: str, label: str, value: Any) -> str:
 
 def flat_keys(table: dict, prefix: str = "") -> dict[str, Any]:
     """Values of nested tables by dotted key."""
-    values = {}
+    values: dict[str, Any] = {}
     for key, value in table.items():
         values |= flat_keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
     return values

@@ -6,7 +6,7 @@ surfaces fills the contact by 0; a steady run is its own mean.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,7 +77,7 @@ def means(result: Result) -> dict[str, float]:
     return {name: value for name, value in found.items() if np.isfinite(value)}
 
 
-def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: list[float]) -> np.ndarray:
+def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: Sequence[float]) -> np.ndarray:
     """Weighted percentiles of values, both of shape (n,)."""
     order = np.argsort(values)
     reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
@@ -107,8 +107,8 @@ def _filled_by(result: Result, side: str) -> float:
 class Totals:
     """Totals `values` of the steps so far, keys of `REDUCED`, and `means` of the run, see :func:`means`."""
 
-    def __init__(self, values: dict[str, float] = (), means: dict[str, float] = ()) -> None:
-        self.values, self.means = dict(values), dict(means)
+    def __init__(self, values: dict[str, float] | None = None, means: dict[str, float] | None = None) -> None:
+        self.values, self.means = dict(values or {}), dict(means or {})
 
     @classmethod
     def of_result(cls, result: Result) -> Totals:

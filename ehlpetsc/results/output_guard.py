@@ -67,8 +67,9 @@ class Lock:
     """
 
     def __init__(self, path: Path, advice: str = WAIT_ADVICE) -> None:
-        self._output, self._path, self._file = path, path.with_name(path.name + ".lock"), None
+        self._output, self._path = path, path.with_name(path.name + ".lock")
         self._advice = advice
+        self._file: TextIO | None = None
 
     def __enter__(self) -> Lock:
         self.acquire()

@@ -103,7 +103,8 @@ class Result:
     """
 
     def __init__(self, file: h5py.File, path: Path) -> None:
-        self._file, self._read, self.path = file, {}, Path(path)
+        self._file, self.path = file, Path(path)
+        self._read: dict[str, np.ndarray] = {}
         self.attrs = Attributes(file, path)
         with reading(path):
             self.time = file["time"][:]  # written last, as in Steps

@@ -14,7 +14,7 @@ import time as clock
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
@@ -155,6 +155,9 @@ class ResultWriter:
         The file cannot be written, or the one to resume does not fit the run.
     """
 
+    _file: Any = None  # an h5py.File
+    written: tuple[int, float] | None = None
+
     def __init__(
         self,
         path: Path | None,
@@ -169,7 +172,8 @@ class ResultWriter:
         self.contact_count = np.zeros(len(layout.x), dtype="i8")
         if contact_count is not None:
             self.contact_count[:] = contact_count
-        self._file, self.written, self._steps, self._frames = None, None, [], []
+        self._steps: list[dict] = []
+        self._frames: list[dict] = []
         with self._one_sentence("not created"):
             if self.path is None:
                 self._memory = io.BytesIO()
@@ -179,14 +183,14 @@ class ResultWriter:
                     check_space(self.path, sum(24 * len(p[0]) for p in layout.profiles.values() if p))
                     self._create(target, layout, attributes)
                     if resume_step is not None and self.path.exists():
-                        self._copy_up_to(resume_step)
+                        self._copy_up_to(self.path, resume_step)
                     self._file.swmr_mode = True
                     self._file.flush()
         self._last, self._flushed = self.written, clock.monotonic()
         self._fields = [name for name in FIELDS if name in self._file]
         self._max_frames = max(1, MAX_FIELD_BYTES // (8 * len(layout.x)))
 
-    def _create(self, target: Path | io.BytesIO, layout: Layout, attributes: dict[str, Any]) -> None:
+    def _create(self, target: Path | BinaryIO, layout: Layout, attributes: dict[str, Any]) -> None:
         file = self._file = create(target)
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
         common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
@@ -296,20 +300,20 @@ class ResultWriter:
         with contextlib.suppress(Exception):  # the first fault is reported
             self._end("stopped")
 
-    def _copy_up_to(self, step: int) -> None:
+    def _copy_up_to(self, path: Path, step: int) -> None:
         """Copy all rows up to a step of an earlier part of the run."""
         file = self._file
-        with read_result(self.path) as old:
+        with read_result(path) as old:
             fault = _misfit(file, old, step)
             if fault:
-                raise OutputError(f"{self.path}: cannot be continued, {fault}; give another -o")
+                raise OutputError(f"{path}: cannot be continued, {fault}; give another -o")
             steps, numbers = file["steps"], old.steps("step")
-            frames, count = np.count_nonzero(old.step <= step), np.count_nonzero(numbers <= step)
+            frames, count = int(np.sum(old.step <= step)), int(np.sum(numbers <= step))
             rows = {name: frames for name in (*old.fields, "step", "time")}
             for name, end in (rows | {f"steps/{name}": count for name in steps}).items():
                 for begin in range(0, end, ROWS_PER_BLOCK):
                     block = old[name][begin : min(begin + ROWS_PER_BLOCK, end)]
-                    check_space(self.path, block.nbytes)
+                    check_space(path, block.nbytes)
                     extend(file[name], block)
             file["contact_count"][:] = self.contact_count
             restarts = int(old.attrs["restarts"]) + 1

@@ -6,7 +6,7 @@ import contextlib
 import time as clock
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mpi4py
 import numpy as np
@@ -24,7 +24,7 @@ from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run.limits import limits
 from ehlpetsc.run.ranks import on_root
-from ehlpetsc.run.restart import checkpoint
+from ehlpetsc.run.restart.checkpoint import Checkpoint, advice_on_resuming, load, save
 from ehlpetsc.stepping.time_stepping import on_level
 
 if TYPE_CHECKING:
@@ -60,8 +60,11 @@ class Recorder:
         self.simulation, self.comm = simulation, simulation.comm
         self.output = None if output is None else Path(output)
         self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
-        self.totals, self.limits = Totals(), []
-        self._lock = self._writer = self._stored = None
+        self.totals = Totals()
+        self.limits: list[str] = []
+        self._lock: Lock | None = None
+        self._writer: Any = None  # a ResultWriter, on rank 0
+        self._stored: Checkpoint | None = None
         self._is_open, self._saved = False, clock.monotonic()
 
     def __enter__(self) -> Recorder:
@@ -83,25 +86,25 @@ class Recorder:
         """
         if self.output is None:
             return restart
-        return self.comm.bcast(on_root(self.comm, self._lock_files, restart, overwrite))
+        files = self.output, self.restart
+        return self.comm.bcast(on_root(self.comm, self._lock_files, *files, restart, overwrite))
 
-    def _lock_files(self, restart: Path | None, overwrite: bool) -> Path | None:
+    def _lock_files(self, output: Path, own: Path, restart: Path | None, overwrite: bool) -> Path | None:
+        """Lock the result and its `own` restart file; the restart file to resume from."""
         case = self.simulation.case
         inputs = inputs_of(case)
-        check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
-        check_output_path(self.restart, inputs)
-        self._lock = Lock(self.output)
+        check_output_path(output, [*inputs, Path(restart)] if restart else inputs)
+        check_output_path(own, inputs)
+        self._lock = Lock(output)
         self._lock.acquire()
-        for path in (self.output, self.restart):
+        for path in (output, own):
             remove_stale(path)
-        if restart or overwrite:
-            return restart
-        return restart_of_same(self.output, self.restart, case.text)
+        return restart if restart or overwrite else restart_of_same(output, own, case.text)
 
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
         simulation, model = self.simulation, self.simulation.stepper.problem.model
-        stored, notes = checkpoint.load(path, simulation.case, simulation.scales, model)
+        stored, notes = load(path, simulation.case, simulation.scales, model)
         solution = stored.state
         simulation.resume(solution, stored.baseline, stored.positions)
         self.totals = Totals(stored.totals)
@@ -143,10 +146,10 @@ class Recorder:
 
     def to_bytes(self) -> bytes:
         """The bytes of a result in memory, on every rank."""
-        content = self._writer.to_bytes() if self.comm.rank == 0 else None
+        content: bytes = self._writer.to_bytes() if self.comm.rank == 0 else b""
         if self.comm.size == 1:
             return content
-        size = self.comm.bcast(content and len(content))
+        size = self.comm.bcast(len(content))
         buffer = np.frombuffer(content, "u1") if content else np.empty(size, "u1")
         for begin in range(0, size, MESSAGE_BYTES):
             self.comm.Bcast(buffer[begin : begin + MESSAGE_BYTES])
@@ -176,12 +179,14 @@ class Recorder:
             precision=case.output.precision,
             profiles=stored_profiles(self.simulation),
         )
-        resumed = {"resume_step": step, "contact_count": count}
-        self._writer = ResultWriter(self.output, layout, attributes, case.output.every, **resumed)
+        every = case.output.every
+        self._writer = ResultWriter(
+            self.output, layout, attributes, every, resume_step=step, contact_count=count
+        )
 
     def _append(self, state: AcceptedState) -> None:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
-        frame = every == 1 or steady or on_level(self.simulation.level(state.time), every)
+        frame = every == 1 or steady or on_level(self.simulation.level(float(state.scalars["time"])), every)
         self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
 
     def _close(self, status: ExitStatus) -> None:
@@ -203,18 +208,19 @@ class Recorder:
     def _note_stored(self) -> None:
         """Remember the state up to which the result file on rank 0 is complete."""
         state = self.simulation.solution
-        if self.restart and self.simulation.case.time and self._writer:
+        if self.restart and self.simulation.case.time and self._writer and state:
             if self._writer.written == (state.step, state.time):
                 self._stored = self._checkpoint()
 
-    def _checkpoint(self) -> checkpoint.Checkpoint:
+    def _checkpoint(self) -> Checkpoint:
         count, totals = self._writer.contact_count.copy(), dict(self.totals.values)
-        return checkpoint.Checkpoint.of(self.simulation, count, totals)
+        return Checkpoint.of(self.simulation, count, totals)
 
-    def _write_restart(self, state: checkpoint.Checkpoint) -> None:
+    def _write_restart(self, state: Checkpoint) -> None:
         simulation = self.simulation
         model = simulation.stepper.problem.model
-        checkpoint.save(self.restart, state, simulation.case, simulation.scales, model)
+        if self.restart is not None:
+            save(self.restart, state, simulation.case, simulation.scales, model)
 
     @contextlib.contextmanager
     def _advice_on_failure(self) -> Iterator[None]:
@@ -229,8 +235,8 @@ class Recorder:
                 if self._stored:
                     with contextlib.suppress(OutputError):
                         self._write_restart(self._stored)
-                step = self._stored and self._stored.state.step
-                advice = checkpoint.advice(self.restart, self.simulation.case, step)
+                step = self._stored.state.step if self._stored else None
+                advice = advice_on_resuming(self.restart, self.simulation.case, step)
             raise OutputError(f"{error}; {self.comm.bcast(advice)}") from error
 
 
@@ -248,7 +254,7 @@ def stored_profiles(simulation: Simulation) -> dict[str, tuple | None]:
     """
     depths = [name for effect in simulation.stepper.effects for name in effect.surface]
     rough, speeds = simulation.roughness, (simulation.scales.u1, simulation.scales.u2)
-    sides = {}
+    sides: dict[str, tuple | None] = {}
     for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
         profile = rough and rough.side(side)
         if profile:
@@ -264,7 +270,7 @@ def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
     offsets, solution, sides = _offsets(simulation), simulation.solution, stored_profiles(simulation)
     points = [side and side[0] - offset for side, offset in zip(sides.values(), offsets, strict=True)]
     depths = []
-    for effect in simulation.stepper.effects:
+    for effect in simulation.stepper.effects if solution else ():
         for name, pair in effect.on_surfaces(solution.records[effect.name], points).items():
             stored = [(side, name, depth) for side, depth in zip(sides, pair, strict=True)]
             depths += [entry for entry in stored if entry[2] is not None]

@@ -216,9 +216,9 @@ def test_resume_advice_names_matching_restart_files_only(tmp_path, stored, other
     path = tmp_path / "f.restart.h5"
     scene = Scene()
     scene.save(path, *state_of(scene))
-    advice = checkpoint.advice(path, Scene(*other).case, stored)
+    advice = checkpoint.advice_on_resuming(path, Scene(*other).case, stored)
     assert advice.endswith(f"continue with --restart {path} (step 3)") == there
     assert ("no restart file" in advice) != there
     assert there or advice.endswith(" --overwrite"), "an existing file would be refused"
     path.unlink()
-    assert checkpoint.advice(path, scene.case, stored).endswith(" at time 0")
+    assert checkpoint.advice_on_resuming(path, scene.case, stored).endswith(" at time 0")

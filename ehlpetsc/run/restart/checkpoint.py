@@ -57,8 +57,11 @@ class Checkpoint:
     @classmethod
     def of(cls, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> Checkpoint:
         """Checkpoint of a simulation at its last state."""
-        baseline, positions = simulation.stepper.baseline, simulation.scene.positions
-        return cls(simulation.solution, baseline, contact_count, totals, positions, simulation.pass_number)
+        state, baseline = simulation.solution, simulation.stepper.baseline
+        if state is None or baseline is None:
+            raise ValueError("no state yet")
+        positions = simulation.scene.positions
+        return cls(state, baseline, contact_count, totals, positions, simulation.pass_number)
 
 
 def save(path: Path, checkpoint: Checkpoint, case: Case, scales: Scales, model: ContactModel) -> None:
@@ -131,7 +134,7 @@ def changed_keys(earlier: dict, now: dict) -> list[str]:
     return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
 
 
-def advice(restart: Path, case: Case, step: int | None) -> str:
+def advice_on_resuming(restart: Path, case: Case, step: int | None) -> str:
     """End of a sentence on a failed write: how to continue once the cause is removed.
 
     The restart file may be missing or belong to another case; `step` is the last complete one in the result.
