@@ -6,6 +6,9 @@ prints friction and losses of the mesh and draws pressure, films and friction al
 RESULT.post.h5 exists, the damage along both flanks.
 """
 
+from __future__ import annotations
+
+import argparse
 from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser, exit_status
@@ -14,7 +17,7 @@ from ehlpetsc.results.atomic_write import atomic_write, replacing
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 
 
-def arguments():
+def arguments() -> CommandParser:
     """Parse the command line."""
     parser = CommandParser("gears", __doc__)
     parser.add_argument("case", help="case file with a [gears] table, or a result of one")
@@ -24,13 +27,13 @@ def arguments():
     return parser
 
 
-def main(words):
+def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     chosen = arguments().parse_args(words)
     return exit_status("gears", lambda: run(chosen), (ValueError,))
 
 
-def run(chosen):
+def run(chosen: argparse.Namespace) -> None:
     """Print the table, write picture and CSV file."""
     from ehlpetsc.case.loading import gear_tables
     from ehlpetsc.gears.path import path_of_contact
@@ -58,7 +61,7 @@ def run(chosen):
         print(target)
 
 
-def _run_of(chosen):
+def _run_of(chosen: argparse.Namespace) -> None:
     """Print and draw a result along its path of contact."""
     from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
     from ehlpetsc.pictures.gears import draw_damage, draw_run
@@ -85,7 +88,7 @@ def _run_of(chosen):
             print(flanks)
 
 
-def _picture(chosen):
+def _picture(chosen: argparse.Namespace) -> Path | None:
     """Checked path of the picture; None: no picture."""
     if chosen.no_picture:
         return None

@@ -4,8 +4,11 @@ Positions on the line of action are measured from the base circle of the pinion:
 radius of curvature of its flank. Flank 1 belongs to the pinion, flank 2 to the wheel; the pinion drives.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import Any
 
 POINTS = ("A", "B", "C", "D", "E")
 MESH_STIFFNESS = 14e9  # Pa: single stiffness c' of steel teeth, 14 N/(mm um) of ISO 6336-1
@@ -17,20 +20,19 @@ class GearPair:
 
     Attributes
     ----------
-    module, centre_distance, face_width : float
+    module, centre_distance, face_width
         [m].
-    teeth : (int, int)
-    pressure_angle : float
+    pressure_angle
         Pressure angle of the basic rack [degrees].
-    tip_diameter : (float, float)
+    tip_diameter
         [m].
-    torque, speed : float
+    torque, speed
         Torque [N m] and speed [1/min] of the pinion.
-    tip_relief : float
+    tip_relief
         Depth of the relief at both tips, falling linearly to none at B and D [m].
-    load_sharing : str, optional
+    load_sharing
         "thirds" or "tip-relief", see :mod:`ehlpetsc.gears.load_sharing`; by default by the relief.
-    mesh_stiffness : float
+    mesh_stiffness
         Single stiffness c' of a tooth pair per face width [Pa].
     """
 
@@ -47,49 +49,49 @@ class GearPair:
     mesh_stiffness: float = MESH_STIFFNESS
 
     @property
-    def rule(self):
+    def rule(self) -> str:
         """Load sharing rule: `load_sharing`, by default according to the tip relief."""
         return self.load_sharing or ("tip-relief" if self.tip_relief > 0.0 else "thirds")
 
     @property
-    def base_radii(self):
+    def base_radii(self) -> tuple[float, float]:
         r"""Base circles [m], :math:`r_b=\frac12 mz\cos\alpha`."""
         cosine = math.cos(math.radians(self.pressure_angle))
         return tuple(0.5 * self.module * z * cosine for z in self.teeth)
 
     @property
-    def base_pitch(self):
+    def base_pitch(self) -> float:
         r"""Distance of neighbouring flanks on the line of action [m], :math:`p_b=\pi m\cos\alpha`."""
         return math.pi * self.module * math.cos(math.radians(self.pressure_angle))
 
     @property
-    def working_angle(self):
+    def working_angle(self) -> float:
         r"""Working pressure angle [rad], :math:`\cos\alpha_w=(r_{b1}+r_{b2})/a_w`."""
         return math.acos(sum(self.base_radii) / self.centre_distance)
 
     @property
-    def line_of_action(self):
+    def line_of_action(self) -> float:
         r"""Length between the base circles [m], :math:`L=a_w\sin\alpha_w`."""
         return self.centre_distance * math.sin(self.working_angle)
 
     @property
-    def base_speed(self):
+    def base_speed(self) -> float:
         r"""Speed along the line of action [m/s], :math:`\omega_1r_{b1}`."""
         return self.angular_speeds[0] * self.base_radii[0]
 
     @property
-    def angular_speeds(self):
+    def angular_speeds(self) -> tuple[float, float]:
         """Angular speeds of pinion and wheel [rad/s]."""
         omega = self.speed * math.pi / 30.0
         return omega, omega * self.teeth[0] / self.teeth[1]
 
     @property
-    def normal_load(self):
+    def normal_load(self) -> float:
         r"""Load on the flanks per face width [N/m], :math:`T_1/(r_{b1}b)`."""
         return self.torque / self.face_width / self.base_radii[0]
 
     @property
-    def points(self):
+    def points(self) -> dict[str, float]:
         """Positions of A, B, C, D and E [m]: dict of str to float.
 
         A: tip of the wheel, contact begins; E: tip of the pinion, contact ends; a single pair carries between
@@ -100,27 +102,27 @@ class GearPair:
         return {"A": a, "B": e - self.base_pitch, "C": c, "D": a + self.base_pitch, "E": e}
 
     @property
-    def contact_ratio(self):
+    def contact_ratio(self) -> float:
         r""":math:`\varepsilon_\alpha=(\rho_E-\rho_A)/p_b`."""
         a, e = self._a_and_e()
         return (e - a) / self.base_pitch
 
-    def _a_and_e(self):
+    def _a_and_e(self) -> tuple[float, float]:
         rho = [
             math.sqrt((0.5 * d) ** 2 - r * r) for d, r in zip(self.tip_diameter, self.base_radii, strict=True)
         ]
         return self.line_of_action - rho[1], rho[0]
 
-    def radius(self, rho):
+    def radius(self, rho: Any) -> Any:
         r"""Radius of relative curvature [m], :math:`\rho_1(L-\rho_1)/L`."""
         return rho * (self.line_of_action - rho) / self.line_of_action
 
-    def speeds(self, rho):
+    def speeds(self, rho: Any) -> tuple[Any, Any]:
         r"""Rolling speeds of flanks 1 and 2 [m/s], :math:`\omega_i\rho_i`."""
         omega = self.angular_speeds
         return omega[0] * rho, omega[1] * (self.line_of_action - rho)
 
-    def flank_arcs(self, rho):
+    def flank_arcs(self, rho: Any) -> tuple[Any, Any]:
         r"""Arc lengths on flanks 1 and 2 from A [m], :math:`|\rho_i^2-\rho_{i,A}^2|/(2r_{b,i})`.
 
         The integrals of both speeds over time.
@@ -129,12 +131,12 @@ class GearPair:
         return (rho**2 - a**2) / (2.0 * r_1), ((length - a) ** 2 - (length - rho) ** 2) / (2.0 * r_2)
 
     @property
-    def partners(self):
+    def partners(self) -> int:
         r"""Number of wheel teeth that one pinion tooth meets, :math:`z_2/\gcd(z_1,z_2)`."""
         return self.teeth[1] // math.gcd(*self.teeth)
 
     @property
-    def hunting_shift(self):
+    def hunting_shift(self) -> float:
         """Shift of flank 2 between engagements of one pinion tooth [m].
 
         The wheel flanks in contact with the tooth follow each other in one profile: each engagement begins at
@@ -143,13 +145,8 @@ class GearPair:
         """
         return float(self.flank_arcs(self.points["E"])[1]) if self.partners > 1 else 0.0
 
-    def faults(self):
-        """Faults of the geometry, one message each, with the key.
-
-        Returns
-        -------
-        list of str
-        """
+    def faults(self) -> list[str]:
+        """Faults of the geometry, one message each, with the key."""
         r_b = self.base_radii
         faults = []
         if not 0.0 < self.pressure_angle < 45.0:
@@ -169,7 +166,7 @@ class GearPair:
                 )
         return [f"gears.{fault}" for fault in (faults or self._faults_of_the_path())]
 
-    def _faults_of_the_path(self):
+    def _faults_of_the_path(self) -> list[str]:
         (a, e), length, r_b = self._a_and_e(), self.line_of_action, self.base_radii
         faults = []
         for name, other, over, r in (

@@ -15,21 +15,29 @@ from A to B, and mirrored from E to D:
     :math:`s/\kappa`, and near B along its mirror image.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    from ehlpetsc.gears.geometry import GearPair
 
 RULES = ("thirds", "tip-relief")
 JUMP_LENGTH = 0.005  # of the path: rise from two thirds to the total load
 MIN_RELIEF_RATIO = 0.05  # kappa: below it the load would rise within less than a twentieth of A to B
 
 
-def thirds(s, edge):
+def thirds(s: np.ndarray, edge: float) -> np.ndarray:
     """Load fraction between A and B without tip relief.
 
     Parameters
     ----------
-    s : ndarray
+    s
         0 at A, 1 at B.
-    edge : float
+    edge
         Length of the rise to the total load, in s.
     """
     shared = (1.0 + s) / 3.0
@@ -37,7 +45,7 @@ def thirds(s, edge):
     return np.where(s <= 1.0 - edge, shared, at_edge + (1.0 - at_edge) * (s - 1.0 + edge) / edge)
 
 
-def tip_relief(s, ratio):
+def tip_relief(s: np.ndarray, ratio: float) -> np.ndarray:
     """Load fraction between A and B with tip relief; `ratio` is c' C_a / w'."""
     elastic = np.clip(0.5 * (1.0 + ratio * (2.0 * s - 1.0)), 0.0, 1.0)
     if ratio >= 1.0:
@@ -45,12 +53,12 @@ def tip_relief(s, ratio):
     return np.maximum(np.minimum(elastic, s / ratio), 1.0 - (1.0 - s) / ratio)
 
 
-def relief_ratio(pair):
+def relief_ratio(pair: GearPair) -> float:
     r""":math:`c'C_a/w'`: depth of relief over the deflection of one pair under the total load."""
     return pair.mesh_stiffness * pair.tip_relief / pair.normal_load
 
 
-def _rule(pair):
+def _rule(pair: GearPair) -> tuple[Callable[[np.ndarray], np.ndarray], tuple[float, ...]]:
     """Load fraction as a function of s, and the values of s with a kink."""
     if pair.rule == "thirds":
         edge = min(JUMP_LENGTH * pair.contact_ratio / (pair.contact_ratio - 1.0), 0.5)
@@ -61,7 +69,7 @@ def _rule(pair):
     return lambda s: tip_relief(s, ratio), (kink, 1.0 - kink)
 
 
-def kinks(pair):
+def kinks(pair: GearPair) -> list[float]:
     """Positions of kinks of the load of a pair other than A, B, D and E [m]."""
     points = pair.points
     return [
@@ -71,13 +79,12 @@ def kinks(pair):
     ]
 
 
-def share(pair, rho):
+def share(pair: GearPair, rho: np.ndarray) -> np.ndarray:
     """Load of a tooth pair over that of the mesh, 0 to 1.
 
     Parameters
     ----------
-    pair : ehlpetsc.gears.geometry.GearPair
-    rho : ndarray
+    rho
         Positions between A and E [m].
     """
     points = pair.points

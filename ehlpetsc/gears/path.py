@@ -21,20 +21,18 @@ class Path:
 
     Attributes
     ----------
-    time : ndarray, shape (n,)
-        From A on [s], increasing.
-    load : ndarray, shape (n,)
-        Load of this pair of teeth [N/m].
-    radius : ndarray, shape (n,)
-        Radius of relative curvature [m].
-    speed_1, speed_2 : ndarray, shape (n,)
-        Speeds of the flanks of pinion and wheel through the contact [m/s].
-    rho : ndarray, shape (n,)
-        Position on the line of action from the base circle of the pinion [m].
-    contact_ratio : float
-    pressure_angle : float
+    time
+        From A on [s], increasing, shape (n,).
+    load
+        Load of this pair of teeth [N/m], shape (n,).
+    radius
+        Radius of relative curvature [m], shape (n,).
+    speed_1, speed_2
+        Speeds of the flanks of pinion and wheel through the contact [m/s], shape (n,).
+    rho
+        Position on the line of action from the base circle of the pinion [m], shape (n,).
+    pressure_angle
         Working pressure angle [degrees].
-    pair : ehlpetsc.gears.geometry.GearPair
     """
 
     time: np.ndarray
@@ -48,21 +46,21 @@ class Path:
     pair: GearPair
 
     @property
-    def entrainment(self):
+    def entrainment(self) -> np.ndarray:
         """Entrainment speed, mean of both speeds [m/s]."""
         return 0.5 * (self.speed_1 + self.speed_2)
 
     @property
-    def slide_roll_ratio(self):
+    def slide_roll_ratio(self) -> np.ndarray:
         """Sliding over entrainment speed, positive where flank 1 is the faster."""
         return (self.speed_1 - self.speed_2) / self.entrainment
 
-    def time_at(self, point):
+    def time_at(self, point: str) -> float:
         """Time [s] at which the contact passes A, B, C, D or E."""
         points = self.pair.points
         return (points[point] - points["A"]) / self.pair.base_speed
 
-    def index(self, point):
+    def index(self, point: str) -> int:
         """Index of the sample at A, B, C, D or E."""
         return int(np.argmin(np.abs(self.rho - self.pair.points[point])))
 
@@ -103,13 +101,8 @@ def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
     )
 
 
-def describe(path):
-    """Lines of text about a path: ratio, angle, sharing, hunting.
-
-    Returns
-    -------
-    list of str
-    """
+def describe(path: Path) -> list[str]:
+    """Lines of text about a path: ratio, angle, sharing, hunting."""
     pair = path.pair
     ratio = relief_ratio(pair)
     lines = [

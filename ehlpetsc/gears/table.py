@@ -1,6 +1,10 @@
 """Table of the points of a path of contact, and the path as a CSV file for ``[operation]``."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,16 +13,18 @@ from ehlpetsc.gears.path import describe
 from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
+if TYPE_CHECKING:
+    from ehlpetsc.gears.path import Path
+
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 
 
-def hertz(path, contact):
+def hertz(path: Path, contact: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray] | None:
     """Half width [m] and Hertz pressure [Pa] along a path; None without both moduli.
 
     Parameters
     ----------
-    path : ehlpetsc.gears.path.Path
-    contact : dict
+    contact
         `youngs_modulus` and `poisson_ratio` of the solids, or their `material`.
     """
     try:
@@ -31,18 +37,13 @@ def hertz(path, contact):
     return (values[0], values[1]) if np.isfinite(values).all() else None
 
 
-def rows(path, stresses=None):
+def rows(path: Path, stresses: tuple[np.ndarray, np.ndarray] | None = None) -> list[str]:
     """Lines of text: data of the pair, and a table of A to E.
 
     Parameters
     ----------
-    path : ehlpetsc.gears.path.Path
-    stresses : tuple of ndarray, optional
+    stresses
         See :func:`hertz`.
-
-    Returns
-    -------
-    list of str
     """
     pair = path.pair
     names = list(pair.points)
@@ -75,12 +76,12 @@ def rows(path, stresses=None):
     return lines
 
 
-def _shown(value):
+def _shown(value: float) -> str:
     digits = 3 - (math.floor(math.log10(abs(value))) if abs(value) > 1e-9 else 0)
     return f"{0.0 if abs(value) <= 1e-9 else value:.{min(max(digits, 0), 4)}f}"
 
 
-def csv(path):
+def csv(path: Path) -> str:
     """Loaded part of the path as CSV text for ``[operation]``."""
     loaded = path.load > 0.0
     values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[loaded]

@@ -5,9 +5,15 @@ means over its own cells back: both conserve the volume. Nothing is moved from c
 smeared, however far the body travels.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.scales import Scales
 
 CELLS_PER_MESH_CELL = 4  # cells of a body per cell of the mesh
 
@@ -17,12 +23,12 @@ class BodyField(NamedTuple):
 
     Attributes
     ----------
-    spacing : float
+    spacing
         Width of the cells [m].
-    first : int
+    first
         The abscissas of the edges are ``(first + k) spacing``.
-    depth : ndarray, shape (cells,)
-        Mean depth of each cell [m].
+    depth
+        Mean depth of each cell [m], shape (cells,).
     """
 
     spacing: float
@@ -30,34 +36,36 @@ class BodyField(NamedTuple):
     depth: np.ndarray
 
     @classmethod
-    def zero(cls, cell):
+    def zero(cls, cell: float) -> Self:
         """Depth zero, for a mesh with cells of the width `cell` [m]."""
         return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros(0))
 
     @property
-    def edges(self):
+    def edges(self) -> np.ndarray:
         """Edges of the cells [m], shape (cells + 1,)."""
         return self.spacing * (self.first + np.arange(len(self.depth) + 1))
 
     @property
-    def volume(self):
+    def volume(self) -> float:
         """Integral of the depth over the body [m^2]."""
         return float(self.depth.sum() * self.spacing)
 
-    def means(self, faces):
+    def means(self, faces: np.ndarray) -> np.ndarray:
         """Mean depths [m] between faces, increasing abscissas of the body [m], shape (n + 1,)."""
         if not len(self.depth):
             return np.zeros(len(faces) - 1)
         below = np.concatenate([[0.0], np.cumsum(self.depth)]) * self.spacing
         return np.diff(np.interp(faces, self.edges, below)) / np.diff(faces)
 
-    def add(self, faces, depth):
+    def add(self, faces: np.ndarray, depth: np.ndarray) -> BodyField:
         """Field with depths [m] added between faces.
 
         Parameters
         ----------
-        faces : ndarray, shape (n + 1,)
-        depth : ndarray, shape (n,)
+        faces
+            Shape (n + 1,).
+        depth
+            Shape (n,).
         """
         where = np.flatnonzero(depth)
         if not len(where):
@@ -68,7 +76,7 @@ class BodyField(NamedTuple):
         added = np.diff(np.interp(wider.edges, faces, volume)) / self.spacing
         return wider._replace(depth=wider.depth + np.maximum(added, 0.0))
 
-    def _covering(self, begin, end):
+    def _covering(self, begin: float, end: float) -> BodyField:
         """Field extended by cells of depth zero to reach from begin to end [m]."""
         first = int(np.floor(begin / self.spacing)) - 1
         last = int(np.ceil(end / self.spacing)) + 1
@@ -87,12 +95,12 @@ class BodyFields(NamedTuple):
     surface_2: BodyField
 
     @classmethod
-    def zero(cls, cell):
+    def zero(cls, cell: float) -> Self:
         """Depth zero on both bodies, for a mesh with cells of the width `cell` [m]."""
         return cls(BodyField.zero(cell), BodyField.zero(cell))
 
     @property
-    def volume(self):
+    def volume(self) -> float:
         """Integral of both depths [m^2]."""
         return sum(field.volume for field in self)
 
@@ -102,35 +110,32 @@ class MeshOnBodies:
 
     Parameters
     ----------
-    scales : scales.Scales
-    offsets : (float, float)
+    offsets
         Signed shift of the points of both bodies [m], see :meth:`.roughness.SurfacePositions.offsets`.
     """
 
-    def __init__(self, scales, offsets=(0.0, 0.0)):
+    def __init__(self, scales: Scales, offsets: Sequence[float] = (0.0, 0.0)) -> None:
         self.cell, self.offsets = scales.dx, offsets
         x = scales.x * scales.a
         self._faces = np.append(x - 0.5 * self.cell, x[-1] + 0.5 * self.cell)
 
-    def faces(self, travelled):
+    def faces(self, travelled: Sequence[float]) -> list[np.ndarray]:
         """Faces of the mesh [m] in both bodies after distances travelled [m], shape (nx + 1,) each."""
         return [
             self._faces - distance + offset for distance, offset in zip(travelled, self.offsets, strict=True)
         ]
 
-    def means(self, fields, travelled):
+    def means(self, fields: BodyFields, travelled: Sequence[float]) -> list[np.ndarray]:
         """Means of both bodies' depths over the cells of the mesh [m], shape (nx,) each."""
         return [field.means(faces) for field, faces in zip(fields, self.faces(travelled), strict=True)]
 
-    def add(self, fields, travelled, depths):
+    def add(self, fields: BodyFields, travelled: Sequence[float], depths: Sequence[np.ndarray]) -> BodyFields:
         """Fields with depths at the nodes [m], shape (nx,) for each body, added.
 
         Parameters
         ----------
-        fields : BodyFields
-        travelled : (float, float)
+        travelled
             Distances travelled by both bodies [m].
-        depths : pair of ndarray
         """
         return BodyFields(
             *(
@@ -139,7 +144,7 @@ class MeshOnBodies:
             )
         )
 
-    def at_points(self, fields, points):
+    def at_points(self, fields: BodyFields, points: Sequence[np.ndarray | None]) -> list[np.ndarray | None]:
         """Mean depths [m] around equally spaced points s of each body [m]; None without points."""
         depths = []
         for field, s, offset in zip(fields, points, self.offsets, strict=True):

@@ -1,5 +1,7 @@
 """Levelling, filtering and thinning of measured profiles."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ehlpetsc.errors import ProfileError
@@ -12,23 +14,23 @@ MIN_THINNED_POINTS = 200_000  # points; a spline through fewer takes negligible 
 MAX_POINTS_PER_CELL = 16  # points per cell of the mesh, or per shortest cut-off
 
 
-def levelled(x, z):
+def levelled(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Heights minus their least-squares line."""
     x = x - x.mean()
     return z - z.mean() - x * (x @ z / (x @ x))
 
 
-def high_pass(x, z, cutoff):
+def high_pass(x: np.ndarray, z: np.ndarray, cutoff: float) -> np.ndarray:
     """Roughness: profile minus the mean line of cut-off `cutoff` [m], see `mean_line`."""
     return z - mean_line(x, z, cutoff, "cutoff")
 
 
-def low_pass(x, z, cutoff):
+def low_pass(x: np.ndarray, z: np.ndarray, cutoff: float) -> np.ndarray:
     """Profile without waves shorter than `cutoff` [m]: S-filter of ISO 3274, see `mean_line`."""
     return mean_line(x, z, cutoff, "short_cutoff")
 
 
-def mean_line(x, z, cutoff, key):
+def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarray:
     r"""Mean line of the Gaussian profile filter of ISO 16610-21.
 
     The convolution with :math:`s(x)=\frac{1}{\alpha\lambda_c}\exp[-\pi(x/\alpha\lambda_c)^2]`,
@@ -39,11 +41,11 @@ def mean_line(x, z, cutoff, key):
 
     Parameters
     ----------
-    x, z : ndarray, shape (n,)
-        m; x equally spaced.
-    cutoff : float
+    x, z
+        m; x equally spaced, shape (n,).
+    cutoff
         Wavelength [m].
-    key : str
+    key
         Key of the cut-off in the case.
 
     Raises
@@ -79,7 +81,7 @@ def mean_line(x, z, cutoff, key):
     return idct(spectrum, type=1, overwrite_x=True)[: x.size]
 
 
-def thinned(X, z, shortest):
+def thinned(X: np.ndarray, z: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarray]:
     """Profile with `MAX_POINTS_PER_CELL` points per shortest wave, if it has more than twice as many.
 
     Every new point has the mean height of the old points around it, by the trapezoidal rule, corrected
@@ -89,14 +91,14 @@ def thinned(X, z, shortest):
 
     Parameters
     ----------
-    X, z : ndarray, shape (n,)
-        m; X increasing.
-    shortest : float
+    X, z
+        m; X increasing, shape (n,).
+    shortest
         Spacing of the mesh or cut-off of a filter [m].
 
     Returns
     -------
-    X, z : ndarray
+    X, z
         The same arrays if the profile is not thinned.
     """
     count = max(int(MAX_POINTS_PER_CELL * (X[-1] - X[0]) / shortest), MAX_POINTS_PER_CELL) + 1

@@ -4,6 +4,8 @@ Ra, Rq, Rsk and Rz after ISO 4287, over the whole profile and, for Rz, as the me
 lengths; Rk, Rpk and Rvk after ISO 13565-2 from the material ratio curve.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 SAMPLING_LENGTHS = 5
@@ -11,25 +13,25 @@ SECANT_WIDTH = 0.4  # of the material ratio: width of the secant whose least slo
 CURVE_POINTS = 4001  # of the Abbott curve
 
 
-def abbott_curve(X, z):
+def abbott_curve(X: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Material ratio curve: heights over the fraction of the profile's length above them.
 
     Parameters
     ----------
-    X, z : ndarray, shape (n,)
-        Abscissas, increasing, and heights [m].
+    X, z
+        Abscissas, increasing, and heights [m], shape (n,).
 
     Returns
     -------
-    ratio, height : ndarray, shape (POINTS,)
-        Ratio from 0 to 1, heights falling [m].
+    ratio, height
+        Ratio from 0 to 1, heights falling [m], shape (POINTS,).
     """
     even = np.interp(np.linspace(X[0], X[-1], max(len(X), CURVE_POINTS)), X, z)
     ratio = np.linspace(0.0, 1.0, CURVE_POINTS)
     return ratio, np.quantile(even, 1.0 - ratio)
 
 
-def core(ratio, height):
+def core(ratio: np.ndarray, height: np.ndarray) -> dict[str, float]:
     r"""Core roughness after ISO 13565-2.
 
     The secant over 40 % of the material ratio with the least slope, continued to 0 and 100 %, bounds the
@@ -38,13 +40,12 @@ def core(ratio, height):
 
     Parameters
     ----------
-    ratio, height : ndarray
+    ratio, height
         See :func:`abbott_curve`.
 
     Returns
     -------
-    dict
-        "rk", "rpk", "rvk" [m], "mr1", "mr2" (1), "top", "bottom" of the core [m].
+    "rk", "rpk", "rvk" [m], "mr1", "mr2" (1), "top", "bottom" of the core [m].
     """
     width = round(SECANT_WIDTH * (len(ratio) - 1))
     begin = int(np.argmin(height[:-width] - height[width:]))
@@ -66,13 +67,13 @@ def core(ratio, height):
     }
 
 
-def roughness_parameters(X, z):
+def roughness_parameters(X: np.ndarray, z: np.ndarray) -> dict[str, float]:
     """Ra, Rq, Rz, Rk, Rpk, Rvk [m] and Rsk (1) of a profile, by lower-case name.
 
     Parameters
     ----------
-    X, z : ndarray, shape (n,)
-        Abscissas, increasing, and heights [m].
+    X, z
+        Abscissas, increasing, and heights [m], shape (n,).
     """
     deviation = z - z.mean()
     rq = float(np.sqrt((deviation**2).mean()))

@@ -1,8 +1,16 @@
 """Profiles that are implausible compared with half width, film and mesh, mostly by a wrong unit."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ehlpetsc.surfaces.profile_files import UNITS
+
+if TYPE_CHECKING:
+    from ehlpetsc.surfaces.profile_files import Layout
+    from ehlpetsc.surfaces.samples import Samples
 
 MAX_SPACING = 0.25  # half widths between two points: wider than asperities
 MAX_RQ = 0.1  # half widths
@@ -13,15 +21,14 @@ MIN_CELLS = 4  # of the mesh, length of the profile
 TYPICAL_SPACING, TYPICAL_RQ = (5e-9, 3e-5), (3e-10, 2e-5)  # m: of measured profiles
 
 
-def absurd(samples, a, dx, approach, film):
+def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) -> str | None:
     """Message on an implausible measured profile, with the likely unit; None: plausible.
 
     Parameters
     ----------
-    samples : ehlpetsc.surfaces.samples.Samples
-    a, dx : float
+    a, dx
         Half width and spacing of the mesh [m].
-    approach, film : float
+    approach, film
         a^2/R and expected film [m].
     """
     rq = float(samples.z.std())
@@ -44,15 +51,14 @@ def absurd(samples, a, dx, approach, film):
     return f"{fault}: not a profile of this contact"
 
 
-def likely_unit(samples, layout, scale):
+def likely_unit(samples: Samples, layout: Layout, scale: float) -> str | None:
     """Keys that make a profile plausible, e.g. ``unit = "um"``; None if there are none.
 
     Parameters
     ----------
-    samples : ehlpetsc.surfaces.samples.Samples
-    layout : ehlpetsc.surfaces.profile_files.Layout
+    layout
         Layout of the file.
-    scale : float
+    scale
         Factor on the heights in the case.
     """
     now = (layout.unit or "m", layout.x_unit or layout.unit or "m")
@@ -66,9 +72,9 @@ def likely_unit(samples, layout, scale):
     return None
 
 
-def _is_within(value, limits):
+def _is_within(value: float, limits: tuple[float, float]) -> bool:
     return limits[0] <= value <= limits[1]
 
 
-def _um(length):
+def _um(length: float) -> str:
     return f"{1e6 * length:.3g} um"

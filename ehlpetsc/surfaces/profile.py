@@ -1,8 +1,16 @@
 """Heights of one surface: a spline that moves with the body."""
 
+from __future__ import annotations
+
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
+
+    from ehlpetsc.surfaces.samples import Samples
 
 WAVE_NODES = 4  # nodes per wavelength below which a wave is not resolved
 MAX_SAMPLES = 5_000_000  # of a stored profile
@@ -23,48 +31,47 @@ class Profile:
 
     Parameters
     ----------
-    given : ehlpetsc.surfaces.samples.Samples
-    speed : float
+    speed
         U [m/s].
-    moving : bool
+    moving
         False in a steady case.
-    inlet, outlet, ramp, swept_length : float
+    inlet, outlet, ramp, swept_length
         Ends of the domain, length of the ramp and of the profile that enters during the run [m].
-    begin : float
+    begin
         Abscissa at which the profile begins, instead of 0 [m].
-    reach : (float, float), optional
+    reach
         Minimum and maximum displacement of a body whose profile is in the whole domain from the start [m].
-    is_flank : bool
+    is_flank
         Whether this profile begins at x = 0 at time 0, :math:`X=-s`, as the arc length of a flank.
 
     Attributes
     ----------
-    is_moving : bool
+    is_moving
         False if its abscissa is fixed to the domain at time 0, without a ramp.
-    enters : bool
+    enters
         Whether it enters during the run; otherwise it is in the whole domain from the start.
-    ramp, travelled : float
+    ramp, travelled
         Length of the ramp, and of the part of the profile that enters [m].
-    body_offset : float
+    body_offset
         Signed shift of the body points s by `begin` [m].
-    ra, rq, rsk : float
+    ra, rq, rsk
         Parameters of the samples: m, m, 1.
     """
 
     def __init__(
         self,
-        samples,
-        speed,
-        moving,
-        inlet,
-        outlet,
-        ramp,
-        swept_length,
-        begin=0.0,
-        reach=None,
-        is_flank=False,
-        ahead=0.0,
-    ):
+        samples: Samples,
+        speed: float,
+        moving: bool,
+        inlet: float,
+        outlet: float,
+        ramp: float,
+        swept_length: float,
+        begin: float = 0.0,
+        reach: tuple[float, float] | None = None,
+        is_flank: bool = False,
+        ahead: float = 0.0,
+    ) -> None:
         from scipy.interpolate import CubicSpline
 
         X, z, self.repeats, self.speed = samples.X, samples.z, samples.repeats, speed
@@ -84,14 +91,14 @@ class Profile:
         self.ra, self.rq = float(np.abs(deviation).mean()), float(np.sqrt((deviation**2).mean()))
         self.rsk = float(((deviation / self.rq) ** 3).mean()) if self.rq > 0 else 0.0
 
-    def height(self, s):
+    def height(self, s: np.ndarray) -> np.ndarray:
         """Heights [m] at body points s [m]."""
         X = self._sign * (s - self._origin)
         if not self.is_moving:
             return self._at(X + self._begin)
         return self._entry_factor(X) * self._at(np.maximum(X, 0.0) + self._begin)
 
-    def mean_height(self, faces):
+    def mean_height(self, faces: np.ndarray) -> np.ndarray:
         r"""Mean height [m] of each cell between faces at body points s [m].
 
         :math:`\frac{1}{s_{i+1}-s_i}\int_{s_i}^{s_{i+1}}z\,ds`, the integral of the spline, also across its
@@ -99,26 +106,23 @@ class Profile:
 
         Parameters
         ----------
-        faces : ndarray, shape (n + 1,)
-
-        Returns
-        -------
-        ndarray, shape (n,)
+        faces
+            Shape (n + 1,).
         """
         X = self._sign * (faces - self._origin)
         mean = self._level + np.diff(self._integral(X + self._begin)) / np.diff(X)
         return self._entry_factor(0.5 * (X[1:] + X[:-1])) * mean if self.is_moving else mean
 
-    def entered(self, s):
+    def entered(self, s: np.ndarray) -> np.ndarray:
         """Ramp factor of the heights at body points s [m]: 0 ahead of the profile."""
         return self._entry_factor(self._sign * (s - self._origin))
 
-    def extremes_of_cells(self, cell):
+    def extremes_of_cells(self, cell: float) -> tuple[float, float]:
         """Minimum and maximum mean height [m] over cells of a mesh at any position on the profile.
 
         Parameters
         ----------
-        cell : float
+        cell
             Width [m].
         """
         first, last = self.X[0], self.X[-1]
@@ -126,12 +130,12 @@ class Profile:
         mean = self._level + (self._integral(start + cell) - self._integral(start)) / cell
         return float(mean.min()), float(mean.max())
 
-    def _entry_factor(self, X):
+    def _entry_factor(self, X: np.ndarray) -> np.ndarray:
         """Factor on the heights, 0 where X < 0, 1 beyond the ramp."""
         r = np.clip(X / self.ramp, 0.0, 1.0)
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
-    def _at(self, X):
+    def _at(self, X: np.ndarray) -> np.ndarray:
         first, last = self.X[0], self.X[-1]
         if self.repeats:
             length = last - first
@@ -139,7 +143,7 @@ class Profile:
         inside = (X >= first) & (X <= last)
         return np.where(inside, self._spline(np.clip(X, first, last)), 0.0)
 
-    def _integral(self, X):
+    def _integral(self, X: np.ndarray) -> np.ndarray:
         """Integral [m^2] of height minus `_level` up to X.
 
         Mirrored heights minus their mean have the integral 0 over a profile, so that the integral is periodic
@@ -153,14 +157,14 @@ class Profile:
         return np.sign(beyond) * self._antiderivative(last - np.abs(beyond))
 
     @cached_property
-    def _level(self):
+    def _level(self) -> float:
         """Mean height of a mirrored profile [m]; 0 if the heights are 0 beyond the samples."""
         return (
             self._spline.integrate(self.X[0], self.X[-1]) / (self.X[-1] - self.X[0]) if self.repeats else 0.0
         )
 
     @cached_property
-    def _antiderivative(self):
+    def _antiderivative(self) -> PPoly:
         from scipy.interpolate import PPoly
 
         deviation = self._spline.c.copy()
@@ -168,7 +172,7 @@ class Profile:
         return PPoly(deviation, self._spline.x).antiderivative()
 
     @cached_property
-    def s(self):
+    def s(self) -> np.ndarray:
         """Body points [m] that enter during the run, at least two, with the spacing of the samples."""
         step = np.diff(self.X).mean()
         if self._ends:
@@ -179,11 +183,11 @@ class Profile:
         return np.sort(self._origin + self._sign * X)
 
     @cached_property
-    def z(self):
+    def z(self) -> np.ndarray:
         """Heights [m] at `s`, ramp included."""
         return self.height(self.s)
 
-    def unresolved_variance(self, dx):
+    def unresolved_variance(self, dx: float) -> float:
         """Fraction of the height variance in wavelengths below `WAVE_NODES` spacings dx [m]."""
         n = min(max(self.X.size, 16), 1 << 17)
         x = np.linspace(self.X[0], self.X[-1], n)

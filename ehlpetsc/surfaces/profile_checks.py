@@ -1,25 +1,30 @@
 """Checks of profiles: resolution by the mesh, times at which they reach and fill the contact."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ehlpetsc.surfaces.profile import WAVE_NODES
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.profile import Profile
+    from ehlpetsc.surfaces.roughness import Roughness
+    from ehlpetsc.surfaces.samples import Samples
 
 SPIKE_RQ_RATIO = 4.0  # distance of a spike from its surroundings over Rq
 MAX_WINDOW = 129  # points of a window whose median is exact: the work grows as points times window
 MAX_UNRESOLVED = 0.01  # of the height variance: more in unresolved wavelengths causes a warning
 
 
-def mesh_warnings(rough, scales):
-    """Warnings of height variance and spikes that the mesh does not resolve, with values.
-
-    Parameters
-    ----------
-    rough : ehlpetsc.surfaces.roughness.Roughness or None
-    scales : scales.Scales
-    """
+def mesh_warnings(rough: Roughness | None, scales: Scales) -> list[str]:
+    """Warnings of height variance and spikes that the mesh does not resolve, with values."""
     notes = []
     for side in ("1", "2"):
-        profile = rough and rough.side(side)
+        profile = rough.side(side) if rough else None
         fraction = profile.unresolved_variance(scales.dx) if profile else 0.0
         if fraction > MAX_UNRESOLVED:
             shortest = 1e6 * WAVE_NODES * scales.dx
@@ -34,7 +39,7 @@ def mesh_warnings(rough, scales):
     return notes
 
 
-def _spike_warning(side, samples, dx):
+def _spike_warning(side: str, samples: Samples, dx: float) -> list[str]:
     count, highest, abscissa = spikes(samples, dx)
     if not count:
         return []
@@ -46,19 +51,17 @@ def _spike_warning(side, samples, dx):
     ]
 
 
-def spikes(samples, dx):
+def spikes(samples: Samples, dx: float) -> tuple[int, float, float]:
     """Points of spikes and pits narrower than a cell, by a running median over twice its width.
 
     Parameters
     ----------
-    samples : ehlpetsc.surfaces.samples.Samples
-    dx : float
+    dx
         Spacing of the mesh [m].
 
     Returns
     -------
-    count : int
-    highest, abscissa : float
+    highest, abscissa
         Maximum distance from the median; abscissa of its first point [m].
     """
     window = 2 * round(dx / samples.spacing) + 1
@@ -73,13 +76,14 @@ def spikes(samples, dx):
     return int(in_spike.sum()), float(deviation.max()), float(samples.X[in_spike.argmax()])
 
 
-def _running_median(z, window):
+def _running_median(z: np.ndarray, window: int) -> np.ndarray:
     """Medians over a window around each point; for wide windows medians of medians of parts.
 
     Parameters
     ----------
-    z : ndarray, shape (n,)
-    window : int
+    z
+        Shape (n,).
+    window
         Number of points.
     """
     from scipy.ndimage import median_filter
@@ -94,7 +98,7 @@ def _running_median(z, window):
     ]
 
 
-def needed_points(profile, scales, unresolved):
+def needed_points(profile: Profile, scales: Scales, unresolved: float) -> int:
     """Nodes per half-width that leave at most a share `unresolved` of the height variance unresolved."""
     points = scales.a / scales.dx
     while profile.unresolved_variance(scales.a / points) > unresolved:
@@ -102,17 +106,12 @@ def needed_points(profile, scales, unresolved):
     return int(np.ceil(points))
 
 
-def entry_times(profile, scales):
+def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
     """Travel of the faster surface [half widths] when a profile reaches and fills the contact.
-
-    Parameters
-    ----------
-    profile : ehlpetsc.surfaces.profile.Profile
-    scales : scales.Scales
 
     Returns
     -------
-    reaches, fills : float
+    reaches, fills
         Its first point at the near edge of the Hertz contact; its full heights, ramp included, at the far
         one. Of a lone ridge or dent `fills` is for its middle at x = 0. None where the profile lies
         under the domain from the start.
@@ -127,18 +126,11 @@ def entry_times(profile, scales):
     return edge * slower, (edge + 2.0 + profile.ramp / scales.a) * slower
 
 
-def entry_warnings(case, scales, rough):
-    """Warnings of profiles that do not fill the contact before the end of the run, one line each.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : scales.Scales
-    rough : ehlpetsc.surfaces.roughness.Roughness or None
-    """
+def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[str]:
+    """Warnings of profiles that do not fill the contact before the end of the run, one line each."""
     notes = []
     for side in ("1", "2"):
-        profile = rough and rough.side(side)
+        profile = rough.side(side) if rough else None
         arrives = profile and entry_times(profile, scales)
         if not arrives or case.time.travel >= arrives[1]:
             continue

@@ -1,7 +1,10 @@
 """Measured profiles: text files in many layouts, and the formats of the package SurfaceTopography."""
 
+from __future__ import annotations
+
 import functools
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -24,17 +27,17 @@ class Layout:
 
     Attributes
     ----------
-    unit, x_unit : str or None
+    unit, x_unit
         Units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
-    spacing : float or None
+    spacing
         Spacing of the points [m], for files without x.
-    columns : tuple of int or None
+    columns
         Columns of x and z, or of z alone, from 1.
-    decimal : str or None
+    decimal
         "." or ",".
-    header_lines : int or None
+    header_lines
         Lines before the numbers.
-    fill_gaps : float or None
+    fill_gaps
         Longest gap of missing heights [m] that the spline bridges.
     """
 
@@ -47,26 +50,24 @@ class Layout:
     fill_gaps: float | None = None
 
 
+ProfileWithNotes = tuple[np.ndarray, np.ndarray, tuple[str, ...]]
 KEYS = tuple(Layout.__dataclass_fields__)
 
 
-def read_profile(path, layout=None):
+def read_profile(
+    path: str | PathLike, layout: Layout | None = None
+) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Abscissas, from 0 on, and heights of a profile file.
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
     header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
     format through the package SurfaceTopography if it is installed.
 
-    Parameters
-    ----------
-    path : path-like
-    layout : Layout, optional
-
     Returns
     -------
-    X, z : ndarray, shape (n,)
-        Both in m, X increasing; heights positive out of the metal.
-    notes : tuple of str
+    X, z
+        Both in m, X increasing; heights positive out of the metal, shape (n,).
+    notes
         Notes on the processing of the numbers.
 
     Raises
@@ -84,14 +85,16 @@ def read_profile(path, layout=None):
 
 
 @functools.lru_cache(maxsize=4)  # one reading for check, summary and run
-def _read(path, layout, _modified, _size):
+def _read(
+    path: Path, layout: Layout, _modified: int, _size: int
+) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     text = path.suffix.lower() in TEXT
     x, z, notes = checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, tuple(notes)
 
 
-def _from_text(path, layout):
+def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     columns, header = text_columns(path, layout.decimal, layout.header_lines)
     named = units_in(header)
     if layout.unit is None and set(named) - {"m"}:
@@ -107,7 +110,7 @@ def _from_text(path, layout):
     return UNITS[layout.x_unit or layout.unit or "m"] * chosen[0], factor * chosen[1]
 
 
-def _chosen(columns, layout):
+def _chosen(columns: np.ndarray, layout: Layout) -> np.ndarray:
     """Columns of x and z, or of z alone."""
     count = len(columns)
     if layout.columns is not None:
@@ -131,7 +134,7 @@ def _chosen(columns, layout):
     return chosen
 
 
-def _from_surface_topography(path, layout):
+def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     if path.suffix.lower() in OTHER_FORMATS:
         raise ProfileError(f"{path.suffix!r} is no profile file; allowed: two columns of text, x and z")
     text_keys = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
@@ -154,13 +157,13 @@ def _from_surface_topography(path, layout):
         x, _, z = topography.positions_and_heights()
     except Exception as error:  # various exceptions on a damaged file
         lines = str(error).strip().splitlines()  # messages of all readers for an unknown format
-        reason = lines[0] if len(lines) == 1 else "in none of its formats"
-        raise ProfileError(f"SurfaceTopography cannot read it: {reason}") from None
+        fault = lines[0] if len(lines) == 1 else "in none of its formats"
+        raise ProfileError(f"SurfaceTopography cannot read it: {fault}") from None
     middle = z.shape[1] // 2  # of an areal map the central trace
     return x[:, middle], z[:, middle]
 
 
-def checked(x, z, layout):
+def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, list[str]]:
     """Profile from x = 0 on with increasing x and filled gaps; ProfileError for a faulty one."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
@@ -188,7 +191,7 @@ def checked(x, z, layout):
     return x - x[0], z, notes
 
 
-def _with_missing_lines(x, z):
+def _with_missing_lines(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Profile with nan for every missing point of an equally spaced file."""
     step = np.diff(x)
     usual = np.median(step)
@@ -210,7 +213,9 @@ def _with_missing_lines(x, z):
     return np.interp(number, places, x), heights
 
 
-def _filled(x, z, longest, notes):
+def _filled(
+    x: np.ndarray, z: np.ndarray, longest: float | None, notes: list[str]
+) -> tuple[np.ndarray, np.ndarray]:
     """Profile with missing heights filled by the spline, and cut off at its ends."""
     from scipy.interpolate import CubicSpline
 

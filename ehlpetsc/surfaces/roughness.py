@@ -1,10 +1,19 @@
 """Roughness of both surfaces, fixed to the bodies and moving through the contact."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from ehlpetsc.surfaces.profile import Profile
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.keys import Values
+    from ehlpetsc.physics.scales import Scales
 
 END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are equal
 RAMP_LENGTH = 0.1  # half widths at the beginning of a profile over which its heights increase from zero
@@ -16,11 +25,11 @@ class SurfacePositions:
 
     Attributes
     ----------
-    travelled : (float, float)
+    travelled
         Distances travelled by both bodies since their profiles began to enter [m], signed.
-    domain_ends_at_entry : (float, float)
+    domain_ends_at_entry
         Inlet and outlet at which the profiles entered [m].
-    profile_offsets : (float, float)
+    profile_offsets
         Abscissas at which the profiles began to enter [m].
     """
 
@@ -29,16 +38,16 @@ class SurfacePositions:
     profile_offsets: tuple = (0.0, 0.0)
 
     @classmethod
-    def at_rest(cls, scales):
+    def at_rest(cls, scales: Scales) -> Self:
         """Positions at time 0."""
         return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
 
-    def offsets(self, speeds):
+    def offsets(self, speeds: Sequence[float]) -> tuple[float, ...]:
         """Signed shift of the body points by `profile_offsets` [m].
 
         Parameters
         ----------
-        speeds : (float, float)
+        speeds
             See :func:`directed_speeds`.
         """
         return tuple(
@@ -47,14 +56,8 @@ class SurfacePositions:
         )
 
 
-def directed_speeds(case, scales):
-    """Speeds of both surfaces [m/s] at which their profiles enter; 0 if a surface reverses.
-
-    Parameters
-    ----------
-    case : case.loading.Case
-    scales : scales.Scales
-    """
+def directed_speeds(case: Case, scales: Scales) -> tuple[float, ...]:
+    """Speeds of both surfaces [m/s] at which their profiles enter; 0 if a surface reverses."""
     speeds = scales.u1, scales.u2
     if case.conditions is None:
         return speeds
@@ -71,19 +74,17 @@ class Roughness:
     surface_1: Profile | None
     surface_2: Profile | None
 
-    def side(self, name):
+    def side(self, name: str) -> Profile | None:
         """Profile of surface "1" or "2"."""
         return {"1": self.surface_1, "2": self.surface_2}[name]
 
     @classmethod
-    def of(cls, case, scales, positions=None):
+    def of(cls, case: Case, scales: Scales, positions: SurfacePositions | None = None) -> Roughness | None:
         """Roughness of a case; None if both surfaces are smooth.
 
         Parameters
         ----------
-        case : case.loading.Case
-        scales : scales.Scales
-        positions : SurfacePositions, optional
+        positions
             Positions of a resumed run; by default at time 0.
 
         Raises
@@ -97,22 +98,21 @@ class Roughness:
             sides[side] = spec and _profile(case, scales, spec, speeds[k], k, positions)
         return cls(sides["1"], sides["2"]) if any(sides.values()) else None
 
-    def phi(self, x, t, cell=None):
+    def phi(self, x: np.ndarray, t: float, cell: float | None = None) -> np.ndarray:
         """Contribution of both roughnesses to the gap [m], minus both heights, at time t [s].
 
         Parameters
         ----------
-        x : ndarray, shape (n,)
-            Positions [m], with `cell` equally spaced by it.
-        t : float
-        cell : float, optional
+        x
+            Positions [m], with `cell` equally spaced by it, shape (n,).
+        cell
             Cell width of the mesh [m] over which means are taken: waves shorter than a cell, which a mesh
             does not resolve, are damped instead of aliased. Without it values at x.
         """
         travelled = [profile.speed * t if profile else 0.0 for profile in (self.surface_1, self.surface_2)]
         return self.phi_after(x, travelled, cell)
 
-    def phi_after(self, x, travelled, cell=None):
+    def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
         """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2)."""
         phi = np.zeros_like(x)
         at = x if cell is None else np.append(x - 0.5 * cell, x[-1] + 0.5 * cell)
@@ -123,12 +123,15 @@ class Roughness:
         return phi
 
     @property
-    def rq(self):
+    def rq(self) -> float:
         """Combined root mean square height [m]."""
-        return float(np.hypot(*(p.rq if p else 0.0 for p in (self.surface_1, self.surface_2))))
+        rq_1, rq_2 = (profile.rq if profile else 0.0 for profile in (self.surface_1, self.surface_2))
+        return float(np.hypot(rq_1, rq_2))
 
 
-def _profile(case, scales, spec, speed, side, positions):
+def _profile(
+    case: Case, scales: Scales, spec: Values, speed: float, side: int, positions: SurfacePositions
+) -> Profile:
     from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
 
     (inlet, outlet), travelled = positions.domain_ends_at_entry, positions.travelled[side]

@@ -1,12 +1,19 @@
 """Samples of one surface, from its table in the case file."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass, thinned
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
+
+if TYPE_CHECKING:
+    from ehlpetsc.keys import Values
 
 MEAN_TOLERANCE = 1e-3  # of Rq: smaller means are rounding
 
@@ -17,15 +24,15 @@ class Samples:
 
     Attributes
     ----------
-    X, z : ndarray, shape (n,)
-        m; heights positive out of the metal.
-    repeats : bool
+    X, z
+        m; heights positive out of the metal, shape (n,).
+    repeats
         Whether the profile is continued by reflection at its ends, otherwise by height 0.
-    measured : bool
+    measured
         Whether the heights are from a file.
-    notes : tuple of str
+    notes
         Notes on the processing of the numbers of a file.
-    source : Samples or None
+    source
         Samples before thinning, without spikes narrower than `short_cutoff`.
     """
 
@@ -34,28 +41,27 @@ class Samples:
     repeats: bool
     measured: bool = False
     notes: tuple = ()
-    source: "Samples | None" = None
+    source: Samples | None = None
 
     @property
-    def length(self):
+    def length(self) -> float:
         """Distance from the first sample to the last [m]."""
         return float(self.X[-1] - self.X[0])
 
     @property
-    def spacing(self):
+    def spacing(self) -> float:
         """Mean distance of the samples [m]."""
         return self.length / (self.X.size - 1)
 
 
-def samples(folder, spec, cell=None):
+def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
     """Samples of one surface: read or generated, thinned, levelled, filtered, centred, flipped, scaled.
 
     Parameters
     ----------
-    folder : pathlib.Path
+    folder
         Folder of the case file, in which profile files are.
-    spec : ehlpetsc.case.tables.surface.SurfaceProfile
-    cell : float, optional
+    cell
         Spacing of the mesh [m], to which much denser samples are thinned.
 
     Raises
@@ -68,10 +74,10 @@ def samples(folder, spec, cell=None):
     if spec.z is not None:
         unit, x_unit = spec.unit or "m", spec.x_unit or spec.unit or "m"
         steps = spec.spacing * np.arange(len(spec.z)) if spec.x is None else UNITS[x_unit] * np.array(spec.x)
-        X, z, notes = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
+        X, z, found = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
-        X, z, notes = read_profile(folder / spec.file, layout_of(spec))
-    notes, before = list(notes), (X, z)
+        X, z, found = read_profile(folder / spec.file, layout_of(spec))
+    notes, before = list(found), (X, z)
     if cell is not None:
         X, z = thinned(X, z, min(filter(None, (cell, spec.cutoff, spec.short_cutoff))))
     if spec.level:
@@ -96,19 +102,19 @@ def samples(folder, spec, cell=None):
     return Samples(*_flipped_and_scaled(X, z, spec), True, True, tuple(notes), source)
 
 
-def _flipped_and_scaled(X, z, spec):
+def _flipped_and_scaled(X: np.ndarray, z: np.ndarray, spec: Values) -> tuple[np.ndarray, np.ndarray]:
     """Heights flipped and scaled."""
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
     return X, z if spec.scale == 1.0 else spec.scale * z
 
 
-def layout_of(spec):
+def layout_of(spec: Values) -> Layout:
     """Layout of the file of a surface."""
     values = {key: getattr(spec, key) for key in KEYS}
     return Layout(**values | {"columns": spec.columns and tuple(spec.columns)})
 
 
-def mean_deviation(z):
+def mean_deviation(z: np.ndarray) -> float:
     """Ra: mean deviation of heights from their mean."""
     return float(np.abs(z - z.mean()).mean())

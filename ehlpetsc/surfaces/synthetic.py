@@ -1,6 +1,13 @@
 """Synthetic profiles: sampled heights, processed like measured profiles."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    from ehlpetsc.keys import Values
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
@@ -8,19 +15,15 @@ FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the fla
 SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 
 
-def sampled(spec):
+def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     """Samples of a synthetic profile.
-
-    Parameters
-    ----------
-    spec : case.tables.surface.Ground, .Wave or .Bump
 
     Returns
     -------
-    X, z : ndarray, shape (n,)
+    X, z
         m; heights positive out of the metal. The profile of a wave is half a wavelength, continued by
-        reflection.
-    repeats : bool
+        reflection, shape (n,).
+    repeats
         Whether the profile is continued by reflection at its ends, otherwise by height 0.
     """
     if spec.kind == "ground":
@@ -35,7 +38,7 @@ def sampled(spec):
     return x, spec.amplitude * wave, True
 
 
-def bump(spec):
+def bump(spec: Values) -> tuple[np.ndarray, np.ndarray]:
     r"""Ridge or dent, :math:`z=\pm A\exp[-(2(X-X_c)/w)^2]`, w the full width at 1/e."""
     width, centre = spec.wavelength, bump_centre(spec)
     x = centre + np.linspace(-3 * width, 3 * width, 6 * POINTS_PER_WAVE + 1)
@@ -43,12 +46,12 @@ def bump(spec):
     return x, sign * spec.amplitude * np.exp(-((2 * (x - centre) / width) ** 2))
 
 
-def bump_centre(spec):
+def bump_centre(spec: Values) -> float:
     """Abscissa of the middle of a ridge or dent [m]."""
     return 2 * spec.wavelength if spec.position is None else spec.position
 
 
-def ground(ra, correlation, skewness, seed):
+def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
     r"""Random profile with autocorrelation :math:`\exp[-(X/l)^2]` before its heights are skewed.
 
     White noise filtered with a Gaussian weight; then each height is mapped by its rank to a gamma
@@ -56,15 +59,14 @@ def ground(ra, correlation, skewness, seed):
 
     Parameters
     ----------
-    ra, correlation : float
+    ra, correlation
         m.
-    skewness : float
+    skewness
         Rsk of the profile.
-    seed : int
 
     Returns
     -------
-    X, z : ndarray
+    X, z
         m; mean 0.
     """
     from scipy.ndimage import gaussian_filter1d
@@ -79,7 +81,7 @@ def ground(ra, correlation, skewness, seed):
     return np.arange(n) * (correlation / GROUND_POINTS), z * (ra / np.abs(z).mean())
 
 
-def _pearson3(normal, skewness):
+def _pearson3(normal: np.ndarray, skewness: float) -> np.ndarray:
     """Pearson III heights with the ranks of standard normal heights."""
     from scipy.special import gammaincinv, ndtr
 
@@ -89,6 +91,6 @@ def _pearson3(normal, skewness):
     return np.sign(skewness) * (gammaincinv(shape, ndtr(np.sign(skewness) * normal)) - shape) / np.sqrt(shape)
 
 
-def _skewness(z):
+def _skewness(z: np.ndarray) -> float:
     deviation = z - z.mean()
     return (deviation**3).mean() / (deviation**2).mean() ** 1.5

@@ -4,11 +4,15 @@ Separator and decimal sign are detected from lines with numbers only; ambiguous 
 that resolves the ambiguity. Blocks of lines with numbers only are read by numpy, others line by line.
 """
 
+from __future__ import annotations
+
 import codecs
 import io
 import itertools
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -25,22 +29,23 @@ OTHER_LINE_END = re.compile("[\v\f\x1c-\x1e\x85\u2028\u2029]")
 CHARACTERS_PER_BLOCK = 1 << 20
 
 
-def text_columns(path, decimal=None, header_lines=None):
+def text_columns(
+    path: Path, decimal: str | None = None, header_lines: int | None = None
+) -> tuple[np.ndarray, str]:
     """Numbers of a text file, one row for each line.
 
     Parameters
     ----------
-    path : pathlib.Path
-    decimal : str, optional
+    decimal
         "." or ","; default: detected.
-    header_lines : int, optional
+    header_lines
         Lines before the numbers; default: all lines before the first line of numbers.
 
     Returns
     -------
-    columns : ndarray, shape (n columns, n rows)
-        nan for a missing number.
-    header : str
+    columns
+        nan for a missing number, shape (n columns, n rows).
+    header
         Lines before the numbers, comments included.
 
     Raises
@@ -73,17 +78,17 @@ def text_columns(path, decimal=None, header_lines=None):
             else:
                 above.append(line)
         for _, group in itertools.groupby(read, lambda row: len(row[1])):
-            group = list(group)
-            rows.append((group[0][0], np.array([row for _, row in group])))
+            alike = list(group)
+            rows.append((alike[0][0], np.array([row for _, row in alike])))
     return _columns(rows), "\n".join([*header, *comments, *above])
 
 
-def units_in(header):
+def units_in(header: str) -> list[str]:
     """Units of length in brackets, or after a slash, in a header, in their order."""
     return [unit.replace("µ", "u").replace("μ", "u") for unit in UNIT_IN_HEADER.findall(header)]
 
 
-def _decoded(path):
+def _decoded(path: Path) -> str:
     raw = path.read_bytes()
     if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return _with_newlines(raw.decode("utf-16", "replace"))
@@ -97,13 +102,13 @@ def _decoded(path):
     return _with_newlines(text)
 
 
-def _with_newlines(text):
+def _with_newlines(text: str) -> str:
     """Text with newlines in place of other line ends."""
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     return "\n".join(text.splitlines()) if OTHER_LINE_END.search(text) else text
 
 
-def _line_begin(text, count):
+def _line_begin(text: str, count: int) -> int:
     """Index of the beginning of the line after the first `count` lines."""
     begin = 0
     for _ in range(count):
@@ -111,7 +116,7 @@ def _line_begin(text, count):
     return begin
 
 
-def _blocks(text, begin):
+def _blocks(text: str, begin: int) -> Iterator[tuple[int, str]]:
     """Blocks of complete lines of about `CHARACTERS_PER_BLOCK`, with their first line numbers."""
     number = text.count("\n", 0, begin) + 1
     while begin < len(text):
@@ -121,7 +126,7 @@ def _blocks(text, begin):
         number, begin = number + block.count("\n"), end
 
 
-def _lines(block, number):
+def _lines(block: str, number: int) -> Iterator[tuple[int, str]]:
     """Lines with their numbers, without comments, blank lines and lines of separators only."""
     for n, line in enumerate(block.split("\n"), number):
         line = line.partition("#")[0].strip()
@@ -129,14 +134,14 @@ def _lines(block, number):
             yield n, line
 
 
-def _holds_numbers_alone(block):
+def _holds_numbers_alone(block: str) -> bool:
     if not BLOCK_OF_NUMBERS.fullmatch(block) or "\t" in block and OUTER_TAB.search(block):
         return False
     separated = any(sign in f"\n{block}" for sign in ("\n;", "\n,", "\n "))
     return not (separated and SEPARATORS_ONLY.search(block))
 
 
-def _numbers_alone(text, begin):
+def _numbers_alone(text: str, begin: int) -> Iterator[str]:
     """Numbers of many lines at once, if they contain nothing else."""
     for _, block in _blocks(text, begin):
         if _holds_numbers_alone(block):
@@ -145,7 +150,7 @@ def _numbers_alone(text, begin):
             yield "\n".join(line for _, line in _lines(block, 1) if NUMBERS_ONLY.fullmatch(line))
 
 
-def _between_digits(text, begin):
+def _between_digits(text: str, begin: int) -> bool:
     """Whether every comma is between two digits."""
     blocks = (block for block in _numbers_alone(text, begin) if "," in block)
     return all(block.count(",") == len(DECIMAL_COMMA.findall(block)) for block in blocks)
@@ -157,10 +162,9 @@ class _Words:
 
     Attributes
     ----------
-    separator : re.Pattern
-    delimiter : str or None
+    delimiter
         Separator for numpy; None: blanks.
-    removed, comma : str
+    removed, comma
         Separator of thousands; decimal sign.
     """
 
@@ -170,7 +174,7 @@ class _Words:
     comma: str = "."
 
     @classmethod
-    def of(cls, text, begin, decimal):
+    def of(cls, text: str, begin: int, decimal: str | None) -> _Words:
         """Notation of a file, from its lines with numbers only."""
         seen, blank = set(), False
         for block in _numbers_alone(text, begin):
@@ -186,13 +190,13 @@ class _Words:
             return cls(re.compile(r"\s*,\s*|\s+"), ",", comma=",")
         if {",", "."} <= seen and decimal is None:
             raise ProfileError('its numbers contain both "," and "."; write decimal = "," or decimal = "."')
-        return cls(re.compile(separator), delimiter, {",": ".", ".": ","}.get(decimal, ""))
+        return cls(re.compile(separator), delimiter, {",": ".", ".": ","}.get(decimal or "", ""))
 
-    def split(self, line):
+    def split(self, line: str) -> list[str]:
         """Numbers of a line, with a decimal point."""
         return self.separator.split(self._with_points(line))
 
-    def table(self, block):
+    def table(self, block: str) -> np.ndarray | None:
         """Numbers of a block, one row for each line; None if it must be read line by line."""
         if not _holds_numbers_alone(block) or block.isspace():
             return None
@@ -204,13 +208,13 @@ class _Words:
         except ValueError:  # a number is missing, or lines differ
             return None
 
-    def _with_points(self, text):
+    def _with_points(self, text: str) -> str:
         if self.removed:
             text = text.replace(self.removed, "")
         return text if self.comma == "," else text.replace(",", self.comma)
 
 
-def _numbers(words):
+def _numbers(words: list[str]) -> list[float] | None:
     """Numbers of a line, nan for missing numbers; None for an empty line or a line with other text."""
     try:
         row = [np.nan if word.lower() in MISSING else float(word) for word in words]
@@ -219,12 +223,12 @@ def _numbers(words):
     return None if any("_" in word for word in words) or np.isnan(row).all() else row
 
 
-def _columns(pieces):
+def _columns(pieces: list[tuple[int, np.ndarray]]) -> np.ndarray:
     """Concatenated rows without empty columns.
 
     Parameters
     ----------
-    pieces : list of (int, ndarray)
+    pieces
         Successive rows of one length, with the line number of the first.
     """
     if not pieces:
