@@ -16,7 +16,7 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
-BEING_WRITTEN = "open for write"  # in the message of HDF5 on a file of a live or killed writer
+BEING_WRITTEN = "already open"  # in the message of HDF5 on a file of a live or killed writer
 
 
 def create(path: Path | BinaryIO) -> h5py.File:

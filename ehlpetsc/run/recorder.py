@@ -267,10 +267,13 @@ def stored_profiles(simulation: Simulation) -> dict[str, tuple | None]:
 
 def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
     """Surface, quantity and depths [m] of effects at the body points of :func:`stored_profiles`."""
-    offsets, solution, sides = _offsets(simulation), simulation.solution, stored_profiles(simulation)
+    solution = simulation.solution
+    if solution is None:
+        return []
+    offsets, sides = _offsets(simulation), stored_profiles(simulation)
     points = [side and side[0] - offset for side, offset in zip(sides.values(), offsets, strict=True)]
     depths = []
-    for effect in simulation.stepper.effects if solution else ():
+    for effect in simulation.stepper.effects:
         for name, pair in effect.on_surfaces(solution.records[effect.name], points).items():
             stored = [(side, name, depth) for side, depth in zip(sides, pair, strict=True)]
             depths += [entry for entry in stored if entry[2] is not None]
