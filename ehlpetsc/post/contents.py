@@ -154,4 +154,4 @@ def write_result(path: str | Path, datasets: Mapping[str, Any], attributes: Mapp
             for dimension, axis in enumerate(table[name].axes.split()):
                 if axis in SCALES:
                     file[name].dims[dimension].attach_scale(file[SCALES[axis]])
-    atomic_write(path, image.getbuffer())
+    atomic_write(Path(path), image.getvalue())

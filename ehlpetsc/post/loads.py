@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +40,8 @@ class Loads:
 
     def __init__(self, path: str | Path, overrides: Iterable = ()) -> None:
         self.path = Path(path)
-        self._result, self._stored = read_result(path, rdcc_nbytes=CACHE_BYTES), {}
+        self._result = read_result(self.path, rdcc_nbytes=CACHE_BYTES)
+        self._stored: dict[str, Any] = {}
         try:
             attrs = self._result.attrs
             self.case_text = attrs["case"]

@@ -34,7 +34,7 @@ class Passes(NamedTuple):
     mean: np.ndarray
     deviation: np.ndarray
     largest: np.ndarray
-    count: np.ndarray
+    count: np.ndarray  # type: ignore[assignment]
     life: np.ndarray
 
 

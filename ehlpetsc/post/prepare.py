@@ -62,19 +62,19 @@ class Prepared(NamedTuple):
 def read_settings(case: Case) -> Settings:
     """Settings of `[post]`; PostError if the fatigue limits contradict each other."""
     post, contact = case.post, case.contact
-    materials = [
+    first, second = (
         Material(modulus, ratio, **fatigue_constants(steel, post.as_dict()))
         for modulus, ratio, steel in zip(
             contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True
         )
-    ]
+    )
     constants = {name: getattr(post, name) for name in Criteria.__dataclass_fields__}
     try:
         criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
     except ValueError as fault:
         raise PostError(f"post.{fault}") from None
     depths = tuple(sorted(set(post.depths or DEPTHS)))
-    return Settings(depths, *materials, criteria, tuple(map(tuple, post.residual_stress or ())))
+    return Settings(depths, first, second, criteria, tuple(map(tuple, post.residual_stress or ())))
 
 
 def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> Prepared:

@@ -78,7 +78,7 @@ class Counters:
         self, settings: Settings, surface: str, counting: Counting, criteria: Sequence[str], samples: int
     ) -> None:
         material = settings.material(surface)
-        self.parts = [Counter(material, counting, samples)]
+        self.parts: list[Any] = [Counter(material, counting, samples)]
         if criteria:
             from ehlpetsc.post.criteria.search import counter_of  # slow to compile: only if requested
 
@@ -180,7 +180,7 @@ def _compute(job: Job, prepared: Prepared, progress: Callable[[float, int], None
     """Results (depths, points, columns) of each surface."""
     depths, done = prepared.settings.depths, 0
     number = -(-len(depths) // DEPTHS_AT_ONCE)  # of tasks of about equal size
-    found = {surface: {} for surface in prepared.motions}
+    found: dict[str, dict[float, np.ndarray]] = {surface: {} for surface in prepared.motions}
     with workers(job.jobs) as map_:
         for surface, values in found.items():
             for task in (Task(surface, depths[k::number]) for k in range(number)):

@@ -137,7 +137,7 @@ class PostResult:
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = path
+        self.path = path = Path(path)
         with open_for_reading(path) as file, reading(path):
             if "damage/s" not in file:
                 raise OutputError(f"{path}: not a result of post-processing")

@@ -89,7 +89,7 @@ def _smallest_of_few(
             continue
         radius = _max_distance(points, subset, size, centre)
         if radius < best and _max_distance(points, indices, count, centre) <= radius * (1 + BALL_TOLERANCE):
-            best, best_centre, best_count = radius, centre, size
+            best, best_centre, best_count = radius, centre, int(size)
             best_subset[:size] = subset[:size]
     return best, best_centre, best_subset, best_count
 

@@ -64,7 +64,7 @@ class Damage(NamedTuple):
 class Counting(NamedTuple):
     """Options of counting, explained in :func:`damage`."""
 
-    count: str = "max3"
+    count: str = "max3"  # type: ignore[assignment]
     residue: str = "closed"
     mean_stress: str = "none"
     strain: str = DEFAULT_STRAIN

@@ -235,7 +235,7 @@ def _lives(dsv: np.ndarray, mean: np.ndarray, rule: int, constants: tuple, out: 
 
 
 def cycles_to_failure(
-    dsv: np.ndarray, material: Material, mean_stress: np.ndarray = 0.0, strain: str = "direct"
+    dsv: np.ndarray, material: Material, mean_stress: float | np.ndarray = 0.0, strain: str = "direct"
 ) -> float | np.ndarray:
     """Cycles to failure N under a constant equivalent stress range, eqs. (13) and (14) inverted to rounding.
 

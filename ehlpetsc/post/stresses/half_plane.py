@@ -151,7 +151,7 @@ class StressField:
         self.normal, self.cross, self.along, self.shear = np.stack(
             [kernel_spectra(nx, depth) for depth in self.depths], axis=1
         )
-        self._ends = None
+        self._ends: tuple[np.ndarray, np.ndarray] | None = None
 
     def __call__(
         self, pressure: np.ndarray, shear: np.ndarray | None = None
@@ -244,8 +244,8 @@ def stress(
         raise ValueError("Poisson's ratio must lie between -1 and 0.5")
     dx = spacing(x)
     field = _field(x.size, dx, tuple(np.atleast_1d(np.asarray(z, float))))
-    result = field(pressure, shear)
-    return tuple(component[..., 0, :] for component in result) if np.ndim(z) == 0 else result
+    sx, sz, txz = field(pressure, shear)
+    return (sx[..., 0, :], sz[..., 0, :], txz[..., 0, :]) if np.ndim(z) == 0 else (sx, sz, txz)
 
 
 def out_of_plane(sx: np.ndarray, sz: np.ndarray, poisson_ratio: float) -> np.ndarray:
