@@ -25,7 +25,9 @@ def mesh_warnings(rough: Roughness | None, scales: Scales) -> list[str]:
     notes = []
     for side in ("1", "2"):
         profile = rough.side(side) if rough else None
-        fraction = profile.unresolved_variance(scales.dx) if profile else 0.0
+        if profile is None:
+            continue
+        fraction = profile.unresolved_variance(scales.dx)
         if fraction > MAX_UNRESOLVED:
             shortest = 1e6 * WAVE_NODES * scales.dx
             notes.append(
@@ -34,7 +36,7 @@ def mesh_warnings(rough: Roughness | None, scales: Scales) -> list[str]:
                 f"points_per_half_width = {needed_points(profile, scales, MAX_UNRESOLVED)} brings that under "
                 f"{100 * MAX_UNRESOLVED:.0f} %"
             )
-        if profile and profile.given.measured:
+        if profile.given.measured:
             notes += _spike_warning(side, profile.given, scales.dx)
     return notes
 
@@ -131,8 +133,8 @@ def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[
     notes = []
     for side in ("1", "2"):
         profile = rough.side(side) if rough else None
-        arrives = profile and entry_times(profile, scales)
-        if not arrives or case.time.travel >= arrives[1]:
+        arrives = entry_times(profile, scales) if profile else None
+        if not profile or not arrives or case.time.travel >= arrives[1]:
             continue
         reaches, fills = arrives
         ends = f"surface.{side}: the run ends at time.travel = {case.time.travel:g}, before"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -71,6 +72,7 @@ def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
     if spec.synthetic is not None:
         X, z, repeats = synthetic.sampled(spec.synthetic)
         return Samples(X, spec.scale * z, repeats)
+    found: Sequence[str]
     if spec.z is not None:
         unit, x_unit = spec.unit or "m", spec.x_unit or spec.unit or "m"
         steps = spec.spacing * np.arange(len(spec.z)) if spec.x is None else UNITS[x_unit] * np.array(spec.x)
