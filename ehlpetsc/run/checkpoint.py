@@ -1,4 +1,4 @@
-"""State of a run in a restart file: saving, loading, checks against the case."""
+"""State of a run in a restart file: saving, loading, checks against the case, conversion to other scales."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
+from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.roughness import SurfacePositions
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 TOTAL, RECORD = "total ", "record "  # prefixes of the names of totals and of effects with a record
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
+SCALE_TOLERANCE = 1e-12  # relative
+CORE_HALF_WIDTH = 0.5  # in a: the approach changes by the mean change of the film between -0.5 and 0.5
+STATE_PREFIXES = ("", "smooth_")  # of the names of the states that are converted to other scales
+HISTORY = ("m", "m_older", "earlier_travelled", "earlier_q", "earlier_h", "earlier_contact_pressure")
 Pair = tuple[np.ndarray, np.ndarray]
 
 
@@ -111,7 +116,6 @@ def load(path: Path, case: Case, scales: Scales, model: ContactModel) -> tuple[C
         misfit = _misfit(arrays, attributes, earlier, case, scales)
         if misfit:
             raise OutputError(f"{path}: {misfit}")
-        from ehlpetsc.run.restart.rescaling import rescale
 
         rescale(arrays, attributes, scales)
         checkpoint = _checkpoint(arrays, attributes, model)
@@ -213,3 +217,41 @@ def _misfit(
                 "a rough surface can neither start, stop nor turn round in mid-run"
             )
     return None
+
+
+def rescale(arrays: dict[str, np.ndarray], attributes: dict[str, Any], scales: Scales) -> None:
+    r"""Convert the content of a restart file to the load, radius or elasticity of a case, in place.
+
+    Fields keep their position x/a, that is, their node:
+
+    * pressures in p0 do not change: their sum over the nodes carries the new load;
+    * the excess of the film over the gap outside Hertz' dry contact keeps its thickness in metres, and the
+      gap is that of the new contact, :math:`h=g+r(h_0-g)` in a^2/R, :math:`r` the old a^2/R over the new one
+      and g as in :func:`ehlpetsc.physics.exact_solutions.hertz_gap`;
+    * a cavity keeps its oil film in metres, :math:`(1+q)h=r(1+q_0)h_0`.
+
+    Earlier masses per area do not apply to the new contact: the next step is a step of backward Euler from
+    the mass of the converted state, without earlier levels.
+    """
+    old = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
+    new = np.array([scales.a, scales.p0, scales.h])
+    if (np.abs(old - new) <= SCALE_TOLERANCE * new).all():
+        return
+    ratio, x = attributes["h_scale"] / scales.h, scales.x
+    gap = hertz_gap(x, 1.0, 1.0)
+    core = np.abs(x) <= CORE_HALF_WIDTH
+    if core.any():
+        attributes["h00"] += (ratio - 1.0) * (arrays["h"] - gap)[core].mean()
+    for prefix in STATE_PREFIXES:
+        q, h = arrays[prefix + "q"], arrays[prefix + "h"]
+        arrays[prefix + "q"], arrays[prefix + "h"] = _converted(q, h, gap, ratio)
+    for name in HISTORY:
+        arrays.pop(name, None)
+    attributes["dt"] = 0.0
+
+
+def _converted(q: np.ndarray, h: np.ndarray, gap: np.ndarray, ratio: float) -> Pair:
+    film = np.maximum(gap + ratio * (h - gap), 0.0)
+    oil = ratio * (1.0 + q) * h
+    void = np.clip(oil / np.where(film > 0.0, film, np.inf) - 1.0, -1.0, 0.0)
+    return np.where((q < 0.0) & (film > 0.0), void, q), film

@@ -1,1 +1,0 @@
-"""State of a run in a restart file: content, check, conversion to the scales of another case."""
