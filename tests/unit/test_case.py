@@ -1,12 +1,15 @@
 """The case file: values read from it, and messages about its faults."""
 
+import pickle
 import tomllib
 
 import pytest
 from support import CASES, is_line_with
 
 from ehlpetsc.case import loading as case
+from ehlpetsc.case.checking import values_of
 from ehlpetsc.errors import CaseError
+from ehlpetsc.keys import Key, KeyTable, Required
 from ehlpetsc.quantities import STORED
 
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
@@ -254,3 +257,46 @@ def test_mistyped_file_name_has_a_hint(typed, meant):
         case.load(CASES / typed)
     hint = f"; did you mean {CASES / meant}?" if meant else ""
     assert error.value.faults == [f"{CASES / typed}: cannot be read: No such file or directory{hint}"]
+
+
+def test_faults_of_units_and_of_bounds_are_reported_together():
+    found = faults(SMOOTH, "contact.load='350 N'", "contact.radius=-1", "mesh.inlet='far'")
+    assert [line.split(": ")[1].split(" = ")[0] for line in found] == [
+        "contact.load",
+        "contact.radius",
+        "mesh.inlet",
+    ]
+
+
+def test_needs_that_are_not_met_are_named():
+    assert fault(SMOOTH, "wear.coefficient=1e-18").endswith('wear: needs contact.model = "mixed" and [time]')
+    mixed = ("contact.model='mixed'", "contact.boundary_film=1e-8", "contact.asperity_height=2e-8")
+    assert "contact.boundary_film = 1e-08: needs contact.asperity_height left out (" in fault(SMOOTH, *mixed)
+
+
+def test_keys_that_follow_from_a_faulty_one_are_not_reported_as_missing():
+    steel = {"contact.material": "16MnCr6", "contact.youngs_modulus": None, "contact.poisson_ratio": None}
+    with pytest.raises(CaseError) as refused:
+        case.load(SMOOTH, steel)
+    (line,) = refused.value.faults
+    assert 'contact.material = "16MnCr6": allowed: one of "16MnCr5"' in line
+
+
+def test_values_of_a_case_can_be_sent_to_other_ranks():
+    sent = case.load(ROUGH, {"time.courant": 1})
+    received = pickle.loads(pickle.dumps(sent))
+    assert received == sent and (received.text, received.path) == (sent.text, sent.path)
+    assert type(received.time.courant) is float and received.time != sent.mesh
+
+
+def test_a_table_declared_elsewhere_is_checked_as_the_case_is():
+    keys = {
+        "thickness": Required("of both surfaces", "m", 1e-9, 1e-4, many="both"),
+        "share": Key("of 1", "", 0, 1),
+    }
+    coating = KeyTable(
+        "coating", "left out: none", keys, complete=lambda values: {"share": values.share or 0.5}
+    )
+    assert values_of(coating, {"thickness": 1e-6}).as_dict() == {"thickness": (1e-6, 1e-6), "share": 0.5}
+    with pytest.raises(CaseError, match=r"coating\.thickness = 1e-10: allowed: .*\[m\] \(of both surfaces\)"):
+        values_of(coating, {"thickness": 1e-10})
