@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,73 +34,49 @@ SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.ST
 PASSES_INDEX = ".passes.json"
 
 
+HELP = {  # by destination
+    "results": "several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
+    "OUTPUT.passes.json: its passes, whose damage is then added to it",
+    "output": "result, of a single input (default: RESULT.post.h5 beside it)",
+    "surface": "processed surface (default both)",
+    "depths": "instead of those of [post]",
+    "set": "a key of [post], or contact.material, instead of that of the case; may be repeated",
+    "count": "counted scalar; max3: largest damage among counting sx, sz and txz (default)",
+    "residue": "history repeated (default), or half cycles",
+    "mean_stress": "morrow: with a floor to compression",
+    "criterion": "also compute, beside the paper's damage: " + ", ".join(CRITERIA),
+    "within": "half widths either side of an asperity's peak in which its largest damage is sought "
+    f"(default {ASPERITY_HALF_WIDTH:g})",
+    "jobs": "threads (default 1)",
+    "pictures": "also draw PNG and SVG, in FOLDER or beside the result",
+    "passes": "the results are passes of this surface against other parts or alignments of the other one: "
+    "also write passes_SURFACE.post.h5: damage a pass with its scatter, Miner's sum to failure",
+    "point": "body point of the history picture (default: that of the largest damage)",
+    "frame": "stored frame of the stress picture (default: the middle one)",
+}
+
+
 def _parser() -> CommandParser:
     parser = CommandParser("post", DESCRIPTION)
-    add = parser.add_argument
-    add(
-        "results",
-        nargs="+",
-        metavar="RESULT.h5",
-        help="several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
-        "OUTPUT.passes.json: its passes, whose damage is then added to it",
-    )
-    output = "result, of a single input (default: RESULT.post.h5 beside it)"
-    add("-o", "--output", metavar="FILE", help=output)
+
+    def add(*names: str, **options: Any) -> None:
+        parser.add_argument(*names, **options, help=HELP[names[-1].lstrip("-").replace("-", "_")])
+
+    add("results", nargs="+", metavar="RESULT.h5")
+    add("-o", "--output", metavar="FILE")
     add("--surface", choices=("both", *SURFACES), default="both")
-    add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
-    add(
-        "--set",
-        action="append",
-        default=[],
-        metavar="TABLE.KEY=VALUE",
-        help="a key of [post], or contact.material, instead of that of the case; may be repeated",
-    )
-    add(
-        "--count",
-        choices=CHANNELS,
-        default="max3",
-        help="counted scalar; max3: largest damage among counting sx, sz and txz (default)",
-    )
-    add("--residue", choices=RESIDUES, default="closed", help="history repeated (default), or half cycles")
-    add("--mean-stress", choices=MEAN_STRESSES, default="none", help="morrow: with a floor to compression")
-    add(
-        "--criterion",
-        nargs="+",
-        choices=CRITERIA,
-        default=(),
-        metavar="NAME",
-        help="also compute, beside the paper's damage: " + ", ".join(CRITERIA),
-    )
-    add(
-        "--within",
-        type=float,
-        default=ASPERITY_HALF_WIDTH,
-        metavar="W/A",
-        help=f"half widths either side of an asperity's peak in which its largest damage is sought "
-        f"(default {ASPERITY_HALF_WIDTH:g})",
-    )
-    add("--jobs", type=int, choices=range(1, 1025), default=1, metavar="N", help="threads (default 1)")
-    add(
-        "--pictures",
-        nargs="?",
-        const="",
-        metavar="FOLDER",
-        help="also draw PNG and SVG, in FOLDER or beside the result",
-    )
-    add(
-        "--passes",
-        choices=SURFACES,
-        help="the results are passes of this surface against other parts or alignments of the other one: "
-        "also write passes_SURFACE.post.h5: damage a pass with its scatter, Miner's sum to failure",
-    )
-    add(
-        "--point",
-        nargs=2,
-        type=float,
-        metavar=("S/A", "Z/A"),
-        help="body point of the history picture (default: that of the largest damage)",
-    )
-    add("--frame", type=int, metavar="K", help="stored frame of the stress picture (default: the middle one)")
+    add("--depths", nargs="+", type=float, metavar="Z/A")
+    add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE")
+    add("--count", choices=CHANNELS, default="max3")
+    add("--residue", choices=RESIDUES, default="closed")
+    add("--mean-stress", choices=MEAN_STRESSES, default="none")
+    add("--criterion", nargs="+", choices=CRITERIA, default=(), metavar="NAME")
+    add("--within", type=float, default=ASPERITY_HALF_WIDTH, metavar="W/A")
+    add("--jobs", type=int, default=1, metavar="N")
+    add("--pictures", nargs="?", const="", metavar="FOLDER")
+    add("--passes", choices=SURFACES)
+    add("--point", nargs=2, type=float, metavar=("S/A", "Z/A"))
+    add("--frame", type=int, metavar="K")
     return parser
 
 
@@ -155,6 +132,8 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
         raise UsageError("--passes: give the results of two passes or more")
     if not 0 <= chosen.within < math.inf:
         raise UsageError(f"--within {chosen.within:g}: must be 0 or more")
+    if chosen.jobs < 1:
+        raise UsageError(f"--jobs {chosen.jobs}: must be 1 or more")
 
 
 def _say(text: str) -> None:

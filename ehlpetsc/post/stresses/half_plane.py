@@ -151,7 +151,6 @@ class StressField:
         self.normal, self.cross, self.along, self.shear = np.stack(
             [kernel_spectra(nx, depth) for depth in self.depths], axis=1
         )
-        self._ends: tuple[np.ndarray, np.ndarray] | None = None
 
     def __call__(
         self, pressure: np.ndarray, shear: np.ndarray | None = None
@@ -180,23 +179,17 @@ class StressField:
 
     def _cut_ends(self, fields: np.ndarray, pressure: np.ndarray, shear: np.ndarray | None) -> None:
         """Subtract the outer halves of the end nodes' hats if the load is not zero there."""
-        for node, kernels in ((0, 0), (-1, 1)):
+        nodes, parity = np.arange(self.nx), np.array([1.0, -1.0, 1.0, -1.0])[:, None, None]
+        for node in (0, -1):
             p, q = pressure[..., node], 0.0 if shear is None else shear[..., node]
             if not (np.any(p) or np.any(q)):
                 continue
-            normal, cross, along, tangential = self._end_kernels()[kernels]
+            kernels = -2 / np.pi * np.stack([half_hat(nodes, z) for z in self.depths], axis=1)
+            normal, cross, along, tangential = parity * kernels[..., ::-1] if node else kernels
             p, q = np.asarray(p)[..., None, None], np.asarray(q)[..., None, None]
             fields[0] -= along * p + tangential * q
             fields[1] -= normal * p + cross * q
             fields[2] -= cross * p + along * q
-
-    def _end_kernels(self) -> tuple[np.ndarray, np.ndarray]:
-        if self._ends is None:
-            nodes = np.arange(self.nx)
-            left = -2 / np.pi * np.stack([half_hat(nodes, z) for z in self.depths], axis=1)
-            parity = np.array([1.0, -1.0, 1.0, -1.0])[:, None, None]
-            self._ends = left, parity * left[..., ::-1]
-        return self._ends
 
 
 @lru_cache(maxsize=4)
