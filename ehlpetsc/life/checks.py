@@ -11,7 +11,7 @@ import h5py
 from ehlpetsc.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.results.hdf5_file import open_for_reading, plain
+from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces.profile import WAVE_NODES
 from ehlpetsc.surfaces.profile_checks import needed_points
 
@@ -76,12 +76,10 @@ def check_files(path: Path, case: Case) -> None:
 def _is_pass(path: Path) -> bool:
     """Whether a file is the result of a pass of a life, or an HDF5 file damaged by a killed run."""
     try:
-        with open_for_reading(path) as file:
-            return "life" in tomllib.loads(str(plain(file.attrs.get("case", ""))))
+        with read_result(path) as result:
+            return result.case.life is not None
     except OutputError:
         return h5py.is_hdf5(path)
-    except ValueError:
-        return False
 
 
 def _tables_of_surfaces(text: str) -> dict:
