@@ -44,7 +44,7 @@ COMMANDS = {
     "explain": Command("ehlpetsc.run.explain", (*READING, "h5py"), "a case in words, before it runs"),
     "keys": Command("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": Command("ehlpetsc.case.templates", READING, "a commented case to begin with"),
-    "docs": Command("ehlpetsc.docs.__main__", (), "these pages as one site, opened in a browser"),
+    "docs": Command("ehlpetsc.docs", (), "these pages as one site, opened in a browser"),
 }
 
 

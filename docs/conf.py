@@ -1,0 +1,96 @@
+"""Configuration of Sphinx: all pages as one site, equations by the installed MathJax, no network."""
+
+import shutil
+from pathlib import Path
+
+from ehlpetsc import __version__
+
+FRONT = "README"
+SECTIONS = {
+    "User guide": (
+        "cases/README",
+        "cases/contact",
+        "cases/heat",
+        "cases/gears",
+        "cases/life",
+        "ehlpetsc/run/README",
+        "ehlpetsc/results/README",
+        "ehlpetsc/post/README",
+        "cases/profiles/README",
+    ),
+    "Reference": ("cases/keys",),
+    "Theory": (
+        "ehlpetsc/model",
+        "ehlpetsc/nonlinear/README",
+        "tests/benchmarks/ACCURACY",
+        "tests/verification/README",
+    ),
+    "Reproduction": ("cases/paper", "ehlpetsc/post/PAPER"),
+    "Developer's map": ("ehlpetsc/README", "tests/README", "tests/benchmarks/README"),
+}
+PAGES = (FRONT, *sum(SECTIONS.values(), ()))
+MATHJAX = Path("/usr/share/javascript/mathjax")
+MATHJAX_FILES = (
+    "MathJax.js",
+    "extensions",
+    "jax/element",
+    "jax/input/TeX",
+    "jax/output/SVG/config.js",
+    "jax/output/SVG/jax.js",
+    "jax/output/SVG/autoload",
+    "jax/output/SVG/fonts/TeX",
+)  # glyphs as paths: no fonts, which a browser does not load from files everywhere
+mathjax2_config = {
+    "jax": ["input/TeX", "output/SVG"],
+    "extensions": ["tex2jax.js"],
+    "TeX": {"extensions": ["AMSmath.js", "AMSsymbols.js", "noErrors.js", "noUndefined.js"]},
+    "tex2jax": {
+        "inlineMath": [["\\(", "\\)"]],
+        "displayMath": [["\\[", "\\]"]],
+        "ignoreClass": ".*",
+        "processClass": "math",
+    },
+    "showMathMenu": False,
+    "messageStyle": "none",
+    "SVG": {"font": "TeX"},  # at its own size, by which equation numbers are placed
+}
+
+project, author, release = "ehlpetsc", "", __version__
+html_title, html_theme, html_show_copyright, html_show_sphinx = f"ehlpetsc {release}", "furo", False, False
+html_copy_source = html_show_sourcelink = False
+extensions = ["myst_parser", "sphinx.ext.mathjax"]
+root_doc = FRONT
+include_patterns = [f"{page}.md" for page in PAGES]
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4  # levels with anchors, which have the names of Git hosts
+myst_update_mathjax = False  # for MathJax 3
+mathjax_path = "mathjax/MathJax.js"
+smartquotes = False
+pygments_style, highlight_language = "friendly", "none"  # blocks without a language are terminals
+
+
+def _with_contents(_app, page, source):
+    if page == FRONT:
+        for caption, pages in SECTIONS.items():
+            source[0] += "\n".join(
+                ["", "```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```", ""]
+            )
+
+
+def _copy_site_files(app, failure):
+    """Copy MathJax, and the front page to index.html."""
+    if failure is None:
+        shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
+        for name in MATHJAX_FILES:
+            target = Path(app.outdir, "_static", "mathjax", name)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            if (MATHJAX / name).is_dir():
+                shutil.copytree(MATHJAX / name, target, dirs_exist_ok=True)
+            else:
+                shutil.copy(MATHJAX / name, target)
+
+
+def setup(app):
+    """Connect the table of contents and further files of the site to Sphinx."""
+    app.connect("source-read", _with_contents)
+    app.connect("build-finished", _copy_site_files)

@@ -1,0 +1,43 @@
+"""The command ``ehlpetsc docs``: the pages as one site by Sphinx."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import webbrowser
+from pathlib import Path
+
+from ehlpetsc.command_parser import CommandParser, exit_status
+from ehlpetsc.environment import missing
+from ehlpetsc.errors import OutputError
+
+ROOT = Path(__file__).parents[1]  # of a clone
+NEEDED = ("sphinx", "myst_parser", "furo")
+
+
+def main(words: list[str]) -> int:
+    """Run the command; returns its exit status."""
+    description = "Build the pages as one site, with search and typeset equations, and open it in a browser."
+    parser = CommandParser("docs", description)
+    folder = "build it here, to publish it, and open nothing"
+    parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
+    chosen = parser.parse_args(words)
+    return exit_status("docs", lambda: _build(chosen.folder))
+
+
+def _build(folder: Path | None) -> None:
+    if not (ROOT / "docs" / "conf.py").exists():
+        raise OutputError("an installed package has no pages: call ./run_mpi.sh docs in a clone")
+    if lacks := missing(NEEDED):
+        raise OutputError(f"{', '.join(lacks)}: not installed; ./run_mpi.sh docs installs them on Debian")
+    cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    target = (folder or Path(cache, "ehlpetsc", "docs")).absolute()
+    with tempfile.TemporaryDirectory() as scratch:
+        options = ["-q", "-W", "--keep-going", "-d", scratch, "-c", ROOT / "docs"]
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(ROOT), *sys.path]))}
+        built = subprocess.run([sys.executable, "-m", "sphinx", *options, ROOT, target], env=environment)
+    if built.returncode:
+        raise OutputError(f"{target}: the site was not built")
+    print(target / "README.html")
+    if folder is None:
+        webbrowser.open((target / "README.html").as_uri())
