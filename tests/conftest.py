@@ -15,7 +15,6 @@ DEAREST = (  # files of two seconds of processor time and more, longest first
     "test_compliant",
     "test_run_script",
     "test_wear_against_fatigue",
-    "test_post_outputs",
     "test_series",
     "test_options",
     "test_passes",
