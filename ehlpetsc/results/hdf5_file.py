@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import resource
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -116,6 +117,11 @@ def extend(dataset: h5py.Dataset, rows: Sequence | np.ndarray) -> None:
 
 
 def check_space(path: Path, data_bytes: int) -> None:
-    """Refuse to write to a full disk, on which HDF5 may crash: OSError."""
-    if shutil.disk_usage(Path(path).parent).free < data_bytes + RESERVE_BYTES:
+    """Refuse to write to a full disk, or beyond the limit of file sizes, where HDF5 may crash: OSError."""
+    path, needed = Path(path), data_bytes + RESERVE_BYTES
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+    size = path.stat().st_size if path.exists() else 0
+    if shutil.disk_usage(path.parent).free < needed:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+    if limit != resource.RLIM_INFINITY and limit < size + needed:
+        raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), str(path))

@@ -225,7 +225,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
     often = settings(
         "time.travel=100", "output.checkpoint=0.002"
     )  # stored before the disk is full, however quick
-    limited = ["prlimit", "--fsize=5000000", *command(*scene, *often)]
+    limited = ["prlimit", "--fsize=9000000", *command(*scene, *often)]
     pipes = {"capture_output": True, "text": True, "timeout": 120}
     full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
     assert full.returncode == 2
