@@ -231,7 +231,8 @@ def main(words: Sequence[str]) -> int:
 def _run(chosen: argparse.Namespace, output: Path) -> None:
     with contextlib.ExitStack() as stack:
         results = open_all(chosen.results, stack)
-        check_derived(output, [*map(Path, chosen.results), *(r.path for r in results)], TABLES)
+        read = [*map(Path, chosen.results), *(result.path for result in results)]
+        check_derived(output, read, tuple(TABLES), signature=TABLES.get(output.suffix.lower(), b""))
         rows = table(ensembles(results), chosen.resamples, chosen.seed)
     write(rows, output)
     print("\n".join(text(rows)))

@@ -110,7 +110,8 @@ def _run(chosen: argparse.Namespace) -> None:
             print(text.getvalue(), end="")
             return
         read = [*map(Path, chosen.results), *(result.path for result in results)]
-        check_derived(chosen.output, read, {".csv": text.getvalue()[:SIGNATURE_LENGTH].encode()})
+        head = text.getvalue()[:SIGNATURE_LENGTH].encode()
+        check_derived(chosen.output, read, (".csv",), signature=head)
         atomic_write(chosen.output, text.getvalue().encode())
         print(chosen.output)
 

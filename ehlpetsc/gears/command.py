@@ -48,7 +48,7 @@ def run(chosen: argparse.Namespace) -> None:
     target = _picture(chosen)
     if chosen.csv is not None:
         head = ", ".join(COLUMNS).encode()
-        check_derived(Path(chosen.csv), [Path(chosen.case)], {".csv": head, ".txt": head}, "--csv")
+        check_derived(Path(chosen.csv), [Path(chosen.case)], (".csv", ".txt"), "--csv", head)
     print("\n".join(rows(path, stresses)))
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(path).encode())

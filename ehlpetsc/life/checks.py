@@ -64,7 +64,7 @@ def check_files(path: Path, case: Case) -> None:
     """
     from ehlpetsc.results.output_guard import check_derived, check_output_path, exists, inputs_of
 
-    check_derived(path, inputs_of(case), {".h5": b"\x89HDF"})
+    check_derived(path, inputs_of(case), (".h5",), signature=b"\x89HDF")
     positions = number_of_positions(case)
     for position in range(positions):
         one_pass = pass_file(path, position, positions)

@@ -18,10 +18,9 @@ if TYPE_CHECKING:
 WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 SIGNATURE_BYTES = 512  # at the beginning of a file, in which its signature is searched
-FORMATS = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
-PICTURES = dict.fromkeys(FORMATS, b"")
-MOVIES = dict.fromkeys((".gif", ".mp4", ".webm"), b"")
-PAGES = dict.fromkeys((".html", ".htm"), b"")
+PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
+MOVIES = (".gif", ".mp4", ".webm")
+PAGES = (".html", ".htm")
 
 
 def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") -> None:
@@ -34,16 +33,16 @@ def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") ->
             raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
 
 
-def check_derived(path: Path, inputs: Iterable[Path], kinds: dict[str, bytes], option: str = "-o") -> None:
-    """Refuse a derived output path that is an input, has a wrong suffix, or is a file of another kind.
+def check_derived(
+    path: Path, inputs: Iterable[Path], endings: tuple[str, ...], option: str = "-o", signature: bytes = b""
+) -> None:
+    """Refuse a derived output path that is an input, has another ending, or is a file of another kind.
 
-    `kinds` are the allowed suffixes, each with the signature of its files: an existing file without it is not
-    replaced. Pictures have none.
+    An existing file is replaced only if the signature is near its beginning.
     """
     check_output_path(path, inputs, option)
-    signature = kinds.get(path.suffix.lower())
-    if signature is None:
-        raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(kinds)}")
+    if path.suffix.lower() not in endings:
+        raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(endings)}")
     if signature and path.exists():
         with open(path, "rb") as file:
             head = file.read(SIGNATURE_BYTES)
