@@ -23,8 +23,10 @@ SLOTS = 10  # constants that compiled loops get of any law
 KELVIN = 273.15  # K at 0 degrees Celsius
 STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
 BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05
-ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER = 0.0, 1.0, 2.0, 3.0  # temperature dependence of a power law
+# temperature dependence of a power law
+ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER, ROELANDS_WALTHER = 0.0, 1.0, 2.0, 3.0, 4.0
 ROELANDS_ZERO = 138.0  # K
+ROELANDS_S0 = 1.1  # where a case with his law of pressure gives none: mineral oils have 1 to 1.5
 ROELANDS_PRESSURE = 1.96e8  # Pa
 ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
 WALTHER_SHIFT = 0.7  # mm^2/s
@@ -137,7 +139,8 @@ def power_law(
 
     * exponential: :math:`c[P-1]-\beta(T-T_0)`;
     * Roelands (1966): :math:`c\,[P\,\vartheta-1]`, :math:`\vartheta=((T-138)/(T_0-138))^{-S_0}`, T in K;
-    * Walther: :math:`c[P-1]+\ln\nu(T)-\ln\nu(T_0)`, see :func:`walther`.
+    * Walther: :math:`c[P-1]+\ln\nu(T)-\ln\nu(T_0)`, see :func:`walther`;
+    * both: :math:`c[P-1]+P\,(\ln\nu(T)-\ln\nu(T_0))`, Walther's at ambient pressure, as Roelands' under it.
     """
     if z == 1.0:  # the difference would lose digits
         power, by_p, rise = 1.0 + p / reference, 1.0 / reference + 0.0 * p, p / reference
@@ -149,6 +152,10 @@ def power_law(
         theta = ((T - ROELANDS_ZERO) / (t0 - ROELANDS_ZERO)) ** (-first)
         ln_eta = factor * (rise * theta + (theta - 1.0))
         return ln_eta, factor * by_p * theta, -factor * power * theta * first / (T - ROELANDS_ZERO)
+    if thermal == ROELANDS_WALTHER:
+        nu, slope = walther(T, first, second)
+        change = np.log(nu) - np.log(walther(t0, first, second)[0])
+        return factor * rise + power * change, by_p * (factor + change), power * slope
     ln_eta, by_p, by_t = factor * rise, factor * by_p, 0.0 * T
     if thermal == EXPONENTIAL:
         return ln_eta - first * (T - t0), by_p, by_t - first
@@ -158,15 +165,20 @@ def power_law(
     return ln_eta, by_p, by_t
 
 
-def temperature_constants(fluid: Any, heat: Any) -> tuple[float, float, float, float]:
-    """Last four constants of :func:`power_law`."""
+def temperature_constants(
+    fluid: Any, heat: Any, factor: float | None = None
+) -> tuple[float, float, float, float]:
+    """Last four constants of :func:`power_law`; `factor` c of Roelands' law, None: not his."""
     reference = reference_temperature(fluid, heat)
     if heat is None:
         return ISOTHERMAL, 0.0, 0.0, reference
     if heat.roelands_s0 is not None:
         return ROELANDS, heat.roelands_s0, 0.0, reference
     if heat.viscosity_temperature is None and getattr(fluid, "grade", None) is not None:
-        return WALTHER, *walther_constants(fluid.grade.v40, fluid.grade.v100), reference
+        kind = ROELANDS_WALTHER if factor else WALTHER
+        return kind, *walther_constants(fluid.grade.v40, fluid.grade.v100), reference
+    if heat.viscosity_temperature is None and factor:
+        return ROELANDS, ROELANDS_S0, 0.0, reference
     beta = BETA if heat.viscosity_temperature is None else heat.viscosity_temperature
     return EXPONENTIAL, beta, 0.0, reference
 
@@ -178,7 +190,7 @@ def _barus(fluid: Any, heat: Any) -> tuple[float, ...]:
 def _roelands(fluid: Any, heat: Any) -> tuple[float, ...]:
     pressure, z = fluid.roelands_pressure, fluid.roelands_z
     factor = fluid.pressure_viscosity * pressure / z
-    return factor, pressure, z, *temperature_constants(fluid, heat)
+    return factor, pressure, z, *temperature_constants(fluid, heat, factor)
 
 
 def _with_coefficient(fluid: Any) -> dict[str, float]:

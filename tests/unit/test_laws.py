@@ -58,6 +58,7 @@ TEMPERATURE = {
     "exponential": (laws.EXPONENTIAL, 0.04, 0.0, 363.0),
     "roelands": (laws.ROELANDS, 1.1, 0.0, 363.0),
     "walther": (laws.WALTHER, *laws.walther_constants(V40, V100), 363.0),
+    "walther and roelands": (laws.ROELANDS_WALTHER, *laws.walther_constants(V40, V100), 363.0),
 }
 
 

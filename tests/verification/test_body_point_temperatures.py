@@ -21,6 +21,8 @@ NAMES = "shear_stress", "temperature", "heat_flux"
 FIELDS = ["pressure", *(f"{name}_{side}" for name in NAMES for side in "12")]
 CHANGES = {
     "heat.bulk_temperature": BULK,
+    "heat.viscosity_temperature": 0.04,
+    "heat.oil_conductivity_pressure": 0.0,
     "mesh.points_per_half_width": 50,
     "mesh.inlet": -1.4,
     "mesh.outlet": 1.3,

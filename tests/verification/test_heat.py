@@ -11,6 +11,7 @@ from ehlpetsc.run.simulation import Simulation
 
 BULK = 363.0
 HEAT = f"heat.bulk_temperature={BULK}"
+EXPONENTIAL = ["heat.viscosity_temperature=0.04", "heat.oil_conductivity_pressure=0"]
 THICK = ["fluid.viscosity=0.02", "motion.entrainment_speed=10.0", "motion.slide_roll_ratio=0.5"]
 WIDE = ["mesh.inlet=-3.0", "mesh.outlet=1.5"]
 COARSE = ["mesh.points_per_half_width=50", "mesh.inlet=-2.0", "mesh.outlet=1.5"]
@@ -38,7 +39,7 @@ def friction_of_both(simulation, state):
     ids=["5 m/s", "10 m/s"],
 )
 def test_values_of_an_independent_solver(keys, values):
-    simulation, [state] = solved("table1_smooth.toml", HEAT, *WIDE, *keys)
+    simulation, [state] = solved("table1_smooth.toml", HEAT, *EXPONENTIAL, *WIDE, *keys)
     figures = state.scalars
     middle = np.argmin(np.abs(simulation.scales.x))
     rises = [figures[f"{name}_max"] - BULK for name in ("film_temperature", "temperature_1", "temperature_2")]
@@ -68,8 +69,7 @@ THICK_OIL = (
 )
 def test_friction_of_an_independent_computation_across_the_film(keys, ratio, friction):
     """Boundary value problem across the film, walls by Jaeger; a lumped film has 10 to 30 % more."""
-    law = ["heat.viscosity_temperature=0.04", "heat.oil_conductivity_pressure=0"]
-    keys = [*keys, *law, f"motion.slide_roll_ratio={ratio}", "mesh.points_per_half_width=100"]
+    keys = [*keys, *EXPONENTIAL, f"motion.slide_roll_ratio={ratio}", "mesh.points_per_half_width=100"]
     simulation, [state] = solved("table1_smooth.toml", *keys)
     assert friction_of_both(simulation, state) == pytest.approx(friction, rel=0.02)
     assert state.scalars["heat_error"] < 1e-10

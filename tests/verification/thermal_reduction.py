@@ -63,7 +63,8 @@ def solve(viscosity, speed, ratio, heated, points=100):
         "mesh.outlet=1.5",
         f"mesh.points_per_half_width={points}",
     ]
-    heat = [f"heat.bulk_temperature={BULK}"] if heated else []
+    constant = ["heat.viscosity_temperature=0.04", "heat.oil_conductivity_pressure=0"]
+    heat = [f"heat.bulk_temperature={BULK}", *constant] if heated else []
     simulation = Simulation(load(CASES / "table1_smooth.toml", keys + heat))
     [state] = list(simulation)
     scales = simulation.scales

@@ -39,7 +39,7 @@ class FilmHeat(NamedTuple):
     law
         Constants of the oil.
     of_nodes
-        Rows `A` to `SECANT`, as of :func:`.film_law.film_temperature`, shape (9, nx): one array, as numba
+        Rows `A` to `REFERENCE`, as of :func:`.film_law.film_temperature`, shape (10, nx): one array, as numba
         looks up the types of many in a tuple anew in some calls, slowly.
     guess
         State of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).

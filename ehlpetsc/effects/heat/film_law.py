@@ -6,13 +6,15 @@ With both surfaces' response :math:`R_i` to the present flux, a film of mean tem
 
 The shear stress is that of :mod:`ehlpetsc.physics.film_shear`, resolved across the film: the heat of shear
 concentrates in its middle. Its base temperature is that of the walls and of all other heat,
-:math:`T_s=(T_1+T_2)/2+c\,Hr`, :math:`H=q_1+q_2-\Phi`, :math:`r=h/k_f`. The fluxes are those of a parabola
+:math:`T_s=(T_1+T_2)/2+Hr/12`, :math:`H=q_1+q_2-\Phi`, :math:`r=h/k_f`. The fluxes are those of a parabola
 with the mean temperature :math:`T_e=(T_1+T_2)/2+(q_1+q_2)r/12`,
 
 .. math:: q_{1,2}=\frac1r\Big[6(T_e-T_w)\pm(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2,
 
-and the mean of the profile is :math:`T=T_e-\Phi r/12+m/\beta`. What is left are two
-equations, for :math:`T_s` and y.
+and the mean of the profile is :math:`T=T_s+m/\beta`. What is left are two equations, for :math:`T_s`
+and y, with one solution. (Heat in the middle of the film would need the weight of
+:func:`ehlpetsc.physics.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is 10 % of
+:math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
 
 Oil that enters cold between surfaces far apart in temperature has no parabola: the law would cool the colder
 surface by oil that is warmer than it. Where it does, the sum of both fluxes stays and the colder surface has
@@ -50,12 +52,12 @@ BISECTIONS = 200
 MAX_CHANGE = 60.0  # K in an iteration
 QUADRATIC = 1e-4  # K: change in an iteration of Newton's method, after which it is accurate to 1e-9 K
 QUADRATIC_Y = 1e-5  # the same of y
+MAX_SPLIT_CHANGE = 1e-6  # of d
 MIN_SLOPE = 1e-12  # 1/K
 MIN_HEATING = 1e-12  # of b: less does not heat the film
-SMALL_Y = 1e-3  # below which the weight of other heat is a series
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
-A, B, G, SPREAD, W1, W2, R1, R2, SECANT = range(9)  # rows of FilmHeat.of_nodes
+A, B, G, SPREAD, W1, W2, R1, R2, SECANT, REFERENCE = range(10)  # rows of FilmHeat.of_nodes
 BASE, PROFILE, MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
 PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
@@ -99,7 +101,11 @@ class FilmLaw(NamedTuple):
 
 def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
     """Constants of the oil in a step with u1 - u2 [m/s]; `fluid` None: dry."""
-    conduction = float(heat.oil_conductivity), float(heat.oil_conductivity_pressure), 0.0
+    conduction = (
+        float(heat.oil_conductivity),
+        float(heat.oil_conductivity_pressure),
+        float(heat.oil_conductivity_saturation),
+    )
     if fluid is None:
         return FilmLaw(
             (0, (0.0,) * SLOTS, 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, *conduction, 0.0
@@ -152,22 +158,6 @@ def fluxes(kind, t, r, walls, exchange, alpha):
 
 
 @inlined
-def other_heat_excess(y: float, mean: float, mean_by_y: float) -> tuple[float, float]:
-    """Weight of :func:`ehlpetsc.physics.film_shear.other_heat` over that of uniform heat; derivative by y."""
-    s = 0.5 * y
-    if s < SMALL_Y:
-        return s * s / 45.0, s / 45.0
-    e = np.exp(-y)
-    tanh = (1.0 - e) / (1.0 + e)
-    square = 1.0 - tanh * tanh
-    over, under = 2.0 * s * tanh - mean, 8.0 * s * (tanh + s * square)
-    over_y = tanh + s * square - mean_by_y
-    under_y = 4.0 * (tanh + s * square) + 4.0 * s * (2.0 * square - 2.0 * s * tanh * square)
-    ratio = over / under
-    return ratio - UNIFORM, (over_y - ratio * under_y) / under
-
-
-@inlined
 def conductivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
     """1/k_f [m K/W] of a film with a fraction of oil, and d ln(k_f)/dp [1/Pa]."""
     below = 1.0 + law.conductivity_saturation * p
@@ -180,18 +170,26 @@ def conductivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
 def fixed_at(i: int, of_nodes: np.ndarray, law: FilmLaw) -> tuple:
     """Arguments of :func:`film_temperature` at node i from `g` on, by :class:`.film.FilmHeat`."""
     walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i]
-    return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[SECANT, i], walls, law
+    return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[SECANT, i], of_nodes[REFERENCE, i], walls, law
 
 
 @inlined
-def _slope(p: float, secant: float, law: FilmLaw) -> tuple[float, float]:
-    """-d ln(eta)/dT [1/K] at the temperature `secant`, and its derivative by p."""
-    _, _, slope = ln_viscosity(law.viscosity, p, secant)
+def _split(kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: float, beta: float) -> float:
+    """Half the difference of the walls' temperatures, times beta."""
+    q1, q2, _ = fluxes(kind, t, r, walls, exchange, alpha)
+    return 0.5 * beta * (walls[0] + walls[2] * q1 - walls[1] - walls[3] * q2)
+
+
+@inlined
+def _line(p: float, secant: float, reference: float, law: FilmLaw) -> tuple[float, float, float, float]:
+    """ln(eta/eta0) at the temperature `reference` and its secant, -d/dT [1/K]; both derivatives by p."""
+    value, by_p, slope = ln_viscosity(law.viscosity, p, reference)
     if law.is_linear:
-        return max(-slope, MIN_SLOPE), 0.0
+        return value, max(-slope, MIN_SLOPE), by_p, 0.0
+    _, _, slope = ln_viscosity(law.viscosity, p, secant)
     step = 1e-6 * p + 1.0
     _, _, further = ln_viscosity(law.viscosity, p + step, secant)
-    return max(-slope, MIN_SLOPE), (slope - further) / step
+    return value, max(-slope, MIN_SLOPE), by_p, (slope - further) / step
 
 
 @inlined
@@ -206,6 +204,7 @@ def film_temperature(
     g: float,
     spread: float,
     secant: float,
+    reference: float,
     walls: tuple[float, float, float, float],
     law: FilmLaw,
 ) -> tuple:
@@ -223,8 +222,10 @@ def film_temperature(
         Heat that does not depend on the temperature [W/m^2].
     spread
         :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress.
-    secant
-        Temperature between the walls and the middle at which :math:`\beta` is the secant of ln(eta) [K].
+    secant, reference
+        Temperatures of the last level [K]: the slope of ln(eta) at the first is :math:`\beta`, its secant
+        from :math:`T_s` to the middle; the second is :math:`T_s`, with the viscosity of its law. Around it
+        this law is exponential, which leaves one solution.
     walls
         W1, W2 [K], R1, R2 [m^2 K/W].
 
@@ -245,13 +246,13 @@ def film_temperature(
     flow = FlowLaw(*law.flow)
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
-    ln_rate, limit, beta, beta_p = 0.0, np.inf, 1.0, 0.0
+    ln_rate, limit, ln_eta, beta, eta_p, beta_p = 0.0, np.inf, 0.0, 1.0, 0.0, 0.0
     if heat > 0.0:
         ln_rate = np.log(law.sliding * law.eta0 / (flow.stress * sheared)) - spread
         limit = np.inf if law.limit == np.inf else law.limit * p
-        beta, beta_p = _slope(p, secant, law)
+        ln_eta, beta, eta_p, beta_p = _line(p, secant, reference, law)
     heating = 0.125 * beta * law.sliding * r * max(left, MIN_CONDUCTING_FRACTION)
-    t, y, eta = base, profile, ln_viscosity(law.viscosity, p, base)
+    t, y = base, profile
     temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
     t_p, t_h, change, low, high = 0.0, 0.0, 0.0, 0.0, 0.0
     for kind in (PARABOLA, INSULATED, APART):
@@ -265,18 +266,13 @@ def film_temperature(
         else:
             energy_t, low, high = t, ROELANDS_ZERO + 1.0, 1e5
             for k in range(ITERATIONS + BISECTIONS):
-                q1, q2, _ = fluxes(kind, energy_t, r, walls, exchange, alpha)
-                d = 0.5 * beta * (w1 + r1 * q1 - w2 - r2 * q2)
-                if k > 0 and law.is_linear:
-                    eta = eta[0] + eta[2] * change, eta[1], eta[2]
-                else:
-                    eta = ln_viscosity(law.viscosity, p, t)
-                x = ln_rate + eta[0]
+                d = _split(kind, energy_t, r, walls, exchange, alpha, beta)
+                x = ln_rate + ln_eta - beta * (t - reference)
                 if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
                     y = resolved_stress(y, x, heating, d, flow, limit)[0]
                 tau, by_x, by_limit = flow_stress(x, flow, limit)
                 is_heated = heating * tau > MIN_HEATING
-                f_y, lr_y, f1, f1_t, mean, mean_y, c, c_y = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+                f_y, lr_y, f1, f1_t, mean, mean_y = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
                 if not is_heated:
                     y = abs(d)
                     if y > 1e-6:
@@ -287,21 +283,18 @@ def film_temperature(
                         y = 2.0 * np.arcsinh(np.sqrt(heating * tau + half * half))
                     lr, lr_y, f, f_y, _ = across(y, d)
                     tau, by_x, by_limit = flow_stress(x - lr, flow, limit)
-                    f1, f1_t = f - heating * tau, -heating * by_x * eta[2]
+                    f1, f1_t = f - heating * tau, heating * by_x * beta
                     f_y += heating * by_x * lr_y
                     mean, mean_y = mean_rise(y, d)
-                    c, c_y = other_heat_excess(y, mean, mean_y)
-                phi, phi_t, phi_y = heat * tau, heat * by_x * eta[2], -heat * by_x * lr_y
-                over = 1.0 / (1.0 + c * r * exchange)
-                energy_t = (t + phi * r * (UNIFORM + c) + c * r * exchange * alpha) * over
-                flow_in = (energy_t - alpha) * exchange
-                e_phi, e_y = r * (UNIFORM + c) * over, -r * (flow_in - phi) * c_y * over
-                uniform = r * UNIFORM if is_heated else 0.0
-                temperature = energy_t - phi * uniform + mean / beta
-                m_phi = e_phi - uniform
-                f2 = a * temperature - b - phi - g + flow_in
-                f2_t = a * (over + m_phi * phi_t) - phi_t + (over + e_phi * phi_t) * exchange
-                f2_y = a * (m_phi * phi_y + e_y + mean_y / beta) - phi_y + (e_phi * phi_y + e_y) * exchange
+                phi, phi_t, phi_y = heat * tau, -heat * by_x * beta, -heat * by_x * lr_y
+                uniform = r * UNIFORM
+                energy_t = t + phi * uniform
+                m_phi = 0.0 if is_heated else uniform  # without a profile the mean is that of a parabola
+                temperature = t + m_phi * phi + mean / beta
+                f2 = a * temperature - b - phi - g + (energy_t - alpha) * exchange
+                loss = a * m_phi - 1.0 + uniform * exchange
+                f2_t = a + exchange + loss * phi_t
+                f2_y = a * mean_y / beta + loss * phi_y
                 over_det = 1.0 / (f_y * f2_t - f1_t * f2_y)
                 change, change_y = (f1 * f2_y - f_y * f2) * over_det, (f1_t * f2 - f2_t * f1) * over_det
                 change = min(max(change, -MAX_CHANGE, 0.5 * (ROELANDS_ZERO - t)), MAX_CHANGE)
@@ -313,15 +306,15 @@ def film_temperature(
                 t, change_y = t + change, new_y - y
                 y = new_y
                 if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
-                    break
+                    if abs(d - _split(kind, energy_t, r, walls, exchange, alpha, beta)) < MAX_SPLIT_CHANGE:
+                        break
             phi += phi_t * change + phi_y * change_y
-            energy_t += over * change + e_phi * (phi_t * change + phi_y * change_y) + e_y * change_y
-            temperature = energy_t - phi * uniform + (mean + mean_y * change_y) / beta
+            energy_t = t + phi * uniform
+            temperature = t + m_phi * phi + (mean + mean_y * change_y) / beta
             q1, q2, by_r = fluxes(kind, energy_t, r, walls, exchange, alpha)
             phi = a * temperature - b - g + q1 + q2  # so that the balance of heat closes
             # derivatives of both equations by the pressure and by the film, at constant t and y
-            e_r = (phi * UNIFORM - c * (q1 + q2 - phi) - c * r * by_r) * over
-            tau_p, r_p = by_x * eta[1], -r * k_slope
+            tau_p, r_p = by_x * (eta_p - beta_p * (t - reference)), -r * k_slope
             if limit < np.inf:
                 tau_p += by_limit * law.limit
             heating_p = heating * (beta_p / beta - k_slope)
@@ -329,18 +322,16 @@ def film_temperature(
             heating_h = 0.125 * beta * law.sliding * over_k * max(left, MIN_CONDUCTING_FRACTION)
             for side in range(2):
                 tau_s, r_s, heating_s = (tau_p, r_p, heating_p) if side == 0 else (tau_h, over_k, heating_h)
-                mean_s = -mean * beta_p / (beta * beta) if side == 0 else 0.0
                 phi_s = heat * tau_s
-                e_s = e_r * r_s + e_phi * phi_s
-                m_s = e_s + mean_s
-                if is_heated:
-                    m_s -= UNIFORM * (phi * r_s + r * phi_s)
+                e_s = UNIFORM * (phi * r_s + r * phi_s)
+                m_s = -mean * beta_p / (beta * beta) if side == 0 else 0.0
+                if not is_heated:
+                    m_s += e_s
                 f1_s = -heating_s * tau - heating * tau_s if is_heated else 0.0
                 f2_s = a * m_s - phi_s + by_r * r_s + e_s * exchange
                 base_s = (f1_s * f2_y - f_y * f2_s) * over_det
                 y_s = (f1_t * f2_s - f2_t * f1_s) * over_det
-                mean_t, mean_of_y = over + m_phi * phi_t, m_phi * phi_y + e_y + mean_y / beta
-                total = m_s + mean_t * base_s + mean_of_y * y_s
+                total = m_s + (1.0 + m_phi * phi_t) * base_s + (m_phi * phi_y + mean_y / beta) * y_s
                 if side == 0:
                     t_p = total
                 else:
@@ -350,7 +341,7 @@ def film_temperature(
         if kind == INSULATED and energy_t >= min(w1, w2):
             break
     if law.is_linear and heat > 0.0:
-        eta = eta[0] + eta[2] * (temperature - t + change), eta[1], eta[2]
+        eta = ln_eta - beta * (temperature - reference), eta_p, -beta
     else:
         eta = ln_viscosity(law.viscosity, p, temperature)
     return temperature, t_p, t_h, q1, q2, phi, eta, t, y

@@ -89,7 +89,9 @@ class HeatStep:
         rows = *explicit_transport(stored, record.flow, record.film, self.inlet), record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
-        of_nodes = np.array((*rows, *rubbed, *responses, self._secant(record, inputs.fluid, law)))
+        of_nodes = np.array(
+            (*rows, *rubbed, *responses, self._secant(record, inputs.fluid, law), record.base)
+        )
         guess = np.array((record.base, record.profile, record.film))
         return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
 
