@@ -89,6 +89,7 @@ def test_units_of_a_heading_are_read(with_table):
         ("time\n0\n1\n", ": load, radius, speed 1, speed 2,"),
         ("load\n1e5\n1e5\n", "no column time;"),
         ("", "no lines"),
+        ("0, 1e5, 0.02\n1, 2e5, 0.02\n", "line 1: no column names"),
     ],
 )
 def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
@@ -127,6 +128,11 @@ def test_columns_from_the_case_or_from_python():
     np.testing.assert_array_equal(case.conditions.load, [5e5, 6e5])
     with pytest.raises(CaseError, match="entry 2: time"):
         load(CASE, overrides | {"operation.time": [0.0, 0.0]})
+
+
+def test_a_table_begins_at_its_first_time(with_table):
+    later = load(with_table("time [ms], load\n5, 527e3\n7, 600e3\n")).conditions
+    np.testing.assert_allclose(later.time, [0.0, 2e-3], atol=1e-18)
 
 
 @pytest.mark.parametrize("time", [1e-4, "0.1 ms"])
