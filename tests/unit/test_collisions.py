@@ -2,6 +2,7 @@
 
 import json
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from support import ROOT
 from support.made_results import TABLE_1, A, make_result
 
 from ehlpetsc.pictures.over_time import space_time_map
-from ehlpetsc.results.contacts import film_at_contact, in_contact
+from ehlpetsc.results.contacts import film_at_contact, in_contact, layer_film
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter
 
@@ -112,6 +113,15 @@ def test_contacts_from_flags_equal_contacts_from_the_bound(tmp_path, bound, prec
     marks = figure.axes[0].collections[1].get_array()
     shown = (films.x >= -1.4 * A) & (films.x <= 1.4 * A)
     np.testing.assert_array_equal(marks.filled(0).ravel(), whole.in_contact[:, shown].ravel())
+
+
+def test_contacts_of_a_layer_begin_at_ten_megapascals():
+    contact = SimpleNamespace(
+        youngs_modulus=(200e9, 100e9), poisson_ratio=(0.3, 0.2), asperity_height=50e-9, asperity_stiffness=0.1
+    )
+    modulus = 1.0 / (0.91 / 200e9 + 0.96 / 100e9)
+    pressure = 0.1 * modulus * np.exp(-2.0 * layer_film(contact) / 50e-9)
+    assert pressure == pytest.approx(10e6, rel=1e-9)
 
 
 def test_no_contact_without_a_film_at_its_bound(tmp_path):

@@ -1,13 +1,14 @@
 """Involute geometry, load sharing and losses of spur gears against published figures and closed forms."""
 
 import math
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
 from support import is_line_with
 
-from ehlpetsc.analysis.gear_run import FlankDamage
+from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
 from ehlpetsc.case.loading import load
 from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.gears import GearPair, path_of_contact
@@ -248,6 +249,12 @@ def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsy
     assert rows[0, 0] == 0.0 and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1] > 0).all()
     assert main(["no.toml"]) == 2
     assert is_line_with(capsys.readouterr().err, "no.toml: ", "No such file")
+
+
+def test_scalars_are_averaged_over_a_fiftieth_of_the_path():
+    k = np.arange(301.0)
+    found = GearRun.averaged(SimpleNamespace(rho=k), k**2)[3:-3]  # over three steps either side
+    np.testing.assert_allclose(found, k[3:-3] ** 2 + 4.0)
 
 
 def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):

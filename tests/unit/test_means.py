@@ -124,6 +124,7 @@ def test_filling_time_follows_distance_under_changing_speeds(tmp_path):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     with read_result(path) as result:
         begin = filled_from(result)
+        np.testing.assert_allclose(travelled(result), 1.12 * 50.0 * result.steps("time"))
     with h5py.File(path, "r+", libver="latest") as file:
         time = file["steps/time"][:]
         for number, factor in ((1, 1.12), (2, 0.88)):  # 100 m/s for 10 us, then 50 m/s
