@@ -127,8 +127,8 @@ def solve(
     1.00 p0 on 1001 nodes
     """
     need_solver()
-    from ehlpetsc.run.progress import ProgressOutput, in_notebook, on_terminal
-    from ehlpetsc.run.recorder import Recorder
+    from ehlpetsc.run.outputs.progress import ProgressOutput, in_notebook, on_terminal
+    from ehlpetsc.run.outputs.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import place_of_stop
     from ehlpetsc.run.solve import solve as write_states

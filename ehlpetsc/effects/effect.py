@@ -4,7 +4,7 @@ The state of a run contains one record of each effect, a NamedTuple of arrays, n
 The record is saved in restart files by its field names; only the effect reads it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple, get_type_hints
 
@@ -28,6 +28,16 @@ class Scene:
     scales: object
     operation: object
     positions: object
+
+    @classmethod
+    def of_pass(cls, case: Any, scales: Any, operation: Any, number: int) -> "Scene":
+        """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
+        from ehlpetsc.surfaces.roughness import SurfacePositions
+
+        offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
+        shift = (number - 1) * case.time.pass_shift if case.time else 0.0
+        positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(offset_1, offset_2 + shift))
+        return cls(case, scales, operation, positions)
 
     @cached_property
     def roughness(self):

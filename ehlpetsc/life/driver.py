@@ -159,15 +159,15 @@ class _Life:
     def __init__(
         self, case: Case, path: Path, comm: MPI.Comm, history: LifeHistory, show: Callable, unresolved: bool
     ) -> None:
+        from ehlpetsc.effects.effect import Scene
         from ehlpetsc.life.rounds import Ranks
         from ehlpetsc.physics import operation_of
         from ehlpetsc.physics.scales import Scales
-        from ehlpetsc.run.scene import scene_of
 
         self.case, self.path, self.comm, self.history, self.show = case, path, comm, history, show
         self.scales = Scales.of(case)
         operation = operation_of(case, self.scales)
-        scene = partial(scene_of, case, self.scales, operation)
+        scene = partial(Scene.of_pass, case, self.scales, operation)
         self.positions = Positions(case, self.scales, lambda position: scene(position + 1))
         self.jumps = Jumps(case.life, self.positions.rq)
         self.ranks, self.file = Ranks(comm, self.positions.count), LifeFile(path)

@@ -14,7 +14,7 @@ from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, Task, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField

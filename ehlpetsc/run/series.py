@@ -26,7 +26,7 @@ from ehlpetsc.results.output_guard import OVERWRITE_ADVICE
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.run.forecast import steps
-from ehlpetsc.run.progress import summary_line
+from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run

@@ -13,6 +13,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
+from ehlpetsc.effects.effect import Scene
 from ehlpetsc.errors import CaseError, NotConverged, Stopped
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.newton import NewtonSolver
@@ -23,7 +24,6 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts
-from ehlpetsc.run.scene import scene_of
 from ehlpetsc.run.warnings import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.state import State
@@ -117,7 +117,7 @@ class Simulation:
         self.pass_number = check_pass(self, after, pass_number)
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
-        self.scene = scene_of(case, self.scales, self.operation, self.pass_number)
+        self.scene = Scene.of_pass(case, self.scales, self.operation, self.pass_number)
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
         self.state = self.solution = None

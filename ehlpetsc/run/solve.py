@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.results.means import Totals, means
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.progress import ProgressOutput, summary_line
-from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
+from ehlpetsc.run.outputs.recorder import Recorder
 
 if TYPE_CHECKING:
     from ehlpetsc.nonlinear.options import RunOptions

@@ -16,8 +16,8 @@ from ehlpetsc.errors import CaseError, ExitStatus, OutputError
 from ehlpetsc.post.passes import note_damage
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.passes import Passes
-from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 
 CASE = CASES / "running_in.toml"

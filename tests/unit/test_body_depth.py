@@ -5,12 +5,11 @@ import pytest
 from support import CASES
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.effects.effect import Step
+from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation, PlasticRecord
 from ehlpetsc.effects.wear import Wear, WearRecord
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.scene import scene_of
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 PASS, SHIFT = 4, 50e-6  # m
@@ -22,7 +21,7 @@ def made(kind, *keys):
     """The effect in pass `PASS`, and a record of pits 40 nm deep all over both bodies."""
     case = load(CASES / "running_in.toml", [*KEYS, *keys])
     scales = Scales.of(case)
-    effect = kind(scene_of(case, scales, operation_of(case, scales), PASS))
+    effect = kind(Scene.of_pass(case, scales, operation_of(case, scales), PASS))
     zero, reach = BodyFields.zero(scales.dx), 6.0 * scales.a
     faces = np.arange(-reach, reach, 0.25 * scales.dx)
     pits = 40e-9 * (np.arange(len(faces) - 1) % 12 < 5)

@@ -17,7 +17,7 @@ from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.run import checkpoint
+from ehlpetsc.run.outputs import checkpoint
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 from ehlpetsc.surfaces.roughness import SurfacePositions

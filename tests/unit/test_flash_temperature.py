@@ -5,7 +5,7 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.limits import limits
+from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.warnings import heat_warnings
 
 TOTALS = {"p_max": 1e9, "oil_pressure": 1e9, "mass_error": 0.0, "nodes_below_1nm": 0}

@@ -7,7 +7,7 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.limits import limits
+from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.surfaces.roughness import Roughness
 
 WITHIN = {

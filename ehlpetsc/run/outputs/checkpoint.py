@@ -13,7 +13,6 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.errors import OutputError
-from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.roughness import SurfacePositions
@@ -233,6 +232,8 @@ def rescale(arrays: dict[str, np.ndarray], attributes: dict[str, Any], scales: S
     Earlier masses per area do not apply to the new contact: the next step is a step of backward Euler from
     the mass of the converted state, without earlier levels.
     """
+    from ehlpetsc.physics.exact_solutions import hertz_gap
+
     old = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
     new = np.array([scales.a, scales.p0, scales.h])
     if (np.abs(old - new) <= SCALE_TOLERANCE * new).all():

@@ -22,8 +22,8 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter
-from ehlpetsc.run.checkpoint import Checkpoint, advice_on_resuming, load, save
-from ehlpetsc.run.limits import limits
+from ehlpetsc.run.outputs.checkpoint import Checkpoint, advice_on_resuming, load, save
+from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.stepping.time_stepping import on_level
 

@@ -1,0 +1,1 @@
+"""Outputs of a run, which receive every accepted state on every rank: see `ehlpetsc.run.solve.Output`."""
