@@ -64,6 +64,7 @@ def test_result_has_the_fixed_names(result, scene, capsys):
         for name in ("damage/2", "damage/1", "damage/2_cycles", "damage/1_peak_range"):
             assert file[name].shape == (3, ns)
         assert list(file["damage/z_over_a"]) == [0.0, 0.05, 0.5]
+        assert file.attrs["slide_roll_ratio"] == pytest.approx(0.5)
         peaks = file["asperities/2_s"].size
         assert peaks == file["asperities/2_height"].size > 9
         assert file["asperities/2_damage"].shape == (3, peaks)
