@@ -1,6 +1,5 @@
 """Programs of the paper's figures: collisions, entrapment and contacts are found where they were put."""
 
-import json
 import sys
 from types import SimpleNamespace
 
@@ -130,15 +129,6 @@ def test_no_contact_without_a_film_at_its_bound(tmp_path):
     assert not in_contact(result, slice(0, len(result.time))).any()
 
 
-def test_collision_report_of_a_series(tmp_path, series, capsys):
-    index = {"members": [{"file": result.path.name} for result in series] + [{"file": "missing.h5"}]}
-    (tmp_path / "s.series.json").write_text(json.dumps(index))
-    collisions.main([str(tmp_path / "s.series.json")])
-    text = capsys.readouterr().out
-    assert "2 collisions in 4 members, fluid.viscosity = 0.01, 0.008, 0.006, 0.004" in text
-    assert "1 contact points" in text and "..xx" in text and "extrapolate to: 1\n" in text
-
-
 @pytest.mark.parametrize(
     "film, jumps",
     [
@@ -164,16 +154,6 @@ def test_collision_picture_shows_every_member_with_its_contacts(series):
             view = np.isin(result.x, x * A)
             assert len(line.get_markevery()) == result.frame("in_contact", frame)[view].sum()
     assert upper.lines[-1].get_markevery()
-
-
-def test_contact_point_picture_shows_film_and_pressure_over_viscosity(series):
-    values, points = [0.010, 0.008, 0.006, 0.004], collisions.breakdowns(collisions.find(series))
-    upper, lower = collisions.draw_points(values, "fluid.viscosity", points, A).axes
-    (point,) = points
-    np.testing.assert_allclose(upper.lines[0].get_ydata(), 1e6 * np.array(point.film))
-    np.testing.assert_allclose(lower.lines[0].get_ydata(), 1e-9 * np.array(point.pressure))
-    (marked,) = [line for line in lower.lines if line.get_marker() == "v"]
-    np.testing.assert_allclose(marked.get_xdata(), [0.006, 0.004])
 
 
 def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):

@@ -4,7 +4,7 @@ import pytest
 from support import is_line_with
 
 from ehlpetsc.__main__ import main
-from ehlpetsc.errors import ExitStatus, not_written
+from ehlpetsc.errors import ExitStatus
 
 
 def message_of(name, words, capsys):
@@ -38,15 +38,3 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
 def test_command_line_fault_is_named(name, words, what, capsys):
     message = message_of(name, words, capsys)
     assert is_line_with(message, f"ehlpetsc {name}: ", *what, f"; ehlpetsc {name} -h")
-
-
-def test_failed_write_names_its_file():
-    full = "No space left on device"
-    for fault, name, reason in (
-        (OSError(28, full, "a.png"), None, full),
-        (OSError(28, full), "a.h5", full),
-        (OSError("no room"), "a.h5", "no room"),
-    ):
-        message = not_written(fault, name)
-        assert message.startswith(f"{name or 'a.png'}: ") and message.endswith(f", {reason}")
-    assert not_written(OSError("no room")) == "no room"

@@ -1,7 +1,6 @@
 """Profiles of many more points than a mesh can tell apart: they are thinned first."""
 
 import os
-import re
 import subprocess
 import sys
 
@@ -9,10 +8,6 @@ import numpy as np
 import pytest
 from support import ROOT
 
-from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError
-from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.warnings import warnings
 from ehlpetsc.surfaces import filters
 from ehlpetsc.surfaces.filters import MAX_POINTS_PER_CELL, MIN_THINNED_POINTS, thinned
 from ehlpetsc.surfaces.profile import Profile
@@ -129,29 +124,3 @@ def test_profile_of_a_million_points_runs(tmp_path):
     assert " 1000000 points, thinned" in done.stdout
     assert peak < 600_000  # kB
     assert user < 30.0  # s
-
-
-def test_unlevelled_profile_is_a_warning(tmp_path):
-    X, z = waves(4001, 4e-3, [1e-4])
-    for slope, level, n_warnings in ((5e-6, False, True), (5e-6, True, False), (1e-8, False, False)):
-        (tmp_path / "p.csv").write_text(
-            "".join(f"{x:.9e},{h + slope * x / 4e-3:.9e}\n" for x, h in zip(X, z, strict=True))
-        )
-        text = (ROOT / "cases" / "table1_rough.toml").read_text()
-        (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", "p.csv"))
-        case = load(tmp_path / "c.toml", {"surface.1.level": level, "surface.2": None})
-        lines = [line for line in warnings(case, Scales.of(case)) if "straight line" in line]
-        assert len(lines) == n_warnings
-        if n_warnings:
-            assert lines[0].startswith("surface.1: 100 % of") or "99 %" in lines[0]
-            assert "5 um over 4 mm" in lines[0] and "level = true" in lines[0]
-
-
-@pytest.mark.parametrize("name", ["mine.png", "mine.toml", "r.h5"])
-def test_foreign_file_is_no_profile(tmp_path, name):
-    (tmp_path / name).write_bytes(b"\x89PNG")
-    text = (ROOT / "cases" / "table1_rough.toml").read_text()
-    (tmp_path / "c.toml").write_text(text.replace("profiles/alicona_meander_profile.csv", name))
-    with pytest.raises(CaseError, match=rf'surface\.1\.file = "{re.escape(name)}": ') as refused:
-        load(tmp_path / "c.toml", {"surface.1.unit": "um"})
-    assert "unit:" not in str(refused.value)

@@ -1,9 +1,6 @@
 """Files made from results: what lies in their place, and a disk that is full."""
 
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from support import ROOT, is_line_with
@@ -11,10 +8,8 @@ from support.made_results import make_result
 from test_output import file_size_limit
 
 from ehlpetsc.analysis import ensemble
-from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.atomic_write import replacing
-from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.restart_file import save_restart
 
 CASE = ROOT / "cases" / "dry_hertz.toml"
@@ -47,15 +42,6 @@ def test_ensemble_overwrites_its_own_tables_only(tmp_path, capsys, name):
     assert other.read_bytes() == before
 
 
-@pytest.mark.parametrize("ending", [".csv", ".json"])
-def test_ensemble_table_is_replaced(tmp_path, ending):
-    words = [str(make_result(tmp_path / "one.h5")), "-o", str(tmp_path / f"t{ending}")]
-    assert ensemble.main(words) == 0
-    first = Path(words[-1]).read_bytes()
-    assert ensemble.main([*words, "--seed", "2"]) == 0
-    assert Path(words[-1]).read_bytes() == first  # one run: no interval that the seed could change
-
-
 @pytest.mark.parametrize(
     "words, name",
     [
@@ -74,17 +60,6 @@ def test_picture_of_another_ending_is_refused(tmp_path, capsys, words, name):
     assert other.read_bytes() == before
 
 
-def test_picture_is_replaced(tmp_path):
-    words = [str(make_result(tmp_path / "one.h5"))]
-    assert plot(words) == 0 and plot(words) == 0
-    assert (tmp_path / "one.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_picture_name_without_a_format_is_refused(tmp_path):
-    with pytest.raises(OutputError, match=r"x\.xyz: .*-o: .* \.png, "):
-        check_derived(tmp_path / "x.xyz", (), PICTURES)
-
-
 @pytest.mark.parametrize(
     "words, name", [([], "one.png"), (["--report"], "one.html"), (["--movie"], "one.gif")]
 )
@@ -99,36 +74,6 @@ def test_full_disk_keeps_the_older_picture(tmp_path, capsys, words, name):
     assert is_line_with(message, f"{tmp_path / name}: ", "File too large")
     assert (tmp_path / name).read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["one.h5", name])
-
-
-@pytest.mark.parametrize("name", ["t.csv", "t.json"])
-def test_full_disk_keeps_the_older_table(tmp_path, capsys, name):
-    words = [str(make_result(tmp_path / "one.h5")), "-o", str(tmp_path / name)]
-    assert ensemble.main(words) == 0
-    before = (tmp_path / name).read_bytes()
-    with file_size_limit(100):
-        assert ensemble.main(words) == 2
-    assert is_line_with(capsys.readouterr().err, f"{tmp_path / name}: ", "File too large")
-    assert (tmp_path / name).read_bytes() == before
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.h5", name]
-
-
-def test_failed_movie_encoder_is_reported_in_one_line(tmp_path):
-    result = make_result(tmp_path / "one.h5", steps=3)
-    (tmp_path / "bin").mkdir()
-    encoder = tmp_path / "bin" / "ffmpeg"
-    encoder.write_text("#!/bin/sh\ncat >/dev/null\necho 'No space left on device' >&2\nexit 1\n")
-    encoder.chmod(0o755)
-    done = subprocess.run(
-        [sys.executable, "-m", "ehlpetsc", "plot", result, "--movie", "-o", tmp_path / "m.mp4"],
-        cwd=ROOT,
-        env={"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin", "HOME": str(tmp_path)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 2, done.stderr
-    assert f"{tmp_path / 'm.mp4'}: not written" in done.stderr and "Traceback" not in done.stderr
-    assert not list(tmp_path.glob("*.mp4")) and not list(tmp_path.glob(".m.mp4*"))
 
 
 def test_temporary_file_is_removed_after_an_error(tmp_path):

@@ -91,12 +91,6 @@ def test_predicted_result_size_within_ten_percent(tmp_path, overrides):
     assert file_size(c, s) == pytest.approx((tmp_path / "r.h5").stat().st_size, rel=0.1)
 
 
-def test_explain_lists_series_members():
-    lines_shown = lines("fig6.toml")
-    assert "mesh.points_per_half_width = 100, 200, 300, 400" in lines_shown[1]
-    assert lines_shown[2].startswith("All members ") and " one rank: " in lines_shown[2]
-
-
 def test_coarse_mesh_and_stationary_roughness_are_warnings():
     c = case.load(CASES / "fig6.toml")
     assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.1", "surface.2"]
@@ -135,14 +129,6 @@ def test_predicted_run_time_scales_with_machine_speed(monkeypatch):
     assert found[1] == pytest.approx(2.0 * found[0])
 
 
-def test_prediction_includes_all_passes(monkeypatch):
-    monkeypatch.setattr(forecast, "probe", lambda: 0.02)
-    one, five = (case.load(CASES / "running_in.toml", [f"time.passes={passes}"]) for passes in (1, 5))
-    times = [forecast.work_time(c, Scales.of(c), None) for c in (one, five)]
-    assert times[1] == pytest.approx(5.0 * times[0])
-    assert " 5 passes" in explain(five)
-
-
 @pytest.mark.parametrize(
     "name, overrides, ranks",
     [
@@ -158,13 +144,6 @@ def test_fine_mesh_or_series_uses_two_ranks(name, overrides, ranks, monkeypatch)
     assert worthwhile_ranks(case.load(CASES / name, overrides)) == ranks
 
 
-def test_one_contact_on_a_busy_machine_uses_one_rank(monkeypatch):
-    monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
-    monkeypatch.setattr("os.getloadavg", lambda: (1.0, 0.0, 0.0))
-    fine = case.load(CASES / "table1_rough.toml", ["mesh.points_per_half_width=2100"])
-    assert worthwhile_ranks(fine) == 1
-
-
 def test_spike_warning_gives_its_height_on_the_mesh(tmp_path):
     """A point of 3 um on a flat: the spline through it, spread over a cell of 3.4 um, is 0.9 um high."""
     x = 0.5e-6 * np.arange(2000)
@@ -176,19 +155,6 @@ def test_spike_warning_gives_its_height_on_the_mesh(tmp_path):
     area = 0.5e-6 * 3e-6 * 1.0  # of the spline, its undershoots beside the point included
     assert given == pytest.approx(3.0, rel=0.01)
     assert seen == pytest.approx(1e6 * area / 3.357e-6, rel=0.3) and seen < 0.3 * given
-
-
-def test_explained_passing_length_follows_from_travel():
-    """A body point X reaches x = -a after 1.5 a + X of its own travel and has passed x = a after 2 a more."""
-    lines_shown = starting(lines("fig1.toml"), "Surface 1")
-    c = case.load(CASES / "fig1.toml")
-    s = Scales.of(c)
-    through = (c.time.travel - 1.5 - 2.0) * s.a
-    assert f"of 1.712 mm x = 0 to {1e3 * through:.3g} mm " in lines_shown[2]
-    needed = int(lines_shown[2].rpartition("time.travel = ")[2].split()[0])
-    assert needed - 1 < 3.5 + 1.712e-3 / s.a <= needed
-    whole = lines("fig1.toml", f"time.travel={needed}")
-    assert any(line.startswith("Surface 1: ") and "reflection" in line for line in whole)
 
 
 @pytest.mark.parametrize(
@@ -247,20 +213,6 @@ def test_mesh_within_ten_percent_has_no_warning():
     needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
     c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
     assert not any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c)))
-
-
-def test_explain_describes_each_surface():
-    lines_shown = starting(lines("fig7.toml"), "Surface 2")
-    assert lines_shown[0].endswith("Rsk 0.080")
-    assert lines_shown[1] == "Surface 2: 1.712 mm long, 3425 points 0.5 um apart"
-    assert "reflection" in lines_shown[2] and " 18.28 mm " in lines_shown[2]
-    assert " travel 1.93 a " in lines_shown[3] and lines_shown[3].endswith(" 4.63 a")
-    assert " -0.275 to 0.325 um; means " in lines_shown[4]
-    assert lines_shown[4].endswith(" -0.265 to 0.314 um")
-    assert not [line for line in lines("fig1.toml") if "reflection" in line]
-    ridge = starting(lines("ridge.toml"), "Surface")
-    assert ridge[0] == "Surface 1: smooth"
-    assert " travel 1.67 a " in ridge[2] and ridge[2].endswith(" x = 0 at 3.73 a")
 
 
 @pytest.mark.parametrize(

@@ -252,18 +252,6 @@ def test_strain_rule_applies_on_planes():
     assert neuber < direct / 10
 
 
-def test_faults():
-    with pytest.raises(ValueError, match="criterion"):
-        critical_plane(NONE, NONE, WAVE, STEEL, "tresca")
-    with pytest.raises(ValueError, match="residue"):
-        critical_plane(NONE, NONE, WAVE, STEEL, residue="open")
-    with pytest.raises(ValueError, match="finite"):
-        dang_van(NONE, NONE, WAVE * np.nan, 0.3)
-    for fault in ({"torsion_limit": 1e8}, {"yield_strength": 0.0}, {"normal_sensitivity": -1.0}):
-        with pytest.raises(ValueError, match=next(iter(fault))):
-            Criteria(**fault)
-
-
 def test_blocks_keep_their_shape():
     parts = np.array([contact_like(k) for k in range(4)]).transpose(1, 0, 2).reshape(3, 2, 2, -1)
     found = critical_plane(*parts, STEEL)

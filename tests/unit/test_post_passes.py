@@ -4,11 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from support import refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.errors import ExitStatus, PostError
-from ehlpetsc.post import command, largest_near, pass_statistics
+from ehlpetsc.post import largest_near, pass_statistics
 from ehlpetsc.post.command import main
 from ehlpetsc.post.passes import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
@@ -29,15 +28,6 @@ def test_miners_sum_reaches_one_after_the_expected_passes():
     known = pass_statistics(damages[:, None])
     drawn = np.cumsum(rng.choice(damages, 20000))
     assert np.searchsorted(drawn, 1.0) == pytest.approx(known.life[0], rel=0.1)
-
-
-def test_no_pass_gives_nan_and_bad_passes_are_refused():
-    assert np.isnan(pass_statistics([[np.nan]]).mean).all()
-    with pytest.raises(ValueError, match="negative"):
-        pass_statistics([-1.0])
-    for none in ([], 3.0):
-        with pytest.raises(ValueError, match="one pass"):
-            pass_statistics(none)
 
 
 def test_largest_damage_near_a_peak():
@@ -91,13 +81,6 @@ def test_damage_of_another_case_is_not_that_of_a_pass(index):
         assert damage_beside(result) is None
 
 
-def test_foreign_json_is_no_pass_index(tmp_path, capsys):
-    bad = tmp_path / "run.passes.json"
-    for text, words in (("{", "not the index"), ('{"passes": [{}]}', "not the index")):
-        bad.write_text(text)
-        assert words in refused(capsys, main, bad)
-
-
 @pytest.mark.parametrize("shift", [7.0, 7.4], ids=["whole spacings", "between points"])
 def test_shifted_passes_are_aligned(shift, tmp_path):
     """Surface 2 enters further on in the second pass: the same points lie elsewhere in s."""
@@ -125,8 +108,3 @@ def test_shifted_passes_are_aligned(shift, tmp_path):
         write(paths[1], scenes[1], depths=(0.1,), edit=edit)
         assert main([paths[1], "--overwrite"]) == ExitStatus.DONE
         same_points([results[0], PostResult(tmp_path / "1.post.h5")], "1")
-
-
-def test_pass_line_with_heat_has_flash_temperatures():
-    known = {"2": {"largest": [0.1, 0.3], "median": [0.0, 0.0], "flash_temperature": 123.44}}
-    assert " ".join(command._pass_figures(known)) == "2 D_max=3.000e-01 flash_max=123.4 K"

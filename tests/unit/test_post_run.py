@@ -5,7 +5,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 
 import h5py
 import numpy as np
@@ -161,14 +160,6 @@ def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
     with h5py.File(tmp_path / "a.post.h5") as file:
         assert np.isnan(file["damage/2"]).all() and np.isfinite(file["damage/1"]).any()
         assert file.attrs["surface"] == "1"
-
-
-@pytest.mark.slow
-def test_smooth_surfaces(scene, tmp_path, capsys):
-    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface"))
-    assert main([str(path), "--pictures"]) == 0
-    with h5py.File(tmp_path / "a.post.h5") as file:
-        assert file["asperities/2_damage"].shape == (3, 0) and np.isnan(file["weibull/2_beta"]).all()
 
 
 @pytest.mark.slow
@@ -329,14 +320,6 @@ def test_depth_of_the_largest_von_mises_stress_is_marked(result):
     assert 0 < z < 1.0 and abs(x) < 1.0 and f"{1e6 * z * found.a:.3g} µm deep" in axes.get_title("left")
 
 
-def test_smooth_surface_has_no_profile_panel(scene, tmp_path):
-    path = write(tmp_path / "a.h5", scene, edit=lambda file: file.__delitem__("surface/2"))
-    run(Job(str(path), str(tmp_path / "o.h5")))
-    found = PostResult(tmp_path / "o.h5")
-    counts = [len(gallery.damage_picture(found, side).axes) for side in ("2", "1")]
-    assert counts == [2, 3]  # with the scale of colours
-
-
 def test_cycles_without_damage_are_not_drawn():
     axes = Figure().subplots()
     cycles = np.array([[2.0, 0, 1, 0, 1], [1.0, 0, 1, 0, 1], [1e-3, 0, 1, 0, 1]])
@@ -372,54 +355,12 @@ def test_bad_file_does_not_stop_the_others(result, tmp_path, capsys):
     assert result.with_name("run.post.h5").exists()
 
 
-def test_damaged_result_is_refused_in_one_line(result, capsys):
-    with h5py.File(result, "r+") as file:
-        del file["time"]
-    assert is_line_with(refused(capsys, main, result), f"{result}: ", "time")
-
-
-def test_command_prints_figures_of_criteria_surface_1_first(result, capsys):
-    words = [str(result), "--depths", "0.5", "--criterion", "dang-van", "fatemi-socie"]
-    assert main(words) == 0
-    line = capsys.readouterr().out.splitlines()[0]
-    found = PostResult(result.with_name("run.post.h5"))
-    expected = [
-        f"{side}: D_max={found.largest(side, 0):.3e} "
-        f"fatemi-socie={np.nanmax(found.criteria['fatemi-socie'][side]):.3g} "
-        f"dang-van={np.nanmax(found.criteria['dang-van'][side]):.3g}"
-        for side in ("1", "2")
-    ]
-    assert " ".join(expected) in line
-
-
 def test_few_asperities_have_no_weibull_fit(tmp_path, capsys):
     path = write(tmp_path / "a.h5", Scene(per_width=20, ratio=0.5, travel=4.6), depths=(0.5,))
     assert main([str(path), "--surface", "1"]) == 0
     output, found = capsys.readouterr(), PostResult(tmp_path / "a.post.h5")
     assert 1 < found.height.size < 10 and np.isnan(found.fits[0].beta)
     assert f"note: {found.height.size} asperities " in output.err and "weibull" not in output.out
-
-
-def test_no_process_outlives_a_killed_post(result, tmp_path):
-    """The work is in the command's own process: a forked worker went on for an hour after its parent."""
-    code = f"""
-import os, time
-from ehlpetsc.post import command
-def work(job, *_):
-    open({str(tmp_path / "pid")!r}, "w").write(f"{{os.getpid()}};")
-    time.sleep(60)
-command.run = work
-command.main([{str(result)!r}])
-"""
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT)
-    pid = tmp_path / "pid"
-    while not (pid.exists() and pid.read_text().endswith(";")):
-        assert process.poll() is None
-        time.sleep(0.01)
-    process.kill()
-    process.wait()
-    with pytest.raises(ProcessLookupError):
-        os.kill(int(pid.read_text().rstrip(";")), 0)
 
 
 def test_interrupted_post_writes_nothing(result, tmp_path, monkeypatch, capsys):

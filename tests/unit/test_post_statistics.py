@@ -40,13 +40,6 @@ def test_too_few_values():
         assert np.isnan(weibull_fit(values)).all()
 
 
-def test_faults():
-    with pytest.raises(ValueError, match="nan"):
-        weibull_fit([1.0, np.nan])
-    with pytest.raises(ValueError, match="nan"):
-        weibull_bounds([1.0, np.nan])
-
-
 def test_exceedance_and_its_fit_agree():
     values = 7.0 * (-np.log1p(-benard_ranks(25))) ** (1 / 9.0)
     damages = 10.0**-values
@@ -69,12 +62,6 @@ def test_peaks_of_the_profile_that_passed():
     assert peaks.s == pytest.approx(np.arange(0.225e-3, 0.8e-3, 1e-4), abs=3e-6)
     assert peaks.height == pytest.approx(np.full(6, 1e-6), abs=3e-9)
     assert np.abs(grid[peaks.point] - peaks.s).max() <= 1e-6 + 1e-15
-
-
-def test_smooth_surface_has_no_asperities():
-    assert asperities(None, np.arange(3.0), np.ones(3, bool)).s.size == 0
-    flat = np.linspace(0, 1, 50), np.zeros(50)
-    assert asperities(flat, np.linspace(0, 1, 9), np.ones(9, bool)).s.size == 0
 
 
 def sample(n, seed, alpha=7.0, beta=9.0):

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from ehlpetsc.post import out_of_plane, stress, von_mises
-from ehlpetsc.post.stresses.half_plane import StressField, hat, point_kernels
+from ehlpetsc.post.stresses.half_plane import hat, point_kernels
 
 
 def hertz(per_width, traction=0.0, z=0.5):
@@ -213,8 +213,3 @@ def test_faults_are_named(change, text):
     given = {"x": [0.0, 1.0, 2.0], "z": 0.1, "pressure": [0.0, 1.0, 0.0], "shear": None, "poisson_ratio": 0.3}
     with pytest.raises(ValueError, match=text):
         stress(**(given | change))
-
-
-def test_depths_of_an_operator_must_be_finite():
-    with pytest.raises(ValueError, match="finite"):
-        StressField(10, 1.0, [np.nan])

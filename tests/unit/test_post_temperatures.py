@@ -1,6 +1,5 @@
 """Surface temperatures of body points from stored temperatures of known form."""
 
-import h5py
 import numpy as np
 import pytest
 from support.made_loads import A, Scene, write
@@ -73,23 +72,6 @@ def test_highest_mean_and_flash_temperature(scene, result, tmp_path, capsys):
         assert f"surface {side} temperature: highest={bulk + 112:.4g}"[:-1] in output.out
         assert found.summary()[side]["flash_temperature"] == pytest.approx(112.0, rel=2e-3)
     assert output.err.count("note: thermal stresses") == 1
-
-
-def test_units_and_names_are_stored(result, tmp_path):
-    main([str(result())])
-    with h5py.File(tmp_path / "run.post.h5") as file:
-        for dataset in file["temperature"].values():
-            assert dataset.attrs["units"] == "K" and "temperature" in dataset.attrs["long_name"]
-            assert dataset.dims[0]["s"] == file["damage/s"]
-
-
-def test_isothermal_result_has_no_temperatures(scene, tmp_path, capsys):
-    """Nor where a file holds temperatures of a case that has none."""
-    path = write(tmp_path / "run.h5", scene, depths=(0.0,), edit=heated(scene))
-    assert main([str(path)]) == 0
-    output = capsys.readouterr()
-    assert "emperature" not in output.out and "hermal" not in output.err.replace(str(tmp_path), "")
-    assert PostResult(tmp_path / "run.post.h5").temperatures == {}
 
 
 def test_missing_temperature_is_named(result, tmp_path, capsys):

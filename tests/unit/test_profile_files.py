@@ -1,7 +1,6 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
 import random
-import re
 import sys
 
 import numpy as np
@@ -11,7 +10,7 @@ from support import CASES
 from ehlpetsc.case import loading as case
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.surfaces import text_columns
-from ehlpetsc.surfaces.plausibility import absurd, likely_unit
+from ehlpetsc.surfaces.plausibility import absurd
 from ehlpetsc.surfaces.profile_files import Layout, read_profile
 from ehlpetsc.surfaces.samples import Samples
 
@@ -202,22 +201,6 @@ def test_flat_profile_is_plausible_and_sub_atomic_roughness_is_not(rq, message):
     assert fault is None if message is None else message in fault
 
 
-@pytest.mark.parametrize("rq, unit", [(19.5e-3, "mm"), (20.5e-3, "um")])
-def test_suggested_unit_gives_plausible_roughness(rq, unit):
-    """Rq of 20 um at most."""
-    z = rq * np.where(np.arange(200) % 2, 1.0, -1.0)
-    given = Samples(0.01 * np.arange(200), z, repeats=False)
-    assert likely_unit(given, Layout(), 1.0) == f'unit = "{unit}"'
-
-
-def test_suggested_unit_is_accepted(tmp_path):
-    path = measured(tmp_path, 1e3, 1e6)
-    case.load(path, ["surface.2.unit='um'", "surface.2.x_unit='mm'"])
-    case.load(measured(tmp_path))
-    with pytest.raises(CaseError, match='unit = "feet": .*"m", "mm", "um", "nm"'):
-        case.load(path, ["surface.2.unit='feet'"])
-
-
 def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
     path = tmp_path / "p.x3p"
@@ -246,37 +229,6 @@ def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
     x, z, _ = read_profile(path)
     np.testing.assert_allclose(x, np.arange(6) * 1e-6)
     np.testing.assert_allclose(z, 0.1 * x + 1e-6)  # the middle one of three traces
-
-
-@pytest.mark.parametrize(
-    ("error", "message"),
-    [("no unit", "no unit"), ("tried A:\nno\ntried B:\nno", "formats")],
-)
-def test_surface_topography_errors_are_one_line(tmp_path, monkeypatch, error, message):
-    def read_topography(path):
-        raise RuntimeError(error)
-
-    package = type(sys)("SurfaceTopography")
-    package.read_topography = read_topography
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
-    path = tmp_path / "p.x3p"
-    path.write_bytes(b"PK nonsense")
-    with pytest.raises(ProfileError) as caught:
-        read_profile(path)
-    assert re.search(f"^SurfaceTopography .*: .*{message}$", str(caught.value))
-
-
-def test_failing_package_import_is_one_line(tmp_path, monkeypatch):
-    package = tmp_path / "SurfaceTopography"
-    package.mkdir()
-    (package / "__init__.py").write_text("import numpy\nnumpy.no_such_thing\n")
-    monkeypatch.syspath_prepend(str(tmp_path))
-    monkeypatch.delitem(sys.modules, "SurfaceTopography", raising=False)
-    path = tmp_path / "p.x3p"
-    path.write_bytes(b"PK")
-    with pytest.raises(ProfileError, match="SurfaceTopography .*'numpy' .*'no_such_thing'") as caught:
-        read_profile(path)
-    assert "\n" not in str(caught.value)
 
 
 DIGITS = "0123456789 \t\n.,;eE+-"

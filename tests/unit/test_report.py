@@ -2,8 +2,6 @@
 
 import io
 import re
-import sys
-import types
 
 import pytest
 
@@ -48,16 +46,6 @@ def test_progress_lines_are_few_with_fixed_columns(clock):
     assert lines[-1].split()[::7] == ["100", "0s"]
 
 
-def test_no_remaining_time_before_the_second_step(clock):
-    """The first step includes 3 s of compiling, the next take 10 ms: neither gives the rate."""
-    progress = report.Progress(0.0, 1.0, stream := io.StringIO())
-    for step in range(1, 601):
-        clock.append(clock[-1] + (3.0 if step == 1 else 0.01))
-        progress.step(SCALARS | {"step": step, "time": step * 1e-3})
-    remaining = [line.split()[-1] for line in stream.getvalue().splitlines()[1:]]
-    assert remaining == ["?", "5s"]  # of the latter 4.99 s
-
-
 def test_remaining_time_follows_the_recent_rate(clock):
     """Smooth steps of 10 ms, then rough ones of 100 ms: at half of the run 50 s are left, not 27 s."""
     progress = report.Progress(0.0, 1.0, stream := io.StringIO())
@@ -72,16 +60,6 @@ def test_remaining_time_follows_the_recent_rate(clock):
 def test_quick_run_shows_first_and_last_step(clock):
     steps = [line.split()[0] for line in run(io.StringIO(), clock, seconds_a_step=1e-3).splitlines()[1:]]
     assert steps == ["1", "100"]
-
-
-def test_single_step_is_shown_once(clock):
-    assert len(run(io.StringIO(), clock, 1.0, steps=1).splitlines()) == 2
-
-
-def test_no_progress_line_without_steps():
-    stream = io.StringIO()
-    report.Progress(0.0, 1.0, stream).close()
-    assert stream.getvalue() == ""
 
 
 def test_progress_bar_stays_on_one_line(clock, monkeypatch):
@@ -106,14 +84,6 @@ def test_progress_bar_under_mpirun_needs_a_terminal(monkeypatch, where, watched)
     monkeypatch.setattr(report.os, "readlink", lambda path: where)
     assert report.on_terminal(Terminal()) is watched
     assert not report.on_terminal(io.StringIO())
-
-
-def test_progress_bar_fits_a_narrow_terminal(clock, monkeypatch):
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.delenv("OMPI_COMM_WORLD_RANK", raising=False)
-    monkeypatch.setenv("COLUMNS", "40")
-    bars = run(Terminal(), clock, 1.0, steps=3).strip().split("\r")
-    assert all(len(bar.removesuffix("\x1b[K")) < 40 for bar in bars)
 
 
 def test_progress_of_a_restarted_run_counts_from_its_restart(clock):
@@ -165,33 +135,3 @@ def test_summary_line_is_parsable():
         mean_gap_ratio=1.5,
         wall=12.3,
     )
-
-
-def test_notebook_replaces_its_progress_bar(monkeypatch):
-    """A carriage return would leave a line for each update in an executed notebook."""
-    shown = []
-
-    class Handle:
-        def update(self, data, raw):
-            shown[-1] = data["text/plain"]
-
-    def display(data, raw, display_id):
-        shown.append(data["text/plain"])
-        return Handle()
-
-    shell = type("ZMQInteractiveShell", (), {})()
-    ipython = types.ModuleType("IPython")
-    ipython.get_ipython = lambda: shell
-    ipython.display = types.ModuleType("IPython.display")
-    ipython.display.display = display
-    monkeypatch.setitem(sys.modules, "IPython", ipython)
-    monkeypatch.setitem(sys.modules, "IPython.display", ipython.display)
-    monkeypatch.setattr(report, "SECONDS_BETWEEN_BARS", 0.0)
-    stream = io.StringIO()
-    progress = report.Progress(0.0, 1.0, stream)
-    for time in (0.1, 0.5, 1.0):
-        progress.step({"step": 1, "time": time, "h_min": 1e-7, "p_max": 1e9, "contacts": 0})
-    progress.close()
-    assert stream.getvalue() == ""
-    (bar,) = shown
-    assert "100.0 %" in bar

@@ -11,7 +11,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
-from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.filters import high_pass, low_pass
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings, spikes
 from ehlpetsc.surfaces.profile_files import read_profile
@@ -75,14 +75,6 @@ def test_film_of_a_rough_start_is_that_of_an_entered_profile():
     assert filled_from(filled) == 0.0 < filled_from(entered)
 
 
-def test_levelling_removes_a_line_only():
-    x = np.linspace(0, 1e-3, 401)
-    wave = 1e-7 * np.cos(2 * np.pi * x / 1e-4)
-    flat = levelled(x, wave + 2e-6 + 1e-3 * x)
-    assert np.polyfit(x / x[-1], flat, 1) == pytest.approx([0, 0], abs=1e-13 * 2e-6)  # rounding of the 2 um
-    assert np.abs(flat - wave).max() < 0.02e-7
-
-
 @pytest.mark.parametrize(("ratio", "left"), [(1.0, 0.5), (0.5, 1 - 2.0**-4), (4.0, 1 - 2.0 ** (-1 / 16))])
 def test_the_gaussian_filter_has_the_transmission_of_iso_16610_21(ratio, left):
     # of the amplitude at wavelength ratio x cut-off, 1 - 2^-(1/ratio^2) passes the high-pass
@@ -100,22 +92,6 @@ def test_the_short_cutoff_has_the_transmission_of_iso_16610_21(cutoff, ratio, le
     x = np.arange(2401) * 0.1e-6
     wave = np.cos(2 * np.pi * x / (ratio * cutoff))  # mirrored at both ends it goes on as a wave
     np.testing.assert_allclose(low_pass(x, wave, cutoff), left * wave, atol=1e-12)
-
-
-def test_long_and_short_filters_are_complementary():
-    x = np.arange(500) * 1e-6
-    z = np.random.default_rng(1).standard_normal(500)
-    np.testing.assert_allclose(high_pass(x, z, 30e-6) + low_pass(x, z, 30e-6), z, atol=1e-14)
-
-
-def test_short_cutoff_note_gives_ra_before_and_after():
-    base, _ = rough("table1_rough.toml")
-    smoothed, _ = rough("table1_rough.toml", "surface.1.short_cutoff=10e-6")
-    (note,) = smoothed.surface_1.given.notes
-    before, after = (1e6 * one.surface_1.ra for one in (base, smoothed))
-    assert note == f"short_cutoff: Ra {before:.4f} um before, {after:.4f} um after"
-    assert 0.5 * base.surface_1.ra < smoothed.surface_1.ra < 0.98 * base.surface_1.ra
-    assert base.surface_1.given.notes == ()
 
 
 def test_invalid_filter_input_is_refused():

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import os
 import subprocess
 import sys
 
@@ -16,13 +15,6 @@ from ehlpetsc.__main__ import COMMANDS, main
 from ehlpetsc.analysis import summary
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import read_result
-
-
-def call(*words, cwd):
-    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    command = [sys.executable, "-m", "ehlpetsc", *map(str, words)]
-    env = os.environ | {"PYTHONPATH": paths}
-    return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=120)
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -62,12 +54,6 @@ def test_mistyped_command_is_one_sentence(tmp_path, monkeypatch, capfd, words, m
         (tmp_path / f"{name}.toml").touch()
     assert main(words) == 2
     assert is_line_with(capfd.readouterr().err, f"ehlpetsc: {message}")
-
-
-def test_package_is_importable_from_any_folder(tmp_path):
-    (tmp_path / "x.py").write_text("import sys, ehlpetsc; print(ehlpetsc.__version__, sys.argv[1:])")
-    done = call("python", "x.py", "a", cwd=tmp_path)
-    assert done.returncode == 0 and done.stdout.endswith("['a']\n"), done.stderr
 
 
 def test_text_goes_to_a_file_that_is_not_replaced(tmp_path, monkeypatch, capsys):
