@@ -59,7 +59,6 @@ DEAREST = (  # files of two seconds of processor time and more, longest first
     "test_ensemble",
     "test_post_histories",
     "test_collisions",
-    "test_bad_input",
     "test_compliant_runs",
     "test_order",
 )

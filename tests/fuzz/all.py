@@ -5,7 +5,6 @@ results   results, some of them cut off, changed in one bit or foreign, given to
 cases     case files with one to three mutations, loaded, explained, used up to the first solve
 passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
 python    calls from Python with arguments drawn from lists of good and bad ones
-gears     the command gears: keys of a pair, cases with mutations, outputs good and bad
 
 Counted are done, refused (status 2, with a reason), not converged (3), stopped (4), and what must not be:
 traceback, hang, signal, different (status 0 with another answer and no word), changed (an input is not as it
@@ -30,14 +29,7 @@ from ehlpetsc import environment
 
 environment.prepare()
 # calls from Python import PETSc, after which nothing may be forked
-KINDS = (
-    "cases",
-    "results",
-    "options",
-    "passes",
-    "python",
-    "gears",
-)
+KINDS = ("cases", "results", "options", "passes", "python")
 LATE = ("python",)
 
 

@@ -7,7 +7,7 @@ import subprocess
 import time
 
 import pytest
-from support import ROOT, is_line_with
+from support import ROOT
 from support.running import BARE, SCRIPT, SHORT, command, run, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
@@ -98,33 +98,6 @@ def test_signal_during_imports_prints_one_line_at_most(tmp_path, name, delay):
     assert process.returncode == 4, errors
     assert "Traceback" not in errors and "PETSC ERROR" not in errors
     assert len(errors.splitlines()) <= 1
-
-
-def test_closed_pipe_does_not_end_a_run(tmp_path):
-    process = start(*STEADY, "-snes_monitor", "-log_view", cwd=tmp_path)
-    process.stdout.close()
-    errors = process.stderr.read()
-    process.wait(60)
-    assert process.returncode == 0
-    assert errors == ""
-    with read_result(tmp_path / "table1_smooth.h5") as result:
-        assert result.attrs["status"] == "done"
-
-
-def test_removed_working_folder_is_refused(tmp_path):
-    (tmp_path / "gone").mkdir()
-    line = "rmdir ../gone && " + " ".join(map(str, command(*STEADY)))
-    done = subprocess.run(
-        ["sh", "-c", line], cwd=tmp_path / "gone", env=BARE | SCRIPT, capture_output=True, text=True
-    )
-    assert done.returncode == 2
-    assert is_line_with(done.stderr, "working folder")
-
-
-def test_missing_tmpdir_is_refused(tmp_path):
-    done = run(*STEADY, cwd=tmp_path, TMPDIR=str(tmp_path / "nowhere"))
-    assert done.returncode == 2
-    assert is_line_with(done.stderr, f"{tmp_path}/nowhere", "TMPDIR")
 
 
 def test_folder_removed_during_a_run_is_an_error(tmp_path):

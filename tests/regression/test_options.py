@@ -9,7 +9,7 @@ from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings
 
 from ehlpetsc.errors import UsageError
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.cli import OPTIONS, OWN, faults, parse
+from ehlpetsc.run.cli import OPTIONS, OWN, parse
 
 SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
 MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]
@@ -88,14 +88,6 @@ def test_options_of_the_program_have_long_names():
     assert command.petsc == [*own.split(), "-help", "--1"]
 
 
-def test_long_names_in_a_run(case, tmp_path):
-    for more in ([], ["--set", "title=edited", "--overwrite"]):
-        done = run(case, "-o", "a.h5", *more, cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
-    done = run(case, "-o", "a.h5", cwd=tmp_path)  # an edited case
-    assert done.returncode == 2 and is_line_with(done.stderr, "ehlpetsc: a.h5: ", "--overwrite")
-
-
 def test_misspelt_own_options_are_refused_together(case, tmp_path):
     done = run(case, "-ehl_outptu", "f.h5", "-ehl_gibberish", cwd=tmp_path, ranks=2)
     assert done.returncode == 2
@@ -104,15 +96,6 @@ def test_misspelt_own_options_are_refused_together(case, tmp_path):
     assert is_line_with(near, "-ehl_outptu: ", "-ehl_output?")
     assert done.stdout == ""
     assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
-
-
-def test_own_option_faults():
-    (line,) = faults([*OWN, "snes_monitor"])
-    assert is_line_with(line, "-ehl_set in an options file", "PETSC_OPTIONS")
-    (line,) = faults(["ehl-output"])
-    assert line.startswith("-ehl-output: ") and line.endswith(" -ehl_output?")
-    line = faults(["ehl_outputs", "ehloutput"])[1]
-    assert line.startswith("-ehloutput: ") and line.endswith(" -ehl_output?")
 
 
 def test_output_that_is_a_link_stays_one(case, tmp_path):
@@ -187,12 +170,6 @@ def test_bad_option_values_are_refused_in_one_line(case, tmp_path, words, messag
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_options_that_break_petsc_initialisation_are_refused(case, tmp_path):
-    done = run(case, "-help", "maybe", cwd=tmp_path)
-    assert done.returncode == 2 and "PETSc" in done.stderr and " -help maybe: " in done.stderr
-    assert "Traceback" not in done.stderr
-
-
 def test_pc_type_python_selects_the_built_in_preconditioner(case, tmp_path):
     own, message = (
         summary(run(case, *words, cwd=tmp_path).stdout)
@@ -207,19 +184,6 @@ def test_zero_pivot_of_petscs_lu_is_shifted_by_default(case, tmp_path):
     done = run(case, *words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert run(case, *words, "-pc_factor_shift_type", "none", cwd=tmp_path).returncode == 3
-
-
-def test_more_options_than_petscs_table_has_entries_are_refused(case, tmp_path):
-    with_petsc_table(case, "\n".join(f"option_{n} = 1" for n in range(520)))
-    done = run(case, cwd=tmp_path)
-    assert done.returncode == 2
-    assert is_line_with(done.stderr, "ehlpetsc: 520 options ", " 512")
-
-
-def test_snes_max_it_limits_the_steady_start(case, tmp_path):
-    done = run(case, "-snes_max_it", 3, cwd=tmp_path)
-    assert done.returncode == 3
-    assert "steady start: SNES DIVERGED_MAX_IT after 3 " in done.stderr
 
 
 def test_looser_tolerance_is_used_with_a_note(case, tmp_path):
@@ -253,19 +217,6 @@ def test_solver_without_bounds_solves_full_films_only(case, tmp_path):
     done = run(*dry, "-snes_type", "newtonls", cwd=tmp_path)
     assert done.returncode == 3
     assert "steady start: " in done.stderr
-
-
-@pytest.mark.slow
-def test_options_left_lists_user_options_only(case, tmp_path):
-    words = ["-options_left", "-ehl_output", "f.h5", "-snes_monitr", "-ksp_rtol", "1e-7"]
-    text = run(case, *words, cwd=tmp_path).stdout
-    table = text.split("#PETSc Option Table entries:\n")[1].split("#End")[0].splitlines()
-    table = [line.split(" #")[0] for line in table]  # newer releases add where an option comes from
-    assert sorted(table) == ["-ehl_output f.h5", "-ksp_rtol 1e-7", "-options_left", "-snes_monitr"]
-    assert "one unused database option" in text and "name:-snes_monitr" in text
-    poor = ["-pc_type", "jacobi", "-ksp_gmres_restart", 30, "-snes_max_it", 1]  # soon given up
-    text = run(case, "-options_left", *poor, cwd=tmp_path).stdout
-    assert "There are no unused options." in text
 
 
 def test_unused_options_are_listed_before_the_first_step(case, tmp_path):

@@ -145,17 +145,3 @@ def test_output_lock_excludes_a_second_run_and_ends_with_its_process(tmp_path):
     after = run(*CASE, "-ehl_output", "r.h5", cwd=tmp_path)
     assert after.returncode == 0, after.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
-
-
-@pytest.mark.slow
-def test_result_removed_during_a_run_is_an_error(tmp_path):
-    soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there
-    process = running(tmp_path, *soon)
-    try:
-        (tmp_path / "r.h5").unlink()
-        output, errors = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    assert process.returncode == 2
-    assert output.splitlines()[-1].startswith("ehlpetsc: bad input steps=")
-    assert "r.h5: " in errors and "removed" in errors

@@ -1,13 +1,11 @@
 """Repeated passes: files, index, restart within a pass, refused input."""
 
-import errno
 import json
 import os
 import subprocess
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 from support import CASES, is_line_with
 from support.running import BARE, SCRIPT, command, run, settings
 
@@ -17,7 +15,6 @@ from ehlpetsc.post.passes import note_damage
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.outputs.recorder import Recorder
-from ehlpetsc.run.passes import Passes
 from ehlpetsc.run.simulation import Simulation
 
 CASE = CASES / "running_in.toml"
@@ -68,20 +65,6 @@ def test_pass_index_is_locked_by_one_run(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_unwritable_pass_index_is_an_output_error(tmp_path, monkeypatch):
-    def full(path, content):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr("ehlpetsc.results.index.atomic_write", full)
-    case = load(CASE, [*SHORT, "time.travel=0.05"])
-    message = r"r\.passes\.json: .*, No space left on device; r\.pass1\.h5 "
-    with pytest.raises(OutputError, match=message):
-        Passes(MPI.COMM_SELF, case, tmp_path / "r.h5").run()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["r.pass1.h5", "r.pass1.restart.h5"]
-    with read_result(tmp_path / "r.pass1.h5") as result:
-        assert result.attrs["status"] == "done"
-
-
 def passes(case, path=None, stop=None):
     """Both passes; with `stop` the second is recorded and stopped after that step."""
     first = Simulation(case)
@@ -126,22 +109,6 @@ def test_shifted_pass_offsets_one_profile():
         at = other.s[20:-200]
         inner = at[np.abs(at - other.s[-1]) > 0.2 * shifted.scales.a]
         np.testing.assert_allclose(other.height(inner), one.height(inner - moved), atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    "value, words",
-    [
-        ("0.0", "contact.yield_pressure = 0.0: "),
-        ("nan", "contact.yield_pressure = nan: "),
-        ("[3e9, 3e9, 3e9]", "contact.yield_pressure = [3000000000.0, "),
-        ("-1e9", "contact.yield_pressure = -1000000000.0: "),
-        ('"hard"', 'contact.yield_pressure = "hard": '),
-    ],
-)
-def test_invalid_yield_pressures_are_refused(value, words):
-    with pytest.raises(CaseError) as refused:
-        load(CASE, [f"contact.yield_pressure={value}"])
-    assert is_line_with(str(refused.value), words, ">= 1e+06 ")
 
 
 def test_yield_pressure_in_direct_contact_is_refused():
@@ -204,15 +171,6 @@ def test_same_command_continues_interrupted_passes(tmp_path, uninterrupted, acci
         assert_as_uninterrupted(tmp_path, uninterrupted)
 
 
-def test_pass_killed_before_its_first_checkpoint_restarts_from_the_previous_pass(tmp_path, uninterrupted):
-    assert run(CASE, *BRIEF, cwd=tmp_path, tampered=("SIGKILL@2", 0, 3)).returncode == -9
-    with read_result(tmp_path / "running_in.pass2.h5") as begun:
-        assert begun.attrs["status"] == "running"
-    done = run(CASE, *BRIEF, "-ehl_restart", "running_in.pass1.restart.h5", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert_as_uninterrupted(tmp_path, uninterrupted)
-
-
 def copied(folder, place, *left_out):
     for path in folder.iterdir():
         if path.name not in left_out:
@@ -225,15 +183,6 @@ def test_lost_pass_index_is_rewritten(tmp_path, uninterrupted):
     assert done.returncode == 0, done.stderr
     assert "restart: running_in.pass1.restart.h5, step 24, " in done.stdout
     assert_as_uninterrupted(tmp_path, uninterrupted)
-
-
-def test_restart_file_without_its_result_is_kept(tmp_path, uninterrupted):
-    copied(uninterrupted, tmp_path, "running_in.pass2.h5")
-    before = (tmp_path / "running_in.pass2.restart.h5").read_bytes()
-    refused = run(CASE, *BRIEF, cwd=tmp_path)
-    assert refused.returncode == 2
-    assert is_line_with(refused.stderr, "running_in.pass2.restart.h5: ", "result")
-    assert (tmp_path / "running_in.pass2.restart.h5").read_bytes() == before
 
 
 def test_additional_passes_continue_from_the_last_one(tmp_path, uninterrupted):
@@ -257,14 +206,6 @@ def test_passes_killed_while_writing_the_index_are_completed(tmp_path, uninterru
     assert "pass 1 of 2" not in done.stdout
     assert_as_uninterrupted(tmp_path, uninterrupted)
     assert not [path.name for path in tmp_path.iterdir() if path.name.endswith((".lock", ".tmp"))]
-
-
-def test_passes_in_a_removed_folder_end_with_status_2(tmp_path):
-    (tmp_path / "out").mkdir()
-    lost = run(CASE, *BRIEF, "-ehl_output", "out/r.h5", cwd=tmp_path, tampered=("lost", 0, 5))
-    assert lost.returncode == 2 and "Traceback" not in lost.stderr
-    assert "out/r.pass1.h5: " in lost.stderr and "removed" in lost.stderr
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("case", [CASE, CASES / "stribeck.toml"])

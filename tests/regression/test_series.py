@@ -4,7 +4,6 @@ import json
 import re
 import shutil
 
-import h5py
 import pytest
 from support import ROOT, is_line_with
 from support.running import SHORT, run, settings, summary
@@ -113,27 +112,6 @@ def test_foreign_file_in_a_series_is_refused_and_kept(tmp_path, name, what):
     refused = series(tmp_path, ranks=0)
     assert refused.returncode == 2 and is_line_with(refused.stderr, f"{name}: ", what, "-o", "--overwrite")
     assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
-
-
-def test_foreign_hdf5_file_in_a_series_is_refused_and_kept(tmp_path):
-    place = tmp_path / "out_viscosity_0.006.h5"
-    with h5py.File(place, "w") as file:
-        file["mine"] = [1.0, 2.0]
-    before = place.read_bytes()
-    refused = series(tmp_path, ranks=0)
-    assert refused.returncode == 2 and f"{place.name}: exists " in refused.stderr
-    assert place.read_bytes() == before
-
-
-@pytest.mark.slow
-def test_damaged_member_is_recomputed(tmp_path):
-    assert series(tmp_path, ranks=0, values=VALUES[:2]).returncode == 0
-    member = tmp_path / "out_viscosity_0.006.h5"
-    sound = read_result(member).steps("h_min")
-    member.write_bytes(b"damaged" + member.read_bytes()[7:])  # also what makes it a file of HDF5
-    again = series(tmp_path, ranks=0, values=VALUES[:2])
-    assert again.returncode == 0 and "2 members, 1 of " in again.stdout
-    assert (read_result(member).steps("h_min") == sound).all()
 
 
 def test_failed_member_is_named_and_does_not_stop_the_series(tmp_path):

@@ -2,8 +2,6 @@
 
 import re
 import runpy
-import subprocess
-from pathlib import Path
 
 import pytest
 from support import ROOT
@@ -40,12 +38,6 @@ def test_theory_equations_are_numbered_consecutively():
     assert numbers == [[str(k)] for k in range(1, len(displayed) + 1)] and len(numbers) > 10
 
 
-def test_installed_package_names_the_location_of_the_pages(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(docs, "ROOT", tmp_path)
-    assert docs.main([]) == 2
-    assert "./run_mpi.sh docs" in capsys.readouterr().err
-
-
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site") / "new"
@@ -69,15 +61,3 @@ def test_site_has_search_and_equations_without_network(site):
         )
     ]
     assert loaded == []
-
-
-@needs_generator
-@pytest.mark.slow
-def test_docs_open_the_built_site(tmp_path, monkeypatch, capsys):
-    opened = []
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(docs.webbrowser, "open", opened.append)
-    monkeypatch.setattr(docs.subprocess, "run", lambda *_, **__: subprocess.CompletedProcess([], 0))
-    assert docs.main([]) == 0
-    page = Path(capsys.readouterr().out.strip())
-    assert page == tmp_path / "ehlpetsc" / "docs" / "README.html" and opened == [page.as_uri()]

@@ -149,16 +149,3 @@ def test_every_run_and_mean_is_drawn(tmp_path, speeds, seeds):
     picture = tmp_path / "p.png"
     assert plot([*paths, "--ensemble", "-o", str(picture)]) == 0
     assert imread(picture).std() > 0.02  # not blank
-
-
-def test_foreign_files_are_refused(tmp_path, capsys):
-    (tmp_path / "x.series.json").write_text("[]")
-    assert ensemble.main([str(tmp_path / "x.series.json")]) == 2
-    assert "x.series.json: not the index" in capsys.readouterr().err
-
-
-def test_input_is_never_overwritten(tmp_path, capsys):
-    path = make_result(tmp_path / "one.h5")
-    before = path.read_bytes()
-    assert ensemble.main([str(path), "-o", str(path)]) == 2
-    assert "one.h5: is read" in capsys.readouterr().err and path.read_bytes() == before

@@ -220,14 +220,6 @@ def test_impossible_geometry_is_refused_in_one_line(change, parts, case, capsys)
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_bad_keys_are_named(case, capsys):
-    assert main([str(case(teeth=[16.5, 24], torque="much", module=None))]) == 2
-    faults = capsys.readouterr().err.splitlines()
-    assert [fault.split(": ")[1].split()[0] for fault in faults] == [
-        f"gears.{key}" for key in ("module", "teeth", "torque")
-    ]
-
-
 def test_one_modulus_for_both_flanks_gives_the_whole_path(case):
     """The run was one half width long."""
     alike = {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.3}
@@ -286,21 +278,3 @@ def test_flank_points_pass_the_contact_over_the_whole_path():
     assert (through[0], through[-1]) == pytest.approx((-18.5, -3.0))
     flank = s[passage(s, x, 0.1, moved, (-20.0, 0.0)).complete]
     assert (flank[0], flank[-1]) == pytest.approx((-20.0, 0.0))
-
-
-def test_package_exports_the_gear_pair():
-    import ehlpetsc
-
-    assert ehlpetsc.gears.path_of_contact(FZG).contact_ratio == pytest.approx(1.443, abs=5e-4)
-    assert "gears" in dir(ehlpetsc)
-
-
-def test_gear_table_uses_the_moduli_of_a_steel(case, tmp_path, capsys):
-    path = case()
-    moduli = "youngs_modulus = [206e9, 206e9]\npoisson_ratio = [0.3, 0.3]\n"
-    shown = []
-    for constants in (moduli, 'material = "16MnCr5"\n'):
-        path.write_text(path.read_text().replace(moduli, constants))
-        assert main([str(path), "--no-picture"]) == 0
-        shown.append([line for line in capsys.readouterr().out.splitlines() if line.startswith("p0, GPa")])
-    assert shown[0] == shown[1] and len(shown[0]) == 1

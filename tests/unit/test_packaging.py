@@ -124,19 +124,3 @@ def test_installed_commands_work_in_any_folder(environment, tmp_path):
     with h5py.File(tmp_path / "ridge.post.h5") as post:
         assert np.nanmax(post["damage/1"]) > 0.0
     assert (tmp_path / "ridge.png").read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize("name, lacks", [("post", "numpy, scipy, h5py"), ("plot", "matplotlib")])
-def test_command_reports_missing_packages(environment, tmp_path, name, lacks):
-    (packages,) = environment.glob("lib/python3*/site-packages")
-    done = subprocess.run(
-        [environment / "bin" / "python", "-S", environment / "bin" / "ehlpetsc", name, "result.h5"],
-        cwd=tmp_path,
-        env=OUTSIDE | {"PYTHONPATH": str(packages)},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 2
-    message, typed = done.stderr.splitlines()
-    assert lacks in message
-    assert "-m pip install" in typed

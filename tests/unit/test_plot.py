@@ -128,13 +128,6 @@ def test_series_is_overlaid(series, drawn):
     assert len({line.get_color() for line in film.lines}) == 3
 
 
-def test_maps_of_a_series_are_side_by_side(series, drawn):
-    assert draw(*series, "--map") == 0
-    (figure,) = drawn
-    titles = [axes.get_title() for axes in figure.axes]
-    assert titles == [*(f"fluid.viscosity = {v}" for v in ("0.002", "0.005", "0.01")), ""]  # last the colours
-
-
 def test_movie_has_every_frame(tmp_path, monkeypatch):
     monkeypatch.setattr(movies, "MAX_FRAMES", 4)
     monkeypatch.setattr(movies, "DPI", 40)
@@ -212,16 +205,6 @@ def test_two_results_are_distinguished_in_a_picture_of_their_own(tmp_path, drawn
     assert plot._stem(["a.series.json"]) == "a"
 
 
-def test_derived_files_are_skipped_or_named(tmp_path, result, drawn, capsys):
-    """Patterns of a shell match them too: NAME*.h5."""
-    beside = [tmp_path / "one.post.h5", tmp_path / "one.restart.h5"]
-    assert draw(result, *beside) == 0
-    capsys.readouterr()
-    assert draw(beside[0]) == 2
-    message = capsys.readouterr().err
-    assert is_line_with(message, f"{beside[0]}: ", f", {tmp_path / 'one.h5'}")
-
-
 def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
     coarse = make_result(tmp_path / "a.h5", steps=11)
     fine = make_result(tmp_path / "b.h5", steps=41)
@@ -251,17 +234,6 @@ def test_rough_result_shows_both_deformed_surfaces(tmp_path, drawn):
     np.testing.assert_allclose(upper - lower, film, atol=1e-9)
 
 
-def test_view_without_contacts_has_equal_panels(tmp_path, drawn):
-    path = with_solids(make_result(tmp_path / "r.h5", speed=50.0, rough=True))
-    assert draw(path, "--step", 30, "--around", -1.2, "--width", 0.2) == 0
-    (figure,) = drawn
-    figure.draw_without_rendering()
-    heights = [axes.get_position().height for axes in figure.axes[:3]]
-    assert min(heights) > 0.2 and max(heights) < 1.01 * min(heights)
-    legend = [text.get_text() for text in figure.axes[1].get_legend().texts]
-    assert legend == ["film"]
-
-
 def test_dry_contact_shows_gap_and_no_flow(tmp_path, drawn):
     path = make_result(tmp_path / "dry.h5")
     change_case(path, {"fluid": None})
@@ -281,16 +253,6 @@ def test_gap_beside_a_closed_contact_is_in_view(tmp_path):
         beside = 1e6 * closed.frame("film_thickness", 0)[np.abs(closed.x) <= 1.2 * A].max()
         drawing.pressure_and_film(figure.subplots(2), [closed], [0], ["k"], (-1.2, 1.2))
     assert beside > 0.0 and figure.axes[1].get_ylim() == pytest.approx((0.0, 1.15 * beside))
-
-
-def test_legend_without_solids_has_no_solid_entry(tmp_path):
-    path = with_solids(make_result(tmp_path / "m.h5"))
-    with h5py.File(path, "r+", libver="latest") as file:
-        file["contact_pressure"][:] = 0.0
-    with read_result(path) as r:
-        _, axes = figures.two_panels()
-        drawing.frame_legend(axes, r, 12, "k")
-        assert [t.get_text() for t in axes[0].get_legend().texts] == ["pressure", "Hertz"]
 
 
 def test_map_includes_contacts_of_skipped_frames(result):
@@ -359,17 +321,6 @@ def test_contact_pressure_is_drawn_under_the_total(tmp_path):
         ]
 
 
-def test_legends_are_beside_the_axes(tmp_path, series, result):
-    options = plot._parser().parse_args(["x"])
-    for paths in ([result], series):
-        results = swept.in_order([read_result(path) for path in paths])
-        figure = figures.draw_frame(results, options)
-        figure.draw_without_rendering()
-        for axes in figure.axes:
-            if axes.get_legend():
-                assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
-
-
 def test_different_contacts_have_their_title_and_hertz_pressure(tmp_path):
     paths = [
         make_result(tmp_path / f"{n}.h5", title=f"case {n}", p0=n * P0, nodes=81, steps=3) for n in (1, 2)
@@ -381,44 +332,6 @@ def test_different_contacts_have_their_title_and_hertz_pressure(tmp_path):
     assert [line.get_ydata().max() for line in dotted] == pytest.approx([1.0, 2.0], rel=1e-3)
     message = [text.get_text() for text in upper.get_legend().texts]
     assert message[0].startswith("case 1\n") and message[1].endswith("p0 = 2 GPa")
-
-
-def test_panels_of_a_map_share_a_colour_scale(tmp_path, series):
-    results = swept.in_order([read_result(path) for path in series])
-    figure = figures.draw_map(results, plot._parser().parse_args(["x", "--map"]))
-    limits = {axes.collections[0].get_clim() for axes in figure.axes[:3]}
-    assert len(limits) == 1 and len(figure.axes) == 4  # three panels, one colour bar
-
-
-@pytest.mark.parametrize("ending", ["mp4", "webm"])
-def test_movies_by_ffmpeg(tmp_path, monkeypatch, ending, capsys):
-    path, out = make_result(tmp_path / "one.h5", nodes=41, steps=3), tmp_path / f"m.{ending}"
-    if movies.FFMpegWriter.isAvailable():
-        assert draw(path, "--movie", "-o", out) == 0
-        head = out.read_bytes()[:64]
-        assert b"ftyp" in head or b"webm" in head
-    monkeypatch.setattr(movies.FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
-    assert draw(path, "--movie", "-o", out) == 2
-    assert "needs ffmpeg" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-def test_movie_axes_are_fixed(tmp_path, monkeypatch):
-    seen = []
-
-    class Writer(movies.PillowWriter):
-        def grab_frame(self, **keys):
-            self.fig.canvas.draw()
-            seen.append(
-                [(*axes.get_position().bounds, *axes.get_ylim(), *axes.get_xlim()) for axes in self.fig.axes]
-            )
-            super().grab_frame(**keys)
-
-    monkeypatch.setattr(movies, "PillowWriter", Writer)
-    monkeypatch.setattr(movies, "DPI", 40)
-    monkeypatch.setattr(movies, "MAX_FRAMES", 6)
-    assert draw(make_result(tmp_path / "one.h5", nodes=41, steps=9), "--movie") == 0
-    assert len(seen) == 6 and all(frame == seen[0] for frame in seen)
 
 
 SPEEDS = (0.001, 0.02, 0.5, 5.0, 20.0)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from support.made_results import change_case, make_result
 
-from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures.figures import FIGURES
 from ehlpetsc.pictures.stribeck import curves_by_contact
 from ehlpetsc.results.index import open_all
@@ -56,16 +55,6 @@ def test_traction_curves(series):
     assert cold.get_linestyle() == "--"
 
 
-def test_one_series_alone(series):
-    [axes] = drawn("traction", [path for path in series if "warm_5_" in path.name]).axes
-    assert axes.get_legend_handles_labels()[1] == ["friction"]
-
-
-def test_traction_curve_needs_a_series_over_the_ratio(tmp_path):
-    with pytest.raises(OutputError, match="slide_roll_ratio"):
-        drawn("traction", [member(tmp_path / "a.h5", 0.5, 0.01)])
-
-
 def heated(path, steps):
     change_case(make_result(path, steps=steps), HEAT)
     with h5py.File(path, "r+", libver="latest") as file:
@@ -85,14 +74,6 @@ def test_temperatures(steps, panels, tmp_path):
     np.testing.assert_allclose(highest, 350.0 + np.array(list(RISES.values())), rtol=1e-3)
     if steps > 1:
         assert figure.axes[-1].get_ylabel() == "temperature of\nsurface 2 [K]"
-
-
-def test_temperatures_of_isothermal_results_are_refused(tmp_path):
-    cold, warm = make_result(tmp_path / "cold.h5"), heated(tmp_path / "warm.h5", 1)
-    with pytest.raises(OutputError, match="table \\[heat\\]"):
-        drawn("temperatures", [cold])
-    with pytest.raises(OutputError, match="2 results"):
-        drawn("temperatures", [cold, warm])
 
 
 def test_stribeck_curves_with_and_without_heat(tmp_path):

@@ -176,13 +176,6 @@ def test_divergence_raises_with_the_last_good_state(case, result, tmp_path, monk
     assert caught.value.state is None and not list(tmp_path.iterdir())
 
 
-def test_invalid_options_raise(case):
-    before = table()
-    with pytest.raises(ehlpetsc.UsageError, match="-pc_type nosuch: "):
-        ehlpetsc.solve(case, options={"pc_type": "nosuch"})
-    assert table() == before
-
-
 def test_series_is_solved_member_by_member():
     case = ehlpetsc.load(CASES / "fig4.toml")
     with pytest.raises(ehlpetsc.CaseError, match=r"fig4\.toml: .*\[series\]: .*ehlpetsc\.members\(case\)"):
@@ -202,17 +195,6 @@ def test_run_continues_from_a_restart_file(case, result, tmp_path):
     whole = ehlpetsc.solve(case, recorded, restart=tmp_path / "run.restart.h5")
     assert list(whole.steps.step) == [0, 1, 2, 3, 4]
     np.testing.assert_allclose(whole.pressure, result.pressure, rtol=1e-9)
-
-
-def test_error_during_a_run_leaves_a_readable_file(case, tmp_path):
-    from ehlpetsc.run.outputs.recorder import Recorder
-
-    simulation = ehlpetsc.Simulation(case)
-    with pytest.raises(KeyboardInterrupt), Recorder(simulation, tmp_path / "r.h5") as recorder:
-        recorder.write(simulation.advance())
-        raise KeyboardInterrupt
-    left = ehlpetsc.read_result(tmp_path / "r.h5")
-    assert left.attrs["status"] == "stopped" and len(left.time) == 1
 
 
 def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):

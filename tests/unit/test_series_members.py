@@ -12,7 +12,7 @@ from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.results.means import Totals, filled_from
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.series import Member, PrefixedStream, named
+from ehlpetsc.run.series import Member, named
 from ehlpetsc.stepping.time_stepping import next_step, on_level
 
 
@@ -41,12 +41,6 @@ def test_table_values_are_named_by_differing_keys(tmp_path):
     values = f"series.values=[{one},{two}]"
     names = [m.output.name for m in series(tmp_path, f"surface.2={{synthetic={one}}}", key, values)]
     assert names == ["out_amplitude_1e-07.h5", "out_amplitude_2e-07.h5"]
-
-
-def test_values_without_a_short_name_are_numbered(tmp_path):
-    key, values = "series.key='contact.youngs_modulus'", "series.values=[[2e11,2e11],[2e11,3e11]]"
-    names = [m.output.name for m in series(tmp_path, key, values)]
-    assert names == ["out_youngs_modulus_1.h5", "out_youngs_modulus_2.h5"]
 
 
 SEVERAL = {"series.key": None, "series.keys": ["fluid.viscosity", "motion.entrainment_speed"]}
@@ -130,16 +124,6 @@ def test_series_sums_and_extremes():
     assert str(Totals.of_series([Totals()])).startswith("steps=0 newton=0 ")
 
 
-def test_series_summary_has_no_last_step_values():
-    one = Totals(
-        dict(step=3, friction_coefficient=0.05, set_volume=1e-12, contact_share=0.1), dict(contact_share=0.02)
-    )
-    words = str(Totals.of_series([one, Totals(dict(step=4, contact_share=0.2))]))
-    assert "contact_share_max=0.2" in words and "steps=7 " in words
-    for name in ("friction_coefficient", "set_volume", " contact_share="):
-        assert name not in words
-
-
 def test_means_are_over_the_time_in_which_both_surfaces_fill_the_contact(tmp_path):
     with read_result(with_solids(make_result(tmp_path / "r.h5", speed=50.0, rough=True))) as result:
         filled = result.steps("time") >= filled_from(result)
@@ -172,14 +156,6 @@ def test_stored_frames_follow_output_every(every):
     nominal = 0.37e-6
     stored = [k for k in range(50) if on_level(k * nominal / nominal, every)]
     assert stored == list(range(0, 50, every)) and not on_level(7.5, every)
-
-
-def test_member_lines_are_labelled(capsys):
-    import sys
-
-    stream = PrefixedStream("xi=1", sys.stdout)
-    print("one\ntwo", 3, file=stream)
-    assert capsys.readouterr().out == "[xi=1] one\n[xi=1] two 3\n"
 
 
 @pytest.mark.parametrize("halvings", [1, 2, 5, 9])

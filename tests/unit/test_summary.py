@@ -46,13 +46,6 @@ def test_one_frame_is_listed_over_the_nodes(path, capsys):
         np.testing.assert_allclose(found, result.frame("pressure", 7), rtol=1e-8)
 
 
-def test_step_without_a_frame_and_several_results_are_refused(path, tmp_path, capsys):
-    assert main([str(path), "--frame", "99"]) == 2
-    assert "--frame 99: " in (message := capsys.readouterr().err) and " 0 to 10" in message
-    assert main([str(path), str(make_result(tmp_path / "s.h5")), "--steps"]) == 2
-    assert "2 results" in capsys.readouterr().err
-
-
 def test_no_cell_is_a_formula(tmp_path, capsys):
     (row, *_) = rows_of(capsys, make_result(tmp_path / "r.h5", title="=1+1"))
     assert row["case"] == "'=1+1"
