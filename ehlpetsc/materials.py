@@ -134,8 +134,8 @@ DEFAULT = "SAE4340"
 
 
 @dataclass(frozen=True)
-class Oil:
-    """Mineral oil: kinematic viscosities at 40 and 100 C [m^2/s], density at 15 C [kg/m^3]."""
+class Grade:
+    """Oil of an ISO VG class: kinematic viscosities at 40 and 100 C [m^2/s], density at 15 C [kg/m^3]."""
 
     v40: float
     v100: float
@@ -147,15 +147,15 @@ class Oil:
 
 
 OIL_EXPANSION = 7e-4  # 1/K, of mineral oils
-OILS = {
-    "ISO VG 32": Oil(32e-6, 5.4e-6, 875.0),
-    "ISO VG 46": Oil(46e-6, 6.7e-6, 879.0),
-    "ISO VG 68": Oil(68e-6, 8.7e-6, 887.0),
-    "ISO VG 100": Oil(100e-6, 11.4e-6, 891.0),
-    "ISO VG 150": Oil(150e-6, 15.0e-6, 897.0),
-    "ISO VG 220": Oil(220e-6, 19.4e-6, 899.0),
-    "ISO VG 320": Oil(320e-6, 25.0e-6, 903.0),
-    "ISO VG 460": Oil(460e-6, 30.8e-6, 904.0),
+GRADES = {
+    "ISO VG 32": Grade(32e-6, 5.4e-6, 875.0),
+    "ISO VG 46": Grade(46e-6, 6.7e-6, 879.0),
+    "ISO VG 68": Grade(68e-6, 8.7e-6, 887.0),
+    "ISO VG 100": Grade(100e-6, 11.4e-6, 891.0),
+    "ISO VG 150": Grade(150e-6, 15.0e-6, 897.0),
+    "ISO VG 220": Grade(220e-6, 19.4e-6, 899.0),
+    "ISO VG 320": Grade(320e-6, 25.0e-6, 903.0),
+    "ISO VG 460": Grade(460e-6, 30.8e-6, 904.0),
 }
 
 

@@ -10,7 +10,7 @@ from ehlpetsc.case.tables.oil import GRADE
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.keys import Values
-from ehlpetsc.materials import OILS, Steel, fatigue_constants, flow_pressure, named_steels
+from ehlpetsc.materials import GRADES, Steel, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.physics.laws import gold_pressure_viscosity, walther, walther_constants
 
 BY_MATERIAL = "material"
@@ -57,8 +57,8 @@ def _with_grade(tables: Tables) -> Tables:
     if not isinstance(fluid, dict) or not isinstance(heat, dict):
         return tables
     grade, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
-    if isinstance(grade, str) and grade in OILS:
-        named = OILS[grade]
+    if isinstance(grade, str) and grade in GRADES:
+        named = GRADES[grade]
         density = named.density_at(temperature) if is_number(temperature) else named.density
         grade = {"v40": named.v40, "v100": named.v100, "density": density}
         fluid = fluid | {"grade": grade}

@@ -93,20 +93,15 @@ class TimeStepping:
 
         By time steps if roughness at rest prevents convergence, or if the case starts rough.
         """
-        if self._starts_rough:
-            return self._ramped(records, watch)
+        if self._starts_rough:  # its baseline for the predictor is the smooth state before the ramp
+            return self._start_by_time_stepping(records, watch)
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
             state = self._steady(inputs, records, watch)
         except NoSteadyStart as error:
             if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
                 raise NotConverged(f"steady start: {error}") from error
-            return self._ramped(records, watch)
-        self.baseline = (state.q, state.w)
-        return state
-
-    def _ramped(self, records: dict, watch: Watch) -> State:
-        state = self._start_by_time_stepping(records, watch)
+            state = self._start_by_time_stepping(records, watch)
         self.baseline = (state.q, state.w)
         return state
 

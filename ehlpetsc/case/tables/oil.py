@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ehlpetsc.keys import Key, KeyTable, Required
-from ehlpetsc.materials import OILS
+from ehlpetsc.materials import GRADES
 from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, completed
 
 _equations = [{name: law.equation for name, law in laws.items()} for laws in (LAWS, DENSITY_LAWS)]
@@ -11,7 +11,7 @@ VISCOSITY, DENSITY = ("; ".join(f"{name}: {text}" for name, text in laws.items()
 
 GRADE = KeyTable(
     "fluid.grade",
-    f"oil of data sheets at fluid.temperature or that of [heat]; or a name: {', '.join(OILS)}",
+    f"oil of data sheets at fluid.temperature or that of [heat]; or a name: {', '.join(GRADES)}",
     {
         "v40": Required(
             "kinematic viscosity at 40 C",
