@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 WAVE_NODES = 4  # nodes per wavelength below which a wave is not resolved
 MAX_SAMPLES = 5_000_000  # of a stored profile
+STEPS_PER_SAMPLE = 16  # between samples: cells narrower than them have the extremes of the spline
 
 
 class Profile:
@@ -126,7 +127,8 @@ class Profile:
             Width [m].
         """
         first, last = self.X[0], self.X[-1]
-        start = np.arange(first, max(last - cell, first) + 0.125 * cell, 0.25 * cell)
+        step = max(0.25 * cell, (last - first) / (STEPS_PER_SAMPLE * self.X.size))
+        start = np.arange(first, max(last - cell, first) + 0.5 * step, step)
         mean = self._level + (self._integral(start + cell) - self._integral(start)) / cell
         return float(mean.min()), float(mean.max())
 
