@@ -73,6 +73,8 @@ def test_film_of_a_rough_start_is_that_of_an_entered_profile():
     difference = np.abs(filled.steps.film_central / later - 1.0)
     assert difference.max() < 0.03 and difference[-1] < 0.002
     assert filled_from(filled) == 0.0 < filled_from(entered)
+    iterations = [run.steps.newton[-60:].mean() for run in (filled, entered)]
+    assert iterations[0] < iterations[1]  # the steps are predicted from the smooth film
 
 
 @pytest.mark.parametrize(("ratio", "left"), [(1.0, 0.5), (0.5, 1 - 2.0**-4), (4.0, 1 - 2.0 ** (-1 / 16))])
