@@ -1,8 +1,7 @@
 """The program given invalid input: ``python3 tests/fuzz/all.py --seed 1 --options 500 --results 500 ...``.
 
 options   a small case run with one to four PETSc and own options drawn from a list of good and bad ones
-results   results, some of them cut off, changed in one bit or foreign, given to the commands that read them
-cases     case files with one to three mutations, loaded, explained, used up to the first solve
+results   results, some of them cut off or foreign, given to the commands that read them
 passes    passes, series and single runs stopped, killed or robbed of a file, and the same command once more
 python    calls from Python with arguments drawn from lists of good and bad ones
 
@@ -29,7 +28,7 @@ from ehlpetsc import environment
 
 environment.prepare()
 # calls from Python import PETSc, after which nothing may be forked
-KINDS = ("cases", "results", "options", "passes", "python")
+KINDS = ("results", "options", "passes", "python")
 LATE = ("python",)
 
 

@@ -1,7 +1,5 @@
-"""Commands that read results, some cut off, changed in one bit, or no results at all."""
+"""Commands that read results, some cut off, or no results at all."""
 
-import h5py
-import numpy as np
 from sandbox import beside_others
 from support.made_results import make_result, with_solids
 
@@ -26,21 +24,6 @@ OUTPUTS = (
 )
 
 
-def stored_values(path):
-    """Places of the bytes of all chunks of a file."""
-    places = []
-
-    def add(_, item):
-        if isinstance(item, h5py.Dataset) and item.chunks:
-            for k in range(item.id.get_num_chunks()):
-                chunk = item.id.get_chunk_info(k)
-                places.append(np.arange(chunk.byte_offset, chunk.byte_offset + chunk.size))
-
-    with h5py.File(path) as file:
-        file.visititems(add)
-    return np.concatenate(places)
-
-
 class Draw:
     """One command line after the other."""
 
@@ -50,15 +33,15 @@ class Draw:
             with_solids(make_result(folder / f"s{k}.h5", nodes=81, steps=9, speed=speed, rough=k != 2))
             for k, speed in enumerate(SPEEDS)
         ]
-        self.sound = [(path.read_bytes(), stored_values(path)) for path in paths]
+        self.sound = [path.read_bytes() for path in paths]
         members = [f'{{"value": {v}, "file": "r{k}.h5"}}' for k, v in enumerate(SPEEDS)]
         self.index = f'{{"key": "motion.entrainment_speed", "members": [{", ".join(members)}], "case": ""}}'
 
     def __call__(self, rng):
         """Outcome and what was done."""
         inputs, damage = FOREIGN | {"x.series.json": self.index.encode()}, []
-        for k, (content, places) in enumerate(self.sound):
-            inputs[f"r{k}.h5"], what = self._damaged(rng, content, places)
+        for k, content in enumerate(self.sound):
+            inputs[f"r{k}.h5"], what = self._damaged(rng, content)
             damage.append(what)
         command = list(WORDS)[int(rng.integers(len(WORDS)))]
         count = 2 if command is compare else int(rng.integers(1, 4))
@@ -80,15 +63,11 @@ class Draw:
             (place / path.name).write_bytes(path.read_bytes())
 
     @staticmethod
-    def _damaged(rng, content, places):
+    def _damaged(rng, content):
         kind = rng.random()
         if kind < 0.1:
             return content[: int(rng.integers(len(content)))], "cut"
-        if kind < 0.2:
-            changed, place = bytearray(content), int(rng.choice(places))
-            changed[place] ^= 1 << int(rng.integers(8))
-            return bytes(changed), f"byte {place}"
-        return (b"mine", "foreign") if kind < 0.25 else (content, "sound")
+        return (b"mine", "foreign") if kind < 0.2 else (content, "sound")
 
     @staticmethod
     def _status(command, words):

@@ -35,26 +35,16 @@ def with_petsc_table(case, line):
     return case
 
 
-def test_default_option_without_override(case, tmp_path):
+def test_precedence_of_options(case, tmp_path):
+    """Defaults, then the case, then PETSC_OPTIONS, then the command line."""
     assert max_it(run(case, "-snes_view", cwd=tmp_path)) == 30
-
-
-def test_case_overrides_defaults(case, tmp_path):
-    assert max_it(run(with_petsc_table(case, "snes_max_it = 31"), "-snes_view", cwd=tmp_path)) == 31
-
-
-def test_petsc_options_variable_overrides_the_case(case, tmp_path):
     with_petsc_table(case, "snes_max_it = 31")
-    done = run(case, cwd=tmp_path, PETSC_OPTIONS="-snes_max_it 32 -snes_view")
-    assert max_it(done) == 32
+    assert max_it(run(case, "-snes_view", "--overwrite", cwd=tmp_path)) == 31
+    variable = {"PETSC_OPTIONS": "-snes_max_it 32 -snes_view"}
+    assert max_it(run(case, cwd=tmp_path, **variable)) == 32
     with read_result(tmp_path / "case.h5") as result:
         assert "-snes_max_it 32" in result.attrs["petsc_options"]
-
-
-def test_command_line_overrides_all(case, tmp_path):
-    with_petsc_table(case, "snes_max_it = 31")
-    done = run(case, "-snes_max_it", 33, cwd=tmp_path, PETSC_OPTIONS="-snes_max_it 32 -snes_view")
-    assert max_it(done) == 33
+    assert max_it(run(case, "-snes_max_it", 33, cwd=tmp_path, **variable)) == 33
 
 
 def test_options_file_has_the_precedence_of_its_position(case, tmp_path):
@@ -129,38 +119,21 @@ def test_exactly_one_case_file_is_required(arguments, message):
     [
         (["-ehl_output"], r"^ehlpetsc: -ehl_output .* -ehl_output FILE"),
         (["-ehl_time_limit", "soon"], "-ehl_time_limit soon: .* > 0"),
-        (["-ehl_time_limit", "-3"], "-ehl_time_limit -3: .* > 0"),
         (["-ehl_output", "nowhere/f.h5"], "nowhere/f.h5: .*, No such file or directory"),
         (["-ehl_restart", "none.h5"], r"none\.h5: .*steady"),
         (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls "),
         (["-options_file", "nofile"], "-options_file nofile: "),
         (["-pc_type", "nosuch"], "PETSc .*-pc_type nosuch: "),
         (["-ksp_rtol", "abc"], "PETSc .*-ksp_rtol abc: "),
-        (["-ksp_pc_side", "left"], "PETSc .*-ksp_pc_side left: .*fgmres"),
-        (["-ksp_type", "minres"], "PETSc .*-ksp_type minres: "),
         (["-snes_max_it", "-7"], "PETSc .*-snes_max_it -7: "),
-        (["-pc_type", "galerkin"], "PETSc .*-pc_type galerkin: "),
         (["-snes_mf"], "-snes_mf: .*finite differences"),
-        (["-snes_mf_operator"], "-snes_mf_operator: .*finite differences"),
-        (["-snes_type"], "PETSc .*-snes_type: "),
-        (["-ksp_diagonal_scale"], r"PETSc .*-ksp_diagonal_scale: .*getDiagonal\(\)"),
         (["-pc_python_type", "numpy.array"], r"-pc_python_type numpy\.array: array\(\) "),
-        (
-            ["-pc_python_type", "collections.Counter"],
-            r"-pc_python_type collections\.Counter.* apply\(pc, x, y\)",
-        ),
-        (["-snes_monitor", "nosuch:x"], "PETSc .*-snes_monitor nosuch:x: "),
         (["-ksp_monitor", "ascii:/no/such/f"], "PETSc .*-ksp_monitor ascii:/no/such/f: "),
-        (["-snes_view", "5"], "PETSc .*-snes_view 5: "),
         (["-snes_atol", "nan"], "-snes_atol nan: "),
-        (["-snes_vi_zero_tolerance", "nan"], "-snes_vi_zero_tolerance nan: "),
-        (["-ehl_set", "mesh.inlet"], r"--set mesh\.inlet: .*--set mesh\.inlet=VALUE"),
         (["-ehl_set", "mesh.inlet", "-2"], r"--set mesh\.inlet: .*--set mesh\.inlet=-2"),
         (["-restart", "x.h5"], r"^ehlpetsc: -restart: .* --restart\?"),
         (["--outptu", "x.h5"], r"^ehlpetsc: --outptu: .* --output\?"),
-        (["--frobnicate"], "^ehlpetsc: --frobnicate: "),
         (["-n", "2"], "-n .*mpirun.*run_mpi.sh"),
-        (["-ehl_set", "-help"], r"--set .* --set TABLE\.KEY=VALUE"),
     ],
 )
 def test_bad_option_values_are_refused_in_one_line(case, tmp_path, words, message):

@@ -138,20 +138,6 @@ def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
     assert last_step(tmp_path / "f.h5") == (16, "done")
 
 
-@pytest.mark.parametrize(
-    "more, message",
-    [
-        (["mesh.points_per_half_width=41"], r" 113 nodes, .* 116; \[mesh\]"),
-        (["mesh.inlet=-1.6", "mesh.outlet=1.2"], r"-1\.5 to 1\.3 .* -1\.6 to 1\.2 .* \[mesh\]"),
-    ],
-)
-def test_restart_on_another_mesh_is_refused(stopped, tmp_path, more, message):
-    done = run(*CASE, *settings(*more), "-ehl_restart", stopped, cwd=tmp_path)
-    assert done.returncode == 2
-    assert re.search(f"{stopped.name}: .*{message}", done.stderr)
-    assert list(tmp_path.iterdir()) == []
-
-
 SMOOTH = [
     ROOT / "cases" / "table1_smooth.toml",
     *settings("mesh.inlet=-1.5", "mesh.outlet=1.5", "mesh.points_per_half_width=30"),

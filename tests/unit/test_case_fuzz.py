@@ -4,6 +4,7 @@ EHL_FUZZ=10000 in the environment draws that many; EHL_FUZZ_SEED another series 
 """
 
 import random
+import re
 from functools import partial
 
 import pytest
@@ -13,62 +14,13 @@ from support.fuzzing import SEED, draws, faults_of
 from ehlpetsc.case.loading import load
 
 DRAWS = draws(400)
-KEYS = (
-    "contact.radius",
-    "fluid",
-    "surface.2.synthetic",
-    "series.values",
-    "petsc.x",
-    "x",
-    "",
-    ".",
-    "time.travel",
-    "surface.1.file",
-    "contact.radius.x",
-    "title",
-    "output.fields",
-    "contact.youngs_modulus",
-    "mesh..inlet",
-)
-VALUES = (
-    "nan",
-    "-inf",
-    "0",
-    "-1",
-    "1e400",
-    "-1e-300",
-    "-0.0",
-    "5e-324",
-    "1_000",
-    "+1",
-    "0b1",
-    "1.",
-    "_",
-    "true",
-    "10" * 60,
-    "0x" + "f" * 5000,
-    "9" * 5000,
-    '""',
-    '"\\u0000"',
-    '"a"',
-    "'''\n'''",
-    "\t",
-    "# x",
-    "[]",
-    "[[]]",
-    "[1, 'x']",
-    "[" * 2000,
-    "{}",
-    "{a = {b = []}}",
-    "1979-05-27T07:32:00Z",
-    "07:32:00",
-    "{ kind = 'ridge' }",
-    "{ kind = [] }",
-    "{ kind = 'ground', ra = nan, seed = -1 }",
-    "'../'",
-    "'/dev/zero'",
-    '"profiles"',
-)
+KEYS = """contact.radius | fluid | surface.2.synthetic | series.values | petsc.x | x | . | time.travel | title
+surface.1.file | contact.radius.x | output.fields | contact.youngs_modulus | mesh..inlet |"""
+VALUES = r"""nan | -inf | 0 | -1 | 1e400 | -1e-300 | -0.0 | 5e-324 | 1_000 | +1 | 0b1 | 1. | _ | true | ""
+"\u0000" | "a" | # x | [] | [[]] | [1, 'x'] | {} | {a = {b = []}} | 1979-05-27T07:32:00Z | 07:32:00
+{ kind = 'ridge' } | { kind = [] } | { kind = 'ground', ra = nan, seed = -1 } | '../' | '/dev/zero'"""
+KEYS, VALUES = (re.split(r" ?\| ?|\n", text.strip()) for text in (KEYS, VALUES))
+VALUES += ["10" * 60, "0x" + "f" * 5000, "9" * 5000, "[" * 2000, "'''\n'''", "\t"]
 
 
 def corrupted(text, rng):

@@ -6,7 +6,6 @@ from PIL import Image as image
 from support import CASES
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures.case_profiles import draw_case, passing
@@ -79,8 +78,3 @@ def test_undrawable_case_is_refused_in_one_line(words, message, capsys, tmp_path
     monkeypatch.chdir(tmp_path)
     assert plot.main(words) == 2
     assert message in capsys.readouterr().err
-
-
-def test_drawing_a_smooth_case_raises():
-    with pytest.raises(OutputError, match="smooth"):
-        draw_case(CASES / "dry_hertz.toml")

@@ -52,10 +52,6 @@ def test_near_inlet_warning_gives_film_and_sufficient_inlet():
     assert -2.5 < further < -1.8 and of({"mesh.inlet": further}) == []
 
 
-def test_starved_case_has_no_inlet_warning():
-    assert of({"mesh.inlet": -1.2, "fluid.inlet_film": 1e-7}) == []
-
-
 def test_film_on_a_mesh_too_coarse_for_the_inlet_is_as_predicted():
     """Values of the docstring for openings of 0.25 and 1."""
     slow = {"motion__entrainment_speed": 0.1, "mesh__inlet": -1.5}
@@ -81,11 +77,6 @@ def test_mesh_without_a_film_is_refused():
     assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: ") and " 5.3 films " in line
     with pytest.raises(ehlpetsc.CaseError, match=r"points_per_half_width = 200: .* 5\.3 films"):
         ehlpetsc.Simulation(load(SMOOTH, SLOW))
-
-
-def test_boundary_film_needs_no_mesh_for_thinner_films():
-    mixed = SLOW | {"contact.model": "mixed"}
-    assert of(mixed, about=domain_faults) == []
 
 
 def test_contact_wider_than_the_domain_is_refused():

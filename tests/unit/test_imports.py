@@ -195,9 +195,3 @@ def test_reading_packages_reach_neither_solver_nor_petsc_nor_mpi(name):
 def test_imported_names_exist():
     unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
     assert unknown == set()
-
-
-def test_local_and_relative_imports_are_found():
-    module = "ehlpetsc.results.reader"
-    source = "def f():\n    from . import writer\n    from ..run.simulation import run\n    import h5py\n"
-    assert imports(module, source) == {"ehlpetsc.results.writer", "ehlpetsc.run.simulation", "h5py"}

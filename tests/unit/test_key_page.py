@@ -11,7 +11,7 @@ from support import ROOT
 from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.templates import template
-from ehlpetsc.errors import CaseError, UsageError
+from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.laws import density
 
 
@@ -27,16 +27,6 @@ def test_every_key_of_the_cases_is_listed():
             assert f"\n  {key}: " in listed, (path.name, key)
 
 
-def test_keys_of_one_table_have_meaning_units_bounds_and_defaults():
-    listed = key_page.keys("motion").splitlines()
-    assert listed[0] == "[motion]" and len(listed) == 3
-    assert listed[1].startswith("  entrainment_speed: mean") and ">= 1e-09 and <= 1000 [m/s]" in listed[1]
-    assert listed[2].endswith("default 0.0")
-    assert "    lg lg(nu + 0.7) = A - B lg T" in key_page.keys("fluid.grade.v40")
-    assert "[surface.1.synthetic (ridge, dent)]" in key_page.keys("surface.1")
-    assert "[surface.2]" in key_page.keys("surface")
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -50,20 +40,6 @@ def test_keys_of_one_table_have_meaning_units_bounds_and_defaults():
 )
 def test_a_key_is_found_by_its_name(name, words):
     assert re.search(words.replace("[", r"\["), key_page.keys(name), re.DOTALL)
-
-
-@pytest.mark.parametrize(
-    ("name", "hint"),
-    [
-        ("fluids", '"fluid"'),
-        ("contact.laod", '"load"'),
-        ("qqq", "tables: contact, fluid"),
-        ("alpha", '"pressure_viscosity"'),
-    ],
-)
-def test_unknown_key_has_a_hint(name, hint):
-    with pytest.raises(UsageError, match=f"{name}: no such table or key; .*{hint}"):
-        key_page.keys(name)
 
 
 def test_refused_density_constants_explain_the_textbook_form(tmp_path):
@@ -83,11 +59,6 @@ def test_template_is_a_case(tmp_path, kind):
     case = load(path)
     assert case.fluid.grade.v40 in (68e-6, 100e-6) and (case.conditions is None) == (kind != "gears")
     assert case.fluid.grade.density < 860.0  # at the temperature of the oil, not at 15 C
-
-
-def test_full_template_has_every_key_in_comments():
-    commented = re.findall(r"^# (\w+) = ", template("full"), re.MULTILINE)
-    assert {"minimum_film", "inlet_film", "file", "short_cutoff", "courant", "every"} <= set(commented)
 
 
 def test_commands_print_keys_and_template(tmp_path):

@@ -12,7 +12,7 @@ from ehlpetsc.life.command import main
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import Jumps, Rates
 from ehlpetsc.life.one_pass import OfBody
-from ehlpetsc.life.regimes import index_of, outcome, winner
+from ehlpetsc.life.regimes import outcome, winner
 from ehlpetsc.surfaces.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0]) * 1e-7
@@ -40,15 +40,6 @@ def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, w
     found = outcome(life(pits, ahead))
     assert found["worn_depth"] == pytest.approx(4e-8) and found["first_failure"] == (8e5 if pits else None)
     assert found["solved"] == 2 and found["ra_change"] == pytest.approx(0.0, abs=1e-12)
-
-
-def test_lives_without_wear_are_valid_json():
-    assert json.loads(json.dumps(outcome(life(ahead=np.inf)), allow_nan=False))["damage_ahead"] is None
-
-
-@pytest.mark.parametrize("output", ["a.life.h5", "a.h5", "a"])
-def test_index_is_named_after_the_lives(output, tmp_path):
-    assert index_of(tmp_path / output).name == "a.life.series.json"
 
 
 def test_regime_picture_is_drawn_from_the_index(tmp_path, capsys):

@@ -1,7 +1,5 @@
 """Lines at the end of a run about results outside the model's validity."""
 
-from dataclasses import dataclass
-
 import pytest
 from support import CASES
 
@@ -18,21 +16,6 @@ WITHIN = {
 }
 
 
-@dataclass
-class Solids:
-    """Stand-in for [contact] of a case with yielding solids."""
-
-    yield_pressure: float
-    model: str = "mixed"
-    boundary_friction: float = 0.1
-
-
-@dataclass
-class Yielding:
-    contact: Solids
-    fluid: object
-
-
 def limit_lines(name="table1_smooth", overrides=(), **changed):
     case = load(CASES / f"{name}.toml", overrides)
     scales = Scales.of(case)
@@ -41,11 +24,6 @@ def limit_lines(name="table1_smooth", overrides=(), **changed):
 
 def test_no_limit_line_within_the_limits():
     assert limit_lines() == [] and limit_lines("table1_rough") == [] and limit_lines("dry_hertz") == []
-
-
-def test_no_limit_line_without_a_step():
-    case = load(CASES / "table1_smooth.toml")
-    assert limits(case, Scales.of(case), None, {}) == []
 
 
 @pytest.mark.parametrize(
@@ -75,18 +53,6 @@ def test_friction_beyond_that_of_oils_has_a_limit_line():
 
 def test_measured_viscosity_range_has_no_limit_line():
     assert limit_lines(oil_pressure=5e9) == []  # 5e5 Pa s
-
-
-def test_overflowing_viscosity_is_given_in_decades():
-    barus = ("fluid.law=barus", "fluid.pressure_viscosity=1e-6")
-    (line,) = limit_lines(overrides=barus, oil_pressure=4e9)
-    assert line.startswith("viscosity: 1e1735 Pa s")
-
-
-def test_yielding_solids_have_no_pressure_limit():
-    case = load(CASES / "table1_smooth.toml")
-    yielding = Yielding(Solids(5e9), case.fluid)
-    assert limits(yielding, Scales.of(case), None, WITHIN | {"p_max": 8e9}) == []
 
 
 def test_unresolved_asperities_are_given_with_their_height_fraction():

@@ -9,7 +9,7 @@ import pytest
 from support import CASES
 
 import ehlpetsc
-from ehlpetsc.errors import SolveFailed, UsageError
+from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear.jacobian import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
@@ -119,9 +119,3 @@ def test_options_belong_to_their_call():
     assert found == [(1e-7, 12), (1e-8, 210)]
     with pytest.raises(UsageError, match="-snes_vi_zero_tolerance much"):
         ehlpetsc.Simulation(case, options={"snes_vi_zero_tolerance": "much"})
-
-
-def test_failure_names_its_method_and_total_iterations():
-    error = SolveFailed("sweeps", "MAX_IT", 3)
-    assert str(error) == "sweeps MAX_IT after 3 iterations"
-    assert str(error.after(4)) == "sweeps MAX_IT after 7 iterations" and error.iterations == 3

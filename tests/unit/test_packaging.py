@@ -85,13 +85,6 @@ def test_petsc_and_mpi_are_requirements_of_the_solver_extra_only(wheel):
         assert not [line for line in needed if line.startswith(module) and "solver" not in line]
 
 
-def test_installation_adds_the_command_and_keeps_packages(environment):
-    there = sorted(path.name for path in (environment / "bin").glob("ehlpetsc*"))
-    assert there == ["ehlpetsc"]
-    (packages,) = environment.glob("lib/python3*/site-packages")
-    assert {path.name.split("-")[0] for path in packages.iterdir()} == {"ehlpetsc"}
-
-
 @pytest.mark.slow
 def test_installed_commands_work_in_any_folder(environment, tmp_path):
     def call(*words):

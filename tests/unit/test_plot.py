@@ -1,7 +1,5 @@
 """Pictures: every kind is drawn, the default instant is chosen, and faults are reported."""
 
-import subprocess
-import sys
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
@@ -101,22 +99,6 @@ def test_picture_format_follows_its_name(tmp_path, result, monkeypatch):
     assert sum(line.count("L") > 50 for line in lines) >= 3  # curves over the nodes in view
 
 
-def test_drawing_keeps_matplotlib_state(tmp_path, result):
-    """A notebook that draws with these modules keeps its backend, its settings and its open figures."""
-    code = (
-        "import matplotlib, sys\n"
-        "matplotlib.use('svg'); matplotlib.rcParams['font.size'] = 7; before = dict(matplotlib.rcParams)\n"
-        "from matplotlib import pyplot; pyplot.figure()\n"
-        "import ehlpetsc.pictures.damage, ehlpetsc.pictures.movies\n"
-        "from ehlpetsc.pictures.command import main\n"
-        "assert main(sys.argv[1:]) == 0 and pyplot.get_fignums() == [1]\n"
-        "assert dict(matplotlib.rcParams) == before, 'settings'\n"
-    )
-    command = [sys.executable, "-c", code, str(result), "-o", str(tmp_path / "out.png")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-
-
 def test_series_is_overlaid(series, drawn):
     assert draw(*series) == 0
     (figure,) = drawn
@@ -190,19 +172,6 @@ def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
     assert drawing.instant([slow, fast], [40, 10]) == "travel 0.67 a"
     with pytest.raises(OutputError, match=r"5\.0\.h5: .* 0\.6673 a, .* 2\.669 a$"):
         drawing.choose_frames([fast, slow], step=40)
-
-
-def test_two_results_are_distinguished_in_a_picture_of_their_own(tmp_path, drawn, capsys):
-    """The second curve is dashed, and a key that one of the cases leaves out has its default."""
-    paths = [make_result(tmp_path / name) for name in ("mine.h5", "mine_mixed.h5")]
-    change_case(with_solids(paths[1]), {"contact.model": "mixed"})
-    assert draw(*paths) == 0
-    assert capsys.readouterr().out == f"{tmp_path / 'mine_and_mine_mixed.png'}\n"
-    upper = drawn[0].axes[0]
-    assert [t.get_text() for t in upper.get_legend().texts] == ["model = direct", "model = mixed", "Hertz"]
-    assert [line.get_linestyle() for line in upper.lines] == [":", "-", "--"]
-    assert plot._stem(["a.h5", "b/b.h5", "c.h5"]) == "a_and_2_more"
-    assert plot._stem(["a.series.json"]) == "a"
 
 
 def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):

@@ -13,44 +13,10 @@ from support.fuzzing import SEED, draws, faults_of
 from ehlpetsc.case.loading import load
 
 DRAWS = draws(300) // 2
-WORDS = (
-    "nan",
-    "inf",
-    "-inf",
-    "1e308",
-    "-1e308",
-    "1e-320",
-    "0",
-    "",
-    "x",
-    "1_0",
-    "0x1",
-    "1,5",
-    "1.000,5",
-    "1;2",
-    "\0",
-    "é",
-    "--",
-)
-KEYS = (
-    "unit='um'",
-    "x_unit='mm'",
-    "spacing=1e-6",
-    "columns=[1]",
-    "columns=[2, 1]",
-    "columns=[9]",
-    "decimal=','",
-    "decimal='.'",
-    "header_lines=3",
-    "header_lines=99999",
-    "fill_gaps=1",
-    "level=true",
-    "cutoff=80e-6",
-    "short_cutoff=5e-6",
-    "flip=true",
-    "scale=0",
-    "scale=1e4",
-)
+WORDS = [*"nan inf -inf 1e308 -1e308 1e-320 0 x 1_0 0x1 1,5 1.000,5 1;2 -- é".split(), "", "\0"]
+KEYS = """unit='um' | x_unit='mm' | spacing=1e-6 | columns=[1] | columns=[2, 1] | columns=[9] | decimal=','
+decimal='.' | header_lines=3 | header_lines=99999 | fill_gaps=1 | level=true | cutoff=80e-6
+short_cutoff=5e-6 | flip=true | scale=0 | scale=1e4""".replace("\n", " | ").split(" | ")
 
 
 def corrupted(lines, rng):
