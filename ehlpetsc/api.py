@@ -73,7 +73,7 @@ class Result(reader.Result):
 
 def read_result(path: str | PathLike) -> Result:
     """Open a result file, also one that is being written; OutputError if it cannot be read as one."""
-    return Result(open_result(path), path)
+    return Result(open_result(Path(path)), Path(path))
 
 
 def solve(
@@ -141,11 +141,11 @@ def solve(
         raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
     if progress is None:
         progress = on_terminal(sys.stdout) or in_notebook()
-    recorder = Recorder(simulation, output)
+    recorder = Recorder(simulation, None if output is None else Path(output))
     with simulation.options, recorder:
-        restart = recorder.lock_output(restart, overwrite)
-        if restart is not None:
-            recorder.resume(restart)
+        begun = recorder.lock_output(None if restart is None else Path(restart), overwrite)
+        if begun is not None:
+            recorder.resume(begun)
         shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []
         with StopRequest.on_interrupt() as stop:
             status, failure = write_states(simulation, [recorder, *shown], stop)

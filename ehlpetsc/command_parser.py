@@ -4,6 +4,7 @@ import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 
 from ehlpetsc import __version__
 from ehlpetsc.environment import first_rank
@@ -28,16 +29,19 @@ class CommandParser(argparse.ArgumentParser):
     def __init__(self, name: str, description: str) -> None:
         keeps = "\n" in description
         formatter = argparse.RawDescriptionHelpFormatter if keeps else argparse.HelpFormatter
-        text = description.replace("``", "")
-        resolve = {"formatter_class": formatter, "conflict_handler": "resolve"}
-        super().__init__(prog=f"ehlpetsc {name}", description=text, **resolve)
+        super().__init__(
+            prog=f"ehlpetsc {name}",
+            description=description.replace("``", ""),
+            formatter_class=formatter,
+            conflict_handler="resolve",
+        )
         self.add_argument("-o", "--output", type=Path, metavar="FILE", help="output")
         key = "key of the case; may be repeated"
         self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
         self.add_argument("--overwrite", action="store_true", help="replace an existing file")
         self.add_argument("--version", action="version", version=f"ehlpetsc {__version__}")
 
-    def error(self, message: str) -> None:
+    def error(self, message: str) -> NoReturn:
         """End the command with the fault and a hint to the list of options."""
         self.exit(2, f"{self.prog}: {message}; {self.prog} -h lists the options\n" if first_rank() else None)
 
@@ -90,7 +94,9 @@ def exit_status(
         raise
     except OSError as error:
         print(f"{name}: {not_written(error, error.filename or output)}", file=sys.stderr)
-    except (OutputError, PostError, UsageError, *faults) as error:
+    except (OutputError, PostError, UsageError) as error:
+        print(f"{name}: {error}", file=sys.stderr)
+    except faults as error:
         print(f"{name}: {error}", file=sys.stderr)
     else:
         return ExitStatus.DONE if status is None else status

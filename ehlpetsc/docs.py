@@ -33,10 +33,11 @@ def _build(folder: Path | None) -> None:
     cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     target = (folder or Path(cache, "ehlpetsc", "docs")).absolute()
     with tempfile.TemporaryDirectory() as scratch:
-        options = ["-q", "-W", "--keep-going", "-d", scratch, "-c", ROOT / "docs"]
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(ROOT), *sys.path]))}
-        built = subprocess.run([sys.executable, "-m", "sphinx", *options, ROOT, target], env=environment)
-    if built.returncode:
+        options = ["-q", "-W", "--keep-going", "-d", scratch, "-c", str(ROOT / "docs")]
+        paths = os.pathsep.join(filter(None, [str(ROOT), *sys.path]))
+        command = [sys.executable, "-m", "sphinx", *options, str(ROOT), str(target)]
+        status = subprocess.call(command, env=os.environ | {"PYTHONPATH": paths})
+    if status:
         raise OutputError(f"{target}: the site was not built")
     print(target / "README.html")
     if folder is None:

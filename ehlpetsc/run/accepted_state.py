@@ -28,7 +28,7 @@ class AcceptedState:
     in_contact: object = field(repr=False)
     solution: object = field(repr=False)
 
-    def __getattr__(self, name: str) -> object:
+    def __getattr__(self, name: str) -> Any:
         for values in (vars(self).get("scalars", {}), vars(self).get("fields", {})):
             if name in values:
                 return values[name]

@@ -191,16 +191,16 @@ def _in_petsc_style(words: list[str]) -> list[str]:
 
 def _without_settings(words: list[str]) -> tuple[list[str], list[str]]:
     others, settings = [], []
-    words = iter(words)
-    for word in words:
+    following = iter(words)
+    for word in following:
         if word != "-ehl_set":
             others.append(word)
             continue
-        value = next(words, "")
+        value = next(following, "")
         if not value or value.startswith("-"):
             raise UsageError(f"--set has no value; allowed: --set {OPTIONS['set'].value}")
         if "=" not in value:
-            raise UsageError(f"--set {value}: write --set {value}={next(words, 'VALUE')}")
+            raise UsageError(f"--set {value}: write --set {value}={next(following, 'VALUE')}")
         settings.append(value)
     return others, settings
 
@@ -314,7 +314,8 @@ def _run(words: Run, comm: MPI.Comm, options: PETSc.Options) -> int:
         Simulation(case, comm)  # PETSc's objects print their options when they are created
         return ExitStatus.DONE
     output = Path(text_of(options, "output") or f"{Path(case.path).stem}.h5")
-    overwrite, restart = options.getBool("ehl_overwrite", False), text_of(options, "restart")
+    overwrite, begun = options.getBool("ehl_overwrite", False), text_of(options, "restart")
+    restart = Path(begun) if begun else None
     is_series, has_passes = bool(case.series), case.time is not None and case.time.passes > 1
     if is_series and has_passes:
         allowed = "one of them at a time; a member: --set KEY=VALUE -o NAME.h5"
@@ -349,7 +350,7 @@ def _read_case(comm: MPI.Comm, words: Run) -> Case:
 
 
 def _run_single(
-    comm: MPI.Comm, case: Case, stop: StopRequest, output: Path, restart: str, overwrite: bool
+    comm: MPI.Comm, case: Case, stop: StopRequest, output: Path, restart: Path | None, overwrite: bool
 ) -> int:
     """Run a case that is not a series."""
     from ehlpetsc.run.forecast import banner

@@ -183,10 +183,10 @@ def height_lines(rough: Roughness | None, s: Scales) -> Iterator[str]:
     for side in ("1", "2"):
         profile = rough and rough.side(side)
         if profile:
-            heights = profile.heights.min(), profile.heights.max()
+            ends = profile.heights.min(), profile.heights.max()
             heights, means = (
                 " to ".join(f"{1e6 * round(z, 12):.3g}" for z in pair)
-                for pair in (heights, profile.extremes_of_cells(s.dx))
+                for pair in (ends, profile.extremes_of_cells(s.dx))
             )
             note = "means over cells, as the mesh has them"
             yield f"Surface {side}: heights from {heights} um; {note}, {means} um"

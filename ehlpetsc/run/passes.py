@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.results.index import Index
@@ -43,7 +43,7 @@ class Passes:
         """Restart file of a pass."""
         return self.file(number).with_suffix(".restart.h5")
 
-    def run(self, restart: str | Path | None = None, overwrite: bool = False) -> ExitStatus:
+    def run(self, restart: Path | None = None, overwrite: bool = False) -> ExitStatus:
         """Run every unfinished pass; a finished series of passes is run again.
 
         `restart` is the restart file to continue from, by default that of the last pass of the same case;
@@ -56,7 +56,7 @@ class Passes:
         finally:
             self.index.release()
 
-    def _run(self, restart: str | Path | None, overwrite: bool) -> ExitStatus:
+    def _run(self, restart: Path | None, overwrite: bool) -> ExitStatus:
         if not overwrite:
             restart = restart or self.comm.bcast(on_root(self.comm, self._unfinished))
         first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
@@ -94,7 +94,7 @@ class Passes:
     def _note(self, number: int) -> None:
         """Add a complete pass to the index."""
         with read_result(self.file(number)) as result:
-            row = {"pass": number, "file": self.file(number).name} | pass_summary(result)
+            row: dict[str, Any] = {"pass": number, "file": self.file(number).name} | pass_summary(result)
         before = self.index.rows[-1]["set_volume"] if self.index.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
         self.index.rows.append(row)

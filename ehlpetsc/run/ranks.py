@@ -11,11 +11,10 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.errors import OutputError
+from ehlpetsc.run.stop import StopRequest
 
 if TYPE_CHECKING:
     from mpi4py import MPI
-
-    from ehlpetsc.run.stop import StopRequest
 
 REQUEST, ANSWER = 71, 72  # tags of messages
 POLL_SECONDS = 0.01  # between two polls of a waiting rank
@@ -95,10 +94,14 @@ class WorkQueue:
     def finish(self, result: Callable[[], Any]) -> Any:
         """Wait until every group is done; `result()` of the first rank, on every rank."""
         if self.world.rank == 0:
-            _wait(lambda: self.serve() or not self._others)
+            _wait(self._all_ended)
         done = self.world.Ibarrier()  # a rank in a blocking barrier would keep its core busy
         _wait(done.Test)
         return self.world.bcast(result() if self.world.rank == 0 else None)
+
+    def _all_ended(self) -> bool:
+        self.serve()
+        return not self._others
 
     def _next(self, report: Any, ending: bool) -> Any:
         if report is not None:
@@ -108,7 +111,7 @@ class WorkQueue:
         return self._waiting.pop(0) if self._waiting else None
 
 
-class PollingStop:
+class PollingStop(StopRequest):
     """Stop request that also serves the other groups at every query; `stop` None: no stop."""
 
     def __init__(self, queue: WorkQueue, stop: StopRequest | None) -> None:

@@ -190,7 +190,8 @@ class Series:
     def _run_member(self, number: int, group: MPI.Comm, stop: PollingStop) -> tuple[ExitStatus, str]:
         """Run one member on a group; returns exit status and failure."""
         member = self.members[number]
-        out, err = PrefixedStream(member.name, sys.stdout), PrefixedStream(member.name, sys.stderr)
+        out: Any = PrefixedStream(member.name, sys.stdout)
+        err: Any = PrefixedStream(member.name, sys.stderr)
         begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
             run = Run(Simulation(member.case, group), member.output, stop, out, err)

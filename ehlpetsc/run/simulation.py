@@ -6,6 +6,8 @@ import time as clock
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from os import PathLike
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -24,6 +26,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.accepted_state import AcceptedState
 from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts
+from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.run.warnings import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.state import State
@@ -98,13 +101,13 @@ class Simulation:
 
     def __init__(
         self,
-        case: Case | object,
+        case: Case | dict | str | PathLike,
         comm: MPI.Comm | None = None,
         options: dict | None = None,
         after: Simulation | None = None,
         pass_number: int | None = None,
         records: dict | None = None,
-    ):
+    ) -> None:
         self.case = case = case if isinstance(case, Case) else load(case)
         if case.series:
             raise CaseError(
@@ -120,9 +123,10 @@ class Simulation:
         self.scene = Scene.of_pass(case, self.scales, self.operation, self.pass_number)
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
-        self.state = self.solution = None
+        self.state: AcceptedState | None = None
+        self.solution: State | None = None
         with self.options:
-            solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
+            solver: Any = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
             self._is_monitored = not self.options.user_set.isdisjoint(MONITOR_OPTIONS)
         before = after.solution.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
@@ -150,7 +154,7 @@ class Simulation:
     def __iter__(self) -> Iterator[AcceptedState]:
         return self.states()
 
-    def states(self, stop: Callable | None = None) -> Iterator[AcceptedState]:
+    def states(self, stop: StopRequest | None = None) -> Iterator[AcceptedState]:
         """Accepted states up to the end.
 
         Parameters
@@ -169,7 +173,8 @@ class Simulation:
             if begun and stop and stop(self.comm):
                 raise Stopped
             is_requested = stop and (stop.overdue if begun else stop)
-            yield self.advance(watch=stop and partial(_raise_if_stopped, is_requested, self.comm))
+            watch = partial(_raise_if_stopped, is_requested, self.comm) if stop else None
+            yield self.advance(watch=watch)
 
     def resume(
         self, solution: State, baseline: tuple[np.ndarray, np.ndarray], positions: SurfacePositions

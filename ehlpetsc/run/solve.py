@@ -96,7 +96,7 @@ class Run:
         self.out, self.err = out or sys.stdout, err or sys.stderr
         self._unused = UnusedOptions(simulation.options, self._print)
 
-    def run(self, restart: str | Path | None = None, overwrite: bool = False) -> Outcome:
+    def run(self, restart: Path | None = None, overwrite: bool = False) -> Outcome:
         """Run to the end, or from a restart file, and print a report; see `Recorder.lock_output`."""
         begun = clock.monotonic()
         try:
@@ -114,13 +114,13 @@ class Run:
             self._report(outcome)
         return outcome
 
-    def _solve(self, restart: str | Path | None, overwrite: bool) -> tuple[ExitStatus, NotConverged | None]:
+    def _solve(self, restart: Path | None, overwrite: bool) -> tuple[ExitStatus, NotConverged | None]:
         with self.simulation.options, self.recorder:
             restart = self.recorder.lock_output(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._notes = self.simulation.options.loose_tolerances()
-            printed = []
+            printed: list[Output] = []
             if self.root:
                 printed = [self._unused, ProgressOutput(self.simulation, self.out)]
             return solve(self.simulation, [self.recorder, *printed], self.stop)

@@ -62,10 +62,10 @@ class Progress:
         self._stream = sys.stdout if stream is None else stream
         self._begin, self._end = begin, end
         self._bar = on_terminal(self._stream) or in_notebook()
-        self._output = None  # display of a notebook's cell
-        self._samples = []  # (wall clock, time of the run) since the first step
-        self._shown = None
-        self._pending = None
+        self._output: Any = None  # display of a notebook's cell
+        self._samples: list[tuple[float, float]] = []  # wall clock, time of the run, since the first step
+        self._shown: float | None = None
+        self._pending: dict[str, float] | None = None
 
     def step(self, scalars: dict[str, float]) -> None:
         """Show an accepted step if it is the first or enough time has passed.
@@ -140,7 +140,7 @@ class ProgressOutput:
 
     def __init__(self, simulation: Simulation, stream: TextIO | None) -> None:
         self._simulation, self._stream = simulation, stream
-        self._progress = (
+        self._progress: Progress | None = (
             None if simulation.solution is None else self._progress_from(simulation.solution.time)
         )
 
