@@ -104,7 +104,7 @@ def check_resolution(roughness: Roughness | None, scales: Scales, path: str | Pa
     """
     faults = []
     for side in ("1", "2"):
-        profile = roughness and roughness.side(side)
+        profile = roughness.side(side) if roughness else None
         fraction = profile.unresolved_variance(scales.dx) if profile else 0.0
         if fraction > MAX_UNRESOLVED:
             faults.append(

@@ -17,7 +17,7 @@ from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import UsageError
 
 if TYPE_CHECKING:
-    from ehlpetsc.errors import ExitStatus
+    pass
 
 
 def arguments() -> CommandParser:
@@ -35,7 +35,7 @@ def arguments() -> CommandParser:
     return parser
 
 
-def main(words: list[str]) -> ExitStatus:
+def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     chosen = arguments().parse_args(words)
     return exit_status("life", lambda: _run(chosen), (ImportError,))

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ehlpetsc.life.one_pass import Pass
     from ehlpetsc.life.rounds import Round
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.run.stop import StopRequest
 
 
 PACE_WEIGHT = 0.5  # of the last round in the mean time of a round
@@ -104,7 +103,7 @@ def run_life(
     unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
-    stop: StopRequest | None = None,
+    stop: Callable | None = None,
     most: int | None = None,
 ) -> LifeHistory:
     """Run the life of a case's surfaces, or continue it.
@@ -175,7 +174,7 @@ class _Life:
         if not unresolved:
             check_resolution(self._scene.roughness, self.scales, case.path)
 
-    def run(self, stop: StopRequest | None, max_rounds: int | None) -> LifeHistory:
+    def run(self, stop: Callable | None, max_rounds: int | None) -> LifeHistory:
         """Solve rounds until the end of the life."""
         status = "stopped"
         try:
@@ -190,7 +189,7 @@ class _Life:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
         return self.history
 
-    def _run(self, stop: StopRequest | None, max_rounds: int | None) -> None:
+    def _run(self, stop: Callable | None, max_rounds: int | None) -> None:
         progress, rounds = Progress(self.jumps.passes), 0
         if not self.history.rows:
             for line in mesh_warnings(self._scene.roughness, self.scales):
@@ -209,7 +208,7 @@ class _Life:
     def _is_living(self) -> bool:
         return self.history.done < self.jumps.passes and self.history.solved < self.case.life.max_solved
 
-    def _solve(self, stop: StopRequest | None) -> Round:
+    def _solve(self, stop: Callable | None) -> Round:
         """The next round."""
         from ehlpetsc.life.rounds import Round
 
@@ -225,7 +224,7 @@ class _Life:
         return list(range(count))
 
     def _solve_pass(
-        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: StopRequest | None
+        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: Callable | None
     ) -> Pass:
         from ehlpetsc.life.one_pass import run_pass, start
 
@@ -243,7 +242,7 @@ class _Life:
         fields = self.history.plastic[-1] if self.history.rows else None
         return unflat(PlasticRecord, fields, "plastic_deformation") if fields else None
 
-    def _jump(self, solved_round: Round, bodies: tuple[LifeBody, LifeBody]) -> None:
+    def _jump(self, solved_round: Round, bodies: tuple[LifeBody, ...]) -> None:
         """Jump with the rates of a solved round, and store the row."""
         from ehlpetsc.effects.effect import flat
         from ehlpetsc.run.ranks import on_root

@@ -44,7 +44,8 @@ class LifeFile:
     """File of a life that grows; created with its first row."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self._file = path, None
+        self.path = path
+        self._file: h5py.File | None = None
 
     def __enter__(self) -> LifeFile:
         return self
@@ -152,7 +153,9 @@ class LifeHistory:
 
     def __init__(self, case: str, title: str) -> None:
         self.case, self.title = case, title
-        self.rows, self.bodies, self.plastic = [], [], []
+        self.rows: list[dict] = []
+        self.bodies: list[tuple[LifeBody, ...]] = []
+        self.plastic: list[dict] = []
 
     @property
     def done(self) -> int:
@@ -173,7 +176,7 @@ class LifeHistory:
         """Values of a figure in all rows, shape (rows,)."""
         return np.array([row[name] for row in self.rows])
 
-    def add(self, row: dict, bodies: tuple[LifeBody, LifeBody], plastic: dict[str, np.ndarray]) -> None:
+    def add(self, row: dict, bodies: tuple[LifeBody, ...], plastic: dict[str, np.ndarray]) -> None:
         """Append a solved round."""
         self.rows.append(row)
         self.bodies.append(bodies)

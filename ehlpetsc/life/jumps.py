@@ -72,7 +72,7 @@ class Rates(NamedTuple):
         """
         return self._replace(damage=np.where(columns, 0.0, self.damage))
 
-    def after(self, passes: float) -> tuple[np.ndarray, np.ndarray, float]:
+    def after(self, passes: float) -> tuple:
         """Wear [m], damage and worn volume [m^2] of a number of passes."""
         return tuple(
             laws.sum_over(passes, rate, slope) for rate, slope in zip(self[:3], self.slopes, strict=True)
@@ -109,8 +109,8 @@ class Jumps:
         return yielded > self.wear_allowed
 
     def jump(
-        self, bodies: tuple[LifeBody, LifeBody], solved_round: Round, done: int, before: int = 0
-    ) -> tuple[tuple[LifeBody, LifeBody], int, tuple[Rates, Rates]]:
+        self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int, before: int = 0
+    ) -> tuple[tuple[LifeBody, ...], int, tuple[Rates, ...]]:
         """Jump with the rates of a solved round, up to the allowed wear or damage or the next break-out.
 
         Parameters
@@ -136,15 +136,15 @@ class Jumps:
         return self._bodies_after(bodies, rates, jump, done), jump, rates
 
     def _bodies_after(
-        self, bodies: tuple[LifeBody, LifeBody], rates: tuple[Rates, Rates], jump: int, done: int
-    ) -> tuple[LifeBody, LifeBody]:
+        self, bodies: tuple[LifeBody, ...], rates: tuple[Rates, ...], jump: int, done: int
+    ) -> tuple[LifeBody, ...]:
         return tuple(
             body.after(rate, jump, done, self.life.break_out)
             for body, rate in zip(bodies, rates, strict=True)
         )
 
     def _allowed(
-        self, bodies: tuple[LifeBody, LifeBody], rates: tuple[Rates, Rates], solved_round: Round, left: int
+        self, bodies: tuple[LifeBody, ...], rates: tuple[Rates, ...], solved_round: Round, left: int
     ) -> int:
         """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
         passes = 1 if self.is_yielding(solved_round.yielded) else left
@@ -161,7 +161,7 @@ class Jumps:
         return min(left, max(passes, len(solved_round.passes)))
 
     def expected_rounds(
-        self, bodies: tuple[LifeBody, LifeBody], solved_round: Round, done: int
+        self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int
     ) -> tuple[int, int]:
         """Least and largest expected number of rounds until the end of the life, at the rates of this one.
 
@@ -174,7 +174,7 @@ class Jumps:
         return min(counts), max(counts)
 
     def _rounds_to_come(
-        self, bodies: tuple[LifeBody, LifeBody], solved_round: Round, done: int, are_relieved: bool
+        self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int, are_relieved: bool
     ) -> int:
         rounds, jump, begin = 0, 1, bodies
         while done < self.passes and rounds < MAX_LOOKAHEAD:

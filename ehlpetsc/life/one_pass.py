@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.effects.wear import WearRecord
-    from ehlpetsc.run.stop import StopRequest
 
 
 class OfBody(NamedTuple):
@@ -88,7 +87,7 @@ def start(case: Case, comm: MPI.Comm, position: int, records: dict[str, tuple]) 
 
 
 def run_pass(
-    simulation: Simulation, before: dict[str, tuple], file: Path, stop: StopRequest | None = None
+    simulation: Simulation, before: dict[str, tuple], file: Path, stop: Callable | None = None
 ) -> Pass:
     """Solve a pass to its end and evaluate it.
 
@@ -133,13 +132,13 @@ def run_pass(
     return Pass(bodies, figures, records.get("plastic_deformation"), max(map(_largest_increase, set_)))
 
 
-def _depths(before: dict[str, WearRecord], after: dict, name: str, k: int) -> tuple[BodyField, BodyField]:
+def _depths(before: dict[str, Any], after: dict, name: str, k: int) -> tuple[BodyField, ...]:
     """Depths of body k before and after; zero where there is no record."""
     depths = (records[name].depth[k] if name in records else NO_DEPTH for records in (before, after))
     return tuple(depths)
 
 
-def _largest_increase(depths: tuple[BodyField, BodyField]) -> float:
+def _largest_increase(depths: tuple[BodyField, ...]) -> float:
     before, after = depths
     if not len(after.depth):
         return 0.0

@@ -63,7 +63,7 @@ class Positions:
             pinion, wheel = case.gears.pair.teeth
             self.passes_2 = self.count * pinion / wheel
 
-    def new_bodies(self, first: Pass) -> tuple[LifeBody, LifeBody]:
+    def new_bodies(self, first: Pass) -> tuple[LifeBody, ...]:
         """Columns of both bodies, of body 2 in all of its positions.
 
         Parameters
@@ -74,7 +74,7 @@ class Positions:
         return tuple(self._new(first.bodies[k], k) for k in range(2))
 
     def records(
-        self, bodies: tuple[LifeBody, LifeBody], position: int, plastic: PlasticRecord | None
+        self, bodies: tuple[LifeBody, ...], position: int, plastic: PlasticRecord | None
     ) -> dict[str, tuple]:
         """Records of the effects with which a pass begins."""
         from ehlpetsc.effects.wear import WearRecord

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from ehlpetsc.life.history import LifeHistory
     from ehlpetsc.run.ranks import PollingStop
     from ehlpetsc.run.series import Member
-    from ehlpetsc.run.stop import StopRequest
 
 
 WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
@@ -93,7 +92,7 @@ def run_regimes(
     unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
-    stop: StopRequest | None = None,
+    stop: Callable | None = None,
 ) -> Path:
     """Run a life for each member of a case's series.
 
@@ -147,7 +146,7 @@ class _Lives:
         if case.life is None:
             raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
         keys = keys_of(tomllib.loads(case.text)["series"])
-        self.options = {"overwrite": overwrite, "unresolved": unresolved}
+        self.overwrite, self.unresolved = overwrite, unresolved
         self.index = Index(index_of(output), case, "members", keys=keys)
         self.members = members_of(case, _stem(output))
         for member in self.members:
@@ -161,7 +160,7 @@ class _Lives:
     def file(member: Member) -> Path:
         return member.output.with_name(f"{member.output.stem}.life.h5")
 
-    def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: StopRequest | None) -> Path:
+    def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: Callable | None) -> Path:
         from ehlpetsc.run.ranks import WorkQueue, on_root
 
         rows = self.index.rows
@@ -189,7 +188,14 @@ class _Lives:
         member = self.members[number]
         path = self.file(member)
         try:
-            life = run_life(member.case, path, **self.options, comm=group, stop=stop)
+            life = run_life(
+                member.case,
+                path,
+                overwrite=self.overwrite,
+                unresolved=self.unresolved,
+                comm=group,
+                stop=stop,
+            )
             return {"state": "done"} | outcome(life)
         except Stopped:
             return {"state": "stopped"}

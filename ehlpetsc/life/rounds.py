@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from ehlpetsc.effects.plastic_deformation import PlasticRecord
     from ehlpetsc.life.body import LifeBody
     from ehlpetsc.life.one_pass import Pass
-    from ehlpetsc.run.stop import StopRequest
 
 
 FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
@@ -32,7 +31,7 @@ class Ranks:
         is_shared = positions > 1 and comm.size > 1
         self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
 
-    def solve(self, positions: list[int], solve: Callable, stop: StopRequest | None = None) -> list[Pass]:
+    def solve(self, positions: list[int], solve: Callable, stop: Callable | None = None) -> list[Pass]:
         """Solve the passes of a round; collective.
 
         Parameters
@@ -50,7 +49,8 @@ class Ranks:
         """
         if len(positions) == 1 or self._group is self.comm:
             return [solve(position, self.comm, stop) for position in positions]
-        outcomes, report = {}, None
+        outcomes: dict = {}
+        report = None
         queue = WorkQueue(
             self.comm, self.each, positions, lambda entry: outcomes.update([entry]), self._group
         )
@@ -81,7 +81,7 @@ class Round(NamedTuple):
     passes: list
     passes_2: float
 
-    def rates(self, bodies: tuple[LifeBody, LifeBody]) -> tuple[Rates, Rates]:
+    def rates(self, bodies: tuple[LifeBody, ...]) -> tuple[Rates, ...]:
         """Wear, damage and worn volume that a pass adds to each body: means over the round."""
         rates = []
         for k, (body, factor) in enumerate(zip(bodies, (1.0, self.passes_2), strict=True)):
