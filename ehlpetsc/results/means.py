@@ -88,10 +88,13 @@ def _filled_by(result: Result, side: str) -> float:
     """Time [s] from which the roughness of one surface fills the contact."""
     from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
 
-    profile, body, speed = result.profile(side), result.case.surface.side(side), result.attrs[f"u{side}"]
+    profile, speed = result.profile(side), result.attrs[f"u{side}"]
+    if profile is None or speed == 0.0:
+        return 0.0
+    body = result.case.surface.side(side)
     feature = body and body.synthetic
     is_single = feature is not None and feature.kind in SINGLE_FEATURES
-    if profile is None or speed == 0.0 or not (is_single or profile[1].any()):
+    if not (is_single or profile[1].any()):
         return 0.0
     a, leading = result.attrs["a"], profile[0].max() if speed > 0.0 else profile[0].min()
     reached = bump_centre(feature) if is_single else a + RAMP_LENGTH * a

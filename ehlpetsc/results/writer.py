@@ -24,6 +24,7 @@ from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS, of_every_c
 from ehlpetsc.quantity import Field
 from ehlpetsc.results.atomic_write import os_reason, replacing
 from ehlpetsc.results.hdf5_file import change, check_space, create, extend, put_fixed
+from ehlpetsc.results.means import means
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 
@@ -250,6 +251,11 @@ class ResultWriter:
         """Store a depth [m] of a surface, "1" or "2", at the points s of its profile."""
         with self._one_sentence("not written on"):
             self._file[f"surface/{side}/{name}"][:] = depth
+
+    def means(self) -> dict[str, float]:
+        """Means over the run, see :func:`ehlpetsc.results.means.means`."""
+        self.flush()
+        return means(Result(self._file, self.path or Path()))
 
     def close(self, status: str, limits: Sequence[str] = ()) -> None:
         """Write the remaining rows, the status of the run and its limits, and close."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
 import time as clock
 from collections.abc import Callable
@@ -10,8 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 
 from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
-from ehlpetsc.results.means import Totals, means
-from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 
@@ -107,7 +104,7 @@ class Run:
             outcome = Outcome(ExitStatus.BAD_INPUT, error, clock.monotonic() - begun)
             if self.root:
                 print(f"ehlpetsc: {error}", file=self.err, flush=True)
-            self._print(self._summary(outcome))
+            self._print(summary_line(outcome.status, self.recorder.totals, outcome.wall))
             return outcome
         outcome = Outcome(status, failure, clock.monotonic() - begun)
         if self.root:
@@ -139,15 +136,7 @@ class Run:
         self._unused.note()
         if state is not None:
             self._print(f"result: {recorder.output}")
-        self._print(self._summary(outcome))
-
-    def _summary(self, outcome: Outcome) -> str:
-        """Last line of the output, with means from the result file."""
-        totals = self.recorder.totals
-        if self.root and totals.values and outcome.status is not ExitStatus.BAD_INPUT:
-            with contextlib.suppress(OutputError), read_result(self.recorder.output) as result:
-                totals = Totals(totals.values, means(result))
-        return summary_line(outcome.status, totals, outcome.wall)
+        self._print(summary_line(outcome.status, self.recorder.totals, outcome.wall))
 
     def _print(self, *lines: str) -> None:
         if self.root:

@@ -1,6 +1,7 @@
 """Outputs: existing files are kept, locks, results removed during a run."""
 
 import os
+import re
 import subprocess
 
 import pytest
@@ -11,6 +12,14 @@ from ehlpetsc.results.reader import read_result
 
 COARSE = ["mesh.inlet=-1.5", "mesh.points_per_half_width=20"]
 CASE = [ROOT / "cases" / "table1_smooth.toml", *settings(*COARSE)]
+SLIDING = """title = "sliding that grows"
+contact = { radius = 0.02, load = 3e5, youngs_modulus = [207e9, 207e9], poisson_ratio = [0.3, 0.3] }
+fluid = { viscosity = 0.05, law = "barus", pressure_viscosity = 2e-8, density = "incompressible" }
+motion = { entrainment_speed = 1.0 }
+operation = { time = [0.0, 4e-4], speed_1 = [1.0, 1.4], speed_2 = [1.0, 0.6] }
+mesh = { inlet = -2.0, outlet = 1.4, points_per_half_width = 15 }
+time = { travel = 1.0 }
+"""
 LONG = [ROOT / "cases" / "table1_rough.toml", *settings("mesh.points_per_half_width=40", "time.travel=500")]
 
 
@@ -145,3 +154,13 @@ def test_output_lock_excludes_a_second_run_and_ends_with_its_process(tmp_path):
     after = run(*CASE, "-ehl_output", "r.h5", cwd=tmp_path)
     assert after.returncode == 0, after.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
+
+
+def test_limits_name_the_mean_friction_of_the_last_line(tmp_path):
+    """Sliding grows: the last step alone has more friction than the mean."""
+    (tmp_path / "case.toml").write_text(SLIDING)
+    done = run("case.toml", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    mean = re.search(r" friction_coefficient=(\S+)", done.stdout.splitlines()[-1])[1]
+    limit = re.search(r"^limit: friction: a coefficient of (\S+),", done.stdout, re.MULTILINE)[1]
+    assert float(limit) == pytest.approx(float(mean), rel=0.01)
