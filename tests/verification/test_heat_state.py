@@ -1,0 +1,78 @@
+"""Runs with heat: oil balance of the stored state, heat of rubbing solids, next to no heat."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from support import CASES
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation import finite_volumes as volumes
+from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.effects.heat.step import HeatStep, Temperatures
+from ehlpetsc.effects.heat.transport import Film
+from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.run.simulation import Simulation
+
+MESH = {"mesh.inlet": -1.4, "mesh.outlet": 1.3, "mesh.points_per_half_width": 50}
+
+
+class StoredTemperature:
+    """Viscosity of the nodes at a stored temperature."""
+
+    def __init__(self, case, temperature, p0):
+        self.case, self.temperature, self.p0 = case, temperature, p0
+
+    def fill_properties(self, q, h, density, units, nodes, temperatures, at):
+        fluid, heat, n = self.case.fluid, self.case.heat, len(q)
+        for i in range(at.shape[1]):
+            volumes.fill_mass(i, q[i] if i < n else 0.0, h[min(i, n - 1)], density, *units, at)
+        p = self.p0 * at[volumes.P]
+        temperature = np.append(self.temperature, self.temperature[-1])[: len(p)]
+        cold, hot = viscosity(p, fluid, heat)[0], viscosity(p, fluid, heat, temperature)[0]
+        at[volumes.FLUIDITY], at[volumes.LN_ETA_P] = np.exp(-cold) / fluid.viscosity, 0.0
+        at[volumes.THERMAL], at[volumes.LN_THERMAL_P :] = np.exp(0.5 * (cold - hot)), 0.0
+
+
+@pytest.mark.parametrize("beta", [None, 0.04], ids=["roelands", "exponential"])
+def test_oil_balance_of_the_stored_state(beta):
+    """Mass defect by stored pressure, film, void fraction and temperature, over the oil that is carried."""
+    case = load(CASES / "table1_heat.toml", MESH | {"time.travel": 0.4, "heat.viscosity_temperature": beta})
+    simulation = Simulation(case)
+    for accepted in simulation:
+        state = simulation.solution
+        temperature = StoredTemperature(case, accepted.film_temperature, simulation.scales.p0)
+        inputs = replace(state.solution.inputs, heat=temperature)
+        reynolds = Reynolds(simulation.scales, 1.0, 0, simulation.scales.nx)
+        nodes = state.solution.nodes
+        defect, _ = reynolds.evaluate(nodes.reynolds_unknown, nodes.film, inputs)
+        carried = state.m[np.abs(simulation.scales.x) <= 1.0].mean()
+        assert np.abs(defect[1:]).sum() < 1e-5 * carried, accepted.time
+
+
+def test_rubbing_solids_heat_the_walls():
+    """At 20 m/s the film was tens of kelvin above the walls by the heat of solids that touch."""
+    keys = {"motion.entrainment_speed": 20.0, "fluid.viscosity": 0.0004, "time.travel": 3.2}
+    simulation = Simulation(load(CASES / "table1_heat.toml", MESH | keys | {"mesh.inlet": -1.6}))
+    above, walls = [], []
+    for accepted in simulation:
+        record, touching = simulation.solution.records["heat"], accepted.contact_pressure > 0.5e9
+        wall = 0.5 * (record.wall_1 + record.wall_2)[touching]
+        above.append(record.film[touching] - wall)
+        walls.append(wall)
+        assert accepted.scalars["heat_error"] < 1e-10
+    above, walls = np.concatenate(above), np.concatenate(walls)
+    assert len(above) > 100 and above.mean() < 10.0
+    assert walls.max() > 363.0 + 50.0
+
+
+def test_next_to_no_heat_does_not_divide_its_imbalance():
+    """At a start from rest the heat is that of rounding."""
+    zero, inlet = np.zeros(5), np.full(5, 363.0)
+    steps = SimpleNamespace(scales=SimpleNamespace(dx=1e-6), inlet=363.0)
+    flux = np.full(5, 1e-6)
+    film = Film(zero, zero, zero, inlet, *[zero] * 3, np.full(6, 1e4), zero)
+    state = np.array([inlet, zero, inlet])
+    found = Temperatures(state, [inlet] * 2, [flux] * 2, np.full(5, 1e-20), zero, [], [])
+    assert HeatStep.balance(steps, found, film, zero)[1] < 1e-5
