@@ -148,6 +148,13 @@ def test_reversed_rough_body_is_refused(tmp_path):
         Scene("motion.slide_roll_ratio=2.5", "motion.entrainment_speed=4.0").load(tmp_path / "f.restart.h5")
 
 
+def test_profiles_that_would_jump_are_refused(tmp_path):
+    scene = Scene()
+    scene.save(tmp_path / "f.restart.h5", *state_of(scene))
+    with pytest.raises(OutputError, match=r'time\.start was "smooth"'):
+        Scene("time.start=rough").load(tmp_path / "f.restart.h5")
+
+
 def test_restart_file_of_another_version_is_refused_in_one_sentence(tmp_path):
     scene, path = Scene(), tmp_path / "f.restart.h5"
     scene.save(path, *state_of(scene))

@@ -209,6 +209,9 @@ def _misfit(
     if ("fluid" in earlier) != (case.fluid is not None):
         one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
         return f"a run {one} [fluid] cannot continue {other} it"
+    start = earlier.get("time", {}).get("start", "smooth")
+    if case.time.start != start:
+        return f'time.start was "{start}"; it must be as it was, or the profiles would jump'
     for side, was, speed in zip(("1", "2"), attributes["speeds"], (scales.u1, scales.u2), strict=True):
         if case.surface.side(side) and np.sign(was) != np.sign(speed):
             return (
