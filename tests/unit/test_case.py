@@ -116,26 +116,12 @@ def test_fault_names_file_key_value_and_range():
 
 
 def test_all_faults_of_a_case_are_reported_together():
-    found = faults(
-        ROUGH,
-        "contact.radius=-1",
-        "fluid.viscosity=nan",
-        "mesh.inlett=4",
-        "surface.1.file='nowhere.csv'",
-        "surface.2.file='missing.csv'",
-        "motion.entrainment_speed=0",
-        "nonsense",
-    )
-    for part in (
-        "contact.radius =",
-        "fluid.viscosity =",
-        "mesh.inlett =",
-        "surface.1.file =",
-        "surface.2.file =",
-        "motion.entrainment_speed =",
-        "nonsense:",
-    ):
-        assert sum(part in line for line in found) == 1
+    given = "contact.radius=-1 fluid.viscosity=nan mesh.inlett=4 surface.1.file='nowhere.csv'".split()
+    given += "surface.2.file='missing.csv' motion.entrainment_speed=0 nonsense".split()
+    found = faults(ROUGH, *given)
+    for word in given:
+        key = f"{word.partition('=')[0]}{' =' if '=' in word else ':'}"
+        assert sum(key in line for line in found) == 1
     assert len(found) == 7
 
 
@@ -143,25 +129,18 @@ def test_all_faults_of_a_case_are_reported_together():
     ("override", "words"),
     [
         ("contact.radius=inf", ["contact.radius = Infinity: ", ">= 1e-09 and <= 100 [m]"]),
-        ("contact.radius=true", ["contact.radius = true: ", ">= 1e-09 and <= 100 [m]"]),
-        ("contact.radius='big'", ['contact.radius = "big": ', ">= 1e-09 and <= 100 [m]"]),
         (
             "contact.youngs_modulus=[207e9]",
             ["contact.youngs_modulus = [207000000000.0]", ">= 1e+06 and <= 1e+18 [Pa]"],
         ),
-        ("contact.youngs_modulus=[207, 207]", ["contact.youngs_modulus = [207, 207]: ", ">= 1e+06"]),
         ("contact.poisson_ratio=[0.3, 0.6]", ["contact.poisson_ratio = [0.3, 0.6]: ", "<= 0.5"]),
         ("fluid.law='sead'", ['fluid.law = "sead": ', '"barus", "roelands"']),
         ("fluid.reference_viscosity=0.01", ["reference_viscosity", "viscosity"]),
         ("fluid.lambda=3e-9", ["fluid.lambda = 3e-09: ", "gamma"]),
-        ("fluid.lambda_=3e-9", ["fluid.lambda_ = 3e-09: ", '"lambda"?']),
-        ("motion.entrainment_speed=0", ["motion.entrainment_speed = 0: ", ">= 1e-09 and <= 1000 [m/s]"]),
         ("mesh.points_per_half_width=200.5", ["mesh.points_per_half_width = 200.5: ", ">= 4"]),
         ("mesh.points_per_half_width=90000", ["mesh.points_per_half_width = 90000: ", " 200000 nodes"]),
         ("mesh.inlet=-0.5", ["mesh.inlet = -0.5: ", "< -1 "]),
-        ("mesh.points_per_half_with=100", ['did you mean "points_per_half_width"?']),
         ("output.fields=['presure']", ['output.fields = ["presure"]: ', '"pressure"']),
-        ("output.fields=[]", ["output.fields = []: ", '"pressure"']),
         ("petsc.-snes_monitor=''", ["petsc = ", '"-snes_monitor"', "dash"]),
         ("time=5", ["time = 5: ", "table"]),
         (
@@ -224,10 +203,6 @@ def test_invalid_toml_is_refused_with_its_line(tmp_path):
         ("0,0\n1e-6,0\n2e-6,0\n", ": 3 points; "),
         ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", "line 2: '1e-6,zero'"),
         ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "falls after x = 2e-06"),
-        ("0,0\n1e-6,0\n1e-6,1e-7\n3e-6,0\n", "x = 1e-06 appears twice"),
-        ("0,0\n1e-6,inf\n2e-6,0\n3e-6,0\n", "point 2 is not a number"),
-        ("0,0\n1,2\n2,0\n3,1\n", 'write unit = "um"'),
-        ("0,0,0\n1,2,3\n", "write columns = [1, 2]"),
     ],
 )
 def test_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):

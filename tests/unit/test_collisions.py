@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from support import ROOT
-from support.made_results import TABLE_1, A, make_result
+from support.made_results import TABLE_1, A
 
 from ehlpetsc.pictures.over_time import space_time_map
 from ehlpetsc.results.contacts import film_at_contact, in_contact, layer_film
@@ -16,7 +16,6 @@ from ehlpetsc.results.writer import Layout, ResultWriter
 
 sys.path.append(str(ROOT / "cases" / "paper"))
 import collisions
-import contacts
 import entrapment
 
 X = np.linspace(-1.5, 1.5, 301)
@@ -123,12 +122,6 @@ def test_contacts_of_a_layer_begin_at_ten_megapascals():
     assert pressure == pytest.approx(10e6, rel=1e-9)
 
 
-def test_no_contact_without_a_film_at_its_bound(tmp_path):
-    result = make(tmp_path / "open.h5", 0.01, [], fields=FIELDS[:2])
-    assert film_at_contact(result) == -np.inf
-    assert not in_contact(result, slice(0, len(result.time))).any()
-
-
 @pytest.mark.parametrize(
     "film, jumps",
     [
@@ -140,20 +133,6 @@ def test_no_contact_without_a_film_at_its_bound(tmp_path):
 def test_slope_jumps_at_contact(film, jumps):
     values = np.arange(len(film), 0, -1.0)
     np.testing.assert_allclose(collisions.slope_jumps(values, film, film.index(0)), jumps, atol=1e-12)
-
-
-def test_collision_picture_shows_every_member_with_its_contacts(series):
-    late = collisions.find(series)[1]
-    figure = collisions.draw_collisions(series, [0.010, 0.008, 0.006, 0.004], "fluid.viscosity", [late])
-    upper, lower = figure.axes
-    for panel, name, factor in ((upper, "pressure", 1e-9), (lower, "film_thickness", 1e6)):
-        for line, result in zip(panel.lines, series, strict=True):
-            frame = result.nearest_frame(time=late.time)
-            x, shown = line.get_data()
-            np.testing.assert_allclose(shown, factor * np.interp(x * A, result.x, result.frame(name, frame)))
-            view = np.isin(result.x, x * A)
-            assert len(line.get_markevery()) == result.frame("in_contact", frame)[view].sum()
-    assert upper.lines[-1].get_markevery()
 
 
 def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
@@ -177,18 +156,3 @@ def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
 
 def test_pressure_peak_outside_contacts_is_no_entrapment(series):
     assert entrapment.find(series[-1]) == []
-
-
-def test_contact_rates_and_lengths_are_those_of_the_fields(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    files = [make_result(tmp_path / f"{v}.h5", viscosity=v) for v in (0.002, 0.005)]
-    with read_result(files[0]) as result:
-        x, dx = result.x / A, result.x[1] - result.x[0]
-        part = (x >= -1) & (x <= -0.5)
-        counted = result.contact_count[part].sum() / part.sum() / 0.041
-        assert contacts.mean_rate(result, -1.0, -0.5) == pytest.approx(counted)
-        assert contacts.contact_length(result) == pytest.approx(result["in_contact"][1:].sum() * dx / 40)
-        rate = contacts.mean_rate(result)
-    contacts.main([*map(str, files)])
-    head, one, _ = capsys.readouterr().out.splitlines()
-    assert "viscosity = 0.002" in one and f" {rate:.2f} " in one and rate > 0

@@ -23,14 +23,6 @@ def test_site_contains_every_page_once():
     assert sorted(PAGES) == sorted(here)
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_page_has_one_title_and_no_skipped_heading_level(page):
-    text = re.sub(r"^```.*?^```", "", TEXTS[page], flags=re.DOTALL | re.MULTILINE)
-    levels = [len(marks) for marks in re.findall(r"^(#+) ", text, re.MULTILINE)]
-    assert levels[0] == 1 and levels.count(1) == 1
-    assert all(below <= above + 1 for above, below in zip(levels, levels[1:], strict=False))
-
-
 def test_theory_equations_are_numbered_consecutively():
     displayed = re.findall(r"\$\$(.*?)\$\$", TEXTS["ehlpetsc/model"], re.DOTALL)
     assert not re.search(r"\\[^a-zA-Z]", "".join(displayed))  # which Markdown would take for an escape

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support import CASES, is_line_with
+from support import CASES
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -173,21 +173,6 @@ def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, wor
     assert any(re.search(words, line) for line in warnings(c, Scales.of(c)))
 
 
-@pytest.mark.parametrize(
-    ("overrides", "warned"),
-    [
-        (["contact.yield_pressure=0.9e9"], True),
-        (["contact.yield_pressure=[2e9, 0.9e9]"], True),
-        (["contact.yield_pressure=1.1e9"], False),
-        (["contact.yield_pressure=0.9e9", "time.pass_shift=0.0"], False),
-        (["contact.yield_pressure=0.9e9", "time.passes=1"], False),
-    ],
-)
-def test_passes_of_solids_that_yield_under_the_smooth_contact_are_named(overrides, warned):
-    c = case.load(CASES / "running_in.toml", overrides)
-    assert any("time.pass_shift" in line for line in warnings(c, Scales.of(c))) == warned
-
-
 @pytest.mark.parametrize("level", [False, True])
 def test_tilted_profile_warning_names_the_key(level):
     x = 1e-6 * np.arange(4001)
@@ -213,23 +198,3 @@ def test_mesh_within_ten_percent_has_no_warning():
     needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
     c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
     assert not any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c)))
-
-
-@pytest.mark.parametrize(
-    ("name", "travel", "lines_shown"),
-    [
-        (
-            "table1_rough.toml",
-            1.0,
-            [("surface.1: ", "smooth", "(1.50)"), ("surface.2: ", "smooth", "(1.93)")],
-        ),
-        ("table1_rough.toml", 4.0, [("surface.2: ", "fills", "(4.63)")]),
-        ("table1_rough.toml", 4.7, []),
-        ("ridge.toml", 3.0, [("surface.2: ", "middle", "x = 0 (3.73)")]),
-    ],
-)
-def test_run_shorter_than_the_roughness_entry_is_a_warning(name, travel, lines_shown):
-    found = starting(lines(name, f"time.travel={travel}"), "Warning")
-    assert len(found) == len(lines_shown)
-    for line, words in zip(found, lines_shown, strict=True):
-        assert is_line_with(line, f" time.travel = {travel:g}, ", *words)

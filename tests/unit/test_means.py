@@ -13,7 +13,6 @@ from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.operating_points import operating_point
-from ehlpetsc.pictures.running_in import draw_running_in
 from ehlpetsc.results.means import both_fill, filled_from, means, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import pass_summary
@@ -137,23 +136,3 @@ def test_filling_time_follows_distance_under_changing_speeds(tmp_path):
         file["steps/displacement_1"][:] = file["steps/displacement_2"][:] = time
     with read_result(path) as result:
         assert filled_from(result) == np.inf
-
-
-@pytest.mark.parametrize("speed", [50.0, 5.0])
-def test_passes_without_solid_load_are_drawn(tmp_path, speed):
-    """Share and length 0 in every pass, or no means since the run ends before the contact is filled."""
-    paths = [make_result(tmp_path / f"pass{n}.h5", speed=speed, rough=True) for n in (1, 2)]
-    for number, path in enumerate(paths):
-        with h5py.File(path, "r+", libver="latest") as file:
-            steps = file["steps/time"].size
-            for name, value in (("contact_share", 0.0), ("contact_length", 0.0), ("set_volume", 1e-12)):
-                values = np.full(steps, (1 + number) * value)
-                file.create_dataset(f"steps/{name}", data=values, maxshape=(None,))
-            for side in ("1", "2"):
-                file[f"surface/{side}/set"] = np.full(50, 1e-9)
-    figure = draw_running_in([read_result(path) for path in paths], None)
-    figure.draw_without_rendering()
-    share = next(axes for axes in figure.axes if "share" in axes.get_ylabel())
-    drawn = share.lines[0].get_ydata()
-    assert (drawn == 0.0).all() if speed == 50.0 else np.isnan(drawn).all()
-    assert ["run" in text.get_text() for text in share.texts] == ([] if speed == 50.0 else [True])

@@ -104,34 +104,13 @@ def test_durations_are_formatted(seconds, text):
 
 
 def test_summary_line_is_parsable():
-    totals = Totals(
-        dict(
-            step=120,
-            newton=600,
-            h_min=0.0,
-            p_max=1.23456789e9,
-            contacts=27,
-            load_error=2.5e-12,
-            mass_error=3e-4,
-            friction_coefficient=0.05,  # of the last step
-            retries=3,
-        ),
-        dict(friction_coefficient=0.04, film_central=2e-7, lambda_ratio=0.5, mean_gap_ratio=1.5),
+    figures = dict(steps=120, newton=600, h_min=0.0, p_max=1.23456789e9, contacts=27)
+    figures |= dict(load_error=2.5e-12, mass_error=3e-4)
+    means = dict(friction_coefficient=0.04, film_central=2e-7, lambda_ratio=0.5, mean_gap_ratio=1.5)
+    given = {"step" if name == "steps" else name: value for name, value in figures.items()}
+    line = report.summary_line(
+        ExitStatus.DONE, Totals(given | dict(friction_coefficient=0.05, retries=3), means), 12.34
     )
-    line = report.summary_line(ExitStatus.DONE, totals, 12.34)
     assert line.startswith("ehlpetsc: done steps=")
     values = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", line)}
-    assert values == dict(
-        steps=120,
-        newton=600,
-        h_min=0,
-        p_max=1.23456789e9,
-        contacts=27,
-        load_error=2.5e-12,
-        mass_error=3e-4,
-        friction_coefficient=0.04,
-        film_central=2e-7,
-        lambda_ratio=0.5,
-        mean_gap_ratio=1.5,
-        wall=12.3,
-    )
+    assert values == figures | means | {"wall": 12.3}

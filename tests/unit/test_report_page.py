@@ -12,7 +12,7 @@ from plotly.offline import get_plotlyjs
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures.page import report, report_data
+from ehlpetsc.pictures.page import report_data
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import read_result
 
@@ -108,20 +108,3 @@ def test_report_shows_damage_in_decades(tmp_path, page):
     np.testing.assert_allclose(unpacked(data["damage"]["s"]), [0.5, 1.0, 2.0])
     rows = [unpacked(row) for row in data["damage"]["surfaces"]["2"]]
     np.testing.assert_allclose(rows, [[-3, np.nan, -5], [np.nan, -7, -8]], rtol=1e-6)
-
-
-def test_report_accepts_one_steady_result_and_refuses_several(tmp_path, page, capsys):
-    steady = make_result(tmp_path / "s.h5", steps=1)
-    _, data = page(steady)
-    assert data["steps"]["figures"] == [] and len(data["frames"]["step"]) == 1
-    assert plot.main([str(steady), str(steady), "--report"]) == 2
-    assert "ehlpetsc plot: 2 results; allowed: --report " in capsys.readouterr().err
-
-
-def test_missing_plotly_names_its_package(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(report, "has", lambda _: False)
-    path = make_result(tmp_path / "r.h5")
-    assert plot.main([str(path), "--report"]) == 2
-    error = capsys.readouterr().err
-    assert error.startswith("ehlpetsc plot: ") and error.endswith(" apt-get install python3-plotly\n")
-    assert not path.with_suffix(".html").exists()

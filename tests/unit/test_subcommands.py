@@ -39,7 +39,6 @@ def test_help_lists_all_commands(capsys, word):
     "words, message",
     [
         (["plt", "roller.h5"], "plt: unknown command; did you mean plot?"),
-        (["runn", "roller.toml"], "runn: unknown command; did you mean run.toml?"),
         (["rollr"], "rollr: unknown command; did you mean roller.toml?"),
         (
             ["roller.toml", "plot"],
