@@ -15,7 +15,7 @@ MPI_TESTS = Path(__file__).parent / "mpi"
 DEAREST = """
 test_post_run test_compliant test_run_script test_wear_against_fatigue test_series test_options
 test_passes test_extremes test_operation test_plot test_interruptions test_batch
-test_derived_of_gears_and_life test_fuzz test_cases test_lives_with_effects test_stops test_heat
+test_fuzz test_cases test_lives_with_effects test_stops test_heat
 test_yielding test_lives_killed test_packaging test_asperities test_sweep test_figures test_derived_files
 test_waviness test_output test_starts test_mixed test_heat_with_effects test_dense_profiles
 test_body_point_temperatures test_outputs test_series_of_lives test_heat_runs test_post_criteria

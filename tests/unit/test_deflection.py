@@ -1,4 +1,4 @@
-"""The deflection in second differences and as one integral: the same equations."""
+"""The deflection in second differences, as one integral, and its far kernel as exponentials."""
 
 import itertools
 from pathlib import Path
@@ -8,9 +8,10 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import Blocks, pack, unpack
-from ehlpetsc.discretisation.deflection import Deflection, PressureSums
+from ehlpetsc.discretisation.deflection import Deflection, PressureSums, curvature_kernel
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of
+from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials, grouped_kernel
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -74,3 +75,33 @@ def test_film_equation_has_zero_deflection_residual(model):
     evaluation = problem.evaluate(Unknowns(q, problem.model.w_from_film(film), h00), problem.inputs(phi))
     terms = problem.deflection.curvature_coefficient * film.max()
     assert np.abs(q_of(evaluation.residual, problem.n)).max() < 1e-12 * terms
+
+
+@pytest.mark.parametrize("points, error", [(50, 0.15), (200, 0.11), (800, 0.3)])
+def test_exponentials_approximate_the_kernel_within_half_a_half_width(points, error):
+    kernel = curvature_kernel(4 * points + 1)
+    rates, weights = exponentials(kernel, points)
+    far = grouped_kernel(kernel)[2:]
+    distance = 2.0 + np.arange(len(far))
+    found = np.exp(-np.outer(distance, rates)) @ weights
+    assert np.abs(found / far - 1.0)[distance * GROUP <= 0.5 * points].max() < error
+    assert np.abs(found - far).max() < 0.5 * error * far[0]
+    assert found.sum() / far.sum() == pytest.approx(1.0, abs=0.06)
+
+
+def test_recurrence_sums_an_exponential():
+    rate, n = 0.3, 60
+    p = np.random.default_rng(0).standard_normal(n)
+    matrix = np.diag(np.full(n, 2 * np.cosh(rate))) - np.eye(n, k=1) - np.eye(n, k=-1)
+    matrix[0, 0] -= np.exp(-rate)
+    matrix[-1, -1] -= np.exp(-rate)
+    distance = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+    np.testing.assert_allclose(
+        np.linalg.solve(matrix, 2 * np.sinh(rate) * p), np.exp(-rate * distance) @ p, rtol=1e-12
+    )
+
+
+def test_grouped_kernel_is_the_mean_over_pairs_of_nodes():
+    kernel = np.random.default_rng(0).standard_normal(40)
+    i, j = np.arange(GROUP), 3 * GROUP + np.arange(GROUP)
+    assert grouped_kernel(kernel)[3] == pytest.approx(kernel[np.subtract.outer(j, i)].mean())

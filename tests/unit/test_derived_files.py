@@ -1,13 +1,21 @@
-"""Files made from results: what lies in their place, and a disk that is full."""
+"""Files made from results by every command: what lies in their place, and a disk that is full."""
 
+import os
+import re
 import shutil
 
 import pytest
-from support import ROOT, is_line_with
+from support import CASES, COARSE_LIFE, ROOT, is_line_with, refused
 from support.made_results import make_result
 from test_output import file_size_limit
 
 from ehlpetsc.analysis import ensemble
+from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import OutputError
+from ehlpetsc.gears.command import main as gears
+from ehlpetsc.life.command import main as life
+from ehlpetsc.life.driver import run_life
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.restart_file import save_restart
@@ -83,3 +91,76 @@ def test_temporary_file_is_removed_after_an_error(tmp_path):
         raise OSError(28, "No space left on device")
     assert failed.value.filename == str(tmp_path / "a.png")
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+
+
+@pytest.fixture
+def pair(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return shutil.copyfile(CASES / "fzg.toml", tmp_path / "pair.toml")
+
+
+def sentence(capsys, command, *words):
+    """The one sentence that a command ends with, after notes."""
+    *notes, message = refused(capsys, command, *words).splitlines()
+    assert all(re.search("note: |warning: |already there", line) for line in notes), notes
+    return message
+
+
+@pytest.mark.parametrize("option, ending", [("--csv", ".csv"), ("--csv", ".toml"), ("-o", ".h5")])
+def test_gears_overwrites_its_own_files_only(pair, tmp_path, capsys, option, ending):
+    other = foreign(tmp_path, f"other{ending}")
+    before = other.read_bytes()
+    message = sentence(capsys, gears, pair, option, other)
+    assert f"{other}: " in message and option in message
+    assert other.read_bytes() == before
+
+
+@pytest.mark.parametrize("command", [gears, life, summary])
+@pytest.mark.parametrize("name", ["", "/", "sub", "sub.h5", "a.png", "a.restart.h5", "none.h5", "/dev/zero"])
+def test_invalid_input_is_refused_in_one_line(tmp_path, monkeypatch, capsys, command, name):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("sub", "sub.h5"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0")
+    save_restart(tmp_path / "a.restart.h5", {}, {"case": "a"})
+    message = sentence(capsys, command, name)
+    assert not message.startswith(" "), "an empty name is shown as such"
+    assert len(os.listdir(tmp_path)) == 4
+
+
+@pytest.mark.parametrize("name", ["other.h5", "other.restart.h5", "case.toml", "profile.csv", "a.png"])
+def test_summary_overwrites_its_own_tables_only(tmp_path, capsys, name):
+    result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
+    before = other.read_bytes()
+    assert f"{other}: " in sentence(capsys, summary, result, "-o", other)
+    assert other.read_bytes() == before
+
+
+@pytest.mark.parametrize("name", ["", "case.toml", "profile.csv", "a.png", "sub", "sub.h5"])
+def test_life_does_not_overwrite_another_file(tmp_path, monkeypatch, capsys, name):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("sub", "sub.h5"):
+        (tmp_path / folder).mkdir()
+    if name in ("case.toml", "profile.csv", "a.png"):
+        foreign(tmp_path, name)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    assert sentence(capsys, life, COARSE_LIFE, "-o", name, "--overwrite")
+    assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+
+
+def test_life_keeps_a_result_named_as_its_pass(tmp_path):
+    other = make_result(tmp_path / "x.life.pass.h5")
+    before = other.read_bytes()
+    with pytest.raises(OutputError, match=r"x\.life\.pass\.h5: exists"):
+        run_life(load(COARSE_LIFE), tmp_path / "x.life.h5", most=1, unresolved=True)
+    assert other.read_bytes() == before
+
+
+def test_life_overwrites_its_own_passes_only(tmp_path):
+    case, path = load(COARSE_LIFE), tmp_path / "x.life.h5"
+    first = run_life(case, path, most=1, unresolved=True).done
+    assert run_life(case, path, most=1, unresolved=True).done > first  # continued
+    assert run_life(case, path, most=1, overwrite=True, unresolved=True).done == first
+    one_pass = tmp_path / "x.life.pass.h5"
+    one_pass.write_bytes(one_pass.read_bytes()[:4096])  # as of a run killed while it writes
+    assert run_life(case, path, most=1, overwrite=True, unresolved=True).done == first

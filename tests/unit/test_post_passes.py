@@ -1,10 +1,12 @@
-"""Statistics over passes, and damage near an asperity."""
+"""Surfaces after a pass, statistics over passes, and damage near an asperity."""
 
 import json
 
+import h5py
 import numpy as np
 import pytest
 from support.made_loads import Scene, write
+from support.made_results import make_result
 
 from ehlpetsc.errors import ExitStatus, PostError
 from ehlpetsc.post import largest_near, pass_statistics
@@ -12,6 +14,7 @@ from ehlpetsc.post.command import main
 from ehlpetsc.post.passes import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.running_in import heights, passes_to_run_in, statistics
 
 
 def test_mean_scatter_and_life():
@@ -108,3 +111,40 @@ def test_shifted_passes_are_aligned(shift, tmp_path):
         write(paths[1], scenes[1], depths=(0.1,), edit=edit)
         assert main([paths[1], "--overwrite"]) == ExitStatus.DONE
         same_points([results[0], PostResult(tmp_path / "1.post.h5")], "1")
+
+
+@pytest.mark.parametrize(
+    "added, number",
+    [
+        ([10.0, 1.5, 0.3, 0.08, 0.02], 4),
+        ([10.0, 0.05, 2.0, 0.06, 0.04], 4),  # other pairs of asperities have met in the third
+        ([10.0, 0.05, 2.0], None),
+        ([0.0, 0.0], None),
+    ],
+)
+def test_running_in_ends_where_no_later_pass_adds_more(added, number):
+    rows = [{"pass": k, "added": value} for k, value in enumerate(added, 1)]
+    assert passes_to_run_in(rows) == number
+
+
+def test_one_small_shifted_pass_does_not_end_running_in():
+    rows = [{"pass": k, "added": value} for k, value in enumerate([10.0, 1.0, *12 * [0.05]], 1)]
+    assert passes_to_run_in(rows[:3], 10) is None
+    assert passes_to_run_in(rows, 10) == passes_to_run_in(rows[:12], 10) == 3
+    assert passes_to_run_in(rows[:11], 10) is None
+
+
+def test_depths_of_all_effects_are_taken_from_the_heights(tmp_path):
+    path = make_result(tmp_path / "r.h5", rough=True)
+    depth = np.linspace(0.0, 2e-8, 50)
+    with h5py.File(path, "r+", libver="latest") as file:
+        file["surface/1/set"], file["surface/1/wear"] = depth, 0.5 * depth
+    with read_result(path) as result:
+        s, before, after = heights(result, "1")
+        np.testing.assert_allclose(before - after, 1.5 * depth, atol=1e-20)
+        found = statistics(result, "1")
+    assert found["deepest"] == pytest.approx(3e-8)
+    assert found["rq"] == pytest.approx(np.std(after)) and found["ra"] == pytest.approx(
+        np.abs(after - after.mean()).mean()
+    )
+    assert found["slope"] == pytest.approx(np.abs(np.diff(after) / np.diff(s)).max())

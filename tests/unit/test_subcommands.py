@@ -1,4 +1,4 @@
-"""One program: its commands start, help and version are everywhere, a mistyped command is one sentence."""
+"""One program: its commands start, help and version are everywhere, a bad command line is one sentence."""
 
 import csv
 import io
@@ -13,6 +13,8 @@ from support.made_results import make_result, with_solids
 from ehlpetsc import __version__
 from ehlpetsc.__main__ import COMMANDS, main
 from ehlpetsc.analysis import summary
+from ehlpetsc.case.loading import load
+from ehlpetsc.errors import CaseError, ExitStatus
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import read_result
 
@@ -96,3 +98,74 @@ def test_weighted_percentiles_are_those_of_repeated_values():
     repeated = np.repeat(values, weights.astype(int))
     found = summary.weighted_percentiles(values, weights, (30.0, 70.0, 90.0))
     assert found == pytest.approx(np.percentile(repeated, (30.0, 70.0, 90.0)), abs=0.3)
+
+
+def message_of(name, words, capsys):
+    """What a command line that argparse refuses prints; it prints nothing else."""
+    with pytest.raises(SystemExit) as end:
+        main([name, *words])
+    assert end.value.code == ExitStatus.BAD_INPUT
+    message = capsys.readouterr()
+    assert not message.out
+    return message.err
+
+
+@pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "ensemble", "gears", "explain"])
+def test_mistyped_option_is_refused_in_one_line(name, capsys):
+    message = message_of(name, ["a.h5", "b.h5", "--deph"], capsys)
+    assert is_line_with(message, f"ehlpetsc {name}: ", " --deph;", f"; ehlpetsc {name} -h")
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "what"),
+    [
+        ("post", ["a.h5", "--count", "all"], ["--count: ", "'all'", "'von_mises'"]),
+        ("post", ["a.h5", "--within", "-1"], ["--within -1: ", " 0 "]),
+        ("post", [], ["required: RESULT.h5"]),
+        ("plot", ["a.h5", "--step", "one"], ["--step: ", "'one'"]),
+        ("plot", ["a.h5", "--map", "--movie"], ["--movie: ", " --map;"]),
+        ("compare", ["a.h5"], ["required: B.h5"]),
+        ("compare", ["a.h5", "b.h5", "--rtol", "-1"], ["--rtol: -1 ", " >= 0;"]),
+    ],
+)
+def test_command_line_fault_is_named(name, words, what, capsys):
+    message = message_of(name, words, capsys)
+    assert is_line_with(message, f"ehlpetsc {name}: ", *what, f"; ehlpetsc {name} -h")
+
+
+STRIBECK = "cases/stribeck.toml"
+NO_TEXT = "a\udcffb"  # a byte that is no UTF-8, as the command line hands it on
+
+
+@pytest.fixture(autouse=True)
+def at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        [""],
+        ["explain", ""],
+        ["cases/dry_hertz.toml", "-ehl_set", f"title={NO_TEXT}"],
+        ["cases/dry_hertz.toml", "-ehl_output", f"{NO_TEXT}.h5"],
+        ["cases/dry_hertz.toml", "-ksp_type", NO_TEXT],
+        ["explain", "/dev/zero"],
+        ["explain", "cases"],
+    ],
+)
+def test_unusual_input_is_refused_in_one_line(capfd, words):
+    assert main(words) == 2
+    message = capfd.readouterr().err
+    assert message.count("\n") == 1 and ": " in message
+
+
+def test_film_bound_belongs_to_direct_contact():
+    assert load("cases/ridge.toml", {"contact.minimum_film": 1e-9}).contact.minimum_film == 1e-9
+    with pytest.raises(CaseError, match=r'contact\.minimum_film = 1e-09: .*contact\.model = "direct"'):
+        load("cases/running_in.toml", {"contact.minimum_film": 1e-9})
+
+
+def test_series_has_at_most_ten_thousand_members():
+    with pytest.raises(CaseError, match="series: 10001 members; .* 10000$"):
+        load(STRIBECK, {"series.values": [0.1 + 1e-4 * k for k in range(10_001)]})
