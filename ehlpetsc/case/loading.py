@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from ehlpetsc.case.checking import Fault, Tables, check, in_si
-from ehlpetsc.case.combinations import member_tables, series_faults, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.conditions_file import TableFault
 from ehlpetsc.case.derived import resolve_measured_layer, with_derived
@@ -56,7 +55,9 @@ def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> 
     checked, found = _checked(folder, data, {fault.place for fault in faults})
     found += [Fault("", line) for line in profile_faults(folder, data.get("surface"), checked)]
     lines = _lines(path, faults + found)
-    if checked and not lines:
+    if checked and not lines and "series" in data:
+        from ehlpetsc.case.combinations import series_faults
+
         lines = series_faults(path, data, lambda member: _member_faults(path, member))
     if lines:
         raise CaseError(lines)
@@ -93,6 +94,8 @@ def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Cas
     For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
+    from ehlpetsc.case.combinations import member_tables, settings_of
+
     data, result = tomllib.loads(case.text), []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
@@ -108,7 +111,7 @@ def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Cas
 def _override(data: Tables, overrides: Overrides) -> list[Fault]:
     """Set keys in the tables; returns a fault for each invalid one."""
     faults = []
-    items = overrides.items() if isinstance(overrides, dict) else overrides or ()
+    items: Any = overrides.items() if isinstance(overrides, dict) else overrides or ()
     for override in [items] if isinstance(items, str | int | float) else list(items):
         try:
             put(data, *parsed(override))
