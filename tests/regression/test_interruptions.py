@@ -75,18 +75,6 @@ def test_signal_interrupts_a_long_step(tmp_path):
     assert process.returncode == 4 and time.monotonic() - asked < 3.0
 
 
-def test_ignored_hangup_stays_ignored(tmp_path):
-    words = ["nohup", *command(*STEADY)]
-    process = subprocess.Popen(
-        words, cwd=tmp_path, env=BARE | SCRIPT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-    )
-    while process.poll() is None:
-        time.sleep(0.1)
-        process.send_signal(signal.SIGHUP)
-    ended(process)
-    assert process.returncode == 0
-
-
 # on a fast machine the run has started by then and stops too
 @pytest.mark.parametrize("name, delay", [("SIGINT", 0.5), ("SIGTERM", 0.8), ("SIGHUP", 1.1)])
 def test_signal_during_imports_prints_one_line_at_most(tmp_path, name, delay):

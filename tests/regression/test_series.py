@@ -76,17 +76,6 @@ def test_series_member_equals_a_single_run(finished, tmp_path):
 
 
 @pytest.mark.slow
-def test_series_members_share_time_levels(finished):
-    folder, _ = finished
-    times = []
-    for value in VALUES:
-        with read_result(folder / f"out_viscosity_{value:g}.h5") as result:
-            levels = result.time / result.steps("dt").max()
-            times.append([round(level) for level in levels if abs(level - round(level)) < 1e-6])
-    assert times[0] == times[1] == times[2] == list(range(len(times[0])))
-
-
-@pytest.mark.slow
 def test_rerun_computes_missing_members_only(finished):
     folder, first = finished
     files = sorted(folder.glob("out_*.h5"))

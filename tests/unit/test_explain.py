@@ -119,16 +119,6 @@ def test_predicted_iterations_within_a_factor_of_one_and_a_half(name, overrides,
     assert newton / 1.5 < expected < 1.5 * newton
 
 
-def test_predicted_run_time_scales_with_machine_speed(monkeypatch):
-    c = case.load(CASES / "table1_rough.toml")
-    scales = Scales.of(c)
-    found = []
-    for seconds in (0.01, 0.02):
-        monkeypatch.setattr(forecast, "probe", lambda seconds=seconds: seconds)
-        found.append(forecast.run_time(c, scales, None))
-    assert found[1] == pytest.approx(2.0 * found[0])
-
-
 @pytest.mark.parametrize(
     "name, overrides, ranks",
     [
